@@ -1,0 +1,1 @@
+//! The equation of motion of a reduced model: integration, events, energy and period.

@@ -1,0 +1,256 @@
+//! Putting the mechanism together at the start, on the branch that the rough angles pick.
+
+use crate::error::{AssemblyError, PlaceError};
+use crate::groups::Unknown;
+use crate::place::Guess;
+use crate::plan::{Kind, Plan, Pose};
+use crate::plane::{Vec2, vec2};
+
+/// One way a group closes: the value of each unknown, as in a seed, and its branch sign.
+struct Way {
+    values: Vec<Vec2>,
+    branch: f64,
+}
+
+/// Angles tried for each class that no rough angle tells about, when Newton's method looks for
+/// all the ways in which a group closes.
+const TRIALS: usize = 6;
+/// Bound on the starts of one group.
+const MOST_STARTS: usize = 6_usize.pow(4);
+/// Two ways closer than this (rad) are one.
+const SAME: f64 = 1e-6;
+
+impl Plan {
+    /// Finds the branch of every group at the start.
+    pub(crate) fn assemble(&mut self, rough: &[Option<f64>]) -> Result<Pose<f64>, AssemblyError> {
+        let mut pose = self.pose();
+        let q = self.start.clone();
+        for g in 0..self.groups.len() {
+            let ways = match self.groups[g].kind {
+                Kind::Newton(_) => self.ways_by_newton(g, rough, &mut pose)?,
+                _ => self.ways_closed(g, &mut pose)?,
+            };
+            let way = self.pick(g, ways, rough)?;
+            match &mut self.groups[g].kind {
+                Kind::Pin(pin) => pin.branch = way.branch,
+                Kind::Aim(aim) => aim.branch = way.branch,
+                Kind::Newton(newton) => newton.branch = way.branch,
+            }
+            self.set(g, &way.values, &mut pose);
+        }
+        self.place_from(&q, &mut pose, Guess::Pose)
+            .map_err(|e| self.refusal(self.groups.len(), e))?;
+        Ok(pose)
+    }
+
+    /// Places the groups before the next one, and that one.
+    fn try_up_to(&self, group: usize, pose: &mut Pose<f64>) -> Result<(), PlaceError> {
+        self.place_groups(&self.start, pose, Guess::Pose, group + 1)
+    }
+
+    /// Both ways of a closed-form group.
+    fn ways_closed(&mut self, g: usize, pose: &mut Pose<f64>) -> Result<Vec<Way>, AssemblyError> {
+        let mut ways = Vec::new();
+        for branch in [1.0, -1.0] {
+            match &mut self.groups[g].kind {
+                Kind::Pin(pin) => pin.branch = branch,
+                Kind::Aim(aim) => aim.branch = branch,
+                Kind::Newton(_) => {}
+            }
+            self.try_up_to(g, pose).map_err(|e| self.refusal(g, e))?;
+            let values = self.values(g, pose);
+            ways.push(Way { values, branch });
+        }
+        Ok(ways)
+    }
+
+    /// All the ways that Newton's method finds from the rough angles and a grid of others.
+    fn ways_by_newton(
+        &mut self,
+        g: usize,
+        rough: &[Option<f64>],
+        pose: &mut Pose<f64>,
+    ) -> Result<Vec<Way>, AssemblyError> {
+        let unknowns = self.groups[g].group.unknowns.clone();
+        let hints: Vec<Option<f64>> = unknowns.iter().map(|&u| self.hint(u, rough)).collect();
+        let open = hints.iter().filter(|h| h.is_none()).count();
+        let starts = u32::try_from(open)
+            .ok()
+            .and_then(|open| TRIALS.checked_pow(open))
+            .map_or(MOST_STARTS, |s| s.min(MOST_STARTS));
+        let mut ways: Vec<Way> = Vec::new();
+        let mut refused = None;
+        for start in 0..starts {
+            let mut left = start;
+            let guess: Vec<Vec2> = unknowns
+                .iter()
+                .zip(&hints)
+                .map(|(&unknown, hint)| {
+                    let trial = hint.unwrap_or_else(|| {
+                        let k = left % TRIALS;
+                        left /= TRIALS;
+                        // Off the axes, where many mechanisms are singular.
+                        0.3 + std::f64::consts::TAU * k as f64 / TRIALS as f64
+                    });
+                    match unknown {
+                        Unknown::Class(_) => Vec2::from_angle(trial),
+                        Unknown::Slide(_) => vec2((trial - 3.0) * self.groups[g].size / 6.0, 0.0),
+                    }
+                })
+                .collect();
+            self.set(g, &guess, pose);
+            match self.try_up_to(g, pose) {
+                Ok(()) => {
+                    let values = self.values(g, pose);
+                    let Kind::Newton(newton) = &self.groups[g].kind else {
+                        break;
+                    };
+                    let Ok(factored) = self.factor(g, newton, pose) else {
+                        continue;
+                    };
+                    let far = |way: &Way| {
+                        way.values
+                            .iter()
+                            .zip(&values)
+                            .any(|(a, b)| (*a - *b).norm() > SAME * (1.0 + a.norm()))
+                    };
+                    if ways.iter().all(far) {
+                        ways.push(Way {
+                            values,
+                            branch: factored.sign,
+                        });
+                    }
+                }
+                Err(e) if e.group() == Some(g) => refused = Some(e),
+                Err(e) => return Err(self.refusal(g, e)),
+            }
+        }
+        match (ways.is_empty(), refused) {
+            (true, Some(e)) => Err(self.refusal(g, e)),
+            _ => Ok(ways),
+        }
+    }
+
+    /// The rough angle of an unknown, from the bodies that turn with it.
+    fn hint(&self, unknown: Unknown, rough: &[Option<f64>]) -> Option<f64> {
+        let Unknown::Class(class) = unknown else {
+            return None;
+        };
+        let root = self.root_of(class);
+        self.frames
+            .attitudes
+            .iter()
+            .zip(rough)
+            .find_map(|(attitude, angle)| {
+                let angle = (*angle)?;
+                (attitude.frame == root).then(|| angle - attitude.offset.angle())
+            })
+    }
+
+    /// Of several ways, the one nearest to the rough angles.
+    fn pick(
+        &self,
+        g: usize,
+        mut ways: Vec<Way>,
+        rough: &[Option<f64>],
+    ) -> Result<Way, AssemblyError> {
+        let unknowns = &self.groups[g].group.unknowns;
+        let distance = |way: &Way| -> f64 {
+            unknowns
+                .iter()
+                .zip(&way.values)
+                .filter_map(|(&u, value)| {
+                    let hint = Vec2::from_angle(self.hint(u, rough)?);
+                    Some((*value - hint).dot(*value - hint))
+                })
+                .sum()
+        };
+        ways.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let ambiguous = ways.len() > 1 && distance(&ways[1]) - distance(&ways[0]) < SAME;
+        if ambiguous {
+            return Err(self.ambiguous(g, &ways));
+        }
+        ways.into_iter()
+            .next()
+            .ok_or_else(|| AssemblyError::CannotClose {
+                bodies: self.group_bodies(g),
+                joints: self.group_joints(g),
+                gap: f64::NAN,
+            })
+    }
+
+    fn ambiguous(&self, g: usize, ways: &[Way]) -> AssemblyError {
+        let unknowns = &self.groups[g].group.unknowns;
+        let bodies: Vec<_> = self
+            .group_bodies(g)
+            .into_iter()
+            .filter(|b| {
+                let frame = self.frames.attitudes[b.0].frame;
+                unknowns
+                    .iter()
+                    .any(|&u| matches!(u, Unknown::Class(c) if self.root_of(c) == frame))
+            })
+            .collect();
+        let angle = |way: &Way, body: usize| {
+            let attitude = self.frames.attitudes[body];
+            unknowns
+                .iter()
+                .zip(&way.values)
+                .find_map(|(&u, value)| match u {
+                    Unknown::Class(c) if self.root_of(c) == attitude.frame => {
+                        Some(value.turn(attitude.offset).angle())
+                    }
+                    _ => None,
+                })
+                .unwrap_or(f64::NAN)
+        };
+        let choices = ways
+            .iter()
+            .map(|way| bodies.iter().map(|b| angle(way, b.0)).collect())
+            .collect();
+        AssemblyError::Ambiguous { bodies, choices }
+    }
+
+    fn refusal(&self, g: usize, error: PlaceError) -> AssemblyError {
+        let g = error.group().unwrap_or(g);
+        let (bodies, joints) = if g < self.groups.len() {
+            (self.group_bodies(g), self.group_joints(g))
+        } else {
+            (Vec::new(), Vec::new())
+        };
+        match error {
+            PlaceError::Singular { .. } => AssemblyError::SingularStart { bodies, joints },
+            PlaceError::Unreachable { gap, .. } | PlaceError::NotClosed { residual: gap, .. } => {
+                AssemblyError::CannotClose {
+                    bodies,
+                    joints,
+                    gap,
+                }
+            }
+            PlaceError::OutOfRange { .. } | PlaceError::NotFinite { .. } => {
+                AssemblyError::CannotClose {
+                    bodies,
+                    joints,
+                    gap: f64::NAN,
+                }
+            }
+        }
+    }
+
+    fn values(&self, g: usize, pose: &Pose<f64>) -> Vec<Vec2> {
+        let value = |&unknown: &Unknown| match unknown {
+            Unknown::Class(c) => pose.turn[self.root_of(c)],
+            Unknown::Slide(s) => vec2(pose.slide[s], 0.0),
+        };
+        self.groups[g].group.unknowns.iter().map(value).collect()
+    }
+
+    fn set(&self, g: usize, values: &[Vec2], pose: &mut Pose<f64>) {
+        for (&unknown, value) in self.groups[g].group.unknowns.iter().zip(values) {
+            match unknown {
+                Unknown::Class(c) => pose.turn[self.root_of(c)] = *value,
+                Unknown::Slide(s) => pose.slide[s] = value.x,
+            }
+        }
+    }
+}

@@ -1,0 +1,26 @@
+//! Bodies, joints and actuators; the structure of a mechanism; its positions, velocities and accelerations.
+
+mod assemble;
+pub mod error;
+pub mod frames;
+mod groups;
+pub mod mechanism;
+pub mod motion;
+mod place;
+pub mod plan;
+pub mod plane;
+pub mod range;
+pub mod rows;
+pub mod scalar;
+mod small;
+pub mod tree;
+
+pub use error::{AssemblyError, PlaceError, StructureError};
+pub use mechanism::{
+    Actuator, ActuatorId, Body, BodyId, Component, Joint, JointId, JointKind, Mechanism, Reaction,
+};
+pub use motion::{Balance, Motion};
+pub use plan::{Plan, Pose, Start};
+pub use plane::{Vec2, vec2};
+pub use range::Range;
+pub use scalar::{Dual, Scalar};

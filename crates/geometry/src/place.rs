@@ -1,0 +1,462 @@
+//! Positions: from the actuators' coordinates to the orientation of every body, group by group.
+
+use crate::error::PlaceError;
+use crate::frames::Turning;
+use crate::groups::{Group, Unknown};
+use crate::plan::{Aim, Closure, Kind, Newton, Pin, Plan, Pose, Step};
+use crate::plane::{Vec2, vec2};
+use crate::scalar::Scalar;
+use crate::small;
+use crate::tree::Arm;
+
+/// Below this determinant, relative to the lengths that make it, nothing is left of the digits.
+const SINGULAR: f64 = 1e-14;
+/// Newton's correction (rad, or relative to the group's size) after which its square is rounding.
+const CONVERGED: f64 = 1e-9;
+/// Newton's method doubles its digits in each step: 30 steps are far more than it needs.
+const MOST_STEPS: usize = 30;
+
+/// Where Newton's method starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Guess {
+    /// From the nearest stored seed, so that the pose depends on the coordinate alone.
+    Seed,
+    /// From what the pose holds (while the branch is being followed).
+    Pose,
+}
+
+impl Plan {
+    /// Places the mechanism at the coordinates `q` (rad). The pose depends on `q` alone.
+    ///
+    /// # Errors
+    /// [`PlaceError`] when a group cannot close there, is singular, or `q` is out of range.
+    pub fn place<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
+        self.place_from(q, pose, Guess::Seed)
+    }
+
+    pub(crate) fn place_from<T: Scalar>(
+        &self,
+        q: &[T],
+        pose: &mut Pose<T>,
+        guess: Guess,
+    ) -> Result<(), PlaceError> {
+        self.place_groups(q, pose, guess, self.groups.len())
+    }
+
+    /// Places the first `count` groups only (while a branch is still to be picked).
+    pub(crate) fn place_groups<T: Scalar>(
+        &self,
+        q: &[T],
+        pose: &mut Pose<T>,
+        guess: Guess,
+        count: usize,
+    ) -> Result<(), PlaceError> {
+        pose.q.copy_from_slice(q);
+        for value in q {
+            if !value.value().is_finite() {
+                return Err(PlaceError::NotFinite { q: value.value() });
+            }
+        }
+        for step in &self.steps {
+            match step {
+                Step::Turn(frame) => self.turn(*frame, pose),
+                Step::Rotate(arms) => {
+                    for (arm, turned) in self.arms[arms.clone()]
+                        .iter()
+                        .zip(&mut pose.arm[arms.clone()])
+                    {
+                        *turned = arm.local.lift::<T>().turn(pose.turn[arm.frame]);
+                    }
+                }
+                Step::Solve(g) if *g >= count => return Ok(()),
+                Step::Solve(g) => match &self.groups[*g].kind {
+                    Kind::Pin(pin) => place_pin(pin, *g, pose)?,
+                    Kind::Aim(aim) => self.place_aim(aim, *g, pose)?,
+                    Kind::Newton(newton) => {
+                        if guess == Guess::Seed {
+                            self.sow(*g, newton, pose)?;
+                        }
+                        self.place_newton(*g, newton, pose)?;
+                        if guess == Guess::Seed {
+                            self.keep_branch(*g, newton, pose)?;
+                        }
+                    }
+                },
+            }
+        }
+        for (closure, travel) in self.closures.iter().zip(&mut pose.travel) {
+            if let Some((axis, _)) = closure.axis {
+                *travel = pose.arm[axis].dot(gap(closure, &pose.arm, &pose.slide));
+            }
+        }
+        Ok(())
+    }
+
+    fn turn<T: Scalar>(&self, frame: usize, pose: &mut Pose<T>) {
+        if let Turning::Driven {
+            parent,
+            actuator,
+            sign,
+        } = self.frames.frames[frame].turning
+        {
+            let (sin, cos) = pose.q[actuator].sin_cos();
+            let by = vec2(cos, if sign < 0.0 { -sin } else { sin });
+            pose.turn[frame] = if parent == 0 {
+                by
+            } else {
+                pose.turn[parent].turn(by)
+            };
+        }
+    }
+
+    /// n·(arms) = 0 for a unit vector e that turns: the line's normal, or the arm's direction.
+    fn place_aim<T: Scalar>(
+        &self,
+        aim: &Aim,
+        group: usize,
+        pose: &mut Pose<T>,
+    ) -> Result<(), PlaceError> {
+        let mut known = Vec2::<T>::zero();
+        for &(arm, _) in &aim.known {
+            known += pose.arm[arm];
+        }
+        let branch = T::lift(aim.branch);
+        let (unit, slope) = if aim.line_turns {
+            // n·D = −n₀·w with n₀, w constant in the turning frame.
+            let kappa = T::lift(-aim.unit.dot(aim.local));
+            let square = known.dot(known);
+            let rest = square - kappa * kappa;
+            let reach = root(rest, square.value(), group, pose.q[0].value())?;
+            let across = known.perp() * (branch * reach);
+            let inverse = T::lift(1.0) / square;
+            ((known * kappa + across) * inverse, branch * reach)
+        } else {
+            // n·(e |w|) = −n·D with n known.
+            let Some((axis, _)) = self.closures[aim.closure].axis else {
+                return Ok(());
+            };
+            let normal = pose.arm[axis].perp();
+            let length = T::lift(aim.local.norm());
+            let kappa = -normal.dot(known);
+            let rest = length * length - kappa * kappa;
+            let size = (length * length).value();
+            let reach = root(rest, size, group, pose.q[0].value())?;
+            let across = normal.perp() * (branch * reach);
+            (
+                (normal * kappa + across) * (T::lift(1.0) / length),
+                branch * reach,
+            )
+        };
+        pose.turn[aim.frame] = unit.turn_back(aim.unit.lift());
+        pose.inverse[group] = -T::lift(1.0) / slope;
+        Ok(())
+    }
+
+    /// Sets a Newton group's unknowns to the first-order prediction from its nearest seed.
+    fn sow<T: Scalar>(
+        &self,
+        group: usize,
+        newton: &Newton,
+        pose: &mut Pose<T>,
+    ) -> Result<(), PlaceError> {
+        let q = pose.q[0];
+        let (seed, away) = newton.seeds.nearest(q.value(), self.range, self.start[0])?;
+        // The derivative of the prediction does not matter: Newton's last step replaces it.
+        for (i, &unknown) in self.groups[group].group.unknowns.iter().enumerate() {
+            let (value, slope) = (seed.values[i], seed.slopes[i]);
+            match unknown {
+                Unknown::Class(class) => {
+                    let turn = value.turn(Vec2::from_angle(slope * away));
+                    pose.turn[self.root_of(class)] = turn.lift();
+                }
+                Unknown::Slide(slide) => pose.slide[slide] = T::lift(value.x + slope * away),
+            }
+        }
+        Ok(())
+    }
+
+    fn keep_branch<T: Scalar>(
+        &self,
+        group: usize,
+        newton: &Newton,
+        pose: &mut Pose<T>,
+    ) -> Result<(), PlaceError> {
+        // A pose on the other side of a singular position is another branch.
+        if self.factor(group, newton, pose)?.sign * newton.branch > 0.0 {
+            Ok(())
+        } else {
+            Err(PlaceError::Singular {
+                group,
+                q: pose.q[0].value(),
+                measure: 0.0,
+            })
+        }
+    }
+
+    fn place_newton<T: Scalar>(
+        &self,
+        group: usize,
+        newton: &Newton,
+        pose: &mut Pose<T>,
+    ) -> Result<(), PlaceError> {
+        let q = pose.q[0].value();
+        let size = self.groups[group].size;
+        let n = self.groups[group].group.unknowns.len();
+        let mut residual = f64::INFINITY;
+        let mut once_more = true;
+        for _ in 0..MOST_STEPS {
+            self.turn_group(group, pose);
+            residual = self.residual(group, pose);
+            self.factor(group, newton, pose)?;
+            let mut work = std::mem::take(&mut pose.work);
+            small::solve(
+                &pose.lu[newton.lu..newton.lu + n * n],
+                &pose.pivots[newton.pivots..newton.pivots + n],
+                &mut work[..n],
+            );
+            let mut largest = 0.0_f64;
+            let unknowns = &self.groups[group].group.unknowns;
+            for (&unknown, &step) in unknowns.iter().zip(&work) {
+                let change = match unknown {
+                    Unknown::Class(class) => {
+                        let frame = self.root_of(class);
+                        let (sin, cos) = step.sin_cos();
+                        pose.turn[frame] = pose.turn[frame].turn(vec2(cos, -sin));
+                        step.value().abs()
+                    }
+                    Unknown::Slide(slide) => {
+                        pose.slide[slide] -= step;
+                        step.value().abs() / size
+                    }
+                };
+                largest = if change.is_nan() {
+                    f64::INFINITY
+                } else {
+                    largest.max(change)
+                };
+            }
+            pose.work = work;
+            if !largest.is_finite() {
+                break;
+            }
+            // One step past convergence: it makes the derivative of a dual number exact.
+            if largest < CONVERGED && !std::mem::replace(&mut once_more, false) {
+                self.turn_group(group, pose);
+                self.factor(group, newton, pose)?;
+                return Ok(());
+            }
+        }
+        Err(PlaceError::NotClosed { group, q, residual })
+    }
+
+    /// Turns a group's driven frames and rotates the arms of its loops, after its unknowns changed.
+    fn turn_group<T: Scalar>(&self, group: usize, pose: &mut Pose<T>) {
+        let group = &self.groups[group].group;
+        for &unknown in &group.unknowns {
+            if let Unknown::Class(class) = unknown {
+                for &frame in &self.driven_of[class] {
+                    self.turn(frame, pose);
+                }
+            }
+        }
+        for &l in &group.loops {
+            let Closure {
+                arms, slides, axis, ..
+            } = &self.closures[l];
+            let slid = slides.iter().map(|&(_, a, _)| a);
+            for arm in arms.iter().chain(axis).map(|&(a, _)| a).chain(slid) {
+                let Arm { frame, local } = self.arms[arm];
+                pose.arm[arm] = local.lift::<T>().turn(pose.turn[frame]);
+            }
+        }
+    }
+
+    /// Writes a Newton group's residual into the work space; its largest component, m.
+    fn residual<T: Scalar>(&self, group: usize, pose: &mut Pose<T>) -> f64 {
+        let mut row = 0;
+        let mut largest = 0.0_f64;
+        for &l in &self.groups[group].group.loops {
+            let closure = &self.closures[l];
+            let open = gap(closure, &pose.arm, &pose.slide);
+            if let Some((axis, _)) = closure.axis {
+                pose.work[row] = pose.arm[axis].perp().dot(open);
+                row += 1;
+            } else {
+                pose.work[row] = open.x;
+                pose.work[row + 1] = open.y;
+                row += 2;
+            }
+        }
+        for value in &pose.work[..row] {
+            largest = largest.max(value.value().abs());
+        }
+        largest
+    }
+
+    /// Assembles and factors a Newton group's Jacobian at the pose.
+    pub(crate) fn factor<T: Scalar>(
+        &self,
+        group: usize,
+        newton: &Newton,
+        pose: &mut Pose<T>,
+    ) -> Result<small::Factored, PlaceError> {
+        let Group { unknowns, loops } = &self.groups[group].group;
+        let n = unknowns.len();
+        let mut row = newton.lu;
+        for &l in loops {
+            let closure = &self.closures[l];
+            let open = gap(closure, &pose.arm, &pose.slide);
+            for (column, &unknown) in unknowns.iter().enumerate() {
+                let change = self.change(closure, unknown, pose);
+                if let Some((axis, frame)) = closure.axis {
+                    let along = pose.arm[axis];
+                    let mut entry = along.perp().dot(change);
+                    if unknown == Unknown::Class(self.frames.frames[frame].class) {
+                        entry -= along.dot(open);
+                    }
+                    pose.lu[row + column] = entry;
+                } else {
+                    pose.lu[row + column] = change.x;
+                    pose.lu[row + n + column] = change.y;
+                }
+            }
+            row += if closure.axis.is_some() { n } else { 2 * n };
+        }
+        let factored = small::factor(
+            &mut pose.lu[newton.lu..newton.lu + n * n],
+            &mut pose.pivots[newton.pivots..newton.pivots + n],
+        );
+        if factored.measure > SINGULAR {
+            Ok(factored)
+        } else {
+            Err(PlaceError::Singular {
+                group,
+                q: pose.q[0].value(),
+                measure: factored.measure,
+            })
+        }
+    }
+
+    /// ∂L/∂unknown of a loop L = P₂ − P₁.
+    fn change<T: Scalar>(&self, closure: &Closure, unknown: Unknown, pose: &Pose<T>) -> Vec2<T> {
+        let mut sum = Vec2::zero();
+        match unknown {
+            Unknown::Class(class) => {
+                let of_class = |frame: usize| self.frames.frames[frame].class == class;
+                for &(arm, frame) in &closure.arms {
+                    if of_class(frame) {
+                        sum += pose.arm[arm].perp();
+                    }
+                }
+                for &(slide, arm, frame) in &closure.slides {
+                    if of_class(frame) {
+                        sum += pose.arm[arm].perp() * pose.slide[slide];
+                    }
+                }
+            }
+            Unknown::Slide(slide) => {
+                for &(s, arm, _) in &closure.slides {
+                    if s == slide {
+                        sum += pose.arm[arm];
+                    }
+                }
+            }
+        }
+        sum
+    }
+
+    /// The frame whose angle is a class's unknown.
+    pub(crate) fn root_of(&self, class: usize) -> usize {
+        self.class_roots[class]
+    }
+
+    /// The root of each carried body in ground axes, in their order, m.
+    pub fn roots<T: Scalar>(&self, pose: &Pose<T>, roots: &mut Vec<Vec2<T>>) {
+        roots.clear();
+        for (carried, carry) in self.carried.iter().zip(&self.tree.carries) {
+            let mut root = match carried.parent {
+                Some(parent) => roots[parent],
+                None => self.ground_root().lift(),
+            };
+            root += match carried.arm {
+                Some(arm) => pose.arm[arm],
+                None => carry.arm.local.lift(),
+            };
+            if let Some((slide, direction)) = carried.slide {
+                root += pose.arm[direction] * pose.slide[slide];
+            }
+            roots.push(root);
+        }
+    }
+
+    fn ground_root(&self) -> Vec2 {
+        self.tree.roots[self.ground]
+    }
+}
+
+/// L = P₂ − P₁ as its arms and slides have it.
+fn gap<T: Scalar>(closure: &Closure, arm: &[Vec2<T>], slide: &[T]) -> Vec2<T> {
+    let mut sum = Vec2::zero();
+    for &(a, _) in &closure.arms {
+        sum += arm[a];
+    }
+    for &(s, a, _) in &closure.slides {
+        sum += arm[a] * slide[s];
+    }
+    sum
+}
+
+/// Two arms of known length that close a triangle with the known part D of the loop.
+fn place_pin<T: Scalar>(pin: &Pin, group: usize, pose: &mut Pose<T>) -> Result<(), PlaceError> {
+    let mut known = Vec2::<T>::zero();
+    for &(arm, _) in &pin.known {
+        known += pose.arm[arm];
+    }
+    let [one, two] = pin.length;
+    let square = known.dot(known);
+    // (2 × area)² by factors that keep their digits near a stretched or folded triangle.
+    let outer = T::lift((one + two) * (one + two)) - square;
+    let inner = square - T::lift((one - two) * (one - two));
+    let reach = T::lift(0.5 * pin.branch)
+        * root(
+            outer * inner,
+            square.value().powi(2),
+            group,
+            pose.q[0].value(),
+        )?;
+    let half = T::lift(0.5);
+    let difference = T::lift((two - one) * (two + one));
+    let inverse = T::lift(1.0) / square;
+    let across = known.perp() * reach;
+    let first = (known * (half * (difference - square)) + across) * inverse;
+    let second = (known * (half * (-difference - square)) - across) * inverse;
+    let [l1, l2] = pin.local;
+    pose.turn[pin.frames[0]] = first.turn_back((l1 * (1.0 / (one * one))).lift());
+    pose.turn[pin.frames[1]] = second.turn_back((l2 * (1.0 / (two * two))).lift());
+    // arm₁ × arm₂ = the signed double area.
+    pose.inverse[group] = T::lift(1.0) / reach;
+    Ok(())
+}
+
+/// Square root of what is left of a length, or the error that says how much is missing.
+fn root<T: Scalar>(rest: T, size: f64, group: usize, q: f64) -> Result<T, PlaceError> {
+    let value = rest.value();
+    if value > SINGULAR * SINGULAR * size {
+        return Ok(rest.sqrt());
+    }
+    if value.is_nan() {
+        return Err(PlaceError::NotFinite { q });
+    }
+    if value < 0.0 {
+        return Err(PlaceError::Unreachable {
+            group,
+            q,
+            gap: (-value).sqrt(),
+        });
+    }
+    Err(PlaceError::Singular {
+        group,
+        q,
+        measure: (value / size).sqrt(),
+    })
+}

@@ -1,0 +1,138 @@
+//! Vectors of the plane. A direction (cos, sin) is a `Vec2` of unit length, and turns
+//! another vector by complex multiplication.
+
+use crate::scalar::Scalar;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+
+/// A vector of the plane, or a rotation as (cos θ, sin θ).
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Vec2<T = f64> {
+    /// Component along the x axis.
+    pub x: T,
+    /// Component along the y axis.
+    pub y: T,
+}
+
+/// Shorthand for [`Vec2`].
+#[inline]
+pub const fn vec2<T>(x: T, y: T) -> Vec2<T> {
+    Vec2 { x, y }
+}
+
+impl Vec2<f64> {
+    /// The zero vector.
+    pub const ZERO: Self = vec2(0.0, 0.0);
+    /// The rotation by nothing.
+    pub const IDENTITY: Self = vec2(1.0, 0.0);
+
+    /// The unit vector at `angle` (rad) from the x axis.
+    pub fn from_angle(angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        vec2(cos, sin)
+    }
+
+    /// Angle from the x axis, in (−π, π] rad.
+    pub fn angle(self) -> f64 {
+        self.y.atan2(self.x)
+    }
+
+    /// Length, without overflow at the extremes.
+    pub fn norm(self) -> f64 {
+        self.x.hypot(self.y)
+    }
+
+    /// Both components are finite.
+    pub fn is_finite(self) -> bool {
+        self.x.is_finite() && self.y.is_finite()
+    }
+
+    /// The same constants as another kind of number.
+    #[inline]
+    pub fn lift<T: Scalar>(self) -> Vec2<T> {
+        vec2(T::lift(self.x), T::lift(self.y))
+    }
+}
+
+impl<T: Scalar> Vec2<T> {
+    /// Zero, as any kind of number.
+    #[inline]
+    pub fn zero() -> Self {
+        vec2(T::lift(0.0), T::lift(0.0))
+    }
+
+    /// Scalar product.
+    #[inline]
+    pub fn dot(self, other: Self) -> T {
+        self.x * other.x + self.y * other.y
+    }
+
+    /// The out-of-plane component of the vector product, positive from `self` counter-clockwise to `other`.
+    #[inline]
+    pub fn cross(self, other: Self) -> T {
+        self.x * other.y - self.y * other.x
+    }
+
+    /// The vector turned by +90°.
+    #[inline]
+    pub fn perp(self) -> Self {
+        vec2(-self.y, self.x)
+    }
+
+    /// The vector turned by the rotation `by` = (cos, sin).
+    #[inline]
+    pub fn turn(self, by: Self) -> Self {
+        vec2(self.x * by.x - self.y * by.y, self.x * by.y + self.y * by.x)
+    }
+
+    /// The vector turned back by the rotation `by` = (cos, sin).
+    #[inline]
+    pub fn turn_back(self, by: Self) -> Self {
+        vec2(self.x * by.x + self.y * by.y, self.y * by.x - self.x * by.y)
+    }
+}
+
+impl<T: Scalar> Add for Vec2<T> {
+    type Output = Self;
+    #[inline]
+    fn add(self, o: Self) -> Self {
+        vec2(self.x + o.x, self.y + o.y)
+    }
+}
+
+impl<T: Scalar> Sub for Vec2<T> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, o: Self) -> Self {
+        vec2(self.x - o.x, self.y - o.y)
+    }
+}
+
+impl<T: Scalar> Neg for Vec2<T> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        vec2(-self.x, -self.y)
+    }
+}
+
+impl<T: Scalar> Mul<T> for Vec2<T> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, k: T) -> Self {
+        vec2(self.x * k, self.y * k)
+    }
+}
+
+impl<T: Scalar> AddAssign for Vec2<T> {
+    #[inline]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl<T: Scalar> SubAssign for Vec2<T> {
+    #[inline]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}

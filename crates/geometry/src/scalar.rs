@@ -1,0 +1,187 @@
+//! The kinds of number a plan can be evaluated in: plain `f64`, and [`Dual`] for exact
+//! derivatives with respect to a coordinate.
+
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A number that positions, velocities, accelerations and reactions can be computed in.
+pub trait Scalar:
+    Copy
+    + Debug
+    + Default
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// A constant.
+    fn lift(value: f64) -> Self;
+    /// The value alone, on which every decision (pivot, convergence, limit) is made.
+    fn value(self) -> f64;
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Sine and cosine together.
+    fn sin_cos(self) -> (Self, Self);
+}
+
+impl Scalar for f64 {
+    #[inline]
+    fn lift(value: f64) -> Self {
+        value
+    }
+    #[inline]
+    fn value(self) -> f64 {
+        self
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        f64::sin_cos(self)
+    }
+}
+
+/// A value with its derivative: v + d ε with ε² = 0. Evaluating a plan at q + ε gives the exact
+/// derivative of everything with respect to q, to rounding.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Dual {
+    /// The value.
+    pub v: f64,
+    /// Its derivative.
+    pub d: f64,
+}
+
+impl Dual {
+    /// The independent variable: derivative one.
+    pub fn variable(v: f64) -> Self {
+        Self { v, d: 1.0 }
+    }
+}
+
+impl Scalar for Dual {
+    #[inline]
+    fn lift(value: f64) -> Self {
+        Self { v: value, d: 0.0 }
+    }
+    #[inline]
+    fn value(self) -> f64 {
+        self.v
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        let v = self.v.sqrt();
+        Self {
+            v,
+            d: 0.5 * self.d / v,
+        }
+    }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        let (s, c) = self.v.sin_cos();
+        (
+            Self {
+                v: s,
+                d: c * self.d,
+            },
+            Self {
+                v: c,
+                d: -s * self.d,
+            },
+        )
+    }
+}
+
+impl Add for Dual {
+    type Output = Self;
+    #[inline]
+    fn add(self, o: Self) -> Self {
+        Self {
+            v: self.v + o.v,
+            d: self.d + o.d,
+        }
+    }
+}
+
+impl Sub for Dual {
+    type Output = Self;
+    #[inline]
+    fn sub(self, o: Self) -> Self {
+        Self {
+            v: self.v - o.v,
+            d: self.d - o.d,
+        }
+    }
+}
+
+impl Mul for Dual {
+    type Output = Self;
+    #[inline]
+    fn mul(self, o: Self) -> Self {
+        Self {
+            v: self.v * o.v,
+            d: self.d * o.v + self.v * o.d,
+        }
+    }
+}
+
+impl Div for Dual {
+    type Output = Self;
+    #[inline]
+    fn div(self, o: Self) -> Self {
+        let v = self.v / o.v;
+        Self {
+            v,
+            d: (self.d - v * o.d) / o.v,
+        }
+    }
+}
+
+impl Neg for Dual {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        Self {
+            v: -self.v,
+            d: -self.d,
+        }
+    }
+}
+
+impl AddAssign for Dual {
+    #[inline]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl SubAssign for Dual {
+    #[inline]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each operation against a central difference of itself.
+    #[test]
+    fn derivatives_agree_with_differences() {
+        let f = |x: Dual| {
+            let (s, c) = x.sin_cos();
+            (s * s / (Dual::lift(2.0) + c) - (-x) * c).sqrt()
+        };
+        let (x, h) = (0.7, 1e-6);
+        let slope = (f(Dual::lift(x + h)).v - f(Dual::lift(x - h)).v) / (2.0 * h);
+        assert!((f(Dual::variable(x)).d - slope).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,11 @@
+//! Masses, reactions and the reduced model of a mechanism.
+
+pub mod mass;
+pub mod model;
+mod reactions;
+pub mod reduced;
+mod runs;
+
+pub use mass::Mass;
+pub use model::{Actions, Model, ModelError, Workspace};
+pub use reduced::{Coefficients, Exact, ExactWork, Inertia, Reduced};

@@ -1,0 +1,71 @@
+//! A polynomial of time.
+
+/// c₀ + c₁ t + c₂ t² + …, with `coefficients` from the constant upwards: SI units of the quantity
+/// divided by s, s², … An empty list is the constant zero.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Polynomial {
+    /// The coefficients c₀, c₁, c₂ …
+    pub coefficients: Vec<f64>,
+}
+
+impl Polynomial {
+    /// The quantity that never changes.
+    pub fn constant(value: f64) -> Self {
+        Self {
+            coefficients: vec![value],
+        }
+    }
+
+    /// The motion that passes at t = 0 through `q` with speed `q_dot`, and keeps the acceleration
+    /// `q_ddot`: q + q̇ t + ½ q̈ t².
+    pub fn motion(q: f64, q_dot: f64, q_ddot: f64) -> Self {
+        Self {
+            coefficients: vec![q, q_dot, 0.5 * q_ddot],
+        }
+    }
+
+    /// The value and its first and second derivative at time `t`.
+    ///
+    /// Horner's rule on the three sums at once: with p ← p t + c for the value, its derivative
+    /// obeys p′ ← p′ t + p and half its second derivative s ← s t + p′, each with the old terms.
+    pub fn at(&self, t: f64) -> [f64; 3] {
+        let [mut value, mut first, mut half_second] = [0.0; 3];
+        for &c in self.coefficients.iter().rev() {
+            half_second = half_second * t + first;
+            first = first * t + value;
+            value = value * t + c;
+        }
+        [value, first, 2.0 * half_second]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_motion_starts_where_it_was_told_to() {
+        assert_eq!(Polynomial::motion(0.5, -2.0, 3.0).at(0.0), [0.5, -2.0, 3.0]);
+    }
+
+    /// t⁴ − 2 t³ + 5 at t = 3: 81 − 54 + 5, 4·27 − 6·9, 12·9 − 12·3.
+    #[test]
+    fn derivatives_by_hand() {
+        let law = Polynomial {
+            coefficients: vec![5.0, 0.0, 0.0, -2.0, 1.0],
+        };
+        assert_eq!(law.at(3.0), [32.0, 54.0, 72.0]);
+    }
+
+    #[test]
+    fn constants_and_nothing_at_all() {
+        assert_eq!(Polynomial::constant(4.0).at(-7.0), [4.0, 0.0, 0.0]);
+        assert_eq!(Polynomial::default().at(1.0), [0.0; 3]);
+    }
+
+    /// An infinite or missing time is not hidden.
+    #[test]
+    fn not_a_number_stays_visible() {
+        assert!(Polynomial::motion(0.0, 1.0, 0.0).at(f64::NAN)[0].is_nan());
+    }
+}

@@ -1,0 +1,66 @@
+//! Where the mechanism is put together, and how: it picks the branch.
+
+use crate::bodies::Bodies;
+use crate::fields::{Fields, quantity};
+use crate::joints::ActuatorText;
+use crate::names::shorten;
+use crate::problem::{Problem, Problems, Span};
+use crate::units::Units;
+
+/// `[assembly]` as read: what it says of each actuator and body, in rad.
+#[derive(Debug)]
+pub(crate) struct AssemblyText {
+    pub(crate) start: Vec<Option<(f64, Span)>>,
+    pub(crate) rough: Vec<Option<(f64, Span)>>,
+}
+
+impl AssemblyText {
+    pub(crate) fn read(
+        fields: Option<&Fields<'_>>,
+        bodies: &Bodies<'_>,
+        actuators: &[ActuatorText<'_>],
+        units: &Units,
+        problems: &mut Problems,
+    ) -> Self {
+        let mut text = Self {
+            start: vec![None; actuators.len()],
+            rough: vec![None; bodies.list.len()],
+        };
+        for entry in fields.iter().flat_map(|f| &f.entries) {
+            let name = entry.name;
+            let known = |problems: &mut Problems| {
+                let what = format!("`{}` in [assembly]", shorten(name));
+                quantity(entry.value, &units.angle, format_args!("{what}"), problems)
+            };
+            if let Some(k) = actuators.iter().position(|a| a.name == name) {
+                let angle = known(problems);
+                text.start[k] = angle.map(|(_, si)| (si, entry.key.start..entry.value.span().end));
+            } else if let Some(k) = bodies.position(name) {
+                let angle = known(problems);
+                text.rough[k] = angle.map(|(_, si)| (si, entry.key.start..entry.value.span().end));
+                if bodies.ground == Some(k) && angle.is_some_and(|(_, si)| si != 0.0) {
+                    problems.push(
+                        Problem::new(format!("the ground `{}` cannot be turned", shorten(name)))
+                            .at(entry.value.span(), "its angle is 0")
+                            .help("leave it out: its frame is the frame of the plane"),
+                    );
+                }
+            } else {
+                let names = actuators
+                    .iter()
+                    .map(|a| a.name)
+                    .chain(bodies.list.iter().map(|b| b.name));
+                let help = problems.choices(name, "actuators and bodies", names);
+                problems.push(
+                    Problem::new(format!(
+                        "`{}` in [assembly] is neither an actuator nor a body",
+                        shorten(name)
+                    ))
+                    .at(entry.key.clone(), "unknown name")
+                    .help(help),
+                );
+            }
+        }
+        text
+    }
+}

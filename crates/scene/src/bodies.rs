@@ -1,0 +1,365 @@
+//! The bodies: their points, their masses, and which of them is the ground.
+
+use crate::fields::{Entry, Fields, boolean, pair, quantity};
+use crate::names::{check, shorten};
+use crate::problem::{Problem, Problems, Span};
+use crate::units::{Unit, Units};
+use crate::value::{Field, Number};
+use dwell_geometry::{BodyId, Vec2, vec2};
+use dwell_kinetostatics::Mass;
+use std::collections::HashMap;
+use toml::de::DeValue;
+
+/// How a point is written.
+pub(crate) const POINT: &str = "two numbers [x, y]";
+
+/// A body as read. What could not be read is zero: the scene fails anyway, and the names still
+/// serve to judge the rest of the file.
+#[derive(Debug)]
+pub(crate) struct BodyText<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) key: Span,
+    pub(crate) points: Vec<PointText<'a>>,
+    by_name: HashMap<&'a str, usize>,
+    /// Its points were read: a name that is not among them does not exist.
+    known: bool,
+    pub(crate) mass: Mass,
+    pub(crate) mass_at: Option<Span>,
+    pub(crate) inertia_at: Option<Span>,
+    pub(crate) center_at: Option<Span>,
+}
+
+/// A point of a body, in m.
+#[derive(Debug)]
+pub(crate) struct PointText<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) at: Vec2,
+    pub(crate) span: Span,
+}
+
+/// All the bodies as read.
+#[derive(Debug, Default)]
+pub(crate) struct Bodies<'a> {
+    pub(crate) list: Vec<BodyText<'a>>,
+    by_name: HashMap<&'a str, usize>,
+    pub(crate) ground: Option<usize>,
+    /// The numbers a calibration or a study may change.
+    pub(crate) numbers: Vec<Number>,
+}
+
+impl<'a> Bodies<'a> {
+    pub(crate) fn read(fields: &Fields<'a>, units: &Units, problems: &mut Problems) -> Self {
+        let tables: Vec<_> = fields
+            .entries
+            .iter()
+            .map(|e| Fields::open(e, format!("body `{}`", shorten(e.name)), problems))
+            .collect();
+        let ground = ground(fields, &tables, problems);
+        let mut bodies = Self {
+            ground,
+            ..Self::default()
+        };
+        for (k, (entry, table)) in fields.entries.iter().zip(&tables).enumerate() {
+            check("a body", entry.name, &entry.key, problems);
+            bodies.by_name.insert(entry.name, k);
+            let mut reader = BodyReader {
+                id: k,
+                is_ground: ground == Some(k),
+                units,
+                numbers: &mut bodies.numbers,
+                problems,
+            };
+            bodies.list.push(reader.body(entry, table.as_ref()));
+        }
+        if let Some(span) = &units.open {
+            let with_inertia = bodies.list.iter().find(|b| b.inertia_at.is_some());
+            if let Some(at) = with_inertia.and_then(|b| b.inertia_at.clone()) {
+                problems.push(
+                    Problem::new("[units] leaves the unit of inertia open")
+                        .at(span.clone(), "not an SI unit")
+                        .at(at, "in which unit?")
+                        .help("add for instance `inertia = \"kg m2\"` to [units]"),
+                );
+            }
+        }
+        bodies
+    }
+
+    /// Index of the body of that name.
+    pub(crate) fn position(&self, name: &str) -> Option<usize> {
+        self.by_name.get(name).copied()
+    }
+
+    /// The body of that name; `at` is where the text names it.
+    pub(crate) fn find(&self, name: &str, at: &Span, problems: &mut Problems) -> Option<BodyId> {
+        if let Some(&k) = self.by_name.get(name) {
+            return Some(BodyId(k));
+        }
+        let bare = name.split_once('.').map_or("", |(body, _)| body);
+        let help = if self.by_name.contains_key(bare) {
+            format!("a body is asked for, not a point of it: `{bare}`")
+        } else {
+            problems.choices(name, "bodies", self.list.iter().map(|b| b.name))
+        };
+        problems.push(
+            Problem::new(format!("there is no body `{}`", shorten(name)))
+                .at(at.clone(), "unknown body")
+                .help(help),
+        );
+        None
+    }
+
+    /// The point of a body named by `body.point`: (body, index of its point). Names hold no dot,
+    /// so there is one way to read it.
+    pub(crate) fn find_point(
+        &self,
+        text: &str,
+        at: &Span,
+        problems: &mut Problems,
+    ) -> Option<(BodyId, usize)> {
+        let Some((body, point)) = text.split_once('.') else {
+            let example = match self.by_name.get(text).map(|&k| &self.list[k]) {
+                Some(body) => body.points.first().map(|p| (text, p.name)),
+                None => None,
+            };
+            let (body, point) = example.unwrap_or(("body", "point"));
+            problems.push(
+                Problem::new(format!(
+                    "`{}` does not name a point of a body",
+                    shorten(text)
+                ))
+                .at(at.clone(), "expected `body.point`")
+                .help(format!("write it as `{body}.{point}`")),
+            );
+            return None;
+        };
+        let id = self.find(body, at, problems)?;
+        let owner = &self.list[id.0];
+        if let Some(&k) = owner.by_name.get(point) {
+            return Some((id, k));
+        }
+        if owner.known {
+            let kind = format!("points of `{body}`");
+            let help = problems.choices(point, &kind, owner.points.iter().map(|p| p.name));
+            problems.push(
+                Problem::new(format!("body `{body}` has no point `{}`", shorten(point)))
+                    .at(at.clone(), "unknown point")
+                    .help(help),
+            );
+        }
+        None
+    }
+}
+
+/// Which body is the ground: the one that says `fixed = true`, or else the one named `ground`. If
+/// both are there the scene is ambiguous, unless `ground` itself says that it moves.
+fn ground(
+    fields: &Fields<'_>,
+    tables: &[Option<Fields<'_>>],
+    problems: &mut Problems,
+) -> Option<usize> {
+    let mut fixed = Vec::new();
+    let mut named = None;
+    for (k, (entry, table)) in fields.entries.iter().zip(tables).enumerate() {
+        let said = table.as_ref().and_then(|t| t.get("fixed"));
+        let value = said.map(|e| {
+            let what = format_args!("`fixed` of body `{}`", shorten(entry.name));
+            boolean(e.value, what, problems)
+        });
+        match (said, value.flatten()) {
+            (Some(e), Some(true)) => {
+                fixed.push((k, e.key.start..e.value.span().end, "fixed here"));
+            }
+            (Some(_), Some(false)) => {}
+            _ if entry.name == "ground" => {
+                named = Some((k, entry.key.clone(), "fixed by its name"));
+            }
+            _ => {}
+        }
+    }
+    fixed.extend(named);
+    if fixed.is_empty() {
+        problems.push(
+            Problem::new("no body is fixed")
+                .at(fields.span.clone(), "one of these has to be the ground")
+                .help("name the fixed body `ground`, or write `fixed = true` in it"),
+        );
+    }
+    if fixed.len() > 1 {
+        let mut problem = Problem::new(format!("{} bodies are fixed", fixed.len())).help(
+            "a mechanism has one ground: put all its points into one body, \
+             or write `fixed = false` in a body that moves",
+        );
+        for (_, span, label) in fixed.iter().take(4) {
+            problem = problem.at(span.clone(), *label);
+        }
+        problems.push(problem);
+    }
+    fixed.first().map(|(k, ..)| *k)
+}
+
+struct BodyReader<'r> {
+    id: usize,
+    is_ground: bool,
+    units: &'r Units,
+    numbers: &'r mut Vec<Number>,
+    problems: &'r mut Problems,
+}
+
+impl BodyReader<'_> {
+    fn body<'a>(&mut self, entry: &Entry<'a>, table: Option<&Fields<'a>>) -> BodyText<'a> {
+        let mut body = BodyText {
+            name: entry.name,
+            key: entry.key.clone(),
+            points: Vec::new(),
+            by_name: HashMap::new(),
+            known: false,
+            mass: Mass::default(),
+            mass_at: None,
+            inertia_at: None,
+            center_at: None,
+        };
+        let Some(table) = table else { return body };
+        table.allow(
+            &["points", "mass", "center", "inertia", "fixed"],
+            self.problems,
+        );
+        self.points(&mut body, table);
+        self.inertia(&mut body, table);
+        body
+    }
+
+    fn points<'a>(&mut self, body: &mut BodyText<'a>, table: &Fields<'a>) {
+        let name = shorten(body.name);
+        let entry = table.get("points");
+        let points = match entry {
+            Some(e) => match Fields::open(e, format!("the points of `{name}`"), self.problems) {
+                Some(points) => points.entries,
+                None => return,
+            },
+            None => Vec::new(),
+        };
+        if points.is_empty() {
+            let at = entry.map_or(&body.key, |e| &e.key).clone();
+            self.problems.push(
+                Problem::new(format!("body `{name}` has no points"))
+                    .at(at, "no points")
+                    .help("a body is joined at its points: `points = { A = [0, 0] }`"),
+            );
+            return;
+        }
+        body.known = true;
+        for (k, point) in points.iter().enumerate() {
+            check("a point", point.name, &point.key, self.problems);
+            let what = format!("point `{}` of `{name}`", shorten(point.name));
+            let at = self.vector(point, &what, |axis| Field::Point(k, axis));
+            body.by_name.insert(point.name, k);
+            body.points.push(PointText {
+                name: point.name,
+                at: at.unwrap_or(Vec2::ZERO),
+                span: point.key.clone(),
+            });
+        }
+    }
+
+    fn inertia<'a>(&mut self, body: &mut BodyText<'a>, table: &Fields<'a>) {
+        let mass = self.size(table, "mass", Field::Mass, &self.units.mass);
+        let inertia = self.size(table, "inertia", Field::Inertia, &self.units.inertia);
+        let center = table.get("center");
+        body.mass_at = table.get("mass").map(|e| e.value.span());
+        body.inertia_at = table.get("inertia").map(|e| e.value.span());
+        body.center_at = center.map(|e| e.value.span());
+        let at = center.and_then(|entry| self.center(body, entry));
+        if self.is_ground {
+            // It never moves: what it weighs has no effect, and must not appear in any balance.
+            return;
+        }
+        if let (Some(mass), Some(span), None) = (mass, &body.mass_at, center)
+            && mass > 0.0
+        {
+            self.problems.push(
+                Problem::new(format!(
+                    "body `{}` has a mass but no centre of mass",
+                    shorten(body.name)
+                ))
+                .at(span.clone(), "where is this mass?")
+                .help("add `center`: the name of one of its points, or [x, y]"),
+            );
+        }
+        body.mass = Mass {
+            mass: mass.unwrap_or(0.0),
+            center: at.unwrap_or(Vec2::ZERO),
+            inertia: inertia.unwrap_or(0.0),
+        };
+    }
+
+    /// A mass or an inertia, in SI: not negative.
+    fn size(&mut self, table: &Fields<'_>, key: &str, field: Field, unit: &Unit) -> Option<f64> {
+        let entry = table.get(key)?;
+        let what = format_args!("{key} of {}", table.what);
+        let (written, si) = quantity(entry.value, unit, what, self.problems)?;
+        if written < 0.0 {
+            self.problems.push(
+                Problem::new(format!("the {key} of {} is negative", table.what))
+                    .at(entry.value.span(), "less than nothing"),
+            );
+            return None;
+        }
+        self.keep(field, written, entry.value.span());
+        Some(si)
+    }
+
+    fn center<'a>(&mut self, body: &BodyText<'a>, entry: &Entry<'a>) -> Option<Vec2> {
+        let name = shorten(body.name);
+        let DeValue::String(text) = entry.value.get_ref() else {
+            return self.vector(entry, &format!("the center of `{name}`"), Field::Center);
+        };
+        let point = body.by_name.get(text.as_ref());
+        if point.is_none() && body.known {
+            // `crank.A` is understood, but written as everywhere else it would be one more rule.
+            let own = text
+                .strip_prefix(body.name)
+                .and_then(|t| t.strip_prefix('.'));
+            let kind = format!("points of `{name}`");
+            let names = body.points.iter().map(|p| p.name);
+            let help = self.problems.choices(own.unwrap_or(text), &kind, names);
+            self.problems.push(
+                Problem::new(format!("body `{name}` has no point `{}`", shorten(text)))
+                    .at(entry.value.span(), "unknown point of this body")
+                    .help(help),
+            );
+        }
+        point.map(|&k| body.points[k].at)
+    }
+
+    fn vector(
+        &mut self,
+        entry: &Entry<'_>,
+        what: &str,
+        field: impl Fn(usize) -> Field,
+    ) -> Option<Vec2> {
+        let values = pair(entry.value, POINT, format_args!("{what}"), self.problems)?;
+        let mut component = |axis: usize| {
+            let value = values[axis];
+            let letter = ["x", "y"][axis];
+            let what = format_args!("{letter} of {what}");
+            let (written, si) = quantity(value, &self.units.length, what, self.problems)?;
+            self.keep(field(axis), written, value.span());
+            Some(si)
+        };
+        let (x, y) = (component(0), component(1));
+        Some(vec2(x?, y?))
+    }
+
+    fn keep(&mut self, field: Field, value: f64, span: Span) {
+        let has_effect = !self.is_ground || matches!(field, Field::Point(..));
+        if has_effect {
+            self.numbers.push(Number {
+                body: BodyId(self.id),
+                field,
+                value,
+                span,
+            });
+        }
+    }
+}

@@ -1,0 +1,338 @@
+//! The scene put together from the sections of the file.
+
+use crate::assembly::AssemblyText;
+use crate::bodies::{Bodies, BodyText};
+use crate::error::{SceneError, Source};
+use crate::fields::{Entry, Fields, string};
+use crate::joints::{ActuatorText, JointText, Joints, actuators};
+use crate::motion::{MotionText, calibration};
+use crate::names::shorten;
+use crate::place::{BodyPlaces, JointPlaces, Places};
+use crate::problem::{Problem, Problems, Span};
+use crate::requests::RequestsText;
+use crate::scene::{Assembly, Calibration, Motion, Requests, Scene};
+use crate::units::Units;
+use dwell_geometry::{Body, Mechanism, Vec2};
+use toml::de::DeTable;
+
+impl Scene {
+    pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
+        let text = source.inner();
+        let root = crate::read::syntax(source)?;
+        let mut problems = Problems::default();
+        let parts = Parts::read(text, root.get_ref(), &mut problems);
+        match (parts, problems.into_error(source)) {
+            (_, Some(error)) => Err(error),
+            (Some(parts), None) => Ok(parts.finish(name, Source::clone(source))),
+            // Parts are missing only where something was found wrong.
+            (None, None) => Err(SceneError::bare("the scene is incomplete".to_owned(), None)),
+        }
+    }
+}
+
+/// The sections of a file as read.
+struct Parts<'a> {
+    title: Option<&'a str>,
+    note: Option<&'a str>,
+    units: Units,
+    bodies: Bodies<'a>,
+    joints: Joints<'a>,
+    actuators: Vec<ActuatorText<'a>>,
+    assembly: AssemblyText,
+    requests: RequestsText,
+    motion: Option<MotionText>,
+    calibration: Option<(Calibration, Span)>,
+    sections: Sections,
+}
+
+/// Where the sections begin.
+struct Sections {
+    units: Option<Span>,
+    assembly: Option<Span>,
+    requests: Option<Span>,
+    motion: Option<Span>,
+}
+
+/// What some editors put before the first character of a file.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
+const SECTIONS: [&str; 10] = [
+    "title",
+    "note",
+    "units",
+    "bodies",
+    "joints",
+    "actuators",
+    "assembly",
+    "requests",
+    "motion",
+    "calibration",
+];
+
+impl<'a> Parts<'a> {
+    fn read(text: &str, root: &'a DeTable<'a>, problems: &mut Problems) -> Option<Self> {
+        let fields = Fields::of("the scene", 0..0, root);
+        let blank = |c: char| c.is_whitespace() || c == BYTE_ORDER_MARK;
+        if fields.entries.is_empty() {
+            let message = match text.trim_matches(blank).is_empty() {
+                true => "the scene is empty",
+                false => "the scene has nothing but comments",
+            };
+            problems.push(
+                Problem::new(message)
+                    .at(0..0, "no bodies, no joints")
+                    .help("a scene has at least [bodies] and [joints]"),
+            );
+            return None;
+        }
+        fields.allow(&SECTIONS, problems);
+        let title = text_of(&fields, "title", problems);
+        let note = text_of(&fields, "note", problems);
+        let units = Units::read(fields.get("units"), problems);
+        // Without bodies every other name would be unknown: one message is enough.
+        let bodies = section(&fields, "bodies", true, problems)?;
+        let count = problems.count();
+        let bodies = Bodies::read(&bodies, &units, problems);
+        let all_bodies_read = problems.count() == count;
+        let joints = section(&fields, "joints", true, problems)
+            .map(|f| Joints::read(&f, &bodies, problems))
+            .unwrap_or_default();
+        // A joint that could not be read may be the one that holds a body.
+        if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
+            unjoined(&bodies, &joints, problems);
+        }
+        let actuators = section(&fields, "actuators", false, problems)
+            .map(|f| actuators(&f, &bodies, problems))
+            .unwrap_or_default();
+        let assembly = section(&fields, "assembly", false, problems);
+        let assembly_text =
+            AssemblyText::read(assembly.as_ref(), &bodies, &actuators, &units, problems);
+        let requests = section(&fields, "requests", false, problems);
+        let requests_text = match &requests {
+            Some(f) => RequestsText::read(f, &bodies, &joints, problems),
+            None => RequestsText::default(),
+        };
+        let motion = section(&fields, "motion", false, problems);
+        let motion_text = motion
+            .as_ref()
+            .map(|f| MotionText::read(f, &actuators, &units, problems));
+        let calibration = section(&fields, "calibration", false, problems).and_then(|f| {
+            if fields.get("motion").is_none() {
+                problems.push(
+                    Problem::new("a calibration needs a motion")
+                        .at(f.span.clone(), "the period of which motion?")
+                        .help("add [motion]: its period is what the number is fitted to"),
+                );
+            }
+            let (calibration, at) = calibration(&f, problems)?;
+            if all_bodies_read {
+                bodies.check_number(&calibration.path, &at, problems);
+            }
+            Some((calibration, at))
+        });
+        let span = |f: &Option<Fields<'_>>| f.as_ref().map(|f| f.span.clone());
+        Some(Self {
+            title,
+            note,
+            sections: Sections {
+                units: fields.get("units").map(|e| e.value.span()),
+                assembly: span(&assembly),
+                requests: span(&requests),
+                motion: span(&motion),
+            },
+            units,
+            bodies,
+            joints,
+            actuators,
+            assembly: assembly_text,
+            requests: requests_text,
+            motion: motion_text,
+            calibration,
+        })
+    }
+
+    /// The scene of parts in which nothing was found wrong.
+    fn finish(self, name: String, source: Source) -> Scene {
+        let places = self.places();
+        let mechanism = Mechanism {
+            bodies: self.bodies.list.iter().map(body).collect(),
+            ground: self.bodies.ground.unwrap_or(0),
+            joints: self
+                .joints
+                .list
+                .iter()
+                .filter_map(|j| j.joint.clone())
+                .collect(),
+            actuators: self
+                .actuators
+                .iter()
+                .filter_map(|a| a.actuator.clone())
+                .collect(),
+        };
+        let start = |said: &[Option<(f64, Span)>], k: usize| said.get(k)?.as_ref().map(|s| s.0);
+        let moving = self.motion.as_ref().map_or(&[][..], |m| &m.start);
+        let actuators = 0..self.actuators.len();
+        let assembly = Assembly {
+            start: actuators
+                .clone()
+                .map(|k| {
+                    start(&self.assembly.start, k)
+                        .or(start(moving, k))
+                        .unwrap_or(0.0)
+                })
+                .collect(),
+            rough: self
+                .assembly
+                .rough
+                .iter()
+                .map(|r| r.as_ref().map(|r| r.0))
+                .collect(),
+        };
+        let motion = self.motion.as_ref().and_then(|m| {
+            Some(Motion {
+                start: actuators
+                    .clone()
+                    .map(|k| start(&m.start, k).unwrap_or(assembly.start[k]))
+                    .collect(),
+                speed: actuators
+                    .map(|k| start(&m.speed, k).unwrap_or(0.0))
+                    .collect(),
+                length: m.length.as_ref()?.0,
+            })
+        });
+        let requests = Requests {
+            reactions: match self.requests.reactions {
+                Some(asked) => asked.into_iter().map(|(r, _)| r).collect(),
+                None => mechanism.reactions(),
+            },
+            paths: self.requests.paths.into_iter().map(|(p, _)| p).collect(),
+            dwell: self.requests.dwell.map(|(d, _)| d),
+        };
+        Scene {
+            title: self.title.map_or_else(|| name.clone(), one_line),
+            name,
+            note: self.note.map(str::to_owned),
+            mechanism,
+            masses: self.bodies.list.iter().map(|b| b.mass).collect(),
+            points: self.bodies.list.iter().map(points).collect(),
+            assembly,
+            requests,
+            motion,
+            calibration: self.calibration.map(|(c, _)| c),
+            source,
+            units: self.units,
+            places,
+            numbers: self.bodies.numbers,
+        }
+    }
+
+    fn places(&self) -> Places {
+        let spans = |said: &[Option<(f64, Span)>]| -> Vec<Option<Span>> {
+            said.iter()
+                .map(|s| s.as_ref().map(|s| s.1.clone()))
+                .collect()
+        };
+        let body = |b: &BodyText<'_>| BodyPlaces {
+            key: b.key.clone(),
+            points: b.points.iter().map(|p| p.span.clone()).collect(),
+            mass: b.mass_at.clone(),
+            inertia: b.inertia_at.clone(),
+            center: b.center_at.clone(),
+        };
+        let joint = |j: &JointText<'_>| JointPlaces {
+            key: j.key.clone(),
+            ends: j.ends.clone(),
+            axis: j.axis.clone(),
+        };
+        let motion = self.motion.as_ref();
+        let reactions = self.requests.reactions.as_deref().unwrap_or(&[]);
+        Places {
+            units: self.sections.units.clone(),
+            bodies: self.bodies.list.iter().map(body).collect(),
+            joints: self.joints.list.iter().map(joint).collect(),
+            actuators: self.actuators.iter().map(|a| a.key.clone()).collect(),
+            assembly: self.sections.assembly.clone(),
+            start: spans(&self.assembly.start),
+            rough: spans(&self.assembly.rough),
+            requests: self.sections.requests.clone(),
+            reactions: reactions.iter().map(|r| Some(r.1.clone())).collect(),
+            paths: self.requests.paths.iter().map(|p| p.1.clone()).collect(),
+            dwell: self.requests.dwell.as_ref().map(|d| d.1.clone()),
+            motion: self.sections.motion.clone(),
+            motion_start: motion.map_or_else(Vec::new, |m| spans(&m.start)),
+            speed: motion.map_or_else(Vec::new, |m| spans(&m.speed)),
+            length: motion.and_then(|m| m.length.as_ref()).map(|l| l.1.clone()),
+            calibration: self.calibration.as_ref().map(|c| c.1.clone()),
+        }
+    }
+}
+
+/// The table of a section. Absent it is an error where it is needed, empty as well.
+fn section<'a>(
+    fields: &Fields<'a>,
+    key: &str,
+    needed: bool,
+    problems: &mut Problems,
+) -> Option<Fields<'a>> {
+    let missing = |span: Span, label: &str| {
+        let help = match key {
+            "bodies" => "describe the bodies: `[bodies.crank]` with `points = { A = [0, 0] }`",
+            _ => "join the bodies: `A = { revolute = [\"ground.A\", \"crank.A\"] }`",
+        };
+        Problem::new(format!("the scene has no {key}"))
+            .at(span, label)
+            .help(help)
+    };
+    let Some(entry) = fields.get(key) else {
+        if needed {
+            problems.push(missing(0..0, &format!("there is no [{key}] in this file")));
+        }
+        return None;
+    };
+    let table = Fields::open(entry, format!("[{key}]"), problems)?;
+    if needed && table.entries.is_empty() {
+        problems.push(missing(entry.key.clone(), "nothing in it"));
+        return None;
+    }
+    Some(table)
+}
+
+/// A text shown to people; blank it is as good as absent.
+fn text_of<'a>(fields: &Fields<'a>, key: &str, problems: &mut Problems) -> Option<&'a str> {
+    let entry: &Entry<'a> = fields.get(key)?;
+    let text = string(entry.value, format_args!("the {key}"), problems)?.trim();
+    (!text.is_empty()).then_some(text)
+}
+
+/// Says which bodies no joint holds.
+fn unjoined(bodies: &Bodies<'_>, joints: &Joints<'_>, problems: &mut Problems) {
+    let mut joined = vec![false; bodies.list.len()];
+    for joint in joints.list.iter().filter_map(|j| j.joint.as_ref()) {
+        for body in joint.bodies {
+            joined[body.0] = true;
+        }
+    }
+    for (body, _) in bodies.list.iter().zip(joined).filter(|(_, joined)| !joined) {
+        let name = shorten(body.name);
+        problems.push(
+            Problem::new(format!("body `{name}` is in no joint"))
+                .at(body.key.clone(), "held by nothing")
+                .help("join it to another body in [joints], or leave it out"),
+        );
+    }
+}
+
+fn body(b: &BodyText<'_>) -> Body {
+    Body {
+        name: b.name.to_owned(),
+    }
+}
+
+fn points(b: &BodyText<'_>) -> Vec<(String, Vec2)> {
+    b.points.iter().map(|p| (p.name.to_owned(), p.at)).collect()
+}
+
+/// A title heads a page: whatever white space it is written with becomes single spaces.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,68 @@
+//! Scene files: TOML text to mechanism, masses, assembly, requests and motion, with every message pointing into the file.
+//!
+//! [`Scene::read`] turns a file into plain data, in SI. There is no mechanics here: whether the
+//! mechanism closes, moves or balances is for the crates above to find out, and
+//! [`Scene::error`] lets them say so at a [`Place`] of the file.
+//!
+//! All the errors of a file come in one report, in the order of the file. No input panics.
+//!
+//! ```
+//! let scene = dwell_scene::Scene::parse(
+//!     "pendulum.toml",
+//!     r#"
+//!     bodies.ground.points = { O = [0, 0] }
+//!     bodies.bob = { points = { O = [0, 0], G = [0.5, 0] }, mass = 2.0, center = "G" }
+//!     joints.O = { revolute = ["ground.O", "bob.O"] }
+//!     actuators.phi = { angle = ["ground", "bob"] }
+//!     "#,
+//! )?;
+//! assert_eq!(scene.name, "pendulum");
+//! assert_eq!(scene.masses[1].center.x, 0.5);
+//! # Ok::<(), dwell_scene::SceneError>(())
+//! ```
+//!
+//! # The language
+//!
+//! What is optional, and what stands in for it when absent:
+//!
+//! - `title`: the scene's name. `note`: none.
+//! - `[units]`: SI. A length unit other than m, or a mass unit other than kg, asks for an inertia
+//!   unit too as soon as a body has an inertia. Time is always in s.
+//! - a body's `mass` and `inertia`: 0; `center`: needed only by a mass. Those of the ground are
+//!   read and checked, then dropped: the ground does not move, so they have no effect.
+//! - `fixed`: the body named `ground` is the ground. Another can be, with `fixed = true`; a body
+//!   named `ground` then has to say `fixed = false`.
+//! - an actuator's coordinate in `[assembly]`: where the motion starts, or else 0; a body's rough
+//!   angle: unknown.
+//! - `[requests]`, or its `reactions`: every reaction. `reactions = []` asks for none.
+//! - `[motion]`: none; its `start`: the coordinates at assembly.
+//!
+//! Names are made of letters and digits of any script, `_`, `-`, primes and inner spaces. They
+//! hold no dot, so that `body.point` and `joint.component` can be read in one way only. A body
+//! and an actuator may not share a name: both are keys of `[assembly]`.
+//!
+//! A number, once in SI, is at most 1e60 in magnitude: squares and products of what a scene holds
+//! then stay finite.
+
+mod assembly;
+mod bodies;
+mod build;
+mod error;
+mod fields;
+mod joints;
+mod motion;
+mod names;
+mod place;
+mod problem;
+mod read;
+mod requests;
+mod scene;
+mod units;
+mod value;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::SceneError;
+pub use place::Place;
+pub use scene::{Assembly, Calibration, DwellRequest, Length, Motion, PathPoint, Requests, Scene};

@@ -1,0 +1,172 @@
+//! Places of a scene, by the ids the crates above work with, and where they are in the text.
+
+use crate::error::SceneError;
+use crate::problem::Span;
+use crate::scene::Scene;
+use dwell_geometry::{ActuatorId, BodyId, JointId};
+
+/// Something a message can point at. What the file does not write down points at the nearest
+/// thing around it that it does: a missing mass at its body, a missing section at the beginning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// The beginning of the file.
+    Whole,
+    /// `[units]`.
+    Units,
+    /// The body's name where it is defined.
+    Body(BodyId),
+    /// The name of the body's k-th point where it is defined.
+    Point(BodyId, usize),
+    /// The body's mass.
+    Mass(BodyId),
+    /// The body's inertia.
+    Inertia(BodyId),
+    /// The body's centre of mass.
+    Center(BodyId),
+    /// The joint's name where it is defined.
+    Joint(JointId),
+    /// The first (0) or second (1) point the joint holds.
+    JointEnd(JointId, usize),
+    /// The axis or axes of a prismatic joint.
+    Axis(JointId),
+    /// The actuator's name where it is defined.
+    Actuator(ActuatorId),
+    /// `[assembly]`.
+    Assembly,
+    /// The actuator's coordinate at assembly.
+    Start(ActuatorId),
+    /// The body's rough angle at assembly.
+    Rough(BodyId),
+    /// `[requests]`.
+    Requests,
+    /// The request for the k-th of the scene's reactions.
+    Reaction(usize),
+    /// The request for the k-th of the scene's paths.
+    Path(usize),
+    /// The request for a dwell.
+    Dwell,
+    /// `[motion]`.
+    Motion,
+    /// The actuator's coordinate at the start of the motion.
+    MotionStart(ActuatorId),
+    /// The actuator's speed at the start of the motion.
+    Speed(ActuatorId),
+    /// The motion's periods or duration.
+    Length,
+    /// The number the calibration sets.
+    Calibration,
+}
+
+/// Where each place is. A place that is not written down is `None`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Places {
+    pub(crate) units: Option<Span>,
+    pub(crate) bodies: Vec<BodyPlaces>,
+    pub(crate) joints: Vec<JointPlaces>,
+    pub(crate) actuators: Vec<Span>,
+    pub(crate) assembly: Option<Span>,
+    pub(crate) start: Vec<Option<Span>>,
+    pub(crate) rough: Vec<Option<Span>>,
+    pub(crate) requests: Option<Span>,
+    pub(crate) reactions: Vec<Option<Span>>,
+    pub(crate) paths: Vec<Span>,
+    pub(crate) dwell: Option<Span>,
+    pub(crate) motion: Option<Span>,
+    pub(crate) motion_start: Vec<Option<Span>>,
+    pub(crate) speed: Vec<Option<Span>>,
+    pub(crate) length: Option<Span>,
+    pub(crate) calibration: Option<Span>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct BodyPlaces {
+    pub(crate) key: Span,
+    pub(crate) points: Vec<Span>,
+    pub(crate) mass: Option<Span>,
+    pub(crate) inertia: Option<Span>,
+    pub(crate) center: Option<Span>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct JointPlaces {
+    pub(crate) key: Span,
+    pub(crate) ends: [Span; 2],
+    pub(crate) axis: Option<Span>,
+}
+
+impl Places {
+    fn span(&self, place: Place) -> Option<Span> {
+        let body = |b: BodyId| self.bodies.get(b.0);
+        let joint = |j: JointId| self.joints.get(j.0);
+        let nth = |list: &[Option<Span>], k: usize| list.get(k).cloned().flatten();
+        match place {
+            Place::Whole => None,
+            Place::Units => self.units.clone(),
+            Place::Body(b) => body(b).map(|b| b.key.clone()),
+            Place::Point(b, k) => body(b)?.points.get(k).cloned(),
+            Place::Mass(b) => body(b)?.mass.clone(),
+            Place::Inertia(b) => body(b)?.inertia.clone(),
+            Place::Center(b) => body(b)?.center.clone(),
+            Place::Joint(j) => joint(j).map(|j| j.key.clone()),
+            Place::JointEnd(j, k) => joint(j)?.ends.get(k).cloned(),
+            Place::Axis(j) => joint(j)?.axis.clone(),
+            Place::Actuator(a) => self.actuators.get(a.0).cloned(),
+            Place::Assembly => self.assembly.clone(),
+            Place::Start(a) => nth(&self.start, a.0),
+            Place::Rough(b) => nth(&self.rough, b.0),
+            Place::Requests => self.requests.clone(),
+            Place::Reaction(k) => nth(&self.reactions, k),
+            Place::Path(k) => self.paths.get(k).cloned(),
+            Place::Dwell => self.dwell.clone(),
+            Place::Motion => self.motion.clone(),
+            Place::MotionStart(a) => nth(&self.motion_start, a.0),
+            Place::Speed(a) => nth(&self.speed, a.0),
+            Place::Length => self.length.clone(),
+            Place::Calibration => self.calibration.clone(),
+        }
+    }
+
+    /// What stands around a place that is not written down.
+    fn around(place: Place) -> Place {
+        match place {
+            Place::Point(b, _) | Place::Mass(b) | Place::Inertia(b) | Place::Center(b) => {
+                Place::Body(b)
+            }
+            Place::JointEnd(j, _) | Place::Axis(j) => Place::Joint(j),
+            Place::Start(a) => Place::MotionStart(a),
+            Place::MotionStart(a) | Place::Speed(a) => Place::Actuator(a),
+            Place::Rough(b) => Place::Body(b),
+            Place::Reaction(_) | Place::Path(_) | Place::Dwell => Place::Requests,
+            Place::Length => Place::Motion,
+            _ => Place::Whole,
+        }
+    }
+}
+
+impl Scene {
+    /// An error at places of the scene, each with a remark of its own, for what is found out
+    /// about the scene later.
+    pub fn error(
+        &self,
+        message: String,
+        help: Option<String>,
+        at: &[(Place, String)],
+    ) -> SceneError {
+        let labels = at
+            .iter()
+            .map(|(place, label)| (self.span(*place), label.clone()));
+        SceneError::at(&self.source, message, help, labels)
+    }
+
+    /// Bytes of the text where a place is.
+    pub fn span(&self, mut place: Place) -> std::ops::Range<usize> {
+        // Every step outwards ends at the whole, which has no span: three steps at most.
+        while place != Place::Whole {
+            if let Some(span) = self.places.span(place) {
+                return span;
+            }
+            place = Places::around(place);
+        }
+        0..0
+    }
+}

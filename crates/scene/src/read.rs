@@ -1,0 +1,141 @@
+//! From a file to the TOML tree: everything that can go wrong before the scene is looked at.
+
+use crate::error::{SceneError, Source};
+use crate::names::shorten;
+use crate::scene::Scene;
+use miette::NamedSource;
+use std::fs::File;
+use std::io::{ErrorKind, Read as _};
+use std::path::Path;
+use std::sync::Arc;
+use toml::Spanned;
+use toml::de::DeTable;
+
+/// Longest scene, bytes: ten thousand loops take five million.
+const LONGEST: u64 = 1 << 26;
+
+impl Scene {
+    /// Reads a scene file.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
+        let path = path.as_ref();
+        let shown = path.display().to_string();
+        let bytes = bytes(path, &shown)?;
+        let text = match String::from_utf8(bytes) {
+            Ok(text) => text,
+            Err(error) => return Err(not_utf8(&shown, &error)),
+        };
+        let source = Arc::new(NamedSource::new(&shown, text));
+        // `scene.toml` given without its folder is still in one.
+        let named = match path.parent().map(std::fs::canonicalize) {
+            Some(Ok(folder)) => scene_name(&folder.join(path.file_name().unwrap_or_default())),
+            _ => scene_name(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned())),
+        };
+        Self::build(named, &source)
+    }
+}
+
+/// The file's stem, or its folder's name if the stem is `scene`.
+pub(crate) fn scene_name(path: &Path) -> String {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let folder = path.parent().and_then(Path::file_name);
+    match folder {
+        Some(folder) if stem == "scene" => folder.to_string_lossy().into_owned(),
+        _ if stem.is_empty() => "scene".to_owned(),
+        _ => stem.into_owned(),
+    }
+}
+
+fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, SceneError> {
+    let error = |message: String, help: Option<String>| SceneError::bare(message, help);
+    if path.is_dir() {
+        let inside = path.join("scene.toml");
+        let help = match inside.is_file() {
+            true => format!("did you mean `{}`?", inside.display()),
+            false => "give the scene file itself".to_owned(),
+        };
+        return Err(error(format!("`{shown}` is a folder"), Some(help)));
+    }
+    let unreadable = |e: &std::io::Error| match e.kind() {
+        ErrorKind::NotFound => {
+            let with_ending = path.with_added_extension("toml");
+            let help = if with_ending.is_file() {
+                Some(format!("did you mean `{}`?", with_ending.display()))
+            } else {
+                None
+            };
+            error(format!("there is no file `{shown}`"), help)
+        }
+        _ => error(format!("`{shown}` cannot be read: {e}"), None),
+    };
+    let file = File::open(path).map_err(|e| unreadable(&e))?;
+    let mut bytes = Vec::new();
+    // One byte more than allowed tells a longer file, even one that never ends.
+    let read = file.take(LONGEST + 1).read_to_end(&mut bytes);
+    let length = read.map_err(|e| unreadable(&e))?;
+    if length as u64 > LONGEST {
+        let message = format!("`{shown}` is longer than {} MiB", LONGEST >> 20);
+        return Err(error(message, Some("is it a scene?".to_owned())));
+    }
+    Ok(bytes)
+}
+
+fn not_utf8(shown: &str, error: &std::string::FromUtf8Error) -> SceneError {
+    let at = error.utf8_error().valid_up_to();
+    // Everything before the first bad byte is unchanged by the replacement, so `at` still holds.
+    let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+    let source = Arc::new(NamedSource::new(shown, text));
+    SceneError::at(
+        &source,
+        format!("`{shown}` is not UTF-8 text"),
+        Some("save it as UTF-8".to_owned()),
+        [(at..at + 1, "not a character".to_owned())],
+    )
+}
+
+/// The TOML tree of the text.
+pub(crate) fn syntax(source: &Source) -> Result<Spanned<DeTable<'_>>, SceneError> {
+    let text = source.inner();
+    DeTable::parse(text).map_err(|e| {
+        let span = e.span().unwrap_or(0..0);
+        let (message, help) = plainly(
+            e.message(),
+            text.get(span.clone()).unwrap_or_default(),
+            text.get(span.start..).unwrap_or_default(),
+        );
+        let message = format!("not valid TOML: {message}");
+        SceneError::at(source, message, help, [(span, "here".to_owned())])
+    })
+}
+
+/// The parser's message and a help, for the slips a scene invites: the parser speaks to those who
+/// know TOML. `found` is what it points at, `from` the text from there on.
+fn plainly(message: &str, found: &str, from: &str) -> (String, Option<String>) {
+    let quoted = shorten(found);
+    let help = |text: &str| Some(text.to_owned());
+    if message == "duplicate key" {
+        return (
+            format!("duplicate key `{quoted}`"),
+            help("a name is given once; rename or remove one of them"),
+        );
+    }
+    if message.starts_with("string values must be quoted") || message.starts_with("invalid boolean")
+    {
+        return match found.trim().chars().next() {
+            None => ("a value is missing".to_owned(), None),
+            Some('0'..='9' | '+' | '-') => (
+                format!("`{quoted}` is not a number"),
+                help("a number stands alone; its unit is said once, in [units]"),
+            ),
+            Some(_) => (
+                format!("`{quoted}` is not a value"),
+                help("text stands in quotes; the only bare words are `true` and `false`"),
+            ),
+        };
+    }
+    let help = match from.chars().next() {
+        Some(',') => help("the decimal sign is a point; commas stand between values in brackets"),
+        Some('.') => help("a number has digits on both sides of its point: 0.5"),
+        _ => None,
+    };
+    (message.to_owned(), help)
+}

@@ -1,0 +1,120 @@
+//! The scene as plain data.
+
+use crate::error::SceneError;
+use crate::place::Places;
+use crate::units::Units;
+use crate::value::Number;
+use dwell_geometry::{BodyId, Mechanism, Reaction, Vec2};
+use dwell_kinetostatics::Mass;
+use miette::NamedSource;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A scene: a mechanism, its masses, where it starts and what is asked of it. SI throughout; the
+/// bodies, joints and actuators are in the order of the file.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// The file's stem, or its folder's name if the file is `scene.toml`.
+    pub name: String,
+    /// The title, or the name if there is none.
+    pub title: String,
+    /// What has to be said wherever the results are shown.
+    pub note: Option<String>,
+    /// Bodies, joints and actuators.
+    pub mechanism: Mechanism,
+    /// Of each body. The ground has none, whatever the file says.
+    pub masses: Vec<Mass>,
+    /// The named points of each body, in its frame, m.
+    pub points: Vec<Vec<(String, Vec2)>>,
+    /// Where and how the mechanism is put together.
+    pub assembly: Assembly,
+    /// What is asked for.
+    pub requests: Requests,
+    /// The free motion.
+    pub motion: Option<Motion>,
+    /// The one fitted number.
+    pub calibration: Option<Calibration>,
+    /// Name and text of the file. After [`with_value`](Self::with_value) the changed text.
+    pub source: Arc<NamedSource<String>>,
+    pub(crate) units: Units,
+    pub(crate) places: Places,
+    pub(crate) numbers: Vec<Number>,
+}
+
+/// Where and how the mechanism is put together at the start; it picks the branch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Assembly {
+    /// Exact coordinate of each actuator, rad.
+    pub start: Vec<f64>,
+    /// Rough angle of each body, rad, where the scene gives one.
+    pub rough: Vec<Option<f64>>,
+}
+
+/// What the scene asks for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Requests {
+    /// Reactions: those named, in that order and each once, or else all of the mechanism's.
+    pub reactions: Vec<Reaction>,
+    /// Points whose paths are drawn.
+    pub paths: Vec<PathPoint>,
+    /// A body whose dwell is marked.
+    pub dwell: Option<DwellRequest>,
+}
+
+/// A point of a moving body whose path is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PathPoint {
+    /// The body.
+    pub body: BodyId,
+    /// The point's name within the body.
+    pub name: String,
+    /// The point in the body's frame, m.
+    pub at: Vec2,
+}
+
+/// A dwell to be marked: where the body's angle stays within a fraction of its swing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DwellRequest {
+    /// The body.
+    pub body: BodyId,
+    /// The fraction of the swing, between 0 and 1.
+    pub band: f64,
+}
+
+/// A free motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Coordinate of each actuator at the start, rad.
+    pub start: Vec<f64>,
+    /// Speed of each actuator at the start, rad/s.
+    pub speed: Vec<f64>,
+    /// How long it lasts.
+    pub length: Length,
+}
+
+/// How long a motion lasts. Above zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Length {
+    /// So many periods of the free motion.
+    Periods(f64),
+    /// So many seconds.
+    Duration(f64),
+}
+
+/// A number of the scene fitted so that the free motion has a given period.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// The number, as [`Scene::value`] takes it.
+    pub path: String,
+    /// The period, s.
+    pub period: f64,
+}
+
+impl Scene {
+    /// Reads the text of a scene. `source_name` is the file's name in messages.
+    pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
+        let name = crate::read::scene_name(Path::new(source_name));
+        let source = NamedSource::new(source_name, text.to_owned());
+        Self::build(name, &Arc::new(source))
+    }
+}

@@ -1,0 +1,159 @@
+//! What is said of scenes with something wrong: the catalogue in errors.txt, and what does not fit it.
+
+use super::*;
+use std::fmt::Write as _;
+
+/// One case of the catalogue: text taken out, text put in, messages.
+#[derive(Default)]
+struct Case<'a> {
+    old: Vec<&'a str>,
+    new: Vec<&'a str>,
+    said: Vec<&'a str>,
+}
+
+fn catalogue() -> Vec<Case<'static>> {
+    let mut cases = vec![Case::default()];
+    for line in include_str!("errors.txt").lines() {
+        let case = cases.last_mut().unwrap();
+        match line.split_at_checked(1) {
+            Some(("-", rest)) => case.old.push(rest),
+            Some(("+", rest)) => case.new.push(rest),
+            Some(("=", rest)) => case.said.push(rest),
+            Some(("#", _)) => {}
+            None => cases.push(Case::default()),
+            Some(_) => panic!("unexpected line in errors.txt: {line}"),
+        }
+    }
+    cases.retain(|c| !c.old.is_empty());
+    cases
+}
+
+#[test]
+fn every_careless_scene_is_told_what_is_wrong() {
+    let cases = catalogue();
+    assert!(cases.len() > 90);
+    let mut differences = String::new();
+    for case in cases {
+        let (old, new) = (case.old.join("\n"), case.new.join("\n"));
+        let said = told(&with(&old, &new));
+        if said != case.said {
+            let _ = writeln!(differences, "{new}\nsays\n  {}", said.join("\n  "));
+            let _ = writeln!(differences, "instead of\n  {}\n", case.said.join("\n  "));
+        }
+    }
+    assert!(differences.is_empty(), "{differences}");
+}
+
+#[test]
+fn all_errors_of_a_file_come_at_once_and_in_order() {
+    let text = with("mass = 2.0", "mass = -2.0")
+        .replace("\"rod.B\"", "\"rod.X\"")
+        .replace("periods = 2", "periods = -2")
+        .replace("angle = \"deg\"", "angle = \"grad\"");
+    let error = parse(&text).unwrap_err();
+    assert_eq!(error.message, "the scene has 4 errors");
+    let messages: Vec<_> = error.errors().iter().map(|e| e.message.as_str()).collect();
+    assert_eq!(
+        messages,
+        [
+            "unknown unit of angle `grad`",
+            "the mass of body `crank` is negative",
+            "body `rod` has no point `X`",
+            "periods in [motion] is not above zero",
+        ]
+    );
+}
+
+#[test]
+fn too_many_errors_are_counted_not_listed() {
+    let keys: String = (0..500).map(|k| format!("key{k} = 1\n")).collect();
+    let error = parse(&with("title = \"Slider-crank\"\n", &keys)).unwrap_err();
+    assert_eq!(
+        error.message,
+        "the scene has 500 errors; here are 40 of them"
+    );
+    assert_eq!(error.errors().len(), 40);
+}
+
+#[test]
+fn next_to_nothing() {
+    let empty = [
+        "the scene is empty | «» no bodies, no joints ⇒ a scene has at least [bodies] and [joints]",
+    ];
+    assert_eq!(told(""), empty);
+    assert_eq!(told("\u{feff}\n \t\r\n"), empty);
+    let comments = told("# a comment\n");
+    assert!(comments[0].starts_with("the scene has nothing but comments"));
+    assert!(told("title = \"t\"")[0].starts_with("the scene has no bodies"));
+    assert!(told("[bodies]")[0].starts_with("the scene has no bodies | «bodies» nothing in it"));
+    let ground = "[bodies.ground]\npoints = { A = [0, 0] }\n[joints]";
+    assert!(told(ground)[0].starts_with("the scene has no joints | «joints» nothing in it"));
+}
+
+#[test]
+fn nothing_nested_or_long_enough_to_break() {
+    let deep = 100_000;
+    for text in [
+        format!("a = {}", "[".repeat(deep)),
+        format!("a = {}", "{ a = ".repeat(deep)),
+        format!("{} = 1", vec!["a"; deep].join(".")),
+        format!("[{}]", vec!["a"; deep].join(".")),
+        format!("{} = 1", "a".repeat(deep)),
+        format!("bodies.\"{}\" = 1", "\\u0001".repeat(deep)),
+        format!("title = {}", "9".repeat(deep)),
+    ] {
+        let error = parse(&text).unwrap_err();
+        for one in error.errors() {
+            assert!(one.message.len() < 1000, "{} characters", one.message.len());
+        }
+    }
+}
+
+#[test]
+fn an_error_found_later_points_into_the_file() {
+    use crate::Place::*;
+    use dwell_geometry::{ActuatorId, BodyId, JointId};
+    let scene = parse(WHOLE).unwrap();
+    let (crank, rod, slide, phi) = (BodyId(1), BodyId(2), JointId(3), ActuatorId(0));
+    for (place, text) in [
+        (Whole, ""),
+        (Units, "[units]"),
+        (Body(crank), "crank"),
+        (Point(crank, 1), "B"),
+        (Mass(crank), "2.0"),
+        (Inertia(crank), "1666.0"),
+        (Center(crank), "[50, 1]"),
+        (Joint(slide), "slide"),
+        (JointEnd(slide, 1), "\"piston.P\""),
+        (Axis(slide), "[3, 4]"),
+        (Actuator(phi), "phi"),
+        (Assembly, "[assembly]"),
+        (Start(phi), "phi = 90"),
+        (Rough(rod), "rod = -20"),
+        (Requests, "[requests]"),
+        (Reaction(2), "\"A.x\""),
+        (Path(1), "\"crank.B\""),
+        (Dwell, "{ body = \"rod\", band = 0.02 }"),
+        (Motion, "[motion]"),
+        (MotionStart(phi), "30"),
+        (Speed(phi), "180"),
+        (Length, "periods = 2"),
+        (Calibration, "\"crank.inertia\""),
+        // Not written down: the nearest thing that is.
+        (Inertia(rod), "rod"),
+        (Rough(crank), "crank"),
+        (Axis(JointId(0)), "A"),
+        // Not in the scene at all: no panic.
+        (Mass(BodyId(99)), ""),
+        (JointEnd(slide, 9), "slide"),
+        (Reaction(99), "[requests]"),
+    ] {
+        let error = scene.error(
+            "it does not close".to_owned(),
+            Some("move it".to_owned()),
+            &[(place, "here".to_owned())],
+        );
+        assert_eq!(error.labelled(), [(text, "here")], "{place:?}");
+        assert!(render(&error).contains("it does not close"));
+    }
+}

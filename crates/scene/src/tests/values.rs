@@ -1,0 +1,101 @@
+//! Numbers by their path.
+
+use super::*;
+use std::time::Instant;
+
+#[test]
+fn every_number_by_its_path() {
+    let scene = parse(WHOLE).unwrap();
+    for (path, value, unit) in [
+        ("ground.points.S[1]", 10.0, "mm"),
+        ("crank.mass", 2.0, "kg"),
+        ("crank.inertia", 1666.0, "kg mm2"),
+        ("crank.center[1]", 1.0, "mm"),
+        ("rod.points.P[0]", 300.0, "mm"),
+    ] {
+        assert_eq!(scene.value(path).unwrap(), value);
+        assert_eq!(scene.unit_of(path), unit);
+        assert!(scene.numbers().contains(&path.to_owned()));
+    }
+    assert_eq!(scene.numbers().len(), 2 * 7 + 3 + 2 + 1);
+}
+
+#[test]
+fn a_changed_number_changes_what_follows_from_it_and_nothing_else() {
+    let scene = parse(WHOLE).unwrap();
+    let heavier = scene.with_value("crank.mass", 3.25).unwrap();
+    assert_eq!(heavier.masses[1].mass, 3.25);
+    assert_eq!(heavier.masses[1].center, scene.masses[1].center);
+    assert_eq!(heavier.mechanism, scene.mechanism);
+    assert_eq!(heavier.name, scene.name);
+    let longer = scene.with_value("rod.points.P[0]", 1e-7).unwrap();
+    assert_eq!(longer.points[2][1].1.x, 1e-7 / 1000.0);
+    assert_eq!(longer.mechanism.joints[2].points[0].x, 1e-7 / 1000.0);
+    assert_eq!(longer.requests.paths[0].at.x, 1e-7 / 1000.0);
+    // Changed back, digit for digit, whatever the number.
+    for value in [0.1, 1.0 / 3.0, 5e-324, 1e60, 123456789.125, 0.0] {
+        let changed = scene.with_value("crank.mass", value).unwrap();
+        assert_eq!(changed.value("crank.mass").unwrap(), value);
+        let back = changed.with_value("crank.mass", 2.0).unwrap();
+        assert_eq!(back.source.inner(), WHOLE);
+    }
+}
+
+#[test]
+fn a_wrong_path_is_told_what_there_is() {
+    let scene = parse(WHOLE).unwrap();
+    let told = |path: &str| {
+        let error = scene.with_value(path, 1.0).unwrap_err();
+        assert_eq!(scene.value(path).unwrap_err().message, error.message);
+        assert_eq!(scene.unit_of(path), "");
+        render(&error);
+        format!("{} ⇒ {}", error.message, error.help.unwrap())
+    };
+    assert_eq!(
+        told("crank.interia"),
+        "the scene has no number `crank.interia` ⇒ did you mean `crank.inertia`?"
+    );
+    assert_eq!(
+        told("piston.center[0]"),
+        "the scene has no number `piston.center[0]` ⇒ the numbers written in `piston` are \
+         `piston.points.P[0]`, `piston.points.P[1]` and `piston.mass`"
+    );
+    for path in [
+        "",
+        ".",
+        "crank",
+        "crank.",
+        "crank.points.B[2]",
+        "crank.points.B",
+        "φ",
+    ] {
+        assert!(told(path).contains("has no number"), "{path}");
+    }
+}
+
+#[test]
+fn a_wrong_value_is_shown_where_it_stands() {
+    let scene = parse(WHOLE).unwrap();
+    let error = scene.with_value("crank.mass", -1.5).unwrap_err();
+    assert_eq!(error.message, "the mass of body `crank` is negative");
+    assert_eq!(error.labelled(), [("-1.5", "less than nothing")]);
+    for value in [f64::NAN, f64::INFINITY] {
+        let error = scene.with_value("crank.mass", value).unwrap_err();
+        assert!(error.message.contains("not finite"));
+        assert_eq!(error.labelled(), [("2.0", "this number")]);
+    }
+    assert!(scene.with_value("crank.mass", 1e61).is_err());
+}
+
+/// A root search asks some hundred times.
+#[test]
+fn changing_a_number_is_fast() {
+    let scene = parse(WHOLE).unwrap();
+    let start = Instant::now();
+    for k in 0..200 {
+        scene.with_value("crank.inertia", f64::from(k)).unwrap();
+    }
+    let each = start.elapsed() / 200;
+    println!("with_value: {each:?}");
+    assert!(each.as_micros() < 300, "{each:?}");
+}

@@ -1,0 +1,156 @@
+//! The numbers of a scene by their path, such as `crank.inertia`: asking for one, and the same
+//! scene with one of them changed.
+
+use crate::bodies::Bodies;
+use crate::error::SceneError;
+use crate::names::shorten;
+use crate::problem::{Problem, Problems, Span, choices};
+use crate::scene::Scene;
+use dwell_geometry::BodyId;
+use miette::NamedSource;
+use std::sync::Arc;
+
+/// A number of the scene that may be changed, and where it is written.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Number {
+    pub(crate) body: BodyId,
+    pub(crate) field: Field,
+    /// As written, in the scene's unit.
+    pub(crate) value: f64,
+    pub(crate) span: Span,
+}
+
+/// Which number of a body.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Field {
+    Mass,
+    Inertia,
+    /// Component of the centre of mass.
+    Center(usize),
+    /// Component of the k-th point.
+    Point(usize, usize),
+}
+
+impl Scene {
+    /// The path of every number that [`value`](Self::value) and [`with_value`](Self::with_value)
+    /// know, in the order of the file: `crank.mass`, `crank.inertia`, `crank.center[0]` (when it is
+    /// written as [x, y]), `crank.points.B[1]`. Only what the file writes down has a path. The
+    /// ground has its points alone, since its mass has no effect.
+    pub fn numbers(&self) -> Vec<String> {
+        self.numbers.iter().map(|n| self.path_of(n)).collect()
+    }
+
+    /// The number at `path`, in the scene's own unit.
+    pub fn value(&self, path: &str) -> Result<f64, SceneError> {
+        self.number(path).map(|n| n.value)
+    }
+
+    /// The unit of the number at `path`, such as `mm` or `kg m2`; empty if there is no such number.
+    pub fn unit_of(&self, path: &str) -> &str {
+        match self.number_at(path).map(|n| n.field) {
+            None => "",
+            Some(Field::Mass) => &self.units.mass.name,
+            Some(Field::Inertia) => &self.units.inertia.name,
+            Some(Field::Center(_) | Field::Point(..)) => &self.units.length.name,
+        }
+    }
+
+    /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
+    ///
+    /// The number is replaced in the text and the text read again: whatever follows from the
+    /// number follows here too, and a message about it shows the number it is about.
+    pub fn with_value(&self, path: &str, value: f64) -> Result<Self, SceneError> {
+        let span = self.number(path)?.span.clone();
+        if !value.is_finite() {
+            let message = format!("{value} is not a value for `{path}`: it is not finite");
+            let label = (span, "this number".to_owned());
+            return Err(SceneError::at(&self.source, message, None, [label]));
+        }
+        let old = self.source.inner();
+        // The spans come from this very text; still, no slicing that could fail.
+        let (before, after) = (old.get(..span.start), old.get(span.end..));
+        let text = format!(
+            "{}{value:?}{}",
+            before.unwrap_or_default(),
+            after.unwrap_or_default()
+        );
+        let source = Arc::new(NamedSource::new(self.source.name(), text));
+        Self::build(self.name.clone(), &source)
+    }
+
+    fn number_at(&self, path: &str) -> Option<&Number> {
+        // The body first: a large scene has many numbers, and few of them need their path spelt.
+        let body = path.split('.').next()?;
+        self.numbers
+            .iter()
+            .find(|n| self.mechanism.body_name(n.body) == body && self.path_of(n) == path)
+    }
+
+    fn number(&self, path: &str) -> Result<&Number, SceneError> {
+        self.number_at(path).ok_or_else(|| {
+            let (message, help) = no_number(path, &self.numbers());
+            SceneError::bare(message, Some(help))
+        })
+    }
+
+    fn path_of(&self, number: &Number) -> String {
+        let body = number.body.0;
+        let point = |k: usize| self.points[body][k].0.as_str();
+        number.path(&self.mechanism.bodies[body].name, point)
+    }
+}
+
+impl Number {
+    fn path<'n>(&self, body: &str, point: impl Fn(usize) -> &'n str) -> String {
+        match self.field {
+            Field::Mass => format!("{body}.mass"),
+            Field::Inertia => format!("{body}.inertia"),
+            Field::Center(axis) => format!("{body}.center[{axis}]"),
+            Field::Point(k, axis) => format!("{body}.points.{}[{axis}]", point(k)),
+        }
+    }
+}
+
+impl Bodies<'_> {
+    /// Says so if there is no number at `path`, which the text names at `at`.
+    pub(crate) fn check_number(&self, path: &str, at: &Span, problems: &mut Problems) {
+        let path_of = |n: &Number| {
+            let body = &self.list[n.body.0];
+            n.path(body.name, |k| body.points[k].name)
+        };
+        let all: Vec<_> = self.numbers.iter().map(path_of).collect();
+        if !all.iter().any(|p| p == path) {
+            let (message, help) = no_number(path, &all);
+            problems.push(
+                Problem::new(message)
+                    .at(at.clone(), "unknown number")
+                    .help(help),
+            );
+        }
+    }
+}
+
+/// Message and help for a path that leads nowhere: what there is of that body, or at all.
+fn no_number(path: &str, all: &[String]) -> (String, String) {
+    let first = |path: &str| path.split('.').next().map(str::to_owned);
+    let body = first(path).unwrap_or_default();
+    let own: Vec<_> = all
+        .iter()
+        .filter(|p| first(p).as_deref() == Some(&body))
+        .map(String::as_str)
+        .collect();
+    let help = if own.is_empty() {
+        choices(
+            path,
+            "numbers written in the scene",
+            all.iter().map(String::as_str),
+        )
+    } else {
+        choices(
+            path,
+            &format!("numbers written in `{body}`"),
+            own.into_iter(),
+        )
+    };
+    (format!("the scene has no number `{}`", shorten(path)), help)
+}

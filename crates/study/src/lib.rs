@@ -1,0 +1,1 @@
+//! One function per command: from a scene to results, findings and figures.

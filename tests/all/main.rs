@@ -1,0 +1,4 @@
+//! Cross-crate tests, in one binary.
+
+mod published;
+mod world;

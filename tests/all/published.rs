@@ -1,0 +1,84 @@
+//! Published and independently computed values, to 1e-12 of the largest coefficient of a unit.
+
+use crate::world::{home, model, scene};
+use dwell_kinetostatics::Reduced;
+use serde_json::Value;
+
+fn number(value: &Value) -> f64 {
+    match value {
+        Value::String(text) => text.parse().expect("a number"),
+        other => other.as_f64().expect("a number"),
+    }
+}
+
+fn val_reference(case: &str) {
+    let scene = scene(case);
+    let model = model(&scene);
+    let text = std::fs::read_to_string(home().join("validation").join(case).join("reference.json"));
+    let reference: Value = serde_json::from_str(&text.expect("a file")).expect("JSON");
+    let reactions = scene.mechanism.reactions();
+    let mut work = model.work();
+    let mut at = model.model().coefficients();
+    // The largest coefficient of each unit over the samples: reactions in N, couples in N m.
+    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    for sample in reference["samples"].as_array().expect("samples") {
+        let phi = sample
+            .get("phi_rad")
+            .map_or_else(|| number(&sample["phi_deg"]).to_radians(), number);
+        model.coefficients(phi, &mut work, &mut at).expect("a pose");
+        let m = number(&sample["m1_kg_m2"]);
+        assert!((at.m - m).abs() < 1e-14 * m, "{case} {phi}: m {} {m}", at.m);
+        let half = number(&sample["half_dm1"]);
+        assert!(
+            (at.half_dm - half).abs() < 1e-12 * m,
+            "{case} {phi}: {} {half}",
+            at.half_dm
+        );
+        for (name, value) in sample["reactions"].as_object().expect("reactions") {
+            let k = reactions
+                .iter()
+                .position(|&r| scene.mechanism.reaction_name(r) == *name)
+                .expect("a reaction");
+            for (got, want) in [
+                (at.a[k], number(&value["a"])),
+                (at.b[k], number(&value["b"])),
+            ] {
+                worst = worst.max((got - want).abs());
+                largest = largest.max(want.abs());
+                assert!(
+                    (got - want).abs() < 1e-11,
+                    "{case} {phi} {name}: {got} {want}"
+                );
+            }
+        }
+    }
+    assert!(worst < 1e-12 * largest, "{case}: {worst:e} of {largest}");
+}
+
+#[test]
+fn val_single_dwell() {
+    val_reference("single-dwell");
+}
+
+#[test]
+fn val_crank_rocker() {
+    val_reference("crank-rocker");
+}
+
+#[test]
+fn largest_groups() {
+    for (case, largest) in [
+        ("single-dwell", 2),
+        ("crank-rocker", 2),
+        ("slotted-rocker", 2),
+        ("class-three-six-bar", 4),
+    ] {
+        let model = model(&scene(case));
+        let sizes = model.model().plan().group_kinds();
+        assert!(
+            sizes.iter().map(|(n, _)| *n).max() <= Some(largest),
+            "{case}: {sizes:?}"
+        );
+        println!("{case}: {sizes:?} {:?}", model.range());
+    }
+}

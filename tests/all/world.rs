@@ -1,0 +1,33 @@
+//! Where the cases are, and how a scene becomes a model.
+
+use dwell_geometry::{Reaction, Start};
+use dwell_kinetostatics::{Exact, Model};
+use dwell_scene::Scene;
+use std::path::{Path, PathBuf};
+
+/// The repository's folder.
+pub fn home() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The scene of a case in `validation/`.
+pub fn scene(case: &str) -> Scene {
+    let path = home().join("validation").join(case).join("scene.toml");
+    Scene::read(path).unwrap_or_else(|e| panic!("{case}: {e:?}"))
+}
+
+/// A scene's model with every reaction.
+pub fn model(scene: &Scene) -> Exact {
+    model_for(scene, &scene.mechanism.reactions())
+}
+
+/// A scene's model with some reactions.
+pub fn model_for(scene: &Scene, reactions: &[Reaction]) -> Exact {
+    let start = Start {
+        q: scene.assembly.start.clone(),
+        rough: scene.assembly.rough.clone(),
+    };
+    let model = Model::new(&scene.mechanism, &scene.masses, &start, reactions)
+        .unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+    Exact::new(model).expect("one actuator")
+}
