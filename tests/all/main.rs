@@ -1,4 +1,5 @@
 //! Cross-crate tests, in one binary.
 
+mod motion;
 mod published;
 mod world;

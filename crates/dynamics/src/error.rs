@@ -1,0 +1,71 @@
+//! What can go wrong when a mechanism moves.
+
+use dwell_geometry::PlaceError;
+use thiserror::Error;
+
+/// A motion that cannot be computed.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DynamicsError {
+    /// A position on the way cannot be reached.
+    #[error(transparent)]
+    Place(#[from] PlaceError),
+    /// The generalised inertia is zero (or no number): no finite acceleration answers a force.
+    #[error("the generalised inertia m is {m} kg m² at q = {q} rad: nothing resists there")]
+    NoInertia {
+        /// The coordinate, rad.
+        q: f64,
+        /// The inertia there, kg m².
+        m: f64,
+    },
+    /// A tolerance, time or speed that is not usable.
+    #[error("{what} must be a {must}, not {value}")]
+    BadOption {
+        /// Which option.
+        what: &'static str,
+        /// What it must be.
+        must: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// The integrator produced a state that is not finite.
+    #[error("the state is no longer finite after t = {t} s")]
+    NotFinite {
+        /// The last finite time, s.
+        t: f64,
+    },
+    /// The step budget is used up.
+    #[error("the budget of {steps} steps is used up at t = {t} s")]
+    Budget {
+        /// The time reached, s.
+        t: f64,
+        /// The budget.
+        steps: usize,
+    },
+    /// The integrator gave up.
+    #[error("the integrator stopped at t = {t} s: {reason}")]
+    Solver {
+        /// The time reached, s.
+        t: f64,
+        /// Its own words.
+        reason: String,
+    },
+    /// A free motion that starts at rest has no period of turning.
+    #[error("the mechanism starts at rest, and nothing moves it")]
+    AtRest,
+    /// The coordinate does not turn fully, so there is no period of turning.
+    #[error("the coordinate turns only from {from} to {to} rad")]
+    NoFullTurn {
+        /// Lower limit, rad.
+        from: f64,
+        /// Upper limit, rad.
+        to: f64,
+    },
+    /// The quadrature over a turn did not converge.
+    #[error("{points} points do not resolve the inertia over a turn (left: {left:.1e} of the period)")]
+    NotResolved {
+        /// Number of points tried last.
+        points: usize,
+        /// Relative change of the last doubling.
+        left: f64,
+    },
+}
