@@ -20,7 +20,12 @@ fn val_period_of_the_single_dwell() {
         let run = simulate(&model, START, Until::Turns(1), &Options::new(method, 1e-13));
         let run = run.expect("a run");
         let t = run.turns[0].t;
-        println!("{} {t} {:e} {:?}", method.name(), t - turn.period, run.statistics);
+        println!(
+            "{} {t} {:e} {:?}",
+            method.name(),
+            t - turn.period,
+            run.statistics
+        );
         assert!((t - turn.period).abs() < 1e-9);
     }
 }
@@ -34,7 +39,12 @@ fn energy_drift_of_bdf_follows_its_tolerance() {
         for k in 8..=13 {
             let tolerance = 10f64.powi(-k);
             let began = std::time::Instant::now();
-            let run = simulate(&model, START, Until::Turns(10), &Options::new(method, tolerance));
+            let run = simulate(
+                &model,
+                START,
+                Until::Turns(10),
+                &Options::new(method, tolerance),
+            );
             let run = run.expect("a run");
             let took = began.elapsed();
             let drift = run
@@ -42,7 +52,11 @@ fn energy_drift_of_bdf_follows_its_tolerance() {
                 .iter()
                 .map(|s| (equation.energy(s.q, s.q_dot).expect("energy") / energy - 1.0).abs())
                 .fold(0.0, f64::max);
-            println!("{} {tolerance:e} drift {drift:e} {:?} {took:?}", method.name(), run.statistics);
+            println!(
+                "{} {tolerance:e} drift {drift:e} {:?} {took:?}",
+                method.name(),
+                run.statistics
+            );
         }
     }
 }

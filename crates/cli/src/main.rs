@@ -1,2 +1,130 @@
-//! The dwell command.
-fn main() {}
+//! The `dwell` command: arguments in, files and messages out.
+//!
+//! Exit status: 0 good, 1 a check failed, 2 bad input (a scene, an argument, a folder that cannot be
+//! written).
+
+mod cases;
+mod options;
+
+use clap::Parser;
+use dwell_findings::all_pass;
+use dwell_report::Files;
+use dwell_scene::Scene;
+use dwell_study::{Accuracy, Outcome, Step, StudyError};
+use indicatif::{ProgressBar, ProgressStyle};
+use miette::{IntoDiagnostic, Report, miette};
+use options::{Command, Options};
+use rayon::prelude::*;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    // clap itself exits with 2 on a bad argument, and with 0 for help.
+    let options = Options::parse();
+    match run(options) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::from(1),
+        Err(report) => {
+            // A closed standard error is no reason to panic.
+            let _ = writeln!(std::io::stderr(), "{report:?}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+/// Runs a command; whether all its checks passed.
+fn run(options: Options) -> Result<bool, Report> {
+    let Options { command, out } = options;
+    let outcome = match &command {
+        Command::Check { scene } => told(dwell_study::check(&read(scene)?))?,
+        Command::Reduce { scene } => told(dwell_study::reduce(&read(scene)?))?,
+        Command::Simulate {
+            scene,
+            method,
+            rtol,
+            atol,
+        } => {
+            let accuracy = Accuracy {
+                method: (*method).into(),
+                relative: *rtol,
+                absolute: atol.unwrap_or(*rtol),
+            };
+            told(dwell_study::simulate(&read(scene)?, &accuracy))?
+        }
+        Command::Calibrate { scene, set, period } => {
+            let scene = read(scene)?;
+            told(dwell_study::calibrate(&scene, set.as_deref(), *period))?
+        }
+        Command::Validate { cases, folder } => validate(cases, folder)?,
+    };
+    print(&outcome.summary)?;
+    if !outcome.files.is_empty() {
+        let written = outcome.files.write(&out).into_diagnostic()?;
+        let shown = written.len().min(12);
+        for path in &written[..shown] {
+            print(&format!("  {}\n", path.display()))?;
+        }
+        if written.len() > shown {
+            let more = written.len() - shown;
+            print(&format!("  and {more} more below {}\n", out.display()))?;
+        }
+    }
+    Ok(all_pass(&outcome.findings))
+}
+
+/// Every case, in parallel; the files are those of all of them, or none if one cannot be read.
+fn validate(names: &[String], folder: &Path) -> Result<Outcome, Report> {
+    let cases = cases::find(names, folder)?;
+    let scenes: Vec<Scene> = cases
+        .iter()
+        .map(|case| read(&case.join("scene.toml")))
+        .collect::<Result<_, _>>()?;
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    let results: Vec<_> = scenes
+        .par_iter()
+        .zip(&cases)
+        .map(|(scene, case)| {
+            let heard = |step: Step<'_>| {
+                bar.set_length((step.total * cases.len()) as u64);
+                bar.set_message(format!("{}: {}", scene.name, step.done));
+                bar.inc(1);
+            };
+            dwell_study::validate(scene, case, &heard)
+        })
+        .collect();
+    bar.finish_and_clear();
+    let mut all = Outcome::default();
+    let mut files = Files::new();
+    for result in results {
+        let one = told(result)?.outcome;
+        all.summary += &one.summary;
+        all.findings.extend(one.findings);
+        files.extend("", one.files);
+    }
+    all.files = files;
+    Ok(all)
+}
+
+fn read(path: &Path) -> Result<Scene, Report> {
+    Scene::read(path).map_err(Report::new)
+}
+
+/// A study's error as a report: a scene's with its text, another one as it is.
+fn told<T>(result: Result<T, StudyError>) -> Result<T, Report> {
+    result.map_err(|e| match e {
+        StudyError::Scene(scene) => Report::new(*scene),
+        other => miette!("{other}"),
+    })
+}
+
+fn print(text: &str) -> Result<(), Report> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        // Whoever reads has seen enough (such as `dwell … | head`).
+        Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
+        other => other.into_diagnostic(),
+    }
+}

@@ -209,7 +209,11 @@ fn check(start: State, until: Until, options: &Options) -> Result<(), DynamicsEr
         return refuse("the relative tolerance", "number from 0", options.relative);
     }
     if !usable(options.absolute) {
-        return refuse("the absolute tolerance", "positive number", options.absolute);
+        return refuse(
+            "the absolute tolerance",
+            "positive number",
+            options.absolute,
+        );
     }
     match (until, options.every) {
         (Until::Time(t), _) if !(t.is_finite() && t > start.t) => {
@@ -261,9 +265,7 @@ where
     let mut scratch = solver.state().y.clone();
     let mut before = start;
     for _ in 0..options.budget {
-        let reason = solver
-            .step()
-            .map_err(|e| said(before.t, e.to_string()))?;
+        let reason = solver.step().map_err(|e| said(before.t, e.to_string()))?;
         let state = solver.state();
         let now = State {
             t: state.t,

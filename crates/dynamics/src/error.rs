@@ -61,7 +61,9 @@ pub enum DynamicsError {
         to: f64,
     },
     /// The quadrature over a turn did not converge.
-    #[error("{points} points do not resolve the inertia over a turn (left: {left:.1e} of the period)")]
+    #[error(
+        "{points} points do not resolve the inertia over a turn (left: {left:.1e} of the period)"
+    )]
     NotResolved {
         /// Number of points tried last.
         points: usize,

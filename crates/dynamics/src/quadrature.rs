@@ -52,9 +52,8 @@ impl FreeTurn {
             return Err(DynamicsError::AtRest);
         }
         let mut work = model.work();
-        let mut inertia = |q: f64| -> Result<f64, DynamicsError> {
-            positive(model.inertia(q, &mut work)?.0, q)
-        };
+        let mut inertia =
+            |q: f64| -> Result<f64, DynamicsError> { positive(model.inertia(q, &mut work)?.0, q) };
         let energy = 0.5 * inertia(start.q)? * start.q_dot * start.q_dot;
         // Backwards, q falls: the rule runs over the way that is left behind either way.
         let forward = start.q_dot.signum();

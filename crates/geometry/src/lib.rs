@@ -4,6 +4,7 @@ mod assemble;
 pub mod error;
 pub mod frames;
 mod groups;
+mod locate;
 pub mod mechanism;
 pub mod motion;
 mod place;

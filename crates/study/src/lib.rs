@@ -1,1 +1,30 @@
 //! One function per command: from a scene to results, findings and figures.
+//!
+//! ```text
+//! Scene ── Subject (the exact model, for the checks: every reaction) ─┐
+//!       └─ Prepared (the model of what the scene requests) ───────────┼─ check, reduce, simulate,
+//!                                                                     │  calibrate, validate
+//!                                                                     └→ Outcome: words, files, findings
+//! ```
+
+mod calibrate;
+mod check;
+mod error;
+mod figures;
+mod outcome;
+mod prepare;
+mod reduce;
+mod reference;
+mod simulate;
+mod subject;
+mod validate;
+
+pub use calibrate::{Calibrated, calibrate, find_value};
+pub use check::check;
+pub use error::StudyError;
+pub use outcome::{Outcome, Progress, Step, silent};
+pub use prepare::Prepared;
+pub use reduce::reduce;
+pub use simulate::{Accuracy, simulate};
+pub use subject::PlanSubject;
+pub use validate::{Validation, validate};

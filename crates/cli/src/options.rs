@@ -1,0 +1,92 @@
+//! The arguments.
+
+use clap::{Parser, Subcommand, ValueEnum};
+use dwell_dynamics::Method;
+use std::path::PathBuf;
+
+/// The reduced-parameter dynamics of mechanisms, checked.
+#[derive(Debug, Parser)]
+#[command(name = "dwell", version, arg_required_else_help = true)]
+pub(crate) struct Options {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Folder for the files that are written
+    #[arg(long, global = true, default_value = "reports", value_name = "FOLDER")]
+    pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Degrees of freedom, groups, branch and range of a scene
+    Check {
+        /// The scene file
+        scene: PathBuf,
+    },
+    /// Reduced parameters over the range: table and pictures
+    Reduce {
+        /// The scene file
+        scene: PathBuf,
+    },
+    /// Free motion in time, with energy and reactions: table and picture
+    Simulate {
+        /// The scene file
+        scene: PathBuf,
+        /// The integrator
+        #[arg(long, value_enum, default_value_t = MethodName::Bdf)]
+        method: MethodName,
+        /// Relative tolerance
+        #[arg(long, default_value_t = 1e-10, value_parser = tolerance, value_name = "TOLERANCE")]
+        rtol: f64,
+        /// Absolute tolerance, rad and rad/s (as the relative one, if absent)
+        #[arg(long, value_parser = tolerance, value_name = "TOLERANCE")]
+        atol: Option<f64>,
+    },
+    /// The scene value that gives a wanted period of the free motion
+    Calibrate {
+        /// The scene file
+        scene: PathBuf,
+        /// The value, such as crank.inertia (the scene's [calibration], if absent)
+        #[arg(long, value_name = "VALUE")]
+        set: Option<String>,
+        /// The wanted period, s (the scene's [calibration], if absent)
+        #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+        period: Option<f64>,
+    },
+    /// All checks on all cases, or on those named; exit status 1 if one fails
+    Validate {
+        /// Names of cases, or folders with a scene.toml; all cases if none
+        cases: Vec<String>,
+        /// The folder of the cases
+        #[arg(long, default_value = "validation", value_name = "FOLDER")]
+        folder: PathBuf,
+    },
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum MethodName {
+    /// Implicit, variable order
+    Bdf,
+    /// Explicit Runge–Kutta of order 5
+    Tsit45,
+}
+
+impl From<MethodName> for Method {
+    fn from(name: MethodName) -> Self {
+        match name {
+            MethodName::Bdf => Self::Bdf,
+            MethodName::Tsit45 => Self::Tsit45,
+        }
+    }
+}
+
+/// A tolerance that an integrator can keep: below 1e-14 none of them can in double precision.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value: f64 = text
+        .parse()
+        .map_err(|_| format!("`{text}` is not a number"))?;
+    if (1e-14..=1e-1).contains(&value) {
+        Ok(value)
+    } else {
+        Err(format!("{value:e} is not between 1e-14 and 0.1"))
+    }
+}

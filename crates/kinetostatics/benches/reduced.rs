@@ -1,0 +1,266 @@
+//! What one evaluation of the reduced model costs, against the same mechanism written by hand.
+//!
+//! The machine's speed wanders, so the subjects take turns within one process, each at a new
+//! coordinate every time (steps of the golden angle); the ratios are those of the fastest turns.
+//! The hand-written evaluators are first held against Dwell's values.
+
+mod hand_written;
+mod hand_written_general;
+
+use dwell_geometry::{Reaction, Start};
+use dwell_kinetostatics::{Exact, Model, Reduced};
+use dwell_scene::Scene;
+use hand_written::HandWritten;
+use hand_written_general::General;
+use std::f64::consts::TAU;
+use std::hint::black_box;
+use std::path::Path;
+use std::time::Instant;
+
+/// Evaluations in one turn of a subject: some tenths of a millisecond, so that a turn is often
+/// left alone by the rest of the machine.
+const EVALUATIONS: usize = 2000;
+/// Turns of each subject.
+const TURNS: usize = 400;
+/// Golden angle, rad: an irrational part of a turn.
+const STEP: f64 = TAU * 0.618_033_988_749_894_9;
+
+/// One row of the table.
+struct Subject<'a> {
+    name: &'static str,
+    evaluate: Box<dyn FnMut() + 'a>,
+    turns: Vec<f64>,
+}
+
+impl<'a> Subject<'a> {
+    /// Evaluates at `q` over the turn, or from the start a little to both sides of it where a
+    /// mechanism does not turn fully.
+    fn new(name: &'static str, (from, width): (f64, f64), mut at: impl FnMut(f64) + 'a) -> Self {
+        let mut phase = 0.1;
+        let evaluate = Box::new(move || {
+            for _ in 0..EVALUATIONS {
+                at(black_box(from + width * phase));
+                phase += STEP / TAU;
+                if phase >= 1.0 {
+                    phase -= 1.0;
+                }
+            }
+        });
+        Self {
+            name,
+            evaluate,
+            turns: Vec::with_capacity(TURNS),
+        }
+    }
+
+    fn take_turn(&mut self) {
+        let start = Instant::now();
+        (self.evaluate)();
+        let ns = start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64;
+        self.turns.push(ns);
+    }
+}
+
+const TURN: (f64, f64) = (0.0, TAU);
+
+fn main() {
+    let dwell = Case::read("single-dwell");
+    let normal: Vec<Reaction> = reactions(&dwell.scene, "slide.normal");
+    let every = dwell.scene.mechanism.reactions();
+    let (one, all) = (dwell.model(&normal), dwell.model(&every));
+    let (hand, general) = (HandWritten::new(), General::new());
+    agree(&hand, &general, &one, &all);
+
+    let four_bar = Case::read("crank-rocker");
+    let four_bar = four_bar.model(&four_bar.scene.requests.reactions);
+    let six_bar = Case::read("class-three-six-bar");
+    let near = (six_bar.scene.assembly.start[0] - 0.1, 0.2);
+    let six_bar = six_bar.model(&six_bar.scene.requests.reactions);
+
+    let mut subjects = vec![
+        Subject::new("single-dwell by hand, its own proportions", TURN, |q| {
+            black_box(hand.at(q));
+        }),
+        Subject::new("single-dwell by hand, any lengths", TURN, |q| {
+            black_box(general.at(q));
+        }),
+        coefficients("single-dwell, slide.normal", TURN, &one),
+        coefficients("single-dwell, all 14 reactions", TURN, &all),
+        inertia("single-dwell, m and m'/2", TURN, &one),
+        curvature("single-dwell, m, m'/2 and m''/2 (dual)", TURN, &one),
+    ];
+    subjects.extend(stages(&one));
+    subjects.extend([
+        coefficients("crank-rocker, all reactions", TURN, &four_bar),
+        inertia("crank-rocker, m and m'/2", TURN, &four_bar),
+        coefficients("class-three six-bar, all reactions", near, &six_bar),
+        inertia("class-three six-bar, m and m'/2", near, &six_bar),
+    ]);
+
+    for _ in 0..TURNS {
+        for subject in &mut subjects {
+            subject.take_turn();
+        }
+    }
+    print(&mut subjects);
+}
+
+fn print(subjects: &mut [Subject<'_>]) {
+    for subject in subjects.iter_mut() {
+        subject.turns.sort_by(f64::total_cmp);
+    }
+    let [hand, general] = [0, 1].map(|i: usize| subjects[i].turns[0]);
+    println!("ns per evaluation                          median    least  / own   / any");
+    for Subject { name, turns, .. } in subjects {
+        let (median, least) = (turns[turns.len() / 2], turns[0]);
+        let (own, any) = (least / hand, least / general);
+        println!("{name:42}{median:7.1}  {least:7.1}{own:7.2}{any:8.2}");
+    }
+}
+
+/// A validation case.
+struct Case {
+    scene: Scene,
+}
+
+impl Case {
+    fn read(name: &str) -> Self {
+        let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
+        let path = home.join(name).join("scene.toml");
+        match Scene::read(path) {
+            Ok(scene) => Self { scene },
+            Err(error) => stop(name, &error.to_string()),
+        }
+    }
+
+    fn model(&self, reactions: &[Reaction]) -> Exact {
+        let Scene {
+            mechanism, masses, ..
+        } = &self.scene;
+        let start = Start {
+            q: self.scene.assembly.start.clone(),
+            rough: self.scene.assembly.rough.clone(),
+        };
+        let model = Model::new(mechanism, masses, &start, reactions);
+        let exact = model.map(Exact::new).map_err(|e| e.to_string());
+        match exact {
+            Ok(Some(exact)) => exact,
+            Ok(None) => stop(&self.scene.name, "it has several actuators"),
+            Err(error) => stop(&self.scene.name, &error),
+        }
+    }
+}
+
+fn stop(case: &str, why: &str) -> ! {
+    eprintln!("{case}: {why}");
+    std::process::exit(1)
+}
+
+fn reactions(scene: &Scene, name: &str) -> Vec<Reaction> {
+    let mechanism = &scene.mechanism;
+    let all = mechanism.reactions().into_iter();
+    let found: Vec<_> = all
+        .filter(|&r| mechanism.reaction_name(r) == name)
+        .collect();
+    assert_eq!(found.len(), 1, "{name}");
+    found
+}
+
+fn coefficients<'a>(name: &'static str, range: (f64, f64), model: &'a Exact) -> Subject<'a> {
+    let mut work = model.work();
+    let mut out = model.model().coefficients();
+    Subject::new(name, range, move |q| {
+        black_box(model.coefficients(q, &mut work, &mut out).is_ok());
+        black_box(&out);
+    })
+}
+
+fn inertia<'a>(name: &'static str, range: (f64, f64), model: &'a Exact) -> Subject<'a> {
+    let mut work = model.work();
+    Subject::new(name, range, move |q| {
+        black_box(model.inertia(q, &mut work).ok());
+    })
+}
+
+fn curvature<'a>(name: &'static str, range: (f64, f64), model: &'a Exact) -> Subject<'a> {
+    let mut work = model.work();
+    Subject::new(name, range, move |q| {
+        black_box(model.curvature(q, &mut work).ok());
+    })
+}
+
+/// The stages of geometry, each with those before it.
+fn stages(model: &Exact) -> [Subject<'_>; 4] {
+    let plan = model.model().plan();
+    let subject = |name, count: usize| {
+        let (mut pose, mut motion) = (plan.pose(), plan.motion());
+        let mut balance = plan.balance::<f64, 2>();
+        Subject::new(name, TURN, move |q| {
+            black_box(plan.place(&[q], &mut pose).is_ok());
+            if count > 1 {
+                plan.speeds(&pose, &[1.0], &mut motion);
+            }
+            if count > 2 {
+                plan.accelerations(&pose, &[0.0], &mut motion);
+            }
+            if count > 3 {
+                plan.multipliers(&pose, &mut balance);
+                // It leaves sums in what it was given.
+                balance.moment.fill([1.0; 2]);
+                black_box(&balance);
+            }
+            black_box((&pose, &motion));
+        })
+    };
+    [
+        subject("  of which place", 1),
+        subject("  … and speeds", 2),
+        subject("  … and accelerations", 3),
+        subject("  … and multipliers, two runs", 4),
+    ]
+}
+
+/// Holds every evaluator's values against the others', scaled by the largest of each kind.
+fn agree(hand: &HandWritten, general: &General, one: &Exact, all: &Exact) {
+    let (mut work, mut out) = (one.work(), one.model().coefficients());
+    let (mut work_all, mut out_all) = (all.work(), all.model().coefficients());
+    let mechanism_order = all.model().reactions();
+    let normal = one.model().reactions()[0];
+    let place = mechanism_order.iter().position(|&r| r == normal);
+    let place = place.unwrap_or_else(|| stop("single-dwell", "slide.normal is missing"));
+    let (mut largest, mut apart) = ([0.0_f64; 4], [0.0_f64; 4]);
+    for step in 0..10_000 {
+        let q = (f64::from(step) * STEP).rem_euclid(TAU);
+        let truth = hand.at(q);
+        let done = one
+            .coefficients(q, &mut work, &mut out)
+            .and_then(|()| all.coefficients(q, &mut work_all, &mut out_all))
+            .and_then(|()| Ok((one.inertia(q, &mut work)?, one.curvature(q, &mut work)?)));
+        let (pair, curved) = done.unwrap_or_else(|e| stop("single-dwell", &e.to_string()));
+        let [a, b] = [truth[2], truth[3]];
+        for other in [
+            general.at(q),
+            [out.m, out.half_dm, out.a[0], out.b[0]],
+            [
+                out_all.m,
+                out_all.half_dm,
+                out_all.a[place],
+                out_all.b[place],
+            ],
+            [pair.0, pair.1, a, b],
+            [curved.m, curved.half_dm, a, b],
+        ] {
+            for i in 0..4 {
+                largest[i] = largest[i].max(truth[i].abs());
+                apart[i] = apart[i].max((other[i] - truth[i]).abs());
+            }
+        }
+    }
+    for (name, i) in [("m", 0), ("m'/2", 1), ("a", 2), ("b", 3)] {
+        let scaled = apart[i] / largest[i];
+        assert!(
+            scaled < 1e-12,
+            "{name} differs by {scaled:e} of its largest"
+        );
+    }
+}

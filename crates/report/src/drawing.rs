@@ -1,0 +1,276 @@
+//! A scaled drawing in a cell of the page: fitted, with equal axes.
+
+use crate::axes::{self, Frame};
+use crate::canvas::{Canvas, Drawn, Line};
+use crate::figure::{Axis, Scale};
+use crate::legend::{self, Entry, Legend, Sample};
+use crate::occupancy::Occupancy;
+use crate::rect::{Insets, Rect};
+use crate::shape::{Drawing, Shape};
+use crate::sketch;
+use crate::span::Span;
+use crate::theme::{INK, lightened, rgb};
+
+/// Pixels between the shapes and the frame: the room a bearing and its hatching take.
+const PAD: f64 = 54.0;
+/// Least and largest height of a plot as a share of its width.
+const ASPECT: (f64, f64) = (0.42, 0.95);
+/// What labels take from the width, before they are known.
+const SIDES: f64 = 170.0;
+
+/// Height of the cell that suits the drawing at this width.
+pub(crate) fn height(drawing: &Drawing, width: f64) -> f64 {
+    let plot = (width - SIDES).max(100.0);
+    let [[x0, x1], [y0, y1]] = bounds(drawing);
+    let wanted = (plot - 2.0 * PAD).max(1.0) * (y1 - y0) / (x1 - x0) + 2.0 * PAD;
+    let plot_height = wanted.clamp(ASPECT.0 * plot, ASPECT.1 * plot);
+    let Insets { top, bottom, .. } = insets(drawing, &Rect::sized(0.0, 0.0, width, plot_height));
+    top + plot_height + bottom
+}
+
+/// Strips the labels need in a cell of this size.
+pub(crate) fn insets(drawing: &Drawing, cell: &Rect) -> Insets {
+    // A first guess: ticks depend on the plot, and the plot on their labels.
+    let mut insets = Insets {
+        left: 0.7 * SIDES,
+        top: axes::top_room(&drawing.title, cell),
+        right: axes::right_room(),
+        bottom: 0.6 * SIDES,
+    };
+    let frame = fitted(drawing, cell.inside(insets));
+    let x_ticks = axes::ticks_across(&frame.x, frame.plot.width());
+    let y_ticks = axes::ticks_up(&frame.y, frame.plot.height());
+    insets.bottom = axes::bottom_room(&drawing.x, &x_ticks, cell);
+    insets.left = axes::side_room(&drawing.y, &y_ticks, cell);
+    insets
+}
+
+/// Draws it.
+pub(crate) fn draw(
+    canvas: &mut Canvas<'_>,
+    drawing: &Drawing,
+    cell: &Rect,
+    insets: Insets,
+) -> Drawn {
+    let mut frame = fitted(drawing, cell.inside(insets));
+    let entries = entries(drawing);
+    let legend = (!entries.is_empty()).then(|| place(drawing, &entries, &mut frame));
+    let (x, y) = (
+        axes::ticks_across(&frame.x, frame.plot.width()),
+        axes::ticks_up(&frame.y, frame.plot.height()),
+    );
+    axes::grid(canvas, &frame, &x, &y)?;
+    for shape in &drawing.shapes {
+        sketch::draw(canvas, &frame, shape)?;
+    }
+    axes::bottom(canvas, &frame, cell, &drawing.x, &x)?;
+    let look = axes::Side {
+        ticks: &y,
+        color: INK,
+        right: false,
+    };
+    axes::side(canvas, &frame, cell, &drawing.y, &look)?;
+    axes::title(canvas, &drawing.title, &frame.plot, cell)?;
+    if let Some((legend, place, inside)) = legend {
+        legend.draw(canvas, &place, inside)?;
+    }
+    Ok(())
+}
+
+/// The legend and its place; the plot gives way if no place in it is free.
+fn place(drawing: &Drawing, entries: &[Entry], frame: &mut Frame) -> (Legend, Rect, bool) {
+    let mut taken = Occupancy::new(frame.plot);
+    for shape in &drawing.shapes {
+        sketch::note(frame, shape, &mut taken);
+    }
+    if let Some((legend, place)) = legend::inside(entries, &frame.plot, &taken) {
+        return (legend, place, true);
+    }
+    let mut plot = frame.plot;
+    let (legend, place) = legend::above(entries, &mut plot);
+    *frame = fitted(drawing, plot);
+    (legend, place, false)
+}
+
+/// Extent of the shapes and of the axes' own ranges: never empty.
+fn bounds(drawing: &Drawing) -> [[f64; 2]; 2] {
+    let points = || {
+        drawing
+            .shapes
+            .iter()
+            .flat_map(sketch::points)
+            .filter(|p| p.iter().all(|v| v.is_finite()))
+    };
+    let side = |axis: &Axis, i: usize| {
+        let own = axis.range.into_iter().flatten();
+        let linear = Axis {
+            scale: Scale::Linear,
+            range: None,
+            ..Axis::default()
+        };
+        let all = points()
+            .map(|p| p[i])
+            .chain(own)
+            .filter(|v| v.abs() < 1e150);
+        (all.clone().count() > 0).then(|| Span::of(&linear, all, 0.0))
+    };
+    let (x, y) = (side(&drawing.x, 0), side(&drawing.y, 1));
+    let ends = |span: Option<Span>| span.map_or([0.0, 1.0], |s| [s.low, s.high]);
+    [ends(x), ends(y)]
+}
+
+/// The frame in which the shapes keep their proportions and fill the plot.
+fn fitted(drawing: &Drawing, plot: Rect) -> Frame {
+    let [[x0, x1], [y0, y1]] = bounds(drawing);
+    let pad = PAD.min(0.2 * plot.width()).min(0.2 * plot.height());
+    // Units in a pixel: the larger of the two fits both ways.
+    let unit =
+        ((x1 - x0) / (plot.width() - 2.0 * pad)).max((y1 - y0) / (plot.height() - 2.0 * pad));
+    let span = |low: f64, high: f64, pixels: f64| {
+        let (middle, half) = (0.5 * (low + high), 0.5 * pixels * unit);
+        Span {
+            scale: Scale::Linear,
+            low: middle - half,
+            high: middle + half,
+        }
+    };
+    Frame {
+        plot,
+        x: span(x0, x1, plot.width()),
+        y: span(y0, y1, plot.height()),
+        y2: None,
+    }
+}
+
+fn entries(drawing: &Drawing) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for shape in &drawing.shapes {
+        let (Shape::Polyline {
+            pen,
+            name: Some(name),
+            ..
+        }
+        | Shape::Disc {
+            pen,
+            name: Some(name),
+            ..
+        }
+        | Shape::Arrow {
+            pen,
+            name: Some(name),
+            ..
+        }) = shape
+        else {
+            continue;
+        };
+        if name.trim().is_empty() || entries.iter().any(|entry| entry.name == *name) {
+            continue;
+        }
+        let color = lightened(rgb(pen.color), pen.lightness);
+        let line = Line {
+            color,
+            width: pen.width.clamp(1.0, 12.0),
+            dashed: pen.dashed,
+        };
+        let sample = match shape {
+            Shape::Disc { .. } => Sample {
+                line: None,
+                marker: Some((0, color)),
+                patch: None,
+            },
+            Shape::Polyline {
+                fill: Some(opacity),
+                ..
+            } => Sample {
+                line: Some(line),
+                marker: None,
+                patch: Some(lightened(color, 1.0 - opacity)),
+            },
+            _ => Sample {
+                line: Some(line),
+                marker: None,
+                patch: None,
+            },
+        };
+        entries.push(Entry {
+            name: name.clone(),
+            sample,
+        });
+    }
+    entries
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::Paint;
+    use crate::shape::Pen;
+
+    fn square(side: f64) -> Drawing {
+        let points = vec![
+            [0.0, 0.0],
+            [side, 0.0],
+            [side, side],
+            [0.0, side],
+            [f64::NAN, 3.0],
+        ];
+        Drawing {
+            shapes: vec![Shape::line(points, Pen::new(Paint::Ink, 4.0))],
+            ..Drawing::default()
+        }
+    }
+
+    #[test]
+    fn a_square_stays_square_and_inside() {
+        for plot in [
+            Rect::sized(0.0, 0.0, 800.0, 400.0),
+            Rect::sized(0.0, 0.0, 300.0, 900.0),
+        ] {
+            for side in [1e-6, 0.3, 1e6] {
+                let frame = fitted(&square(side), plot);
+                let [a, b] = [
+                    frame.point([0.0, 0.0], false).unwrap(),
+                    frame.point([side, side], false).unwrap(),
+                ];
+                assert!(((b[0] - a[0]) / (a[1] - b[1]) - 1.0).abs() < 1e-9);
+                assert!(plot.contains(a) && plot.contains(b));
+            }
+        }
+    }
+
+    #[test]
+    fn empty_and_degenerate_drawings_have_a_frame() {
+        let dot = Drawing {
+            shapes: vec![Shape::pin([5.0, 5.0], Paint::Ink, 0.0)],
+            ..Drawing::default()
+        };
+        for drawing in [Drawing::default(), dot] {
+            let frame = fitted(&drawing, Rect::sized(0.0, 0.0, 500.0, 300.0));
+            assert!(frame.x.low < frame.x.high && frame.y.low < frame.y.high);
+            assert!(height(&drawing, 900.0) > 100.0);
+        }
+    }
+
+    #[test]
+    fn ghosts_of_one_name_share_an_entry() {
+        let link = |lightness| {
+            Shape::line(
+                vec![[0.0, 0.0], [1.0, 1.0]],
+                Pen::new(Paint::Ink, 8.0).lightness(lightness),
+            )
+        };
+        let shapes = vec![
+            link(0.0).named("crank"),
+            link(0.7).named("crank"),
+            link(0.0),
+        ];
+        assert_eq!(
+            entries(&Drawing {
+                shapes,
+                ..Drawing::default()
+            })
+            .len(),
+            1
+        );
+    }
+}

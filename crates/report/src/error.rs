@@ -1,0 +1,67 @@
+//! What can go wrong while a report is made.
+
+use std::path::PathBuf;
+
+/// Why a figure, a table or a file could not be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The embedded fonts could not be read.
+    #[error("the embedded font `{face}` cannot be read")]
+    Font {
+        /// Name of the face.
+        face: &'static str,
+    },
+    /// The drawing backend refused an element.
+    #[error("figure `{figure}` cannot be drawn: {reason}")]
+    Draw {
+        /// File stem of the figure.
+        figure: String,
+        /// What the backend said.
+        reason: String,
+    },
+    /// The page is too large, or has no area.
+    #[error(
+        "figure `{figure}` cannot be {width} by {height} pixels: draw fewer panels on one page"
+    )]
+    Size {
+        /// File stem of the figure.
+        figure: String,
+        /// Width in pixels.
+        width: u32,
+        /// Height in pixels.
+        height: u32,
+    },
+    /// The picture could not be encoded.
+    #[error("figure `{figure}` cannot be written as PNG: {reason}")]
+    Encode {
+        /// File stem of the figure.
+        figure: String,
+        /// What the encoder said.
+        reason: String,
+    },
+    /// A row of a table does not match its columns.
+    #[error("row {row} of the table has {found} values for {expected} columns")]
+    Row {
+        /// Row, counted from 0.
+        row: usize,
+        /// Values in the row.
+        found: usize,
+        /// Number of columns.
+        expected: usize,
+    },
+    /// A table could not be written as CSV.
+    #[error("the table cannot be written as CSV: {0}")]
+    Csv(#[from] csv::Error),
+    /// A value could not be written as JSON.
+    #[error("the value cannot be written as JSON: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A file or a folder could not be written.
+    #[error("cannot write `{}`: {source}", path.display())]
+    File {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+}

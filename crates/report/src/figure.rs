@@ -1,0 +1,236 @@
+//! A figure as plain data: panels on one page, each a chart or a drawing.
+
+use crate::shape::Drawing;
+
+/// One page of panels, written as one PNG.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Figure {
+    /// File stem, without folder and extension.
+    pub name: String,
+    /// Line on top of the page.
+    pub title: String,
+    /// Words at the foot of the page; wrapped, and split at `\n`.
+    pub caption: String,
+    /// Panels in a row (at least one); a last row that is not full is stretched over the page.
+    pub columns: usize,
+    /// The panels, row by row.
+    pub panels: Vec<Panel>,
+}
+
+/// One panel of a figure.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Panel {
+    /// Curves over axes.
+    Chart(Chart),
+    /// A scaled drawing with equal axes.
+    Drawing(Drawing),
+}
+
+impl From<Chart> for Panel {
+    fn from(chart: Chart) -> Self {
+        Self::Chart(chart)
+    }
+}
+
+impl From<Drawing> for Panel {
+    fn from(drawing: Drawing) -> Self {
+        Self::Drawing(drawing)
+    }
+}
+
+/// Curves over one horizontal and one or two vertical axes.
+///
+/// Points that are not finite, or not positive on a logarithmic axis, are left out and break the line. A chart
+/// without any drawable point says "no data".
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Chart {
+    /// Line above the panel.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Left axis.
+    pub y: Axis,
+    /// Right axis, if any.
+    pub y2: Option<Axis>,
+    /// The curves.
+    pub series: Vec<Series>,
+    /// Reference lines, bands and points.
+    pub marks: Vec<Mark>,
+}
+
+/// How an axis is labelled and scaled.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Axis {
+    /// What is measured, such as `crank angle φ`.
+    pub label: String,
+    /// Its unit, such as `kg m²`; empty if there is none.
+    pub unit: String,
+    /// How values become places.
+    pub scale: Scale,
+    /// Smallest and largest value shown; found from the data if absent (or unusable on this scale).
+    pub range: Option<[f64; 2]>,
+}
+
+impl Axis {
+    /// A linear axis.
+    pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self {
+            label: label.into(),
+            unit: unit.into(),
+            scale: Scale::Linear,
+            range: None,
+        }
+    }
+
+    /// A logarithmic axis.
+    pub fn log(label: impl Into<String>, unit: impl Into<String>) -> Self {
+        Self {
+            scale: Scale::Log,
+            ..Self::new(label, unit)
+        }
+    }
+
+    /// An axis of angles; the data are in degrees.
+    pub fn degrees(label: impl Into<String>) -> Self {
+        Self {
+            scale: Scale::Degrees,
+            ..Self::new(label, "°")
+        }
+    }
+
+    /// The same axis from `low` to `high`.
+    pub fn within(self, low: f64, high: f64) -> Self {
+        Self {
+            range: Some([low, high]),
+            ..self
+        }
+    }
+}
+
+/// How values become places on an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Scale {
+    /// In proportion.
+    #[default]
+    Linear,
+    /// By the logarithm; values must be positive.
+    Log,
+    /// In proportion, with ticks at 30, 45, 90, 180 … degrees.
+    Degrees,
+}
+
+/// One curve.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Series {
+    /// Name in the legend; an empty name leaves the curve out of it.
+    pub name: String,
+    /// Points in the axes' units, joined in this order.
+    pub points: Vec<[f64; 2]>,
+    /// How the points are shown.
+    pub stroke: Stroke,
+    /// Whether the right axis holds.
+    pub right_axis: bool,
+    /// Colour; if absent, the palette by the place of the series, then ink and grey.
+    pub color: Option<Paint>,
+}
+
+impl Series {
+    /// A solid line.
+    pub fn line(name: impl Into<String>, points: Vec<[f64; 2]>) -> Self {
+        Self {
+            name: name.into(),
+            points,
+            ..Self::default()
+        }
+    }
+
+    /// The same series with another stroke.
+    pub fn stroke(self, stroke: Stroke) -> Self {
+        Self { stroke, ..self }
+    }
+
+    /// The same series in a chosen colour.
+    pub fn color(self, color: Paint) -> Self {
+        Self {
+            color: Some(color),
+            ..self
+        }
+    }
+
+    /// The same series on the right axis.
+    pub fn right(self) -> Self {
+        Self {
+            right_axis: true,
+            ..self
+        }
+    }
+}
+
+/// How the points of a series are shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stroke {
+    /// A line.
+    #[default]
+    Solid,
+    /// A dashed line.
+    Dashed,
+    /// Markers only.
+    Points,
+    /// A line with markers.
+    LineAndPoints,
+}
+
+/// A colour by its role.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Paint {
+    /// Colour of the palette, counted from 0 and taken round: blue, vermilion, green, purple, orange, sky blue.
+    Palette(usize),
+    /// Near black.
+    Ink,
+    /// Middle grey.
+    Grey,
+}
+
+/// A reference in a chart; it is never a datum.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Mark {
+    /// A vertical line.
+    Vertical {
+        /// Its place on the horizontal axis.
+        at: f64,
+        /// Words beside it, or nothing.
+        label: String,
+    },
+    /// A horizontal line.
+    Horizontal {
+        /// Its place on the left axis.
+        at: f64,
+        /// Words beside it, or nothing.
+        label: String,
+    },
+    /// An interval of the horizontal axis, lightly filled.
+    Band {
+        /// Where it begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+        /// Words in it, or nothing.
+        label: String,
+    },
+    /// The power law `y = y0 (x / x0)^order`: a straight line between logarithmic axes.
+    Slope {
+        /// The exponent.
+        order: f64,
+        /// The point (x0, y0) it goes through, on the left axis.
+        through: [f64; 2],
+        /// Words beside it, or nothing.
+        label: String,
+    },
+    /// A ringed point, such as the worst place or a published value, on the left axis.
+    Point {
+        /// The point.
+        at: [f64; 2],
+        /// Words beside it, or nothing.
+        label: String,
+    },
+}

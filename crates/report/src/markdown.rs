@@ -1,0 +1,253 @@
+//! A study as Markdown, and findings as text for snapshots.
+
+use crate::number::short;
+use dwell_findings::Finding;
+use std::fmt::Write as _;
+
+/// A study in words, tables, figures and findings.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Document {
+    /// The heading of the whole.
+    pub title: String,
+    /// What follows it.
+    pub blocks: Vec<Block>,
+}
+
+/// A part of a document.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Block {
+    /// A heading below the title.
+    Heading(String),
+    /// Markdown as it is.
+    Text(String),
+    /// Cells of text.
+    Table {
+        /// The header.
+        header: Vec<String>,
+        /// The rows; a short one is filled with empty cells, a long one is cut.
+        rows: Vec<Vec<String>>,
+    },
+    /// A picture with words under it.
+    Figure {
+        /// Path of the picture, relative to the document.
+        file: String,
+        /// Short words for those who do not see it.
+        alt: String,
+        /// Words under it, or nothing.
+        caption: String,
+    },
+    /// Findings, one row each.
+    Findings(Vec<Finding>),
+}
+
+impl Document {
+    /// The document as Markdown.
+    pub fn markdown(&self) -> String {
+        let mut text = format!("# {}\n", line(&self.title));
+        for block in &self.blocks {
+            text.push('\n');
+            match block {
+                Block::Heading(heading) => text.push_str(&format!("## {}\n", line(heading))),
+                Block::Text(words) => text.push_str(&format!("{}\n", words.trim_end())),
+                Block::Table { header, rows } => text.push_str(&table(header, rows)),
+                Block::Figure { file, alt, caption } => text.push_str(&picture(file, alt, caption)),
+                Block::Findings(findings) => text.push_str(&judged(findings)),
+            }
+        }
+        text
+    }
+}
+
+/// What every machine reproduces of the findings: key, truth, what is compared, tolerance and verdict.
+pub fn stable(findings: &[Finding]) -> String {
+    let mut text = String::new();
+    for f in findings {
+        let (truth, compared, tolerance) =
+            (line(&f.truth), line(&f.compared), short(f.tolerance, 3));
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{}  {}  [{truth}]  {compared}  <= {tolerance}",
+            verdict(f),
+            line(&f.key)
+        );
+    }
+    text
+}
+
+fn verdict(finding: &Finding) -> &'static str {
+    if finding.pass { "pass" } else { "FAIL" }
+}
+
+fn judged(findings: &[Finding]) -> String {
+    const HEADER: [&str; 9] = [
+        "Verdict",
+        "Truth",
+        "Compared",
+        "Over",
+        "Difference",
+        "Relative",
+        "Tolerance",
+        "Why this tolerance",
+        "Worst place",
+    ];
+    let row = |f: &Finding| {
+        let of = |number: String, words: &str, between: &str| {
+            if words.trim().is_empty() {
+                number
+            } else {
+                format!("{number}{between}{}", words.trim())
+            }
+        };
+        let verdict = if f.pass {
+            verdict(f).to_owned()
+        } else {
+            format!("**{}**", verdict(f))
+        };
+        vec![
+            verdict,
+            f.truth.clone(),
+            f.compared.clone(),
+            f.over.clone(),
+            of(short(f.absolute, 3), &f.unit, " "),
+            of(short(f.relative, 3), &f.scale, " of "),
+            short(f.tolerance, 3),
+            f.why.clone(),
+            f.worst.clone(),
+        ]
+    };
+    table(
+        &HEADER.map(str::to_owned),
+        &findings.iter().map(row).collect::<Vec<_>>(),
+    )
+}
+
+fn table(header: &[String], rows: &[Vec<String>]) -> String {
+    let written = |cells: &mut dyn Iterator<Item = String>| {
+        format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
+    };
+    let mut text = written(&mut header.iter().map(|c| cell(c)));
+    text.push_str(&written(&mut header.iter().map(|_| "---".to_owned())));
+    for row in rows {
+        text.push_str(&written(
+            &mut (0..header.len()).map(|i| row.get(i).map(|c| cell(c)).unwrap_or_default()),
+        ));
+    }
+    text
+}
+
+fn picture(file: &str, alt: &str, caption: &str) -> String {
+    let alt = line(alt).replace('[', "\\[").replace(']', "\\]");
+    // In angle brackets a path may hold blanks and brackets.
+    let file = line(file).replace('<', "%3C").replace('>', "%3E");
+    let target = if file.contains([' ', '(', ')']) {
+        format!("<{file}>")
+    } else {
+        file
+    };
+    let caption = line(caption);
+    if caption.is_empty() {
+        format!("![{alt}]({target})\n")
+    } else {
+        format!("![{alt}]({target})\n\n*{caption}*\n")
+    }
+}
+
+/// Everything on one line.
+fn line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Text that cannot end its cell.
+fn cell(text: &str) -> String {
+    line(text).replace('|', "\\|")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn finding(pass: bool, absolute: f64) -> Finding {
+        Finding {
+            key: "m-energy".to_owned(),
+            truth: "1 kinetic energy".to_owned(),
+            compared: "m with 2E_c at |φ̇| = 1".to_owned(),
+            over: "360 positions".to_owned(),
+            absolute,
+            unit: "kg m²".to_owned(),
+            relative: 3.456e-16,
+            scale: "the largest m".to_owned(),
+            worst: "phi = 1.3 rad".to_owned(),
+            tolerance: 1e-12,
+            why: "rounding of\na sum".to_owned(),
+            pass,
+        }
+    }
+
+    /// Cells of a row, splitting only at bars that are not escaped.
+    fn cells(row: &str) -> usize {
+        row.replace("\\|", "").matches('|').count() - 1
+    }
+
+    #[test]
+    fn findings_fill_a_whole_table() {
+        let findings = vec![finding(true, 1.234_56e-15), finding(false, f64::NAN)];
+        let text = Document {
+            title: "Study".to_owned(),
+            blocks: vec![Block::Findings(findings)],
+        }
+        .markdown();
+        let rows: Vec<&str> = text.lines().filter(|l| l.starts_with('|')).collect();
+        assert_eq!(rows.len(), 4);
+        assert!(rows.iter().all(|row| cells(row) == 9), "{text}");
+        assert!(
+            rows[2].contains("1.23e-15 kg m²")
+                && rows[2].contains("3.46e-16 of the largest m")
+                && rows[2].contains(" 1e-12 ")
+        );
+        assert!(rows[2].contains("at \\|φ̇\\| = 1") && rows[2].contains("rounding of a sum"));
+        assert!(rows[3].contains("**FAIL**") && rows[3].contains("NaN"));
+    }
+
+    #[test]
+    fn the_stable_form_holds_no_measured_number() {
+        assert_eq!(
+            stable(&[finding(true, 1e-15)]),
+            stable(&[finding(true, 7e-15)])
+        );
+        assert_eq!(
+            stable(&[finding(false, 1.0)]),
+            "FAIL  m-energy  [1 kinetic energy]  m with 2E_c at |φ̇| = 1  <= 1e-12\n"
+        );
+    }
+
+    #[test]
+    fn rows_are_as_long_as_the_header() {
+        let block = Block::Table {
+            header: vec!["a".to_owned(), "b".to_owned()],
+            rows: vec![
+                vec!["1".to_owned()],
+                vec!["1".to_owned(), "2".to_owned(), "3".to_owned()],
+            ],
+        };
+        let text = Document {
+            title: String::new(),
+            blocks: vec![block],
+        }
+        .markdown();
+        assert!(
+            text.lines()
+                .filter(|l| l.starts_with('|'))
+                .all(|row| cells(row) == 2)
+        );
+    }
+
+    #[test]
+    fn pictures_survive_brackets_and_blanks() {
+        assert_eq!(picture("a b.png", "x [m]", ""), "![x \\[m\\]](<a b.png>)\n");
+        assert_eq!(
+            picture("a.png", "path", "The path."),
+            "![path](a.png)\n\n*The path.*\n"
+        );
+    }
+}

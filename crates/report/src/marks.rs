@@ -1,0 +1,267 @@
+//! Markers, and the reference lines, bands and points of a chart with their words.
+
+use crate::axes::Frame;
+use crate::canvas::{Align, Canvas, Drawn, Line, Type};
+use crate::curve::clipped;
+use crate::figure::Mark;
+use crate::fonts;
+use crate::occupancy::Occupancy;
+use crate::rect::Rect;
+use crate::theme::{BAND, GREY, INK, MARK, MARKER, Rgb, TICK, WHITE};
+
+/// Draws the marker of a series; series differ in shape as well as in colour.
+pub(crate) fn marker(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], color: Rgb) -> Drawn {
+    let r = MARKER;
+    match shape % 4 {
+        0 => canvas.disc([x, y], r, color),
+        1 => canvas.rect(
+            &Rect {
+                x0: x - r,
+                y0: y - r,
+                x1: x + r,
+                y1: y + r,
+            }
+            .grown(-0.8),
+            color,
+        ),
+        2 => canvas.polygon(
+            &[
+                [x, y - 1.25 * r],
+                [x + 1.15 * r, y + 0.8 * r],
+                [x - 1.15 * r, y + 0.8 * r],
+            ],
+            color,
+            1.0,
+        ),
+        _ => {
+            let d = 1.3 * r;
+            canvas.polygon(
+                &[[x, y - d], [x + d, y], [x, y + d], [x - d, y]],
+                color,
+                1.0,
+            )
+        }
+    }
+}
+
+/// Fills the bands, which lie under the grid.
+pub(crate) fn bands(canvas: &mut Canvas<'_>, frame: &Frame, marks: &[Mark]) -> Drawn {
+    for mark in marks {
+        if let Mark::Band { from, to, .. } = mark
+            && let Some(band) = band(frame, *from, *to)
+        {
+            canvas.rect(&band, BAND)?;
+        }
+    }
+    Ok(())
+}
+
+fn band(frame: &Frame, from: f64, to: f64) -> Option<Rect> {
+    let (a, b) = (frame.across(from.min(to))?, frame.across(from.max(to))?);
+    let band = Rect {
+        x0: a.max(frame.plot.x0),
+        x1: b.min(frame.plot.x1),
+        ..frame.plot
+    };
+    (band.width() > 0.0).then_some(band)
+}
+
+/// Notes what the lines and rings of the marks will cover.
+pub(crate) fn note(frame: &Frame, marks: &[Mark], taken: &mut Occupancy) {
+    for mark in marks {
+        path(frame, mark).iter().for_each(|run| taken.line(run));
+        if let Some([x, y]) = ring(frame, mark) {
+            taken.block(&Rect::sized(x, y, 0.0, 0.0).grown(MARKER + 4.0));
+        }
+    }
+}
+
+/// Draws the lines of the marks, which lie under the curves.
+pub(crate) fn lines(canvas: &mut Canvas<'_>, frame: &Frame, marks: &[Mark]) -> Drawn {
+    let line = Line {
+        color: GREY,
+        width: MARK,
+        dashed: true,
+    };
+    for run in marks.iter().flat_map(|mark| path(frame, mark)) {
+        canvas.line(&run, line)?;
+    }
+    Ok(())
+}
+
+fn ring(frame: &Frame, mark: &Mark) -> Option<[f64; 2]> {
+    let Mark::Point { at, .. } = mark else {
+        return None;
+    };
+    frame.point(*at, false).filter(|p| frame.plot.contains(*p))
+}
+
+/// Draws the ringed points, which lie over the curves.
+pub(crate) fn rings(canvas: &mut Canvas<'_>, frame: &Frame, marks: &[Mark]) -> Drawn {
+    for mark in marks {
+        if let Some(place) = ring(frame, mark) {
+            canvas.disc(place, MARKER + 3.5, INK)?;
+            canvas.disc(place, MARKER, WHITE)?;
+        }
+    }
+    Ok(())
+}
+
+/// The line of a mark inside the plot.
+fn path(frame: &Frame, mark: &Mark) -> Vec<Vec<[f64; 2]>> {
+    let Rect { x0, y0, x1, y1 } = frame.plot;
+    let line = match mark {
+        Mark::Vertical { at, .. } => frame
+            .across(*at)
+            .map(|x| vec![Some([x, y0]), Some([x, y1])]),
+        Mark::Horizontal { at, .. } => frame
+            .up(*at, false)
+            .map(|y| vec![Some([x0, y]), Some([x1, y])]),
+        Mark::Slope { order, through, .. } => {
+            // Between other axes than logarithmic ones a power law is a curve, so it is followed in steps.
+            let at = |i: i32| {
+                let x = frame.x.value(f64::from(i) / 200.0);
+                frame.point([x, through[1] * (x / through[0]).powf(*order)], false)
+            };
+            Some((0..=200).map(at).collect())
+        }
+        Mark::Band { .. } | Mark::Point { .. } => None,
+    };
+    clipped(line.unwrap_or_default(), &frame.plot)
+}
+
+/// Writes the words of the marks where they hide least of the data, and never on what has been written
+/// before or on each other: words that have no such place are left out.
+pub(crate) fn words(
+    canvas: &mut Canvas<'_>,
+    frame: &Frame,
+    marks: &[Mark],
+    taken: &Occupancy,
+    mut written: Vec<Rect>,
+) -> Drawn {
+    for mark in marks {
+        let (Mark::Vertical { label, .. }
+        | Mark::Horizontal { label, .. }
+        | Mark::Band { label, .. }
+        | Mark::Slope { label, .. }
+        | Mark::Point { label, .. }) = mark;
+        let label = label.trim();
+        if label.is_empty() {
+            continue;
+        }
+        let size = [fonts::width(label, TICK, false), TICK];
+        let free = |place: &Rect| {
+            let place = place.grown(5.0);
+            frame.plot.holds(&place) && !written.iter().any(|other| other.touches(&place))
+        };
+        // The first of the best, as the places are given in the order of preference.
+        let hidden = |place: &Rect| taken.count(&place.grown(3.0));
+        let Some(place) = places(frame, mark, size)
+            .into_iter()
+            .filter(free)
+            .min_by_key(hidden)
+        else {
+            continue;
+        };
+        let middle = [place.x0, place.centre()[1]];
+        let look = Type::new(TICK, GREY, Align::Start);
+        // On a band a rim would show, so it has to be needed.
+        if matches!(mark, Mark::Band { .. }) && hidden(&place) == 0 {
+            canvas.text_beside(label, middle, look)?;
+        } else {
+            canvas.text_with_rim(label, middle, look)?;
+        }
+        written.push(place);
+    }
+    Ok(())
+}
+
+/// Places for the words of a mark, the best first.
+fn places(frame: &Frame, mark: &Mark, [width, height]: [f64; 2]) -> Vec<Rect> {
+    const GAP: f64 = 12.0;
+    let plot = frame.plot;
+    let parts = || (0..=10).map(|i| f64::from(i) / 10.0);
+    let down = |t: f64| plot.y0 + GAP + t * (plot.height() - height - 2.0 * GAP);
+    let along = |t: f64| plot.x1 - GAP - width - t * (plot.width() - width - 2.0 * GAP);
+    match mark {
+        Mark::Vertical { at, .. } => {
+            let Some(x) = frame.across(*at) else {
+                return Vec::new();
+            };
+            parts()
+                .flat_map(|t| {
+                    [x + GAP, x - GAP - width].map(|x| Rect::sized(x, down(t), width, height))
+                })
+                .collect()
+        }
+        Mark::Horizontal { at, .. } => {
+            let Some(y) = frame.up(*at, false) else {
+                return Vec::new();
+            };
+            parts()
+                .flat_map(|t| {
+                    [y - GAP - height, y + GAP].map(|y| Rect::sized(along(t), y, width, height))
+                })
+                .collect()
+        }
+        Mark::Band { from, to, .. } => {
+            let Some(band) = band(frame, *from, *to) else {
+                return Vec::new();
+            };
+            let x = (band.centre()[0] - 0.5 * width)
+                .clamp(plot.x0 + GAP, (plot.x1 - GAP - width).max(plot.x0 + GAP));
+            parts()
+                .map(|t| Rect::sized(x, down(t), width, height))
+                .collect()
+        }
+        Mark::Point { at, .. } => {
+            let Some([x, y]) = frame.point(*at, false) else {
+                return Vec::new();
+            };
+            let mut all = Vec::new();
+            for far in [1.0, 2.0, 3.5] {
+                let d = (MARKER + GAP) * far;
+                all.push(Rect::sized(x + d, y - 0.5 * height, width, height));
+                all.push(Rect::sized(x - d - width, y - 0.5 * height, width, height));
+                all.push(Rect::sized(x - 0.5 * width, y - d - height, width, height));
+                all.push(Rect::sized(x - 0.5 * width, y + d, width, height));
+                all.push(Rect::sized(
+                    x + 0.7 * d,
+                    y - 0.7 * d - height,
+                    width,
+                    height,
+                ));
+                all.push(Rect::sized(
+                    x - 0.7 * d - width,
+                    y - 0.7 * d - height,
+                    width,
+                    height,
+                ));
+                all.push(Rect::sized(x + 0.7 * d, y + 0.7 * d, width, height));
+                all.push(Rect::sized(x - 0.7 * d - width, y + 0.7 * d, width, height));
+            }
+            all
+        }
+        Mark::Slope { .. } => {
+            let runs = path(frame, mark);
+            let mut all = Vec::new();
+            for p in runs.iter().flatten().step_by(8) {
+                all.push(Rect::sized(p[0] + GAP, p[1] + 0.3 * height, width, height));
+                all.push(Rect::sized(
+                    p[0] - GAP - width,
+                    p[1] - 1.3 * height,
+                    width,
+                    height,
+                ));
+                all.push(Rect::sized(p[0] + GAP, p[1] - 1.3 * height, width, height));
+                all.push(Rect::sized(
+                    p[0] - GAP - width,
+                    p[1] + 0.3 * height,
+                    width,
+                    height,
+                ));
+            }
+            all
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Where in a plot something has been drawn already, so that words can go elsewhere.
+
+use crate::rect::Rect;
+
+/// Side of a cell in pixels.
+const CELL: f64 = 5.0;
+
+/// Cells of a plot that hold data or words.
+#[derive(Debug, Clone)]
+pub(crate) struct Occupancy {
+    area: Rect,
+    columns: usize,
+    rows: usize,
+    taken: Vec<bool>,
+}
+
+impl Occupancy {
+    /// Nothing drawn yet.
+    pub(crate) fn new(area: Rect) -> Self {
+        let cells = |length: f64| ((length / CELL).ceil().clamp(1.0, 4000.0)) as usize;
+        let (columns, rows) = (cells(area.width()), cells(area.height()));
+        Self {
+            area,
+            columns,
+            rows,
+            taken: vec![false; columns * rows],
+        }
+    }
+
+    /// A line has been drawn.
+    pub(crate) fn line(&mut self, points: &[[f64; 2]]) {
+        for pair in points.windows(2) {
+            let [a, b] = [pair[0], pair[1]];
+            let steps = ((b[0] - a[0]).hypot(b[1] - a[1]) / (0.5 * CELL))
+                .ceil()
+                .clamp(1.0, 1e4) as u32;
+            for i in 0..=steps {
+                let t = f64::from(i) / f64::from(steps);
+                self.point([a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]);
+            }
+        }
+    }
+
+    /// A point has been drawn.
+    pub(crate) fn point(&mut self, at: [f64; 2]) {
+        if self.area.contains(at) {
+            let (column, row) = self.cell(at);
+            self.taken[row * self.columns + column] = true;
+        }
+    }
+
+    /// A block, such as a text, has been drawn.
+    pub(crate) fn block(&mut self, block: &Rect) {
+        for row in self.row_range(block) {
+            let start = row * self.columns;
+            let range = self.column_range(block);
+            self.taken[start + range.start..start + range.end].fill(true);
+        }
+    }
+
+    /// How many taken cells lie in the block.
+    pub(crate) fn count(&self, block: &Rect) -> usize {
+        let columns = self.column_range(block);
+        let cells = |row: usize| {
+            &self.taken[row * self.columns + columns.start..row * self.columns + columns.end]
+        };
+        self.row_range(block)
+            .map(|row| cells(row).iter().filter(|&&taken| taken).count())
+            .sum()
+    }
+
+    fn cell(&self, [x, y]: [f64; 2]) -> (usize, usize) {
+        // A negative or NaN quotient saturates to 0.
+        let column = ((x - self.area.x0) / CELL) as usize;
+        let row = ((y - self.area.y0) / CELL) as usize;
+        (column.min(self.columns - 1), row.min(self.rows - 1))
+    }
+
+    fn column_range(&self, block: &Rect) -> std::ops::Range<usize> {
+        if block.x1 < self.area.x0 || block.x0 > self.area.x1 {
+            return 0..0;
+        }
+        self.cell([block.x0, block.y0]).0..self.cell([block.x1, block.y1]).0 + 1
+    }
+
+    fn row_range(&self, block: &Rect) -> std::ops::Range<usize> {
+        if block.y1 < self.area.y0 || block.y0 > self.area.y1 {
+            return 0..0;
+        }
+        self.cell([block.x0, block.y0]).1..self.cell([block.x1, block.y1]).1 + 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_takes_the_cells_it_crosses_and_no_other() {
+        let mut map = Occupancy::new(Rect::sized(10.0, 20.0, 200.0, 100.0));
+        map.line(&[[10.0, 20.0], [210.0, 120.0]]);
+        assert!(map.count(&Rect::sized(100.0, 60.0, 20.0, 20.0)) > 0);
+        assert_eq!(map.count(&Rect::sized(150.0, 25.0, 50.0, 30.0)), 0);
+        assert_eq!(map.count(&Rect::sized(500.0, 500.0, 50.0, 30.0)), 0);
+    }
+
+    #[test]
+    fn a_steep_line_between_two_points_is_seen_too() {
+        let mut map = Occupancy::new(Rect::sized(0.0, 0.0, 100.0, 100.0));
+        map.line(&[[50.0, -1e4], [50.0, 1e4]]);
+        assert!(map.count(&Rect::sized(40.0, 40.0, 20.0, 20.0)) > 0);
+    }
+}

@@ -1,0 +1,111 @@
+//! `dwell check`: what the scene is, before anything moves.
+
+use crate::error::StudyError;
+use crate::outcome::Outcome;
+use crate::prepare::Prepared;
+use dwell_geometry::Range;
+use dwell_scene::Scene;
+use std::fmt::Write as _;
+
+/// Describes a scene: degrees of freedom, groups, branch, range and requests. It writes no file.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be put together.
+pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
+    let prepared = Prepared::new(scene)?;
+    let plan = prepared.model.model().plan();
+    let mechanism = &scene.mechanism;
+    let coordinate = prepared.coordinate();
+    let mut text = String::new();
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "{}", scene.title);
+    let _ = writeln!(
+        text,
+        "  {} moving bodies, {} joints, 1 degree of freedom, driven by {coordinate}",
+        mechanism.bodies.len() - 1,
+        mechanism.joints.len(),
+    );
+    let _ = match plan.range() {
+        Range::Full => writeln!(text, "  {coordinate} turns fully"),
+        Range::Between(from, to) => writeln!(
+            text,
+            "  {coordinate} turns from {from:.6} to {to:.6} rad ({:.2}° to {:.2}°), limit positions",
+            from.to_degrees(),
+            to.to_degrees()
+        ),
+    };
+    let _ = writeln!(text, "  groups, in the order of solution:");
+    for (g, (size, kind)) in plan.group_kinds().into_iter().enumerate() {
+        let bodies = plan.group_bodies(g);
+        let joints = plan.group_joints(g);
+        let bodies: Vec<_> = bodies.iter().map(|&b| mechanism.body_name(b)).collect();
+        let joints: Vec<_> = joints
+            .iter()
+            .map(|j| mechanism.joints[j.0].name.as_str())
+            .collect();
+        let _ = writeln!(
+            text,
+            "    {}. {} closed by {}: {size} unknown{}, {kind}",
+            g + 1,
+            bodies.join(", "),
+            joints.join(", "),
+            if size == 1 { "" } else { "s" },
+        );
+    }
+    let mut pose = plan.pose();
+    if plan.place(plan.start(), &mut pose).is_ok() {
+        let _ = writeln!(
+            text,
+            "  branch, as body angles at {coordinate} = {:.6} rad:",
+            plan.start()[0]
+        );
+        for carried in plan.carried() {
+            let angle = plan.body_turn(carried.body, &pose).angle();
+            let _ = writeln!(
+                text,
+                "    {:<12} {angle:9.6} rad  {:8.3}°",
+                mechanism.body_name(carried.body),
+                angle.to_degrees()
+            );
+        }
+    }
+    let massless: Vec<_> = plan
+        .carried()
+        .iter()
+        .filter(|c| {
+            let mass = &scene.masses[c.body.0];
+            mass.mass == 0.0 && mass.inertia == 0.0
+        })
+        .map(|c| mechanism.body_name(c.body))
+        .collect();
+    if !massless.is_empty() {
+        let _ = writeln!(
+            text,
+            "  without inertia, so no force of theirs is computed: {}",
+            massless.join(", ")
+        );
+    }
+    let names: Vec<_> = prepared.reactions().into_iter().map(|(n, _)| n).collect();
+    let others = mechanism.reactions().len() - names.len();
+    let _ = writeln!(
+        text,
+        "  reactions requested: {}{}",
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        },
+        if others > 0 {
+            format!(" ({others} others are not computed: not requested)")
+        } else {
+            String::new()
+        }
+    );
+    if let Some(note) = &scene.note {
+        let _ = writeln!(text, "  note: {note}");
+    }
+    Ok(Outcome {
+        summary: text,
+        ..Outcome::default()
+    })
+}

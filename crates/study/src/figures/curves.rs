@@ -1,0 +1,109 @@
+//! The reduced parameters over the range.
+
+use super::{caption, coordinate_label, symbol};
+use crate::prepare::Prepared;
+use crate::reduce::Sweep;
+use dwell_kinetostatics::Coefficients;
+use dwell_report::{Axis, Chart, Figure, Panel, Series};
+
+/// Most reactions that share a figure; more would not be told apart.
+const TOGETHER: usize = 6;
+
+fn points(sweep: &Sweep, of: impl Fn(&Coefficients) -> f64) -> Vec<[f64; 2]> {
+    let pairs = sweep.q.iter().zip(&sweep.at);
+    pairs.map(|(q, at)| [q.to_degrees(), of(at)]).collect()
+}
+
+/// m and ½m′.
+pub(crate) fn reduced(prepared: &Prepared<'_>, sweep: &Sweep) -> Figure {
+    let panel = |title: &str, unit: &str, of: fn(&Coefficients) -> f64| {
+        Panel::from(Chart {
+            title: title.to_owned(),
+            x: Axis::degrees(coordinate_label(prepared)),
+            y: Axis::new(title.split(' ').next().unwrap_or(title), unit),
+            series: vec![Series::line("", points(sweep, of))],
+            ..Chart::default()
+        })
+    };
+    Figure {
+        name: "b-reduced".to_owned(),
+        title: "Reduced inertia and half its derivative".to_owned(),
+        caption: caption(
+            prepared,
+            "m is the action of the actuator at unit acceleration from rest, ½m′ at unit speed without acceleration.",
+        ),
+        columns: 1,
+        panels: vec![
+            panel("m (generalised inertia)", "kg m²", |c| c.m),
+            panel("½m′ (half its derivative)", "kg m²/rad", |c| c.half_dm),
+        ],
+    }
+}
+
+/// a and b of the requested reactions, forces and moments apart, a few to a figure.
+pub(crate) fn coefficients(prepared: &Prepared<'_>, sweep: &Sweep) -> Vec<Figure> {
+    let reactions = prepared.reactions();
+    let mut figures = Vec::new();
+    for unit in ["N", "N m"] {
+        let of_unit: Vec<usize> = (0..reactions.len())
+            .filter(|&k| reactions[k].1 == unit)
+            .collect();
+        for some in of_unit.chunks(TOGETHER) {
+            let more = figures.len();
+            figures.push(one(prepared, sweep, some, unit, more));
+        }
+    }
+    figures
+}
+
+fn one(prepared: &Prepared<'_>, sweep: &Sweep, some: &[usize], unit: &str, more: usize) -> Figure {
+    let reactions = prepared.reactions();
+    let unit = if unit == "N" { "kg m" } else { "kg m²" };
+    let q = symbol(prepared.coordinate());
+    let panel = |title: String, label: &str, of: fn(&Coefficients, usize) -> f64| {
+        let line = |&k: &usize| {
+            let name = if some.len() > 1 {
+                reactions[k].0.clone()
+            } else {
+                String::new()
+            };
+            Series::line(name, points(sweep, |at| of(at, k)))
+        };
+        Panel::from(Chart {
+            title,
+            x: Axis::degrees(coordinate_label(prepared)),
+            y: Axis::new(label, unit),
+            series: some.iter().map(line).collect(),
+            ..Chart::default()
+        })
+    };
+    let title = match some {
+        [k] => format!("Reduced parameters of the reaction {}", reactions[*k].0),
+        _ => "Reduced parameters of the reactions".to_owned(),
+    };
+    Figure {
+        name: if more == 0 {
+            "c-reaction".to_owned()
+        } else {
+            format!("c-reaction-{}", more + 1)
+        },
+        title,
+        caption: caption(
+            prepared,
+            "Reaction = a q̈ + b q̇²: the action of the joint's first body on its second.",
+        ),
+        columns: 1,
+        panels: vec![
+            panel(
+                format!("a: what multiplies {q}'s acceleration"),
+                "a",
+                |c, k| c.a[k],
+            ),
+            panel(
+                format!("b: what multiplies {q}'s speed squared"),
+                "b",
+                |c, k| c.b[k],
+            ),
+        ],
+    }
+}

@@ -1,0 +1,61 @@
+//! The pictures of a study.
+
+mod cost;
+mod curves;
+mod mechanism;
+mod motion;
+mod steps;
+
+pub(crate) use cost::{cost, drift};
+pub(crate) use curves::{coefficients, reduced};
+pub(crate) use mechanism::{Dwell, mechanism};
+pub(crate) use motion::history;
+pub(crate) use steps::steps;
+
+use crate::prepare::Prepared;
+
+/// The foot of a figure: the scene, the words, and what drew it.
+pub(crate) fn caption(prepared: &Prepared<'_>, words: &str) -> String {
+    let source = prepared.scene.source.name().rsplit(['/', '\\']);
+    let file: Vec<_> = source.take(2).collect();
+    let file: Vec<_> = file.into_iter().rev().collect();
+    format!(
+        "{} ({}). {words} Dwell {}.",
+        prepared.scene.title,
+        file.join("/"),
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+/// A coordinate's name as a symbol, where it is the name of a Greek letter.
+pub(crate) fn symbol(name: &str) -> String {
+    const GREEK: [(&str, &str); 8] = [
+        ("alpha", "α"),
+        ("beta", "β"),
+        ("gamma", "γ"),
+        ("phi", "φ"),
+        ("psi", "ψ"),
+        ("theta", "θ"),
+        ("omega", "ω"),
+        ("delta", "δ"),
+    ];
+    let found = GREEK.iter().find(|(latin, _)| *latin == name);
+    found.map_or(name, |(_, greek)| greek).to_owned()
+}
+
+/// The label of the axis of the independent coordinate.
+pub(crate) fn coordinate_label(prepared: &Prepared<'_>) -> String {
+    let bodies = prepared.scene.mechanism.actuators[0].bodies;
+    let mechanism = &prepared.scene.mechanism;
+    // The angle of the body that turns; from another than the ground, both are named.
+    let turned = mechanism.body_name(bodies[1]);
+    let symbol = symbol(prepared.coordinate());
+    if bodies[0].0 == mechanism.ground {
+        format!("{turned} angle {symbol}")
+    } else {
+        format!(
+            "angle {symbol} of {turned} from {}",
+            mechanism.body_name(bodies[0])
+        )
+    }
+}

@@ -1,0 +1,98 @@
+//! `dwell reduce`: the reduced parameters over the range, as a table and as figures.
+
+use crate::error::{StudyError, explain_place};
+use crate::figures;
+use crate::outcome::Outcome;
+use crate::prepare::Prepared;
+use dwell_kinetostatics::{Coefficients, Reduced};
+use dwell_report::{Column, Figure, Table, png};
+use dwell_scene::Scene;
+
+/// Positions of the table: half a degree over a turn.
+const POSITIONS: usize = 720;
+
+/// The reduced coefficients over the range.
+#[derive(Debug, Clone)]
+pub(crate) struct Sweep {
+    /// Coordinates, rad.
+    pub(crate) q: Vec<f64>,
+    /// The coefficients at each.
+    pub(crate) at: Vec<Coefficients>,
+}
+
+impl Sweep {
+    pub(crate) fn new(prepared: &Prepared<'_>) -> Result<Self, StudyError> {
+        let model = &prepared.model;
+        let mut work = model.work();
+        let q = prepared.sweep(POSITIONS);
+        let mut at = Vec::with_capacity(q.len());
+        for &q in &q {
+            let mut here = model.model().coefficients();
+            model
+                .coefficients(q, &mut work, &mut here)
+                .map_err(|e| explain_place(prepared.scene, model.model().plan(), &e))?;
+            at.push(here);
+        }
+        Ok(Self { q, at })
+    }
+
+    /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
+    pub(crate) fn table(&self, prepared: &Prepared<'_>) -> Table {
+        let mut columns = vec![
+            Column::new(prepared.coordinate(), "rad"),
+            Column::new("m", "kg m2"),
+            Column::new("half_dm", "kg m2/rad"),
+        ];
+        for (name, unit) in prepared.reactions() {
+            let unit = coefficient_unit(unit);
+            columns.push(Column::new(format!("{name} a"), unit));
+            columns.push(Column::new(format!("{name} b"), unit));
+        }
+        let row = |(q, at): (&f64, &Coefficients)| {
+            let mut row = vec![*q, at.m, at.half_dm];
+            for (a, b) in at.a.iter().zip(&at.b) {
+                row.extend([*a, *b]);
+            }
+            row
+        };
+        Table {
+            columns,
+            rows: self.q.iter().zip(&self.at).map(row).collect(),
+        }
+    }
+}
+
+/// Unit of a and b for a reaction in N or N m: per rad/s² and per (rad/s)².
+pub(crate) fn coefficient_unit(unit: &str) -> &'static str {
+    if unit == "N" { "kg m" } else { "kg m2" }
+}
+
+/// The reduced parameters of a scene over its range.
+///
+/// # Errors
+/// [`StudyError`] when the mechanism cannot be put together or a figure cannot be drawn.
+pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
+    let prepared = Prepared::new(scene)?;
+    let sweep = Sweep::new(&prepared)?;
+    let mut figures: Vec<Figure> = vec![figures::reduced(&prepared, &sweep)];
+    figures.extend(figures::coefficients(&prepared, &sweep));
+    let mut outcome = Outcome::default();
+    let table = format!("{}-reduced.csv", scene.name);
+    outcome.files.add(table, sweep.table(&prepared).csv()?);
+    for figure in &figures {
+        let name = format!("{}-{}.png", scene.name, figure.name);
+        outcome.files.add(name, png(figure)?);
+    }
+    let over = |pick: fn(&Coefficients) -> f64| {
+        let values = sweep.at.iter().map(pick);
+        values.fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(v), b.max(v)))
+    };
+    let ((m0, m1), (h0, h1)) = (over(|c| c.m), over(|c| c.half_dm));
+    outcome.summary = format!(
+        "{}: {} positions of {}\n  m    from {m0:.9} to {m1:.9} kg m²\n  ½m′  from {h0:.9} to {h1:.9} kg m²/rad\n",
+        scene.title,
+        sweep.q.len(),
+        prepared.coordinate(),
+    );
+    Ok(outcome)
+}

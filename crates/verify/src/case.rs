@@ -1,0 +1,50 @@
+//! What is judged, over which positions.
+
+use dwell_geometry::{Mechanism, Range};
+use dwell_kinetostatics::Mass;
+use std::f64::consts::TAU;
+
+/// A mechanism with its masses, and the positions at which a subject is judged.
+#[derive(Debug, Clone)]
+pub struct Case<'a> {
+    /// The mechanism; one actuator.
+    pub mechanism: &'a Mechanism,
+    /// Its masses, one per body.
+    pub masses: &'a [Mass],
+    /// The range of the coordinate.
+    pub range: Range,
+    /// The sampled coordinates, rad. See [`spread`].
+    pub positions: Vec<f64>,
+}
+
+/// `count` positions inside the range, spaced by the golden ratio: no two alike, none at a round
+/// angle or at an end, and every part of the range is visited however few there are.
+pub fn spread(range: Range, count: usize) -> Vec<f64> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let (low, high) = match range {
+        Range::Full => (0.0, TAU),
+        Range::Between(low, high) => (low, high),
+    };
+    let mut share = 0.5 * GOLDEN;
+    (0..count)
+        .map(|_| {
+            share = (share + GOLDEN).fract();
+            low + (high - low) * share
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_fill_the_range() {
+        let mut all = spread(Range::Between(1.0, 3.0), 24);
+        all.sort_by(f64::total_cmp);
+        assert!(all[0] > 1.0 && all[23] < 3.0);
+        // The three gaps of a golden sequence: no gap above twice the mean.
+        assert!(all.windows(2).all(|w| w[1] - w[0] < 2.0 * 2.0 / 24.0));
+        assert!(spread(Range::Full, 0).is_empty());
+    }
+}

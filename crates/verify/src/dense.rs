@@ -1,0 +1,241 @@
+//! The mechanism in dense rows: the independent side.
+//!
+//! No structure is looked for and nothing is compiled: all coordinates of all bodies, all rows,
+//! one square matrix. Only where the origins are is changed. Each frame, the ground's too, is
+//! moved to the mean of its body's attachments, which the subtraction of nearby numbers does
+//! exactly; otherwise a mechanism that stands a kilometre from the origin would be judged by
+//! differences of rounded large numbers.
+
+use crate::closing::Closed;
+use dwell_geometry::rows::{Rows, RowsError};
+use dwell_geometry::{BodyId, JointKind, Mechanism, Vec2, vec2};
+use dwell_kinetostatics::Mass;
+
+/// Why the dense side cannot answer.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum DenseError {
+    /// The mechanism refers to something that is not there.
+    #[error(transparent)]
+    Rows(#[from] RowsError),
+    /// As many rows as coordinates are needed.
+    #[error(
+        "{rows} constraint and actuator rows for {columns} coordinates: the mechanism is not determinate"
+    )]
+    NotSquare {
+        /// Number of rows.
+        rows: usize,
+        /// Number of coordinates.
+        columns: usize,
+    },
+    /// One mass per body is needed.
+    #[error("{masses} masses for {bodies} bodies")]
+    Masses {
+        /// Number of masses.
+        masses: usize,
+        /// Number of bodies.
+        bodies: usize,
+    },
+    /// An axis is not a unit vector.
+    #[error("an axis of joint {joint} has length {length}, not 1")]
+    Axis {
+        /// Index of the joint.
+        joint: usize,
+        /// Its length.
+        length: f64,
+    },
+    /// One degree of freedom for now.
+    #[error("{actuators} actuators: the truths are written for one")]
+    Actuators {
+        /// Number of actuators.
+        actuators: usize,
+    },
+    /// A given number is not finite, or there are too few of them.
+    #[error("the poses to start from are incomplete or not finite")]
+    Start,
+    /// The rows could not be met.
+    #[error(
+        "the rows do not close: after {steps} Newton steps the last one moved by {moved:.1e} of the size"
+    )]
+    NotClosed {
+        /// Newton steps done.
+        steps: usize,
+        /// Size of the last one, relative to the mechanism's size.
+        moved: f64,
+    },
+    /// They were met on the other side of a dead point.
+    #[error("the rows close on another assembly branch")]
+    OtherBranch,
+    /// The rows depend on each other in this configuration.
+    #[error("the rows are dependent here: smallest pivot {pivot:.1e} of the largest")]
+    Singular {
+        /// Smallest pivot relative to the largest.
+        pivot: f64,
+    },
+}
+
+/// A body in its moved frame.
+#[derive(Debug, Clone)]
+pub(crate) struct DenseBody {
+    /// First of its three columns; `None` for the ground.
+    pub(crate) column: Option<usize>,
+    /// Mass properties about the moved frame.
+    pub(crate) mass: Mass,
+    /// The moved origin in the body's own frame.
+    pub(crate) shift: Vec2,
+}
+
+/// The mechanism, its masses and its rows, all dense, in moved frames.
+///
+/// Where a method takes a row or a body it is an index into the mechanism's reactions, followed by
+/// the actuator, or into its bodies; speeds have as many numbers as there are coordinates.
+#[derive(Debug, Clone)]
+pub struct Dense {
+    pub(crate) mechanism: Mechanism,
+    pub(crate) rows: Rows,
+    pub(crate) bodies: Vec<DenseBody>,
+    pub(crate) row_scale: Vec<f64>,
+    pub(crate) size: f64,
+}
+
+impl Dense {
+    /// Moves the frames and writes the rows.
+    pub fn new(mechanism: &Mechanism, masses: &[Mass]) -> Result<Self, DenseError> {
+        let mut mechanism = mechanism.clone();
+        let rows = Rows::new(&mechanism)?;
+        if rows.len() != rows.columns() {
+            return Err(DenseError::NotSquare {
+                rows: rows.len(),
+                columns: rows.columns(),
+            });
+        }
+        if masses.len() != mechanism.bodies.len() {
+            return Err(DenseError::Masses {
+                masses: masses.len(),
+                bodies: mechanism.bodies.len(),
+            });
+        }
+        if mechanism.actuators.len() != 1 {
+            return Err(DenseError::Actuators {
+                actuators: mechanism.actuators.len(),
+            });
+        }
+        for (joint, described) in mechanism.joints.iter().enumerate() {
+            if let JointKind::Prismatic { axes } = described.kind {
+                for length in axes.map(Vec2::norm) {
+                    // Any other length would scale a reaction silently.
+                    if length.is_nan() || (length - 1.0).abs() > 1e-12 {
+                        return Err(DenseError::Axis { joint, length });
+                    }
+                }
+            }
+        }
+
+        let shifts = attachment_means(&mechanism);
+        for joint in &mut mechanism.joints {
+            for (point, body) in joint.points.iter_mut().zip(joint.bodies) {
+                *point -= shifts[body.0];
+            }
+        }
+        let bodies: Vec<_> = masses
+            .iter()
+            .zip(shifts)
+            .enumerate()
+            .map(|(b, (mass, shift))| DenseBody {
+                column: rows.column(BodyId(b)),
+                mass: Mass {
+                    // Where nothing has no mass does not matter; far away it would cost digits.
+                    center: if mass.mass == 0.0 {
+                        Vec2::ZERO
+                    } else {
+                        mass.center - shift
+                    },
+                    ..*mass
+                },
+                shift,
+            })
+            .collect();
+        let arms = mechanism.joints.iter().flat_map(|j| j.points);
+        let centers = bodies.iter().map(|b| b.mass.center);
+        let reach =
+            |points: &mut dyn Iterator<Item = Vec2>| points.map(Vec2::norm).fold(0.0, f64::max);
+        // A single link on a pin has no arms; then its centre of mass gives the size.
+        let size = [
+            reach(&mut arms.into_iter()),
+            reach(&mut centers.into_iter()),
+            1.0,
+        ]
+        .into_iter()
+        .find(|&s| s > 0.0)
+        .unwrap_or(1.0);
+        let rows = Rows::new(&mechanism)?;
+        let row_scale = rows
+            .angular()
+            .into_iter()
+            .map(|angular| if angular { size } else { 1.0 })
+            .collect();
+        Ok(Self {
+            mechanism,
+            rows,
+            bodies,
+            row_scale,
+            size,
+        })
+    }
+
+    /// The largest distance of an attachment from the middle of its body, m: what a radian is
+    /// compared with.
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// Index of the actuator's row; the rows before it are the reactions.
+    pub fn actuator_row(&self) -> usize {
+        2 * self.mechanism.joints.len()
+    }
+
+    /// Dense coordinates out of the frames of all bodies.
+    pub fn start(&self, poses: &[[f64; 3]]) -> Result<Vec<f64>, DenseError> {
+        if poses.len() != self.bodies.len() || poses.iter().flatten().any(|v| !v.is_finite()) {
+            return Err(DenseError::Start);
+        }
+        let ground = self.bodies[self.mechanism.ground].shift;
+        let mut x = vec![0.0; self.rows.columns()];
+        for (body, pose) in self.bodies.iter().zip(poses) {
+            if let Some(c) = body.column {
+                let arm = body.shift.turn(Vec2::from_angle(pose[2]));
+                x[c] = (pose[0] - ground.x) + arm.x;
+                x[c + 1] = (pose[1] - ground.y) + arm.y;
+                x[c + 2] = pose[2];
+            }
+        }
+        Ok(x)
+    }
+
+    /// Where a point given in a body's own frame is in the plane, m.
+    pub fn point(&self, closed: &Closed, body: usize, point: Vec2) -> Vec2 {
+        let ground = self.bodies[self.mechanism.ground].shift;
+        let of = &self.bodies[body];
+        ground + self.placed(of, &closed.x, point - of.shift)
+    }
+
+    /// Where a point of the moved frame is, from the ground's moved origin.
+    pub(crate) fn placed(&self, body: &DenseBody, x: &[f64], point: Vec2) -> Vec2 {
+        body.column.map_or(point, |c| {
+            vec2(x[c], x[c + 1]) + point.turn(Vec2::from_angle(x[c + 2]))
+        })
+    }
+}
+
+/// The mean of each body's attachments in its own frame.
+fn attachment_means(mechanism: &Mechanism) -> Vec<Vec2> {
+    let mut sums = vec![(Vec2::ZERO, 0_u32); mechanism.bodies.len()];
+    for joint in &mechanism.joints {
+        for (point, body) in joint.points.iter().zip(joint.bodies) {
+            sums[body.0].0 += *point;
+            sums[body.0].1 += 1;
+        }
+    }
+    sums.into_iter()
+        .map(|(sum, count)| sum * (1.0 / f64::from(count.max(1))))
+        .collect()
+}

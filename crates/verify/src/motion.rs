@@ -1,0 +1,173 @@
+//! Mechanics of the dense mechanism: speeds and accelerations of the centres of mass, kinetic
+//! energy, momentum, and the reactions as forces at points.
+//!
+//! With u and w two sets of speeds of all coordinates at one configuration,
+//!
+//! ```text
+//! ⟨u, w⟩ = Σ m v_G(u)·v_G(w) + I ω(u) ω(w)                   (1)
+//! 2 E_c  = ⟨ẋ, ẋ⟩,   ẋ = u₁ q̇₁ + u₂ q̇₂                       (2)
+//! 2 E_c  = m₁ q̇₁² + m₂ q̇₂² + 2 m₁₂ q̇₁ q̇₂                    (3)  (Jordi, Zayas & Cardona 2008, eq. 2)
+//! ```
+//!
+//! so m₁ = ⟨u₁, u₁⟩, m₁₂ = ⟨u₁, u₂⟩, with u₁ and u₂ the unit speeds of the two coordinates.
+
+use crate::closing::Closed;
+use crate::dense::{Dense, DenseBody};
+use crate::subject::{Actions, Coefficients};
+use dwell_geometry::{JointKind, Vec2, vec2};
+
+/// One action on one body: a force at a point of the plane, and a couple.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Act {
+    pub(crate) body: usize,
+    pub(crate) force: Vec2,
+    pub(crate) at: Vec2,
+    pub(crate) couple: f64,
+}
+
+impl Act {
+    /// Moment about a point.
+    pub(crate) fn moment(&self, about: Vec2) -> f64 {
+        (self.at - about).cross(self.force) + self.couple
+    }
+
+    /// Moment about a point with its terms taken as absolute values: what rounding is relative to.
+    pub(crate) fn moment_terms(&self, about: Vec2) -> f64 {
+        (self.at - about).norm() * self.force.norm() + self.couple.abs()
+    }
+}
+
+impl Dense {
+    /// ⟨u, w⟩ of the whole mechanism, eq. (1), kg m² for two speeds per rad/s.
+    pub fn inertia(&self, at: &Closed, u: &[f64], w: &[f64]) -> f64 {
+        (0..self.bodies.len())
+            .map(|b| self.inertia_of(b, at, u, w))
+            .sum()
+    }
+
+    /// The share of one body in ⟨u, w⟩.
+    pub fn inertia_of(&self, body: usize, at: &Closed, u: &[f64], w: &[f64]) -> f64 {
+        let of = &self.bodies[body];
+        of.column.map_or(0.0, |c| {
+            let v = self
+                .center_velocity(of, at, u)
+                .dot(self.center_velocity(of, at, w));
+            of.mass.mass * v + of.mass.inertia * (u[c + 2] * w[c + 2])
+        })
+    }
+
+    /// Kinetic energy, J, when each listed row moves at its rate and the others are held: eq. (2).
+    pub fn kinetic_energy(&self, at: &Closed, rates: &[(usize, f64)]) -> f64 {
+        let mut x_dot = vec![0.0; self.rows.columns()];
+        for &(row, rate) in rates {
+            for (v, u) in x_dot.iter_mut().zip(self.unit_speed(at, row)) {
+                *v += u * rate;
+            }
+        }
+        0.5 * self.inertia(at, &x_dot, &x_dot)
+    }
+
+    /// Linear momentum in x and y, kg m/s, and angular momentum about the ground's moved origin,
+    /// kg m²/s.
+    pub fn momentum(&self, at: &Closed, x_dot: &[f64]) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for body in &self.bodies {
+            if let Some(c) = body.column {
+                let p = self.center_velocity(body, at, x_dot) * body.mass.mass;
+                sum[0] += p.x;
+                sum[1] += p.y;
+                sum[2] += self.center(body, at).cross(p) + body.mass.inertia * x_dot[c + 2];
+            }
+        }
+        sum
+    }
+
+    /// Σ m v_G(w)·a_G + I ω(w) α: the power of the inertia forces with the speeds `w`, when the
+    /// mechanism moves at `x_dot` with accelerations `x_ddot`.
+    pub fn inertia_power(&self, at: &Closed, w: &[f64], x_dot: &[f64], x_ddot: &[f64]) -> f64 {
+        let power = |body: &DenseBody| {
+            body.column.map_or(0.0, |c| {
+                let a = self.center_acceleration(body, at, x_dot, x_ddot);
+                body.mass.mass * self.center_velocity(body, at, w).dot(a)
+                    + body.mass.inertia * (w[c + 2] * x_ddot[c + 2])
+            })
+        };
+        self.bodies.iter().map(power).sum()
+    }
+
+    /// The reduced coefficients without any step, from the unit speeds of every row: m and a by
+    /// eq. (1), and ½m′ and b as the power of the inertia forces at q̇ = 1, q̈ = 0 with the speeds
+    /// of the actuator and of each released row (principle of virtual power).
+    pub fn coefficients(&self, at: &Closed, unit_speeds: &[Vec<f64>]) -> Coefficients {
+        let (released, driven) = unit_speeds.split_at(self.actuator_row());
+        let u = driven.first().map_or(&[][..], Vec::as_slice);
+        let x_ddot = self.acceleration(at, u, &vec![0.0; self.rows.len()]);
+        let power = |w: &[f64]| self.inertia_power(at, w, u, &x_ddot);
+        Coefficients {
+            m: self.inertia(at, u, u),
+            half_dm: power(u),
+            a: released.iter().map(|w| self.inertia(at, u, w)).collect(),
+            b: released.iter().map(|w| power(w)).collect(),
+        }
+    }
+
+    /// Where a body's centre of mass is, from the ground's moved origin.
+    pub(crate) fn center(&self, body: &DenseBody, at: &Closed) -> Vec2 {
+        self.placed(body, &at.x, body.mass.center)
+    }
+
+    fn center_velocity(&self, body: &DenseBody, at: &Closed, u: &[f64]) -> Vec2 {
+        body.column.map_or(Vec2::ZERO, |c| {
+            let arm = body.mass.center.turn(Vec2::from_angle(at.x[c + 2]));
+            vec2(u[c], u[c + 1]) + arm.perp() * u[c + 2]
+        })
+    }
+
+    fn center_acceleration(&self, body: &DenseBody, at: &Closed, u: &[f64], a: &[f64]) -> Vec2 {
+        body.column.map_or(Vec2::ZERO, |c| {
+            let arm = body.mass.center.turn(Vec2::from_angle(at.x[c + 2]));
+            vec2(a[c], a[c + 1]) + arm.perp() * a[c + 2] - arm * (u[c + 2] * u[c + 2])
+        })
+    }
+
+    /// Everything the joints and the actuator do, body by body. A joint's first body acts on its
+    /// second, and feels the opposite at the same point: the second body's point. The normal of a
+    /// prismatic joint turns with its first body.
+    pub(crate) fn acts(&self, at: &Closed, actions: &Actions) -> Vec<Act> {
+        let mut acts = Vec::new();
+        let mut pair = |bodies: [usize; 2], force: Vec2, point: Vec2, couple: f64| {
+            for (body, sign) in bodies.into_iter().zip([-1.0, 1.0]) {
+                acts.push(Act {
+                    body,
+                    force: force * sign,
+                    at: point,
+                    couple: couple * sign,
+                });
+            }
+        };
+        let reactions = actions.reactions.chunks_exact(2);
+        for (joint, reaction) in self.mechanism.joints.iter().zip(reactions) {
+            let [first, second] = joint.bodies.map(|b| b.0);
+            let point = self.placed(&self.bodies[second], &at.x, joint.points[1]);
+            let (force, couple) = match joint.kind {
+                JointKind::Revolute => (vec2(reaction[0], reaction[1]), 0.0),
+                JointKind::Prismatic { axes } => {
+                    let turned = self.bodies[first]
+                        .column
+                        .map_or(Vec2::IDENTITY, |c| Vec2::from_angle(at.x[c + 2]));
+                    (axes[0].perp().turn(turned) * reaction[0], reaction[1])
+                }
+            };
+            pair([first, second], force, point, couple);
+        }
+        for actuator in &self.mechanism.actuators {
+            pair(
+                actuator.bodies.map(|b| b.0),
+                Vec2::ZERO,
+                Vec2::ZERO,
+                actions.tau,
+            );
+        }
+        acts
+    }
+}

@@ -1,0 +1,47 @@
+//! What is judged: anything that answers for a mechanism of one degree of freedom.
+
+/// Why a subject could not answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{message} (at q = {q})")]
+pub struct SubjectError {
+    /// The coordinate it was asked at, rad.
+    pub q: f64,
+    /// What went wrong, in words that read after "failed to answer:".
+    pub message: String,
+}
+
+/// The reduced coefficients at one q. Reaction k is in the order of
+/// [`dwell_geometry::Mechanism::reactions`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coefficients {
+    /// Generalised inertia m, kg m².
+    pub m: f64,
+    /// ½ dm/dq, kg m² per rad.
+    pub half_dm: f64,
+    /// aₖ: what q̈ contributes to reaction k, its unit per rad/s².
+    pub a: Vec<f64>,
+    /// bₖ: what q̇² contributes to reaction k, its unit per (rad/s)².
+    pub b: Vec<f64>,
+}
+
+/// What the actuator and the joints do in a given state, without loads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Actions {
+    /// The actuator's action on its second body, N·m.
+    pub tau: f64,
+    /// Every reaction, the action of the joint's first body on its second, N or N·m.
+    pub reactions: Vec<f64>,
+}
+
+/// A result to be judged. It is asked from several threads at once, and a question must have the
+/// same answer whatever was asked before.
+pub trait Subject: Sync {
+    /// The frame [x, y, θ] of every body, the ground included, in m and rad.
+    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError>;
+
+    /// The reduced coefficients at `q`.
+    fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError>;
+
+    /// The actions at (`q`, `q_dot`, `q_ddot`) in rad, rad/s, rad/s².
+    fn actions(&self, q: f64, q_dot: f64, q_ddot: f64) -> Result<Actions, SubjectError>;
+}

@@ -1,0 +1,282 @@
+//! The mechanisms of the tests.
+
+use super::subject::DenseSubject;
+use dwell_geometry::{Actuator, Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2};
+use dwell_kinetostatics::Mass;
+use dwell_verify::{Case, Range, spread};
+use std::f64::consts::PI;
+
+/// A mechanism with everything a case and a subject need.
+pub(crate) struct Setup {
+    pub(crate) mechanism: Mechanism,
+    pub(crate) masses: Vec<Mass>,
+    pub(crate) range: Range,
+    pub(crate) q0: f64,
+    pub(crate) rough: Vec<[f64; 3]>,
+}
+
+impl Setup {
+    pub(crate) fn case(&self, positions: usize) -> Case<'_> {
+        Case {
+            mechanism: &self.mechanism,
+            masses: &self.masses,
+            range: self.range,
+            positions: spread(self.range, positions),
+        }
+    }
+
+    pub(crate) fn subject(&self) -> DenseSubject {
+        self.subject_with(&self.masses)
+    }
+
+    pub(crate) fn subject_with(&self, masses: &[Mass]) -> DenseSubject {
+        DenseSubject::new(&self.mechanism, masses, self.range, self.q0, &self.rough)
+    }
+
+    /// The same mechanism standing elsewhere in the plane, with every moving body's frame shifted
+    /// and turned.
+    pub(crate) fn reframed(mut self, ground: Vec2, shift: Vec2, turn: f64) -> Self {
+        let by = Vec2::from_angle(turn);
+        let fixed = self.mechanism.ground;
+        let moved = |body: usize, p: Vec2| {
+            if body == fixed {
+                p + ground
+            } else {
+                p.turn_back(by) + shift
+            }
+        };
+        for joint in &mut self.mechanism.joints {
+            for i in 0..2 {
+                let body = joint.bodies[i].0;
+                joint.points[i] = moved(body, joint.points[i]);
+                if let JointKind::Prismatic { axes } = &mut joint.kind
+                    && body != fixed
+                {
+                    axes[i] = axes[i].turn_back(by);
+                }
+            }
+        }
+        for (body, mass) in self.masses.iter_mut().enumerate() {
+            mass.center = moved(body, mass.center);
+        }
+        for (body, pose) in self.rough.iter_mut().enumerate() {
+            if body != fixed {
+                pose[2] += turn;
+                let arm = shift.turn(Vec2::from_angle(pose[2]));
+                pose[0] += ground.x - arm.x;
+                pose[1] += ground.y - arm.y;
+            }
+        }
+        for actuator in &self.mechanism.actuators {
+            let turned = actuator
+                .bodies
+                .map(|b| if b.0 == fixed { 0.0 } else { turn });
+            self.q0 += turned[1] - turned[0];
+        }
+        self
+    }
+}
+
+fn bodies(names: &[&str]) -> Vec<Body> {
+    names.iter().map(|&n| Body { name: n.into() }).collect()
+}
+
+fn pin(name: &str, on: [usize; 2], points: [[f64; 2]; 2]) -> Joint {
+    Joint {
+        name: name.into(),
+        bodies: on.map(BodyId),
+        points: points.map(|[x, y]| vec2(x, y)),
+        kind: JointKind::Revolute,
+    }
+}
+
+fn slide(name: &str, on: [usize; 2], points: [[f64; 2]; 2], angles: [f64; 2]) -> Joint {
+    Joint {
+        kind: JointKind::Prismatic {
+            axes: angles.map(Vec2::from_angle),
+        },
+        ..pin(name, on, points)
+    }
+}
+
+fn turn(name: &str, on: [usize; 2]) -> Vec<Actuator> {
+    vec![Actuator {
+        name: name.into(),
+        bodies: on.map(BodyId),
+    }]
+}
+
+fn bar(mass: f64, length: f64) -> Mass {
+    Mass {
+        mass,
+        center: vec2(0.5 * length, 0.0),
+        inertia: mass * length * length / 12.0,
+    }
+}
+
+/// Crank 1, coupler 3.5, rocker 3, ground 4 m; uniform bars of 1, 2 and 2 kg.
+pub(crate) fn crank_rocker() -> Setup {
+    Setup {
+        mechanism: Mechanism {
+            bodies: bodies(&["ground", "crank", "coupler", "rocker"]),
+            ground: 0,
+            joints: vec![
+                pin("A", [0, 1], [[0.0, 0.0], [0.0, 0.0]]),
+                pin("B", [1, 2], [[1.0, 0.0], [0.0, 0.0]]),
+                pin("C", [2, 3], [[3.5, 0.0], [3.0, 0.0]]),
+                pin("D", [0, 3], [[4.0, 0.0], [0.0, 0.0]]),
+            ],
+            actuators: turn("phi", [0, 1]),
+        },
+        masses: vec![Mass::default(), bar(1.0, 1.0), bar(2.0, 3.5), bar(2.0, 3.0)],
+        range: Range::Full,
+        q0: 0.0,
+        rough: vec![[0.0; 3], [0.0; 3], [1.0, 0.0, 0.9], [4.0, 0.0, 1.9]],
+    }
+}
+
+/// The single-dwell reconstruction: Hoeken proportions, a guide pinned at Q, a slider on it.
+pub(crate) fn single_dwell() -> Setup {
+    Setup {
+        mechanism: Mechanism {
+            bodies: bodies(&["ground", "crank", "coupler", "rocker", "guide", "slider"]),
+            ground: 0,
+            joints: vec![
+                pin("A", [0, 1], [[0.0, 0.0], [0.0, 0.0]]),
+                pin("B", [1, 2], [[0.1, 0.0], [0.0, 0.0]]),
+                pin("C", [2, 3], [[0.25, 0.0], [0.25, 0.0]]),
+                pin("O", [0, 3], [[0.2, 0.0], [0.0, 0.0]]),
+                pin("Q", [0, 4], [[-0.2, 0.4], [0.0, 0.0]]),
+                slide("slide", [4, 5], [[0.0, 0.0], [0.0, 0.0]], [0.0, 0.0]),
+                pin("P", [2, 5], [[0.5, 0.0], [0.0, 0.0]]),
+            ],
+            actuators: turn("phi", [0, 1]),
+        },
+        masses: vec![
+            Mass::default(),
+            Mass {
+                mass: 20.0,
+                center: Vec2::ZERO,
+                inertia: 0.626,
+            },
+            Mass {
+                mass: 1.5,
+                center: vec2(0.25, 0.0),
+                inertia: 1.5 * 0.25 / 12.0,
+            },
+            bar(0.75, 0.25),
+            bar(2.1, 0.7),
+            Mass {
+                mass: 0.5,
+                ..Mass::default()
+            },
+        ],
+        range: Range::Full,
+        q0: 0.0,
+        rough: vec![
+            [0.0; 3],
+            [0.0; 3],
+            [0.1, 0.0, 1.37],
+            [0.2, 0.0, 1.77],
+            [-0.2, 0.4, 0.22],
+            [0.2, 0.49, 0.22],
+        ],
+    }
+}
+
+/// An inverted slider-crank (quick return): a block on the crank pin slides in an offset slot of a
+/// rocker. Off-centre frames; the ground is the second body of O, and the prismatic joint is
+/// between two moving bodies with distinct axes and an offset.
+pub(crate) fn inverted_slider_crank() -> Setup {
+    Setup {
+        mechanism: Mechanism {
+            bodies: bodies(&["rocker", "crank", "ground", "block"]),
+            ground: 2,
+            joints: vec![
+                pin("O", [0, 2], [[-0.1, 0.05], [0.0, -0.4]]),
+                slide("slot", [0, 3], [[0.1, 0.08], [0.02, -0.01]], [1.3, 1.3]),
+                pin("A", [2, 1], [[0.0, 0.0], [0.04, 0.03]]),
+                pin("B", [1, 3], [[0.16, 0.12], [-0.03, 0.02]]),
+            ],
+            actuators: turn("drive", [2, 1]),
+        },
+        masses: vec![
+            Mass {
+                mass: 3.0,
+                center: vec2(0.02, 0.21),
+                inertia: 0.05,
+            },
+            Mass {
+                mass: 2.0,
+                center: vec2(0.09, 0.05),
+                inertia: 0.004,
+            },
+            Mass::default(),
+            Mass {
+                mass: 0.8,
+                center: vec2(0.01, 0.03),
+                inertia: 0.0007,
+            },
+        ],
+        range: Range::Full,
+        q0: 0.3,
+        rough: vec![[0.1, -0.4, 0.2], [0.0, 0.0, 0.3], [0.0; 3], [0.1, 0.1, 0.2]],
+    }
+}
+
+/// The crank-rocker with a shorter rocker. At 1.5 m it is a change point mechanism: coupler and
+/// rocker are stretched out when the crank points away from D.
+pub(crate) fn crank_rocker_of(rocker: f64) -> Setup {
+    let mut setup = crank_rocker();
+    setup.mechanism.joints[2].points[1] = vec2(rocker, 0.0);
+    setup.masses[3] = bar(2.0, rocker);
+    // The triangle of 3, 3.5 and the rocker, by the law of cosines.
+    let angle = |a: f64, b: f64, c: f64| ((a * a + b * b - c * c) / (2.0 * a * b)).acos();
+    setup.rough[2][2] = angle(3.0, 3.5, rocker);
+    setup.rough[3][2] = PI - angle(3.0, rocker, 3.5);
+    setup
+}
+
+/// A bar on a pin: m is constant, and b is its centrifugal force alone.
+pub(crate) fn pendulum() -> Setup {
+    Setup {
+        mechanism: Mechanism {
+            bodies: bodies(&["bar", "ground"]),
+            ground: 1,
+            joints: vec![pin("A", [0, 1], [[0.0, 0.0], [2.0, 1.0]])],
+            actuators: turn("phi", [1, 0]),
+        },
+        masses: vec![bar(3.0, 0.8), Mass::default()],
+        range: Range::Full,
+        q0: 0.0,
+        rough: vec![[2.0, 1.0, 0.0], [0.0; 3]],
+    }
+}
+
+/// A balanced disc: every force is zero throughout, and so is half dm/dq.
+pub(crate) fn flywheel() -> Setup {
+    let mut setup = pendulum();
+    setup.masses[0] = Mass {
+        mass: 20.0,
+        center: Vec2::ZERO,
+        inertia: 0.626,
+    };
+    setup
+}
+
+/// The crank-rocker driven between crank and coupler, over part of a turn: an actuator between two
+/// moving bodies, which the ground never feels. The coupler is named first.
+pub(crate) fn relative_drive() -> Setup {
+    let mut setup = crank_rocker();
+    setup.mechanism.actuators = turn("beta", [2, 1]);
+    setup.range = Range::Between(-2.2, -1.0);
+    setup.q0 = -1.5;
+    // Crank at an angle φ with β = φ − θ of the coupler.
+    setup.rough = vec![
+        [0.0; 3],
+        [0.0, 0.0, -0.9],
+        [0.6, -0.8, 0.8],
+        [4.0, 0.0, 1.9],
+    ];
+    setup
+}

@@ -1,0 +1,8 @@
+//! A subject for the tests, and mechanisms to judge it on.
+
+#![allow(dead_code, reason = "each test binary uses its part")]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]
+
+pub(crate) mod faulty;
+pub(crate) mod mechanisms;
+pub(crate) mod subject;
