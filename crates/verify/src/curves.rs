@@ -40,7 +40,7 @@ pub fn half_dm_curve(bench: &Bench<'_>, site: &Site) -> Option<ErrorCurve> {
         })
     };
     Some(ErrorCurve {
-        quantity: "half dm/dq".to_owned(),
+        quantity: "½m′".to_owned(),
         q: site.q,
         reference,
         scale: bench.scales.half_dm,

@@ -6,6 +6,7 @@ use crate::prepare::Prepared;
 use dwell_geometry::{BodyId, JointKind, Plan, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape, Side};
+use dwell_scene::PathPoint;
 use std::f64::consts::TAU;
 
 /// Positions of the paths.
@@ -80,8 +81,8 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
         .dwell
         .as_ref()
         .map(|d| find_dwell(&sweep, d.body, d.band, full));
-    let mut shapes = ghosts(prepared, &sweep, full);
-    shapes.splice(0..0, paths(prepared, &sweep, dwell.as_ref()));
+    let mut shapes = paths(prepared, &sweep);
+    shapes.extend(ghosts(prepared, &sweep, full, dwell.as_ref()));
     let mut panels = vec![Panel::from(Drawing {
         title: String::new(),
         x: Axis::new("x", "m"),
@@ -113,7 +114,7 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
 }
 
 /// The bodies in several positions, the lightest at the back.
-fn ghosts(prepared: &Prepared<'_>, sweep: &Sweep, full: bool) -> Vec<Shape> {
+fn ghosts(prepared: &Prepared<'_>, sweep: &Sweep, full: bool, dwell: Option<&Dwell>) -> Vec<Shape> {
     let mut shapes = Vec::new();
     let start = prepared.model.model().plan().start()[0];
     let last = sweep.q.len() - 1;
@@ -134,6 +135,9 @@ fn ghosts(prepared: &Prepared<'_>, sweep: &Sweep, full: bool) -> Vec<Shape> {
         } else {
             k * last / (DRAWN - 1)
         };
+        if let (0, Some(dwell)) = (k, dwell) {
+            shapes.extend(dwelling(prepared, sweep, dwell));
+        }
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.04 * k as f64 };
         linkage(prepared, sweep, position, lightness, &mut shapes);
     }
@@ -179,7 +183,7 @@ fn linkage(
         match joint.kind {
             JointKind::Revolute if on_ground && lightness == 0.0 => {
                 shapes.push(Shape::GroundPin { at });
-                shapes.push(Shape::text(at, joint.name.clone(), Side::BelowRight));
+                shapes.push(Shape::text(at, joint.name.clone(), Side::AboveLeft));
             }
             JointKind::Revolute if on_ground => {}
             JointKind::Revolute => {
@@ -272,31 +276,31 @@ fn size(prepared: &Prepared<'_>) -> f64 {
     lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
 }
 
-/// The paths that were asked for; the part of each within the dwell is drawn heavily.
-fn paths(prepared: &Prepared<'_>, sweep: &Sweep, dwell: Option<&Dwell>) -> Vec<Shape> {
-    let mut shapes = Vec::new();
-    for path in &prepared.scene.requests.paths {
-        let points: Vec<[f64; 2]> = (0..sweep.q.len())
-            .map(|i| sweep.point(i, path.body.0, path.at))
-            .collect();
+/// The paths that were asked for.
+fn paths(prepared: &Prepared<'_>, sweep: &Sweep) -> Vec<Shape> {
+    let wanted = prepared.scene.requests.paths.iter();
+    let path = |path: &PathPoint| {
+        let points = (0..sweep.q.len()).map(|i| sweep.point(i, path.body.0, path.at));
         let pen = Pen::new(Paint::Ink, 2.5).lightness(0.25).dashed();
-        shapes.push(Shape::line(points.clone(), pen).named("paths"));
-        if let Some(dwell) = dwell {
-            let within: Vec<[f64; 2]> = points
-                .iter()
-                .zip(&sweep.q)
-                .chain(points.iter().zip(&sweep.q).map(|(p, q)| (p, q)))
-                .enumerate()
-                .filter_map(|(i, (p, q))| {
-                    let q = if i < sweep.q.len() { *q } else { *q + TAU };
-                    (q >= dwell.from && q <= dwell.to).then_some(*p)
-                })
-                .collect();
-            let pen = Pen::new(Paint::Palette(1), 5.0);
-            shapes.push(Shape::line(within, pen).named("paths during the dwell"));
-        }
-    }
-    shapes
+        Shape::line(points.collect(), pen).named("paths")
+    };
+    wanted.map(path).collect()
+}
+
+/// The part of each path that is passed during the dwell.
+fn dwelling(prepared: &Prepared<'_>, sweep: &Sweep, dwell: &Dwell) -> Vec<Shape> {
+    let wanted = prepared.scene.requests.paths.iter();
+    let path = |path: &PathPoint| {
+        // A dwell may pass the end of the turn.
+        let within = [0.0, TAU].into_iter().flat_map(|turn| {
+            (0..sweep.q.len())
+                .filter(move |&i| (dwell.from..=dwell.to).contains(&(sweep.q[i] + turn)))
+                .map(|i| sweep.point(i, path.body.0, path.at))
+        });
+        let pen = Pen::new(Paint::Ink, 5.0).lightness(0.1);
+        Shape::line(within.collect(), pen).named("paths during the dwell")
+    };
+    wanted.map(path).collect()
 }
 
 /// A body's angle over the range, the dwell marked.

@@ -29,11 +29,11 @@ pub(crate) fn steps(prepared: &Prepared<'_>, curves: &[ErrorCurve]) -> Figure {
     };
     Figure {
         name: "f-differences".to_owned(),
-        title: "The unit runs against finite differences of the kinetic energy".to_owned(),
+        title: "Unit runs against differences of the kinetic energy".to_owned(),
         caption: caption(
             prepared,
             "Differences of the unit-run coefficients from finite differences, over the step. The V is the differences' \
-             own error: truncation on the right, rounding on the left. ½m′ is differenced from E(q); b_k with the joint \
+             own error: truncation on the right, rounding on the left. ½m′ is differenced from E(q); b with the joint \
              really released, ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂.",
         ),
         columns: 1,

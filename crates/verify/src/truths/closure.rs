@@ -24,7 +24,7 @@ pub fn closure(bench: &Bench<'_>) -> Vec<Finding> {
             difference: site.moved,
             scale: 1.0,
             own: site.pose_noise,
-            unit: "1",
+            unit: "",
         };
         worst.meet(&reading, || bench.place(site.q));
         Ok(())
@@ -93,6 +93,6 @@ fn apart(difference: f64) -> Reading {
         difference,
         scale: 1.0,
         own: 0.0,
-        unit: "1",
+        unit: "",
     }
 }
