@@ -1,9 +1,10 @@
 //! The reduced parameters over the range.
 
-use super::{caption, coordinate_label, symbol};
+use super::{coordinate_label, range_caption, symbol};
 use crate::prepare::Prepared;
 use crate::reduce::Sweep;
-use dwell_kinetostatics::Coefficients;
+use dwell_geometry::Range;
+use dwell_kinetostatics::{Coefficients, Reduced};
 use dwell_report::{Axis, Chart, Figure, Panel, Series};
 
 /// Most reactions that share a figure; more would not be told apart.
@@ -14,21 +15,43 @@ fn points(sweep: &Sweep, of: impl Fn(&Coefficients) -> f64) -> Vec<[f64; 2]> {
     pairs.map(|(q, at)| [q.to_degrees(), of(at)]).collect()
 }
 
+/// The extent of the curves that is worth showing. Towards a limit position everything grows
+/// without bound, so there the extent is that of the inner nine tenths of the range.
+fn extent(prepared: &Prepared<'_>, curves: &[Series]) -> Option<[f64; 2]> {
+    if prepared.model.range() == Range::Full {
+        return None;
+    }
+    let inner = |c: &Series| {
+        let n = c.points.len();
+        c.points[n / 20..n - n / 20].to_vec()
+    };
+    let (low, high) = curves
+        .iter()
+        .flat_map(inner)
+        .fold((f64::MAX, f64::MIN), |(a, b), [_, v]| (a.min(v), b.max(v)));
+    let margin = 0.08 * (high - low);
+    (high > low).then_some([low - margin, high + margin])
+}
+
 /// m and ½m′.
 pub(crate) fn reduced(prepared: &Prepared<'_>, sweep: &Sweep) -> Figure {
     let panel = |title: &str, unit: &str, of: fn(&Coefficients) -> f64| {
+        let series = vec![Series::line("", points(sweep, of))];
         Panel::from(Chart {
             title: title.to_owned(),
             x: Axis::degrees(coordinate_label(prepared)),
-            y: Axis::new(title.split(' ').next().unwrap_or(title), unit),
-            series: vec![Series::line("", points(sweep, of))],
+            y: Axis {
+                range: extent(prepared, &series),
+                ..Axis::new(title.split(' ').next().unwrap_or(title), unit)
+            },
+            series,
             ..Chart::default()
         })
     };
     Figure {
         name: "b-reduced".to_owned(),
         title: "Reduced inertia and half its derivative".to_owned(),
-        caption: caption(
+        caption: range_caption(
             prepared,
             "m is the action of the actuator at unit acceleration from rest, ½m′ at unit speed without acceleration.",
         ),
@@ -69,11 +92,15 @@ fn one(prepared: &Prepared<'_>, sweep: &Sweep, some: &[usize], unit: &str, more:
             };
             Series::line(name, points(sweep, |at| of(at, k)))
         };
+        let series: Vec<Series> = some.iter().map(line).collect();
         Panel::from(Chart {
             title,
             x: Axis::degrees(coordinate_label(prepared)),
-            y: Axis::new(label, unit),
-            series: some.iter().map(line).collect(),
+            y: Axis {
+                range: extent(prepared, &series),
+                ..Axis::new(label, unit)
+            },
+            series,
             ..Chart::default()
         })
     };
@@ -88,7 +115,7 @@ fn one(prepared: &Prepared<'_>, sweep: &Sweep, some: &[usize], unit: &str, more:
             format!("c-reaction-{}", more + 1)
         },
         title,
-        caption: caption(
+        caption: range_caption(
             prepared,
             "Reaction = a q̈ + b q̇²: the action of the joint's first body on its second.",
         ),

@@ -13,6 +13,17 @@ pub(crate) use motion::history;
 pub(crate) use steps::steps;
 
 use crate::prepare::Prepared;
+use dwell_geometry::Range;
+use dwell_kinetostatics::Reduced;
+
+/// The foot of a figure over the range, which says why curves may leave it.
+pub(crate) fn range_caption(prepared: &Prepared<'_>, words: &str) -> String {
+    let limits = match prepared.model.range() {
+        Range::Full => "",
+        Range::Between(..) => " Towards the limit positions at both ends everything grows without bound.",
+    };
+    caption(prepared, &format!("{words}{limits}"))
+}
 
 /// The foot of a figure: the scene, the words, and what drew it.
 pub(crate) fn caption(prepared: &Prepared<'_>, words: &str) -> String {

@@ -92,7 +92,7 @@ pub(crate) fn history(prepared: &Prepared<'_>, history: &History, accuracy: &Acc
                 accuracy.relative
             ),
         ),
-        columns: 1,
+        columns: if panels.len() > 2 { 2 } else { 1 },
         panels,
     }
 }

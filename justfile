@@ -1,0 +1,30 @@
+# Recipes for working on Dwell. `just` alone lists them.
+
+[private]
+default:
+    @just --list --unsorted
+
+# All checks on all cases (or those named): pictures, tables and findings in reports/
+[group('main')]
+validate *cases:
+    cargo run --release -- validate {{ cases }}
+
+# All tests
+[group('main')]
+test:
+    cargo test --release --workspace
+
+# Format and lints, warnings denied
+[group('care')]
+lint:
+    cargo fmt --all --check
+    cargo clippy --release --workspace --all-targets -- -D warnings
+
+# Exact evaluation against hand-written closed forms, as ratios of one run
+[group('care')]
+bench:
+    cargo bench -p dwell-kinetostatics
+
+# What the build server runs
+[group('care')]
+ci: lint test validate
