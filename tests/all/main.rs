@@ -2,4 +2,5 @@
 
 mod motion;
 mod published;
+mod slides;
 mod world;

@@ -6,23 +6,23 @@ use dwell_scene::Scene;
 use std::path::{Path, PathBuf};
 
 /// The repository's folder.
-pub fn home() -> PathBuf {
+pub(crate) fn home() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
 /// The scene of a case in `validation/`.
-pub fn scene(case: &str) -> Scene {
+pub(crate) fn scene(case: &str) -> Scene {
     let path = home().join("validation").join(case).join("scene.toml");
     Scene::read(path).unwrap_or_else(|e| panic!("{case}: {e:?}"))
 }
 
 /// A scene's model with every reaction.
-pub fn model(scene: &Scene) -> Exact {
+pub(crate) fn model(scene: &Scene) -> Exact {
     model_for(scene, &scene.mechanism.reactions())
 }
 
 /// A scene's model with some reactions.
-pub fn model_for(scene: &Scene, reactions: &[Reaction]) -> Exact {
+pub(crate) fn model_for(scene: &Scene, reactions: &[Reaction]) -> Exact {
     let start = Start {
         q: scene.assembly.start.clone(),
         rough: scene.assembly.rough.clone(),

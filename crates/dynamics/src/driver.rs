@@ -233,7 +233,8 @@ fn keep<T>(
     instead: T,
 ) -> T {
     result.unwrap_or_else(|e| {
-        *failure.borrow_mut() = Some(e);
+        // The first error since the last good step is the cause; what a NaN then leads to is not.
+        failure.borrow_mut().get_or_insert(e);
         instead
     })
 }

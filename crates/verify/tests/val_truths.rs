@@ -12,7 +12,6 @@ use common::mechanisms::{
 use dwell_geometry::{Vec2, vec2};
 use dwell_verify::{Finding, Subject, verify_all};
 use std::f64::consts::TAU;
-use std::time::{Duration, Instant};
 
 fn judge(title: &str, setup: &Setup) -> Vec<Finding> {
     judge_with(title, setup, 24, &setup.subject())
@@ -225,19 +224,4 @@ fn val_random_crank_rockers() {
         );
         judge(&format!("random crank-rocker {trial}"), &setup);
     }
-}
-
-/// The budget: single-dwell, 24 positions, all truths, on two cores.
-#[test]
-fn val_time() {
-    let setup = single_dwell();
-    let (case, subject) = (setup.case(24), setup.subject());
-    let mut best = Duration::MAX;
-    for _ in 0..5 {
-        let start = Instant::now();
-        verify_all(&case, &subject, &[]);
-        best = best.min(start.elapsed());
-    }
-    println!("single-dwell, 24 positions: {best:?}");
-    assert!(best < Duration::from_millis(600), "{best:?}");
 }

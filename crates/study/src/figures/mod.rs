@@ -20,7 +20,9 @@ use dwell_kinetostatics::Reduced;
 pub(crate) fn range_caption(prepared: &Prepared<'_>, words: &str) -> String {
     let limits = match prepared.model.range() {
         Range::Full => "",
-        Range::Between(..) => " Towards the limit positions at both ends everything grows without bound.",
+        Range::Between(..) => {
+            " Towards the limit positions at both ends everything grows without bound."
+        }
     };
     caption(prepared, &format!("{words}{limits}"))
 }
