@@ -278,6 +278,12 @@ where
             let kept = failure.borrow_mut().take();
             return Err(kept.unwrap_or(DynamicsError::NotFinite { t: before.t }));
         }
+        // Without loads the speed keeps its sign. In the coordinate of an actuator the way through a
+        // limit position looks like a smooth return, but the mechanism goes on on another branch.
+        if now.q_dot * start.q_dot < 0.0 {
+            let State { t, q, .. } = before;
+            return Err(DynamicsError::Limit { t, q });
+        }
         // A trial point that step control recovered from is no failure.
         failure.borrow_mut().take();
         run.steps.push(now);

@@ -17,6 +17,16 @@ pub enum DynamicsError {
         /// The inertia there, kg m².
         m: f64,
     },
+    /// The motion reaches a limit position of its actuator, where it passes to another branch.
+    #[error(
+        "the motion reaches a limit position near q = {q} rad at t = {t} s, and passes to another assembly branch there"
+    )]
+    Limit {
+        /// The time of the last state on this branch, s.
+        t: f64,
+        /// Its coordinate, rad.
+        q: f64,
+    },
     /// A tolerance, time or speed that is not usable.
     #[error("{what} must be a {must}, not {value}")]
     BadOption {

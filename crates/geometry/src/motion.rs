@@ -4,9 +4,8 @@
 //! accelerations the same with the centripetal terms, multipliers Jᵀλ = (what the unknowns must
 //! balance), group by group; the last in the reverse order.
 
-use crate::frames::Turning;
 use crate::groups::Unknown;
-use crate::plan::{Behind, Closure, Kind, Plan, Pose};
+use crate::plan::{Assur, Behind, Closure, Driven, Kind, Newton, Plan, Pose};
 use crate::plane::{Vec2, vec2};
 use crate::scalar::Scalar;
 use crate::small;
@@ -70,106 +69,53 @@ impl Plan {
 
     /// Velocities for the actuators' speeds `q_dot` (rad/s).
     pub fn speeds<T: Scalar>(&self, pose: &Pose<T>, q_dot: &[T], motion: &mut Motion<T>) {
-        let Motion {
-            turn, slide, work, ..
-        } = motion;
-        self.propagate(0, q_dot, turn);
-        for (g, assur) in self.groups.iter().enumerate() {
+        propagate(&self.driven, q_dot, &mut motion.turn);
+        for (assur, &inverse) in self.groups.iter().zip(&pose.inverse) {
             match &assur.kind {
                 Kind::Pin(pin) => {
-                    let mut rhs = Vec2::zero();
-                    for &(arm, frame) in &pin.known {
-                        rhs -= pose.arm[arm].perp() * turn[frame];
-                    }
+                    let rate = arms_rate(&pin.known, pose, motion);
                     let [r1, r2] = pin.arms.map(|a| pose.arm[a]);
-                    turn[pin.frames[0]] = rhs.dot(r2) * pose.inverse[g];
-                    turn[pin.frames[1]] = -(rhs.dot(r1) * pose.inverse[g]);
-                    self.carry_on(assur, q_dot, turn);
+                    motion.turn[pin.frames[0]] = -(rate.dot(r2) * inverse);
+                    motion.turn[pin.frames[1]] = rate.dot(r1) * inverse;
                 }
                 Kind::Aim(aim) => {
-                    turn[aim.frame] = T::lift(0.0);
-                    let closure = &self.closures[aim.closure];
-                    let rate = self.row_rate(closure, aim.closure, pose, turn, slide);
-                    turn[aim.frame] = -(rate * pose.inverse[g]);
-                    self.carry_on(assur, q_dot, turn);
+                    motion.turn[aim.frame] = T::lift(0.0);
+                    let rate = arms_rate(&aim.arms, pose, motion);
+                    let rate = row_rate(rate, aim.axis, pose.travel[aim.closure], pose, motion);
+                    motion.turn[aim.frame] = -(rate * inverse);
                 }
-                Kind::Newton(newton) => {
-                    self.clear(assur, q_dot, turn, slide);
-                    let mut row = 0;
-                    for &l in &assur.group.loops {
-                        let closure = &self.closures[l];
-                        if closure.axis.is_some() {
-                            work[row] = -self.row_rate(closure, l, pose, turn, slide);
-                            row += 1;
-                        } else {
-                            let rate = gap_rate(closure, pose, turn, slide);
-                            work[row] = -rate.x;
-                            work[row + 1] = -rate.y;
-                            row += 2;
-                        }
-                    }
-                    let (lu, pivots) = newton.factors(pose, row);
-                    small::solve(lu, pivots, &mut work[..row]);
-                    self.take(assur, q_dot, &work[..row], turn, slide);
-                }
+                Kind::Newton(newton) => self.newton_speeds(assur, newton, pose, q_dot, motion),
             }
+            propagate(&assur.driven, q_dot, &mut motion.turn);
         }
     }
 
     /// Accelerations for the actuators' accelerations `q_ddot` (rad/s²), at the velocities that
     /// [`Plan::speeds`] left in `motion`.
     pub fn accelerations<T: Scalar>(&self, pose: &Pose<T>, q_ddot: &[T], motion: &mut Motion<T>) {
-        let Motion {
-            turn,
-            slide,
-            turn_rate,
-            slide_rate,
-            work,
-        } = motion;
-        self.propagate(0, q_ddot, turn_rate);
-        for (g, assur) in self.groups.iter().enumerate() {
+        propagate(&self.driven, q_ddot, &mut motion.turn_rate);
+        for (assur, &inverse) in self.groups.iter().zip(&pose.inverse) {
             match &assur.kind {
                 Kind::Pin(pin) => {
-                    let mut rhs = Vec2::zero();
-                    for &(arm, frame) in &pin.known {
-                        let (r, w) = (pose.arm[arm], turn[frame]);
-                        rhs += r * (w * w) - r.perp() * turn_rate[frame];
-                    }
+                    let (_, known) = arms_rates(&pin.known, pose, motion);
                     let [r1, r2] = pin.arms.map(|a| pose.arm[a]);
-                    let [w1, w2] = pin.frames.map(|f| turn[f]);
-                    rhs += r1 * (w1 * w1) + r2 * (w2 * w2);
-                    turn_rate[pin.frames[0]] = rhs.dot(r2) * pose.inverse[g];
-                    turn_rate[pin.frames[1]] = -(rhs.dot(r1) * pose.inverse[g]);
-                    self.carry_on(assur, q_ddot, turn_rate);
+                    let [w1, w2] = pin.frames.map(|f| motion.turn[f]);
+                    let rest = known - (r1 * (w1 * w1) + r2 * (w2 * w2));
+                    motion.turn_rate[pin.frames[0]] = -(rest.dot(r2) * inverse);
+                    motion.turn_rate[pin.frames[1]] = rest.dot(r1) * inverse;
                 }
                 Kind::Aim(aim) => {
-                    turn_rate[aim.frame] = T::lift(0.0);
-                    let rates = (&turn[..], &slide[..], &turn_rate[..], &slide_rate[..]);
-                    let rate = self.row_acceleration(aim.closure, pose, rates);
-                    turn_rate[aim.frame] = -(rate * pose.inverse[g]);
-                    self.carry_on(assur, q_ddot, turn_rate);
+                    motion.turn_rate[aim.frame] = T::lift(0.0);
+                    let rates = arms_rates(&aim.arms, pose, motion);
+                    let travel = pose.travel[aim.closure];
+                    let rate = row_acceleration(rates, aim.axis, travel, pose, motion);
+                    motion.turn_rate[aim.frame] = -(rate * inverse);
                 }
                 Kind::Newton(newton) => {
-                    self.clear(assur, q_ddot, turn_rate, slide_rate);
-                    let rates = (&turn[..], &slide[..], &turn_rate[..], &slide_rate[..]);
-                    let mut row = 0;
-                    for &l in &assur.group.loops {
-                        let closure = &self.closures[l];
-                        if closure.axis.is_some() {
-                            work[row] = -self.row_acceleration(l, pose, rates);
-                            row += 1;
-                        } else {
-                            let rate = gap_acceleration(closure, pose, rates);
-                            work[row] = -rate.x;
-                            work[row + 1] = -rate.y;
-                            row += 2;
-                        }
-                    }
-                    let (lu, pivots) = newton.factors(pose, row);
-                    small::solve(lu, pivots, &mut work[..row]);
-                    self.take(assur, q_ddot, &work[..row], turn_rate, slide_rate);
+                    self.newton_accelerations(assur, newton, pose, q_ddot, motion);
                 }
             }
+            propagate(&assur.driven, q_ddot, &mut motion.turn_rate);
         }
     }
 
@@ -180,218 +126,284 @@ impl Plan {
         pose: &Pose<T>,
         balance: &mut Balance<T, N>,
     ) {
-        for (g, assur) in self.groups.iter().enumerate().rev() {
+        for (assur, &inverse) in self.groups.iter().zip(&pose.inverse).rev() {
             match &assur.kind {
                 Kind::Pin(pin) => {
-                    let one = self.class_moment(pin.frames[0], &balance.moment);
-                    let two = self.class_moment(pin.frames[1], &balance.moment);
-                    let [r1, r2] = pin.arms.map(|a| pose.arm[a] * pose.inverse[g]);
+                    let one = class_moment(assur, pin.frames[0], &balance.moment);
+                    let two = class_moment(assur, pin.frames[1], &balance.moment);
+                    let [r1, r2] = pin.arms.map(|a| pose.arm[a] * inverse);
                     balance.multiplier[pin.closure] =
                         std::array::from_fn(|n| r2 * one[n] - r1 * two[n]);
                 }
                 Kind::Aim(aim) => {
-                    let moment = self.class_moment(aim.frame, &balance.moment);
+                    let moment = class_moment(assur, aim.frame, &balance.moment);
                     balance.multiplier[aim.closure] =
-                        std::array::from_fn(|n| vec2(moment[n] * pose.inverse[g], T::lift(0.0)));
+                        std::array::from_fn(|n| vec2(moment[n] * inverse, T::lift(0.0)));
                 }
                 Kind::Newton(newton) => {
-                    let size = assur.group.unknowns.len();
-                    for n in 0..N {
-                        for (i, &unknown) in assur.group.unknowns.iter().enumerate() {
-                            balance.work[i] = match unknown {
-                                Unknown::Class(c) => {
-                                    self.class_moment(self.root_of(c), &balance.moment)[n]
-                                }
-                                Unknown::Slide(s) => balance.push[s][n],
-                            };
-                        }
-                        let (lu, pivots) = newton.factors(pose, size);
-                        small::solve_transposed(lu, pivots, &mut balance.work[..size]);
-                        let mut row = 0;
-                        for &l in &assur.group.loops {
-                            let two = self.closures[l].axis.is_none();
-                            let second = if two {
-                                balance.work[row + 1]
-                            } else {
-                                T::lift(0.0)
-                            };
-                            balance.multiplier[l][n] = vec2(balance.work[row], second);
-                            row += if two { 2 } else { 1 };
-                        }
-                    }
+                    self.newton_multipliers(assur, newton, pose, balance);
                 }
             }
             for behind in &assur.behind {
-                self.press(behind, pose, balance);
+                press(behind, pose, balance);
             }
         }
     }
 
-    /// Takes a closure's multiplier off what lies behind it.
-    fn press<T: Scalar, const N: usize>(
+    // The stages of a group solved by Newton's method, apart from the others: in one function the
+    // compiler would keep everything they need at hand for groups that need none of it.
+
+    #[inline(never)]
+    fn newton_speeds<T: Scalar>(
         &self,
-        behind: &Behind,
+        assur: &Assur,
+        newton: &Newton,
+        pose: &Pose<T>,
+        q_dot: &[T],
+        motion: &mut Motion<T>,
+    ) {
+        self.clear(assur, &mut motion.turn, &mut motion.slide);
+        propagate(&assur.driven, q_dot, &mut motion.turn);
+        let mut row = 0;
+        for &l in &assur.group.loops {
+            if let Some(axis) = self.closures[l].axis {
+                let rate = gap_rate(&self.closures[l], pose, motion);
+                motion.work[row] = -row_rate(rate, axis, pose.travel[l], pose, motion);
+                row += 1;
+            } else {
+                let rate = gap_rate(&self.closures[l], pose, motion);
+                motion.work[row] = -rate.x;
+                motion.work[row + 1] = -rate.y;
+                row += 2;
+            }
+        }
+        let (lu, pivots) = newton.factors(pose, row);
+        small::solve(lu, pivots, &mut motion.work[..row]);
+        self.take(assur, &motion.work, &mut motion.turn, &mut motion.slide);
+    }
+
+    #[inline(never)]
+    fn newton_accelerations<T: Scalar>(
+        &self,
+        assur: &Assur,
+        newton: &Newton,
+        pose: &Pose<T>,
+        q_ddot: &[T],
+        motion: &mut Motion<T>,
+    ) {
+        self.clear(assur, &mut motion.turn_rate, &mut motion.slide_rate);
+        propagate(&assur.driven, q_ddot, &mut motion.turn_rate);
+        let mut row = 0;
+        for &l in &assur.group.loops {
+            if let Some(axis) = self.closures[l].axis {
+                let rates = gap_rates(&self.closures[l], pose, motion);
+                let rate = row_acceleration(rates, axis, pose.travel[l], pose, motion);
+                motion.work[row] = -rate;
+                row += 1;
+            } else {
+                let (_, rate) = gap_rates(&self.closures[l], pose, motion);
+                motion.work[row] = -rate.x;
+                motion.work[row + 1] = -rate.y;
+                row += 2;
+            }
+        }
+        let (lu, pivots) = newton.factors(pose, row);
+        small::solve(lu, pivots, &mut motion.work[..row]);
+        self.take(
+            assur,
+            &motion.work,
+            &mut motion.turn_rate,
+            &mut motion.slide_rate,
+        );
+    }
+
+    #[inline(never)]
+    fn newton_multipliers<T: Scalar, const N: usize>(
+        &self,
+        assur: &Assur,
+        newton: &Newton,
         pose: &Pose<T>,
         balance: &mut Balance<T, N>,
     ) {
-        let closure = &self.closures[behind.closure];
-        let force: [Vec2<T>; N] = match closure.axis {
-            None => balance.multiplier[behind.closure],
-            Some((axis, _)) => {
-                let normal = pose.arm[axis].perp();
-                balance.multiplier[behind.closure].map(|m| normal * m.x)
+        let size = assur.group.unknowns.len();
+        for n in 0..N {
+            for (value, &unknown) in balance.work.iter_mut().zip(&assur.group.unknowns) {
+                *value = match unknown {
+                    Unknown::Class(c) => class_moment(assur, self.root_of(c), &balance.moment)[n],
+                    Unknown::Slide(s) => balance.push[s][n],
+                };
             }
-        };
-        for &(arm, frame) in &behind.arms {
-            for n in 0..N {
-                balance.moment[frame][n] -= pose.arm[arm].cross(force[n]);
-            }
-        }
-        if let Some(frame) = behind.axis {
-            for n in 0..N {
-                let travel = pose.travel[behind.closure];
-                balance.moment[frame][n] += travel * balance.multiplier[behind.closure][n].x;
-            }
-        }
-        for &(slide, arm, frame) in &closure.slides {
-            for n in 0..N {
-                let reach = pose.arm[arm] * pose.slide[slide];
-                balance.moment[frame][n] -= reach.cross(force[n]);
-                balance.push[slide][n] -= pose.arm[arm].dot(force[n]);
+            let (lu, pivots) = newton.factors(pose, size);
+            small::solve_transposed(lu, pivots, &mut balance.work[..size]);
+            let mut row = 0;
+            for &l in &assur.group.loops {
+                let first = balance.work[row];
+                row += 1;
+                let mut second = T::lift(0.0);
+                if self.closures[l].axis.is_none() {
+                    second = balance.work[row];
+                    row += 1;
+                }
+                balance.multiplier[l][n] = vec2(first, second);
             }
         }
     }
 
-    /// The moment on a whole class: on its first frame and those driven from it.
-    fn class_moment<T: Scalar, const N: usize>(&self, root: usize, moment: &[[T; N]]) -> [T; N] {
-        let mut sum = moment[root];
-        for &frame in &self.driven_of[self.frames.frames[root].class] {
-            for n in 0..N {
-                sum[n] += moment[frame][n];
-            }
-        }
-        sum
-    }
-
-    /// Sets the rates of a class's driven frames from the frame each is turned from.
-    fn propagate<T: Scalar>(&self, class: usize, rate: &[T], turn: &mut [T]) {
-        for &frame in &self.driven_of[class] {
-            if let Turning::Driven {
-                parent,
-                actuator,
-                sign,
-            } = self.frames.frames[frame].turning
-            {
-                turn[frame] = turn[parent] + T::lift(sign) * rate[actuator];
-            }
-        }
-    }
-
-    fn carry_on<T: Scalar>(&self, assur: &crate::plan::Assur, rate: &[T], turn: &mut [T]) {
-        for &unknown in &assur.group.unknowns {
-            if let Unknown::Class(class) = unknown {
-                self.propagate(class, rate, turn);
-            }
-        }
-    }
-
-    /// Rates with the group's unknowns at rest: what the known ones carry along remains.
-    fn clear<T: Scalar>(
-        &self,
-        assur: &crate::plan::Assur,
-        rate: &[T],
-        turn: &mut [T],
-        slide: &mut [T],
-    ) {
+    /// Puts a group's unknowns at rest: what the known ones carry along remains.
+    fn clear<T: Scalar>(&self, assur: &Assur, turn: &mut [T], slide: &mut [T]) {
         for &unknown in &assur.group.unknowns {
             match unknown {
                 Unknown::Class(c) => turn[self.root_of(c)] = T::lift(0.0),
                 Unknown::Slide(s) => slide[s] = T::lift(0.0),
             }
         }
-        self.carry_on(assur, rate, turn);
     }
 
-    fn take<T: Scalar>(
-        &self,
-        assur: &crate::plan::Assur,
-        rate: &[T],
-        solution: &[T],
-        turn: &mut [T],
-        slide: &mut [T],
-    ) {
+    fn take<T: Scalar>(&self, assur: &Assur, solution: &[T], turn: &mut [T], slide: &mut [T]) {
         for (&unknown, &value) in assur.group.unknowns.iter().zip(solution) {
             match unknown {
                 Unknown::Class(c) => turn[self.root_of(c)] = value,
                 Unknown::Slide(s) => slide[s] = value,
             }
         }
-        self.carry_on(assur, rate, turn);
-    }
-
-    /// d/dt of n·L, with n the normal of a prismatic chord: n·L̇ − ω_n travel.
-    fn row_rate<T: Scalar>(
-        &self,
-        closure: &Closure,
-        index: usize,
-        pose: &Pose<T>,
-        turn: &[T],
-        slide: &[T],
-    ) -> T {
-        let Some((axis, frame)) = closure.axis else {
-            return T::lift(0.0);
-        };
-        let normal = pose.arm[axis].perp();
-        normal.dot(gap_rate(closure, pose, turn, slide)) - turn[frame] * pose.travel[index]
-    }
-
-    /// d²/dt² of n·L: n·L̈ − 2 ω_n (axis·L̇) − α_n travel.
-    fn row_acceleration<T: Scalar>(&self, index: usize, pose: &Pose<T>, rates: Rates<'_, T>) -> T {
-        let closure = &self.closures[index];
-        let Some((axis, frame)) = closure.axis else {
-            return T::lift(0.0);
-        };
-        let (turn, slide, turn_rate, _) = rates;
-        let along = pose.arm[axis];
-        let rate = gap_rate(closure, pose, turn, slide);
-        let acceleration = gap_acceleration(closure, pose, rates);
-        let coriolis = T::lift(2.0) * turn[frame] * along.dot(rate);
-        along.perp().dot(acceleration) - coriolis - turn_rate[frame] * pose.travel[index]
     }
 }
 
-/// Angular velocities, slide speeds, angular accelerations, slide accelerations.
-type Rates<'a, T> = (&'a [T], &'a [T], &'a [T], &'a [T]);
+/// Sets the rates of driven frames from the frame each is turned from.
+#[inline]
+fn propagate<T: Scalar>(driven: &[Driven], rate: &[T], turn: &mut [T]) {
+    for one in driven {
+        turn[one.frame] = turn[one.parent] + T::lift(one.sign) * rate[one.actuator];
+    }
+}
+
+/// The moment on a whole class of a group: on its first frame and those driven from it.
+#[inline]
+fn class_moment<T: Scalar, const N: usize>(
+    assur: &Assur,
+    root: usize,
+    moment: &[[T; N]],
+) -> [T; N] {
+    let mut sum = moment[root];
+    for one in assur.driven.iter().filter(|d| d.root == root) {
+        for (sum, m) in sum.iter_mut().zip(moment[one.frame]) {
+            *sum += m;
+        }
+    }
+    sum
+}
+
+/// Takes a closure's multiplier off what lies behind it.
+#[inline]
+fn press<T: Scalar, const N: usize>(behind: &Behind, pose: &Pose<T>, balance: &mut Balance<T, N>) {
+    let multiplier = balance.multiplier[behind.closure];
+    let force = match behind.axis {
+        None => multiplier,
+        Some(axis) => {
+            let normal = pose.arm[axis].perp();
+            multiplier.map(|m| normal * m.x)
+        }
+    };
+    for &(arm, frame) in &behind.arms {
+        let arm = pose.arm[arm];
+        for (moment, f) in balance.moment[frame].iter_mut().zip(force) {
+            *moment -= arm.cross(f);
+        }
+    }
+    if let Some(frame) = behind.turning {
+        let travel = pose.travel[behind.closure];
+        for (moment, m) in balance.moment[frame].iter_mut().zip(multiplier) {
+            *moment += travel * m.x;
+        }
+    }
+    for &(slide, arm, frame) in &behind.slides {
+        let along = pose.arm[arm];
+        let reach = along * pose.slide[slide];
+        for (moment, f) in balance.moment[frame].iter_mut().zip(force) {
+            *moment -= reach.cross(f);
+        }
+        for (push, f) in balance.push[slide].iter_mut().zip(force) {
+            *push -= along.dot(f);
+        }
+    }
+}
+
+/// d/dt of n·L, with n the normal of a prismatic chord: n·L̇ − ω_n travel.
+#[inline]
+fn row_rate<T: Scalar>(
+    rate: Vec2<T>,
+    (axis, frame): (usize, usize),
+    travel: T,
+    pose: &Pose<T>,
+    motion: &Motion<T>,
+) -> T {
+    pose.arm[axis].perp().dot(rate) - motion.turn[frame] * travel
+}
+
+/// d²/dt² of n·L: n·L̈ − 2 ω_n (axis·L̇) − α_n travel.
+#[inline]
+fn row_acceleration<T: Scalar>(
+    (rate, acceleration): (Vec2<T>, Vec2<T>),
+    (axis, frame): (usize, usize),
+    travel: T,
+    pose: &Pose<T>,
+    motion: &Motion<T>,
+) -> T {
+    let along = pose.arm[axis];
+    let coriolis = T::lift(2.0) * motion.turn[frame] * along.dot(rate);
+    along.perp().dot(acceleration) - coriolis - motion.turn_rate[frame] * travel
+}
+
+/// Σ ω ẑ×arm.
+#[inline]
+fn arms_rate<T: Scalar>(arms: &[(usize, usize)], pose: &Pose<T>, motion: &Motion<T>) -> Vec2<T> {
+    let mut sum = Vec2::zero();
+    for &(arm, frame) in arms {
+        sum += pose.arm[arm].perp() * motion.turn[frame];
+    }
+    sum
+}
+
+/// Σ ω ẑ×arm and its derivative, Σ α ẑ×arm − ω² arm.
+#[inline]
+fn arms_rates<T: Scalar>(
+    arms: &[(usize, usize)],
+    pose: &Pose<T>,
+    motion: &Motion<T>,
+) -> (Vec2<T>, Vec2<T>) {
+    let (mut first, mut second) = (Vec2::zero(), Vec2::zero());
+    for &(arm, frame) in arms {
+        let (r, w) = (pose.arm[arm], motion.turn[frame]);
+        first += r.perp() * w;
+        second += r.perp() * motion.turn_rate[frame] - r * (w * w);
+    }
+    (first, second)
+}
 
 /// L̇ = Σ ω ẑ×arm + Σ (speed · direction + ω ẑ×travel).
-fn gap_rate<T: Scalar>(closure: &Closure, pose: &Pose<T>, turn: &[T], slide: &[T]) -> Vec2<T> {
-    let mut sum = Vec2::zero();
-    for &(arm, frame) in &closure.arms {
-        sum += pose.arm[arm].perp() * turn[frame];
-    }
+fn gap_rate<T: Scalar>(closure: &Closure, pose: &Pose<T>, motion: &Motion<T>) -> Vec2<T> {
+    let mut sum = arms_rate(&closure.arms, pose, motion);
     for &(s, arm, frame) in &closure.slides {
         let along = pose.arm[arm];
-        sum += along * slide[s] + along.perp() * (pose.slide[s] * turn[frame]);
+        sum += along * motion.slide[s] + along.perp() * (pose.slide[s] * motion.turn[frame]);
     }
     sum
 }
 
-/// L̈, with the centripetal and Coriolis terms.
-fn gap_acceleration<T: Scalar>(
+/// L̇ and L̈, the latter with the centripetal and Coriolis terms.
+fn gap_rates<T: Scalar>(
     closure: &Closure,
     pose: &Pose<T>,
-    (turn, slide, turn_rate, slide_rate): Rates<'_, T>,
-) -> Vec2<T> {
-    let mut sum = Vec2::zero();
-    for &(arm, frame) in &closure.arms {
-        let (r, w) = (pose.arm[arm], turn[frame]);
-        sum += r.perp() * turn_rate[frame] - r * (w * w);
-    }
+    motion: &Motion<T>,
+) -> (Vec2<T>, Vec2<T>) {
+    let (mut first, mut second) = arms_rates(&closure.arms, pose, motion);
     for &(s, arm, frame) in &closure.slides {
-        let (along, w) = (pose.arm[arm], turn[frame]);
+        let (along, w) = (pose.arm[arm], motion.turn[frame]);
         let reach = along * pose.slide[s];
-        sum += reach.perp() * turn_rate[frame] - reach * (w * w);
-        sum += along * slide_rate[s] + along.perp() * (T::lift(2.0) * w * slide[s]);
+        first += along * motion.slide[s] + reach.perp() * w;
+        second += reach.perp() * motion.turn_rate[frame] - reach * (w * w);
+        let coriolis = T::lift(2.0) * w * motion.slide[s];
+        second += along * motion.slide_rate[s] + along.perp() * coriolis;
     }
-    sum
+    (first, second)
 }

@@ -1,9 +1,8 @@
 //! Positions: from the actuators' coordinates to the orientation of every body, group by group.
 
 use crate::error::PlaceError;
-use crate::frames::Turning;
 use crate::groups::{Group, Unknown};
-use crate::plan::{Aim, Closure, Kind, Newton, Pin, Plan, Pose, Step};
+use crate::plan::{Aim, Closure, Driven, Kind, Newton, Pin, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
 use crate::scalar::Scalar;
 use crate::small;
@@ -51,104 +50,56 @@ impl Plan {
         guess: Guess,
         count: usize,
     ) -> Result<(), PlaceError> {
-        pose.q.copy_from_slice(q);
-        for value in q {
+        for (own, &value) in pose.q.iter_mut().zip(q) {
             if !value.value().is_finite() {
                 return Err(PlaceError::NotFinite { q: value.value() });
             }
+            *own = value;
         }
         for step in &self.steps {
             match step {
-                Step::Turn(frame) => self.turn(*frame, pose),
-                Step::Rotate(arms) => {
-                    for (arm, turned) in self.arms[arms.clone()]
-                        .iter()
-                        .zip(&mut pose.arm[arms.clone()])
-                    {
-                        *turned = arm.local.lift::<T>().turn(pose.turn[arm.frame]);
-                    }
+                Step::Turn(driven) => turn(driven, pose),
+                Step::Rotate(arm, Arm { frame, local }) => {
+                    pose.arm[*arm] = local.lift::<T>().turn(pose.turn[*frame]);
                 }
                 Step::Solve(g) if *g >= count => return Ok(()),
                 Step::Solve(g) => match &self.groups[*g].kind {
                     Kind::Pin(pin) => place_pin(pin, *g, pose)?,
-                    Kind::Aim(aim) => self.place_aim(aim, *g, pose)?,
-                    Kind::Newton(newton) => {
-                        if guess == Guess::Seed {
-                            self.sow(*g, newton, pose)?;
-                        }
-                        self.place_newton(*g, newton, pose)?;
-                        if guess == Guess::Seed {
-                            self.keep_branch(*g, newton, pose)?;
-                        }
-                    }
+                    Kind::Aim(aim) => place_aim(aim, *g, pose)?,
+                    Kind::Newton(newton) => self.place_by_newton(*g, newton, pose, guess)?,
                 },
-            }
-        }
-        for (closure, travel) in self.closures.iter().zip(&mut pose.travel) {
-            if let Some((axis, _)) = closure.axis {
-                *travel = pose.arm[axis].dot(gap(closure, &pose.arm, &pose.slide));
             }
         }
         Ok(())
     }
 
-    fn turn<T: Scalar>(&self, frame: usize, pose: &mut Pose<T>) {
-        if let Turning::Driven {
-            parent,
-            actuator,
-            sign,
-        } = self.frames.frames[frame].turning
-        {
-            let (sin, cos) = pose.q[actuator].sin_cos();
-            let by = vec2(cos, if sign < 0.0 { -sin } else { sin });
-            pose.turn[frame] = if parent == 0 {
-                by
-            } else {
-                pose.turn[parent].turn(by)
-            };
-        }
-    }
-
-    /// n·(arms) = 0 for a unit vector e that turns: the line's normal, or the arm's direction.
-    fn place_aim<T: Scalar>(
+    /// Apart from the closed forms, which need little of what this keeps at hand.
+    #[inline(never)]
+    fn place_by_newton<T: Scalar>(
         &self,
-        aim: &Aim,
         group: usize,
+        newton: &Newton,
         pose: &mut Pose<T>,
+        guess: Guess,
     ) -> Result<(), PlaceError> {
-        let mut known = Vec2::<T>::zero();
-        for &(arm, _) in &aim.known {
-            known += pose.arm[arm];
+        if guess == Guess::Seed {
+            self.sow(group, newton, pose)?;
         }
-        let branch = T::lift(aim.branch);
-        let (unit, slope) = if aim.line_turns {
-            // n·D = −n₀·w with n₀, w constant in the turning frame.
-            let kappa = T::lift(-aim.unit.dot(aim.local));
-            let square = known.dot(known);
-            let rest = square - kappa * kappa;
-            let reach = root(rest, square.value(), group, pose.q[0].value())?;
-            let across = known.perp() * (branch * reach);
-            let inverse = T::lift(1.0) / square;
-            ((known * kappa + across) * inverse, branch * reach)
-        } else {
-            // n·(e |w|) = −n·D with n known.
-            let Some((axis, _)) = self.closures[aim.closure].axis else {
-                return Ok(());
-            };
-            let normal = pose.arm[axis].perp();
-            let length = T::lift(aim.local.norm());
-            let kappa = -normal.dot(known);
-            let rest = length * length - kappa * kappa;
-            let size = (length * length).value();
-            let reach = root(rest, size, group, pose.q[0].value())?;
-            let across = normal.perp() * (branch * reach);
-            (
-                (normal * kappa + across) * (T::lift(1.0) / length),
-                branch * reach,
-            )
-        };
-        pose.turn[aim.frame] = unit.turn_back(aim.unit.lift());
-        pose.inverse[group] = -T::lift(1.0) / slope;
+        let factored = self.close(group, newton, pose)?;
+        // A pose on the other side of a singular position is another branch.
+        if guess == Guess::Seed && factored.sign * newton.branch <= 0.0 {
+            return Err(PlaceError::Singular {
+                group,
+                q: pose.q[0].value(),
+                measure: 0.0,
+            });
+        }
+        for &l in &self.groups[group].group.loops {
+            let closure = &self.closures[l];
+            if let Some((axis, _)) = closure.axis {
+                pose.travel[l] = pose.arm[axis].dot(gap(closure, &pose.arm, &pose.slide));
+            }
+        }
         Ok(())
     }
 
@@ -175,30 +126,13 @@ impl Plan {
         Ok(())
     }
 
-    fn keep_branch<T: Scalar>(
+    /// Newton's method; leaves the factors of the Jacobian where it ends.
+    fn close<T: Scalar>(
         &self,
         group: usize,
         newton: &Newton,
         pose: &mut Pose<T>,
-    ) -> Result<(), PlaceError> {
-        // A pose on the other side of a singular position is another branch.
-        if self.factor(group, newton, pose)?.sign * newton.branch > 0.0 {
-            Ok(())
-        } else {
-            Err(PlaceError::Singular {
-                group,
-                q: pose.q[0].value(),
-                measure: 0.0,
-            })
-        }
-    }
-
-    fn place_newton<T: Scalar>(
-        &self,
-        group: usize,
-        newton: &Newton,
-        pose: &mut Pose<T>,
-    ) -> Result<(), PlaceError> {
+    ) -> Result<small::Factored, PlaceError> {
         let q = pose.q[0].value();
         let size = self.groups[group].size;
         let n = self.groups[group].group.unknowns.len();
@@ -242,8 +176,7 @@ impl Plan {
             // One step past convergence: it makes the derivative of a dual number exact.
             if largest < CONVERGED && !std::mem::replace(&mut once_more, false) {
                 self.turn_group(group, pose);
-                self.factor(group, newton, pose)?;
-                return Ok(());
+                return self.factor(group, newton, pose);
             }
         }
         Err(PlaceError::NotClosed { group, q, residual })
@@ -251,15 +184,11 @@ impl Plan {
 
     /// Turns a group's driven frames and rotates the arms of its loops, after its unknowns changed.
     fn turn_group<T: Scalar>(&self, group: usize, pose: &mut Pose<T>) {
-        let group = &self.groups[group].group;
-        for &unknown in &group.unknowns {
-            if let Unknown::Class(class) = unknown {
-                for &frame in &self.driven_of[class] {
-                    self.turn(frame, pose);
-                }
-            }
+        let assur = &self.groups[group];
+        for driven in &assur.driven {
+            turn(driven, pose);
         }
-        for &l in &group.loops {
+        for &l in &assur.group.loops {
             let Closure {
                 arms, slides, axis, ..
             } = &self.closures[l];
@@ -394,12 +323,31 @@ impl Plan {
     }
 }
 
-/// L = P₂ − P₁ as its arms and slides have it.
-fn gap<T: Scalar>(closure: &Closure, arm: &[Vec2<T>], slide: &[T]) -> Vec2<T> {
-    let mut sum = Vec2::zero();
-    for &(a, _) in &closure.arms {
+/// Turns a frame by its actuator's coordinate.
+fn turn<T: Scalar>(driven: &Driven, pose: &mut Pose<T>) {
+    let (sin, cos) = pose.q[driven.actuator].sin_cos();
+    let by = vec2(cos, if driven.sign < 0.0 { -sin } else { sin });
+    pose.turn[driven.frame] = if driven.parent == 0 {
+        by
+    } else {
+        pose.turn[driven.parent].turn(by)
+    };
+}
+
+/// A constant vector and some rotated arms, summed.
+#[inline]
+fn sum<T: Scalar>(fixed: Vec2, arms: &[(usize, usize)], arm: &[Vec2<T>]) -> Vec2<T> {
+    let mut sum = fixed.lift();
+    for &(a, _) in arms {
         sum += arm[a];
     }
+    sum
+}
+
+/// L = P₂ − P₁ as its arms and slides have it.
+#[inline]
+fn gap<T: Scalar>(closure: &Closure, arm: &[Vec2<T>], slide: &[T]) -> Vec2<T> {
+    let mut sum = sum(closure.fixed, &closure.arms, arm);
     for &(s, a, _) in &closure.slides {
         sum += arm[a] * slide[s];
     }
@@ -408,33 +356,57 @@ fn gap<T: Scalar>(closure: &Closure, arm: &[Vec2<T>], slide: &[T]) -> Vec2<T> {
 
 /// Two arms of known length that close a triangle with the known part D of the loop.
 fn place_pin<T: Scalar>(pin: &Pin, group: usize, pose: &mut Pose<T>) -> Result<(), PlaceError> {
-    let mut known = Vec2::<T>::zero();
-    for &(arm, _) in &pin.known {
-        known += pose.arm[arm];
-    }
-    let [one, two] = pin.length;
+    let known = sum(pin.fixed, &pin.known, &pose.arm);
     let square = known.dot(known);
     // (2 × area)² by factors that keep their digits near a stretched or folded triangle.
-    let outer = T::lift((one + two) * (one + two)) - square;
-    let inner = square - T::lift((one - two) * (one - two));
-    let reach = T::lift(0.5 * pin.branch)
-        * root(
-            outer * inner,
-            square.value().powi(2),
-            group,
-            pose.q[0].value(),
-        )?;
+    let rest = (T::lift(pin.sum2) - square) * (square - T::lift(pin.gap2));
+    let size = square.value() * square.value();
+    let reach = root(rest, size, group, pose.q[0].value())? * T::lift(0.5 * pin.branch);
     let half = T::lift(0.5);
-    let difference = T::lift((two - one) * (two + one));
+    let excess = T::lift(pin.excess);
     let inverse = T::lift(1.0) / square;
     let across = known.perp() * reach;
-    let first = (known * (half * (difference - square)) + across) * inverse;
-    let second = (known * (half * (-difference - square)) - across) * inverse;
-    let [l1, l2] = pin.local;
-    pose.turn[pin.frames[0]] = first.turn_back((l1 * (1.0 / (one * one))).lift());
-    pose.turn[pin.frames[1]] = second.turn_back((l2 * (1.0 / (two * two))).lift());
+    let first = (known * (half * (excess - square)) + across) * inverse;
+    let second = (known * (half * (-excess - square)) - across) * inverse;
+    pose.arm[pin.arms[0]] = first;
+    pose.arm[pin.arms[1]] = second;
+    pose.turn[pin.frames[0]] = first.turn_back(pin.per_square[0].lift());
+    pose.turn[pin.frames[1]] = second.turn_back(pin.per_square[1].lift());
     // arm₁ × arm₂ = the signed double area.
     pose.inverse[group] = T::lift(1.0) / reach;
+    Ok(())
+}
+
+/// A unit vector e that turns — the line's normal, or the arm's direction — so that n·L = 0.
+fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(), PlaceError> {
+    let known = sum(aim.fixed, &aim.known, &pose.arm);
+    let branch = T::lift(aim.branch);
+    let q = pose.q[0].value();
+    let (unit, slope) = if aim.line_turns {
+        // n·D = −n₀·w with n₀, w constant in the turning frame.
+        let kappa = T::lift(-aim.unit.dot(aim.local));
+        let square = known.dot(known);
+        let reach = branch * root(square - kappa * kappa, square.value(), group, q)?;
+        let unit = (known * kappa + known.perp() * reach) * (T::lift(1.0) / square);
+        // axis·D = reach.
+        pose.travel[aim.closure] = reach + T::lift(aim.local.cross(aim.unit));
+        pose.arm[aim.found] = -unit.perp();
+        (unit, reach)
+    } else {
+        // n·(e |w|) = −n·D with n known.
+        let along = pose.arm[aim.axis.0];
+        let normal = along.perp();
+        let length = aim.local.norm();
+        let kappa = -normal.dot(known);
+        let square = T::lift(length * length);
+        let reach = branch * root(square - kappa * kappa, square.value(), group, q)?;
+        let arm = normal * kappa - along * reach;
+        pose.travel[aim.closure] = along.dot(known) - reach;
+        pose.arm[aim.found] = arm;
+        (arm * T::lift(1.0 / length), reach)
+    };
+    pose.turn[aim.frame] = unit.turn_back(aim.unit.lift());
+    pose.inverse[group] = -T::lift(1.0) / slope;
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 
 use crate::mass::Mass;
 use crate::reactions::Sources;
-use crate::runs::Runs;
+use crate::runs::{Prescribed, Runs};
 use dwell_geometry::{
     AssemblyError, Mechanism, Motion, PlaceError, Plan, Pose, Reaction, Scalar, Start, Vec2,
 };
@@ -14,6 +14,10 @@ use thiserror::Error;
 pub struct Model {
     pub(crate) plan: Plan,
     pub(crate) massive: Vec<Massive>,
+    /// The bodies whose roots move and that carry mass, each after the one that carries it.
+    pub(crate) links: Vec<Link>,
+    /// By frame: moment of inertia of its bodies about their roots, kg m².
+    pub(crate) inertia: Vec<f64>,
     pub(crate) sources: Sources,
     reactions: Vec<Reaction>,
 }
@@ -22,11 +26,35 @@ pub struct Model {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Massive {
     pub(crate) carried: usize,
+    pub(crate) body: usize,
     pub(crate) frame: usize,
     pub(crate) mass: f64,
+    /// About the centre of mass, and about the body's root, kg m².
     pub(crate) inertia: f64,
-    /// From the body's root to its centre of mass, in its frame; none where they coincide.
+    pub(crate) about_root: f64,
+    /// From the body's root to its centre of mass, in its frame, and its first moment, kg m; none
+    /// where root and centre coincide.
     pub(crate) arm: Option<Vec2>,
+    pub(crate) first: Option<Vec2>,
+    /// Whether its root is fixed to the ground.
+    pub(crate) at_rest: bool,
+}
+
+/// A body whose root moves, with what inertia forces need of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Link {
+    pub(crate) carried: usize,
+    pub(crate) frame: usize,
+    /// The link that carries it; none where that root is fixed to the ground.
+    pub(crate) parent: Option<usize>,
+    /// The arm that carries it, with its frame.
+    pub(crate) arm: Option<(usize, usize)>,
+    /// The slide that carries it, and the direction of its travel.
+    pub(crate) slide: Option<(usize, usize)>,
+    /// Of the body alone, kg.
+    pub(crate) mass: f64,
+    /// First moment of the body about its root, in its frame, kg m; none if zero.
+    pub(crate) first: Option<Vec2>,
 }
 
 /// Why a model cannot be built.
@@ -82,30 +110,43 @@ impl Model {
             return Err(ModelError::Masses);
         }
         let plan = Plan::compile(mechanism, start)?;
-        let massive = plan
+        let moves = moving(&plan);
+        let massive: Vec<Massive> = plan
             .carried()
             .iter()
             .enumerate()
             .filter_map(|(i, carried)| {
-                let mass = masses[carried.body.0];
-                let frame = carried.frame;
-                let arm = plan
-                    .tree()
-                    .arm(plan.frames(), carried.body.0, mass.center)
-                    .local;
-                (mass.mass > 0.0 || mass.inertia > 0.0).then(|| Massive {
+                let Mass {
+                    mass,
+                    inertia,
+                    center,
+                } = masses[carried.body.0];
+                let arm = plan.tree().arm(plan.frames(), carried.body.0, center).local;
+                let arm = (arm != Vec2::ZERO && mass > 0.0).then_some(arm);
+                (mass > 0.0 || inertia > 0.0).then(|| Massive {
                     carried: i,
-                    frame,
-                    mass: mass.mass,
-                    inertia: mass.inertia,
-                    arm: (arm != Vec2::ZERO && mass.mass > 0.0).then_some(arm),
+                    body: carried.body.0,
+                    frame: carried.frame,
+                    mass,
+                    inertia,
+                    about_root: inertia + arm.map_or(0.0, |arm| mass * arm.dot(arm)),
+                    arm,
+                    first: arm.map(|arm| arm * mass),
+                    at_rest: !moves[i],
                 })
             })
             .collect();
+        let mut inertia = vec![0.0; plan.frames().frames.len()];
+        for body in &massive {
+            inertia[body.frame] += body.about_root;
+        }
+        let links = links(&plan, &moves, &massive);
         let sources = Sources::find(mechanism, &plan, reactions);
         Ok(Self {
             plan,
             massive,
+            links,
+            inertia,
             sources,
             reactions: reactions.to_vec(),
         })
@@ -134,8 +175,8 @@ impl Model {
         Workspace {
             pose: self.plan.pose(),
             motion: self.plan.motion(),
-            unit: Runs::new(&self.plan),
-            run: Runs::new(&self.plan),
+            unit: Runs::new(&self.plan, self.links.len()),
+            run: Runs::new(&self.plan, self.links.len()),
         }
     }
 
@@ -166,15 +207,7 @@ impl Model {
         self.plan.place(q, pose)?;
         self.plan.speeds(pose, q_dot, motion);
         self.plan.accelerations(pose, q_ddot, motion);
-        run.set_rates(|f| {
-            let w = motion.turn[f];
-            [[w * w, motion.turn_rate[f]]]
-        });
-        run.set_slide_rates(|s, f| {
-            let coriolis = T::lift(2.0) * motion.turn[f] * motion.slide[s];
-            [[coriolis, motion.slide_rate[s]]]
-        });
-        run.evaluate(self, pose);
+        run.evaluate(self, pose, Prescribed(motion));
         for (i, tau) in actions.tau.iter_mut().enumerate() {
             *tau = run.tau(self, i)[0];
         }
@@ -222,6 +255,51 @@ impl Model {
         }
         (energy, power)
     }
+}
+
+/// By carried body: whether its root moves.
+fn moving(plan: &Plan) -> Vec<bool> {
+    let mut moves: Vec<bool> = Vec::with_capacity(plan.carried().len());
+    for body in plan.carried() {
+        let carried = body.parent.is_some_and(|parent| moves[parent]);
+        moves.push(carried || body.arm.is_some() || body.slide.is_some());
+    }
+    moves
+}
+
+/// The bodies whose inertia forces must be carried: those whose roots move, if they or what they
+/// carry have mass.
+fn links(plan: &Plan, moves: &[bool], massive: &[Massive]) -> Vec<Link> {
+    let carried = plan.carried();
+    let mut mass = vec![0.0; carried.len()];
+    let mut first = vec![None; carried.len()];
+    for body in massive {
+        mass[body.carried] = body.mass;
+        first[body.carried] = body.first;
+    }
+    let mut bears: Vec<bool> = mass.iter().map(|&m| m > 0.0).collect();
+    for (i, body) in carried.iter().enumerate().rev() {
+        if let (true, Some(parent)) = (bears[i], body.parent) {
+            bears[parent] = true;
+        }
+    }
+    let mut links: Vec<Link> = Vec::new();
+    let mut place = vec![None; carried.len()];
+    for (i, body) in carried.iter().enumerate() {
+        if moves[i] && bears[i] {
+            place[i] = Some(links.len());
+            links.push(Link {
+                carried: i,
+                frame: body.frame,
+                parent: body.parent.and_then(|parent| place[parent]),
+                arm: body.arm.map(|arm| (arm, body.parent_frame)),
+                slide: body.slide,
+                mass: mass[i],
+                first: first[i],
+            });
+        }
+    }
+    links
 }
 
 /// Adds what an arm adds to a point's velocity and acceleration.

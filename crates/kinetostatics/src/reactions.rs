@@ -4,7 +4,8 @@
 use crate::model::Model;
 use crate::runs::Runs;
 use dwell_geometry::frames::{Coupler, Turning};
-use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Scalar, Vec2};
+use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Scalar, Vec2, vec2};
+use std::array;
 
 /// One end of a chord.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,8 +14,8 @@ pub(crate) struct End {
     /// Its place among the carried bodies; none for the ground.
     pub(crate) carried: Option<usize>,
     pub(crate) frame: usize,
-    /// From the body's root to the joint's point, in its frame, m.
-    pub(crate) arm: Vec2,
+    /// From the body's root to the joint's point, in its frame, m; none where they coincide.
+    pub(crate) arm: Option<Vec2>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,7 +65,7 @@ impl Sources {
                     body,
                     carried: tree.place[body],
                     frame: arm.frame,
-                    arm: arm.local,
+                    arm: (arm.local != Vec2::ZERO).then_some(arm.local),
                 }
             })
         });
@@ -156,27 +157,32 @@ fn driven(plan: &Plan) -> Vec<Vec<(usize, f64)>> {
 
 impl<T: Scalar, const N: usize> Runs<T, N> {
     /// The `k`th requested reaction in each run, N or N·m.
+    #[inline]
     pub(crate) fn reaction(&self, model: &Model, pose: &Pose<T>, k: usize) -> [T; N] {
         match model.sources.sources[k] {
             Source::Chord { closure, component } => {
-                let pick = |v: Vec2<T>| if component == Component::Y { v.y } else { v.x };
-                self.balance.multiplier[closure].map(pick)
+                let multiplier = &self.balance.multiplier[closure];
+                array::from_fn(|n| match component {
+                    Component::Y => multiplier[n].y,
+                    _ => multiplier[n].x,
+                })
             }
             Source::Carry {
                 carried,
                 sign,
                 component,
                 axis,
-            } => self.held[carried].map(|force| {
-                let value = match (component, axis) {
-                    (Component::Y, _) => force.y,
+            } => {
+                let force = &self.held[carried];
+                let along = match (component, axis) {
+                    (Component::Y, _) => vec2(T::lift(0.0), T::lift(sign)),
                     (_, Some((frame, local))) => {
-                        force.dot(local.lift().turn(pose.turn[frame]).perp())
+                        (local * sign).lift().turn(pose.turn[frame]).perp()
                     }
-                    _ => force.x,
+                    _ => vec2(T::lift(sign), T::lift(0.0)),
                 };
-                value * T::lift(sign)
-            }),
+                array::from_fn(|n| force[n].dot(along))
+            }
             Source::Hold { body, sign } => self.couple[body].map(|c| c * T::lift(sign)),
         }
     }

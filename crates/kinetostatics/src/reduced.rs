@@ -10,6 +10,7 @@
 //! (Jordi, Zayas and Cardona 2008, eq. 3, in the consistent form of docs/theory.md.)
 
 use crate::model::{Model, Workspace};
+use crate::runs::Unit;
 use dwell_geometry::{Dual, PlaceError, Range, Scalar};
 
 /// The coefficients of the reduced model at one coordinate.
@@ -124,15 +125,7 @@ impl Model {
         self.plan().place(&[q], pose)?;
         self.plan().speeds(pose, &[one], motion);
         self.plan().accelerations(pose, &[zero], motion);
-        unit.set_rates(|f| {
-            let w = motion.turn[f];
-            [[w * w, motion.turn_rate[f]], [zero, w]]
-        });
-        unit.set_slide_rates(|s, f| {
-            let coriolis = T::lift(2.0) * motion.turn[f] * motion.slide[s];
-            [[coriolis, motion.slide_rate[s]], [zero, motion.slide[s]]]
-        });
-        unit.evaluate(self, pose);
+        unit.evaluate(self, pose, Unit(motion));
         [out.half_dm, out.m] = unit.tau(self, 0);
         for (k, (a, b)) in out.a.iter_mut().zip(&mut out.b).enumerate() {
             [*b, *a] = unit.reaction(self, pose, k);

@@ -2,24 +2,72 @@
 //! forces, multipliers, actuator actions and reactions. All runs share the pose and its factors.
 
 use crate::model::Model;
-use dwell_geometry::frames::Turning;
-use dwell_geometry::{Balance, Plan, Pose, Scalar, Vec2};
+use dwell_geometry::{Balance, Motion, Plan, Pose, Scalar, Vec2};
+
+/// The rates of `N` runs: what they make of the inertia of a frame and of its constant vectors.
+pub(crate) trait Rates<T, const N: usize>: Copy {
+    /// Angular acceleration of a frame, rad/s².
+    fn turning(self, frame: usize) -> [T; N];
+    /// What a vector that turns with a frame adds to a point's acceleration: α ẑ×r − ω² r.
+    fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; N];
+    /// The acceleration along a slide, and across it Coriolis's.
+    fn slide(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; N];
+}
+
+/// One run at the speeds and accelerations of a motion.
+#[derive(Clone, Copy)]
+pub(crate) struct Prescribed<'a, T>(pub(crate) &'a Motion<T>);
+
+/// The two unit runs of a mechanism with one actuator, from its motion at q̇ = 1, q̈ = 0: that
+/// motion itself, and the one with q̇ = 0, q̈ = 1, whose accelerations are the first one's velocities.
+#[derive(Clone, Copy)]
+pub(crate) struct Unit<'a, T>(pub(crate) &'a Motion<T>);
+
+impl<T: Scalar> Rates<T, 1> for Prescribed<'_, T> {
+    #[inline]
+    fn turning(self, frame: usize) -> [T; 1] {
+        [self.0.turn_rate[frame]]
+    }
+
+    #[inline]
+    fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 1] {
+        let speed = self.0.turn[frame];
+        [arm.perp() * self.0.turn_rate[frame] - arm * (speed * speed)]
+    }
+
+    #[inline]
+    fn slide(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; 1] {
+        let across = T::lift(2.0) * self.0.turn[frame] * self.0.slide[slide];
+        [along * self.0.slide_rate[slide] + along.perp() * across]
+    }
+}
+
+impl<T: Scalar> Rates<T, 2> for Unit<'_, T> {
+    #[inline]
+    fn turning(self, frame: usize) -> [T; 2] {
+        [self.0.turn_rate[frame], self.0.turn[frame]]
+    }
+
+    #[inline]
+    fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 2] {
+        let [first] = Prescribed(self.0).arm(frame, arm);
+        [first, arm.perp() * self.0.turn[frame]]
+    }
+
+    #[inline]
+    fn slide(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; 2] {
+        let [first] = Prescribed(self.0).slide(slide, frame, along);
+        [first, along * self.0.slide[slide]]
+    }
+}
 
 /// The state of `N` runs.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Runs<T, const N: usize> {
-    /// By frame and run: ω², α.
-    rates: Vec<[[T; 2]; N]>,
-    /// By slide and run: Coriolis acceleration across the slide, acceleration along it.
-    slide_rates: Vec<[[T; 2]; N]>,
-    /// The frame of each slide.
-    slide_frames: Vec<usize>,
-    /// By carried body: acceleration of its root, m/s².
+    /// By link: acceleration of its root, m/s².
     acceleration: Vec<[Vec2<T>; N]>,
-    /// By carried body: m a of its own centre of mass, N.
-    pub(crate) own: Vec<[Vec2<T>; N]>,
-    /// By carried body: m a of everything it carries, N.
-    carried: Vec<[Vec2<T>; N]>,
+    /// By link: m a of its body and of everything that it carries, N.
+    force: Vec<[Vec2<T>; N]>,
     pub(crate) balance: Balance<T, N>,
     /// By carried body: what the joint that carries it exerts on it, N.
     pub(crate) held: Vec<[Vec2<T>; N]>,
@@ -27,152 +75,133 @@ pub(crate) struct Runs<T, const N: usize> {
     pub(crate) couple: Vec<[T; N]>,
 }
 
+#[inline]
+fn add<V: std::ops::AddAssign, const N: usize>(sum: &mut [V; N], more: [V; N]) {
+    for (sum, more) in sum.iter_mut().zip(more) {
+        *sum += more;
+    }
+}
+
 impl<T: Scalar, const N: usize> Runs<T, N> {
-    pub(crate) fn new(plan: &Plan) -> Self {
+    pub(crate) fn new(plan: &Plan, links: usize) -> Self {
         let bodies = plan.carried().len();
         let vector = [Vec2::zero(); N];
-        let mut slide_frames = vec![0; plan.tree().slides];
-        for body in plan.carried() {
-            if let Some((slide, _)) = body.slide {
-                slide_frames[slide] = body.frame;
-            }
-        }
         Self {
-            rates: vec![[[T::lift(0.0); 2]; N]; plan.frames().frames.len()],
-            slide_rates: vec![[[T::lift(0.0); 2]; N]; plan.tree().slides],
-            slide_frames,
-            acceleration: vec![vector; bodies],
-            own: vec![vector; bodies],
-            carried: vec![vector; bodies],
+            acceleration: vec![vector; links],
+            force: vec![vector; links],
             balance: plan.balance(),
             held: vec![vector; bodies],
             couple: vec![[T::lift(0.0); N]; bodies + 1],
         }
     }
 
-    /// Sets ω² and α of every frame.
-    pub(crate) fn set_rates(&mut self, rate: impl Fn(usize) -> [[T; 2]; N]) {
-        for (frame, rates) in self.rates.iter_mut().enumerate() {
-            *rates = rate(frame);
-        }
-    }
-
-    /// Sets the rates of every slide, given its index and its frame.
-    pub(crate) fn set_slide_rates(&mut self, rate: impl Fn(usize, usize) -> [[T; 2]; N]) {
-        let frames = self.slide_frames.iter();
-        for ((slide, rates), &frame) in self.slide_rates.iter_mut().enumerate().zip(frames) {
-            *rates = rate(slide, frame);
-        }
-    }
-
     /// Inertia forces, then multipliers, then (where asked for) what the tree's joints bear.
-    pub(crate) fn evaluate(&mut self, model: &Model, pose: &Pose<T>) {
-        self.accelerate(model, pose);
+    pub(crate) fn evaluate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+        self.accelerate(model, pose, rates);
+        if model.sources.tree_forces {
+            self.note(model, pose, rates);
+        }
         self.collect(model, pose);
         model.plan.multipliers(pose, &mut self.balance);
         if model.sources.tree_forces {
             self.hold(model, pose);
         }
         if model.sources.moments {
-            self.twist(model, pose);
+            self.twist(model, pose, rates);
         }
     }
 
-    /// What an arm adds to a point's acceleration: α ẑ×r − ω² r.
-    #[inline]
-    fn of_arm(&self, frame: usize, arm: Vec2<T>, n: usize) -> Vec2<T> {
-        let [square, rate] = self.rates[frame][n];
-        arm.perp() * rate - arm * square
-    }
-
-    /// Accelerations of the roots, and each body's own inertia force and moment.
-    fn accelerate(&mut self, model: &Model, pose: &Pose<T>) {
-        for (i, body) in model.plan.carried().iter().enumerate() {
-            let mut sum = match body.parent {
+    /// Accelerations of the roots, and each body's own inertia force and its moment about its
+    /// root: Σ m r×a = I α + (Σ m r)×(the root's acceleration).
+    fn accelerate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+        let moments = self.balance.moment.iter_mut().zip(&model.inertia);
+        for (frame, (moment, &inertia)) in moments.enumerate() {
+            *moment = rates.turning(frame).map(|rate| rate * T::lift(inertia));
+        }
+        for (i, link) in model.links.iter().enumerate() {
+            let mut root = match link.parent {
                 Some(parent) => self.acceleration[parent],
                 None => [Vec2::zero(); N],
             };
-            if let Some(arm) = body.arm {
-                for (n, value) in sum.iter_mut().enumerate() {
-                    *value += self.of_arm(body.parent_frame, pose.arm[arm], n);
-                }
+            if let Some((arm, frame)) = link.arm {
+                add(&mut root, rates.arm(frame, pose.arm[arm]));
             }
-            if let Some((slide, direction)) = body.slide {
+            if let Some((slide, direction)) = link.slide {
                 let along = pose.arm[direction];
-                for (n, value) in sum.iter_mut().enumerate() {
-                    let [across, rate] = self.slide_rates[slide][n];
-                    *value += self.of_arm(body.frame, along * pose.slide[slide], n);
-                    *value += along * rate + along.perp() * across;
-                }
+                add(&mut root, rates.slide(slide, link.frame, along));
+                add(&mut root, rates.arm(link.frame, along * pose.slide[slide]));
             }
-            self.acceleration[i] = sum;
-            self.own[i] = [Vec2::zero(); N];
-        }
-        for moment in &mut self.balance.moment {
-            *moment = [T::lift(0.0); N];
-        }
-        for body in &model.massive {
-            let arm = body.arm.map(|a| a.lift().turn(pose.turn[body.frame]));
-            for n in 0..N {
-                let mut force = self.acceleration[body.carried][n];
-                let mut moment = T::lift(body.inertia) * self.rates[body.frame][n][1];
-                if let Some(arm) = arm {
-                    force += self.of_arm(body.frame, arm, n);
-                    moment += arm.cross(force) * T::lift(body.mass);
-                }
-                self.own[body.carried][n] = force * T::lift(body.mass);
-                self.balance.moment[body.frame][n] += moment;
+            let mut force = root.map(|a| a * T::lift(link.mass));
+            if let Some(first) = link.first {
+                let first = first.lift().turn(pose.turn[link.frame]);
+                add(&mut force, rates.arm(link.frame, first));
+                add(
+                    &mut self.balance.moment[link.frame],
+                    root.map(|a| first.cross(a)),
+                );
             }
+            self.acceleration[i] = root;
+            self.force[i] = force;
         }
     }
 
     /// Carries the inertia forces down the tree: moments on the frames, pushes on the slides.
+    #[inline]
     fn collect(&mut self, model: &Model, pose: &Pose<T>) {
-        self.carried.copy_from_slice(&self.own);
-        for (i, body) in model.plan.carried().iter().enumerate().rev() {
-            let force = self.carried[i];
-            if let Some(parent) = body.parent {
-                for (sum, f) in self.carried[parent].iter_mut().zip(force) {
-                    *sum += f;
-                }
+        let Balance { moment, push, .. } = &mut self.balance;
+        push.fill([T::lift(0.0); N]);
+        for (i, link) in model.links.iter().enumerate().rev() {
+            let force = self.force[i];
+            if let Some(parent) = link.parent {
+                add(&mut self.force[parent], force);
             }
-            if let Some(arm) = body.arm {
-                let moment = &mut self.balance.moment[body.parent_frame];
-                for (sum, f) in moment.iter_mut().zip(force) {
-                    *sum += pose.arm[arm].cross(f);
-                }
+            if let Some((arm, frame)) = link.arm {
+                let arm = pose.arm[arm];
+                add(&mut moment[frame], force.map(|f| arm.cross(f)));
             }
-            if let Some((slide, direction)) = body.slide {
+            if let Some((slide, direction)) = link.slide {
                 let along = pose.arm[direction];
                 let reach = along * pose.slide[slide];
-                self.balance.push[slide] = force.map(|f| along.dot(f));
-                for (sum, f) in self.balance.moment[body.frame].iter_mut().zip(force) {
-                    *sum += reach.cross(f);
-                }
+                push[slide] = force.map(|f| along.dot(f));
+                add(&mut moment[link.frame], force.map(|f| reach.cross(f)));
+            }
+        }
+    }
+
+    // The rest is for reactions in the tree's joints; most evaluations ask for none, and are the
+    // faster for not having it in their way.
+
+    /// Notes each body's own inertia force: the first part of what its joint must exert on it.
+    #[inline(never)]
+    fn note(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+        self.held.fill([Vec2::zero(); N]);
+        for (link, force) in model.links.iter().zip(&self.force) {
+            self.held[link.carried] = *force;
+        }
+        for body in model.massive.iter().filter(|body| body.at_rest) {
+            if let Some(first) = body.first {
+                let first = first.lift().turn(pose.turn[body.frame]);
+                self.held[body.carried] = rates.arm(body.frame, first);
             }
         }
     }
 
     /// What each joint of the tree exerts on the body it carries: the inertia forces of all that
     /// hangs on it, less what the chords exert there.
+    #[inline(never)]
     fn hold(&mut self, model: &Model, pose: &Pose<T>) {
-        self.held.copy_from_slice(&self.own);
         for (c, ends) in model.sources.chords.iter().enumerate() {
             let force = self.chord_force(model, pose, c);
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
                 if let Some(body) = end.carried {
-                    for (sum, f) in self.held[body].iter_mut().zip(force) {
-                        *sum += f * T::lift(sign);
-                    }
+                    add(&mut self.held[body], force.map(|f| f * T::lift(sign)));
                 }
             }
         }
         for (i, body) in model.plan.carried().iter().enumerate().rev() {
             if let Some(parent) = body.parent {
                 let force = self.held[i];
-                for (sum, f) in self.held[parent].iter_mut().zip(force) {
-                    *sum += f;
-                }
+                add(&mut self.held[parent], force);
             }
         }
     }
@@ -196,41 +225,42 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
 
     /// The couples that prismatic joints and actuators exert: each body's moment balance about
     /// its root, then along the holds from the outermost body inwards.
-    fn twist(&mut self, model: &Model, pose: &Pose<T>) {
-        for couple in &mut self.couple {
-            *couple = [T::lift(0.0); N];
-        }
+    #[inline(never)]
+    fn twist(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+        self.couple.fill([T::lift(0.0); N]);
         let carried = model.plan.carried();
         for body in &model.massive {
-            let arm = body.arm.map(|a| a.lift().turn(pose.turn[body.frame]));
-            let couple = &mut self.couple[carried[body.carried].body.0];
-            for n in 0..N {
-                couple[n] += T::lift(body.inertia) * self.rates[body.frame][n][1];
-                if let Some(arm) = arm {
-                    couple[n] += arm.cross(self.own[body.carried][n]);
-                }
+            let turning = rates.turning(body.frame);
+            self.couple[body.body] = turning.map(|a| a * T::lift(body.about_root));
+        }
+        for (link, root) in model.links.iter().zip(&self.acceleration) {
+            if let Some(first) = link.first {
+                let first = first.lift().turn(pose.turn[link.frame]);
+                let body = carried[link.carried].body.0;
+                add(&mut self.couple[body], root.map(|a| first.cross(a)));
             }
         }
         for (c, ends) in model.sources.chords.iter().enumerate() {
             let force = self.chord_force(model, pose, c);
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
-                let mut arm = end.arm.lift().turn(pose.turn[end.frame]);
+                let mut arm = match end.arm {
+                    Some(arm) => arm.lift().turn(pose.turn[end.frame]),
+                    None => Vec2::zero(),
+                };
                 if let (true, Some((axis, _))) = (sign > 0.0, model.plan.closures()[c].axis) {
                     // The force acts at the second body's point on both.
                     arm += pose.arm[axis] * pose.travel[c];
                 }
-                for (sum, f) in self.couple[end.body].iter_mut().zip(force) {
-                    *sum += arm.cross(f) * T::lift(sign);
-                }
+                let moment = force.map(|f| arm.cross(f) * T::lift(sign));
+                add(&mut self.couple[end.body], moment);
             }
         }
         for (i, body) in carried.iter().enumerate() {
             let force = self.held[i];
             let parent = model.sources.parent_body[i];
             if let Some(arm) = body.arm {
-                for (sum, f) in self.couple[parent].iter_mut().zip(force) {
-                    *sum += pose.arm[arm].cross(f);
-                }
+                let arm = pose.arm[arm];
+                add(&mut self.couple[parent], force.map(|f| arm.cross(f)));
             }
             if let Some((slide, direction)) = body.slide {
                 let reach = pose.arm[direction] * pose.slide[slide];
@@ -241,28 +271,23 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
                 } else {
                     body.body.0
                 };
-                for (sum, f) in self.couple[on].iter_mut().zip(force) {
-                    *sum += reach.cross(f);
-                }
+                add(&mut self.couple[on], force.map(|f| reach.cross(f)));
             }
         }
         for hold in model.plan.frames().holds.iter().rev() {
             let couple = self.couple[hold.body.0];
-            for (sum, c) in self.couple[hold.against.0].iter_mut().zip(couple) {
-                *sum += c;
-            }
+            add(&mut self.couple[hold.against.0], couple);
         }
     }
 
     /// An actuator's action on its second body, from what remains on the frames it turns.
     pub(crate) fn tau(&self, model: &Model, actuator: usize) -> [T; N] {
-        let frames = &model.plan.frames().frames;
         let mut sum = [T::lift(0.0); N];
         for &(frame, sign) in &model.sources.driven[actuator] {
-            debug_assert!(matches!(frames[frame].turning, Turning::Driven { .. }));
-            for (s, m) in sum.iter_mut().zip(self.balance.moment[frame]) {
-                *s += m * T::lift(sign);
-            }
+            add(
+                &mut sum,
+                self.balance.moment[frame].map(|m| m * T::lift(sign)),
+            );
         }
         sum
     }
