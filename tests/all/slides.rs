@@ -181,3 +181,42 @@ phi = 0.7
         2,
     );
 }
+
+/// A block slides along the driven crank and is pinned to a rod of the ground: a connecting rod on a
+/// rail that moves.
+#[test]
+fn rod_on_a_turning_rail() {
+    all_truths(
+        "turning rail",
+        r#"
+[bodies.ground]
+points = { O = [0, 0], R = [0.1, 0.05] }
+[bodies.crank]
+points = { O = [0, 0.02] }
+mass = 1.0
+center = [0.2, 0.01]
+inertia = 0.02
+[bodies.block]
+points = { P = [0.01, 0.0] }
+mass = 0.4
+center = [0.03, 0.02]
+inertia = 0.003
+[bodies.rod]
+points = { R = [0, 0], P = [0.4, 0] }
+mass = 0.8
+center = [0.15, -0.02]
+inertia = 0.015
+[joints]
+O = { revolute = ["ground.O", "crank.O"] }
+R = { revolute = ["rod.R", "ground.R"] }
+P = { revolute = ["rod.P", "block.P"] }
+slot = { prismatic = ["crank.O", "block.P"], axes = [[1, 0.1], [0.3, 1]] }
+[actuators.phi]
+angle = ["crank", "ground"]
+[assembly]
+phi = -0.3
+rod = 0.3
+"#,
+        1,
+    );
+}
