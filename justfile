@@ -23,7 +23,7 @@ lint:
 # Exact evaluation against hand-written closed forms, as ratios of one run
 [group('care')]
 bench:
-    cargo bench -p dwell-kinetostatics
+    cargo bench -p dwell-kinetostatics --bench reduced
 
 # What the build server runs
 [group('care')]

@@ -1,6 +1,18 @@
 //! Cross-crate tests, in one binary.
+#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
 
+mod branches;
+mod cases;
+mod changes;
+mod derivatives;
+mod invariance;
+mod limits;
+mod machines;
 mod motion;
 mod published;
+mod refusals;
+mod repeatability;
+mod scaling;
+mod sketch;
 mod slides;
 mod world;

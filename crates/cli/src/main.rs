@@ -9,10 +9,10 @@ mod options;
 use clap::Parser;
 use dwell_findings::all_pass;
 use dwell_report::Files;
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneError};
 use dwell_study::{Accuracy, Outcome, Step, StudyError};
 use indicatif::{ProgressBar, ProgressStyle};
-use miette::{IntoDiagnostic, Report, miette};
+use miette::{Report, miette};
 use options::{Command, Options};
 use rayon::prelude::*;
 use std::io::Write as _;
@@ -36,6 +36,13 @@ fn main() -> ExitCode {
 /// Runs a command; whether all its checks passed.
 fn run(options: Options) -> Result<bool, Report> {
     let Options { command, out } = options;
+    if out.exists() && !out.is_dir() {
+        return Err(miette!(
+            help = "name a folder with --out; it is made if it is missing",
+            "`{}` is not a folder: no report can be written there",
+            out.display()
+        ));
+    }
     let outcome = match &command {
         Command::Check { scene } => told(dwell_study::check(&read(scene)?))?,
         Command::Reduce { scene } => told(dwell_study::reduce(&read(scene)?))?,
@@ -60,7 +67,12 @@ fn run(options: Options) -> Result<bool, Report> {
     };
     print(&outcome.summary)?;
     if !outcome.files.is_empty() {
-        let written = outcome.files.write(&out).into_diagnostic()?;
+        let written = outcome.files.write(&out).map_err(|e| {
+            miette!(
+                help = "nothing was written; another folder can be named with --out",
+                "{e}"
+            )
+        })?;
         let shown = written.len().min(12);
         for path in &written[..shown] {
             print(&format!("  {}\n", path.display()))?;
@@ -76,10 +88,19 @@ fn run(options: Options) -> Result<bool, Report> {
 /// Every case, in parallel; the files are those of all of them, or none if one cannot be read.
 fn validate(names: &[String], folder: &Path) -> Result<Outcome, Report> {
     let cases = cases::find(names, folder)?;
-    let scenes: Vec<Scene> = cases
-        .iter()
-        .map(|case| read(&case.join("scene.toml")))
-        .collect::<Result<_, _>>()?;
+    let scenes = cases.iter().map(|c| Scene::read(c.join("scene.toml")));
+    let scenes = all_or_errors(scenes)?;
+    for (k, scene) in scenes.iter().enumerate() {
+        if let Some(other) = scenes[..k].iter().position(|s| s.name == scene.name) {
+            return Err(miette!(
+                help = "validate them one after the other, each with an --out of its own",
+                "`{}` and `{}` are both named `{}`: their reports would be the same files",
+                cases[other].display(),
+                cases[k].display(),
+                scene.name
+            ));
+        }
+    }
     let bar = ProgressBar::new(0);
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
         bar.set_style(style);
@@ -99,8 +120,8 @@ fn validate(names: &[String], folder: &Path) -> Result<Outcome, Report> {
     bar.finish_and_clear();
     let mut all = Outcome::default();
     let mut files = Files::new();
-    for result in results {
-        let one = told(result)?.outcome;
+    for one in all_or_errors(results.into_iter().map(|r| r.map_err(as_scene_error)))? {
+        let one = one.outcome;
         all.summary += &one.summary;
         all.findings.extend(one.findings);
         files.extend("", one.files);
@@ -115,16 +136,52 @@ fn read(path: &Path) -> Result<Scene, Report> {
 
 /// A study's error as a report: a scene's with its text, another one as it is.
 fn told<T>(result: Result<T, StudyError>) -> Result<T, Report> {
-    result.map_err(|e| match e {
-        StudyError::Scene(scene) => Report::new(*scene),
-        other => miette!("{other}"),
-    })
+    result.map_err(|e| Report::new(as_scene_error(e)))
+}
+
+fn as_scene_error(error: StudyError) -> SceneError {
+    match error {
+        StudyError::Scene(scene) => *scene,
+        other => plain(other.to_string()),
+    }
+}
+
+/// An error that points at no place.
+fn plain(message: String) -> SceneError {
+    SceneError {
+        message,
+        help: None,
+        labels: Vec::new(),
+        text: None,
+        others: Vec::new(),
+    }
+}
+
+/// All the results, or all the errors in one report.
+fn all_or_errors<T>(
+    results: impl Iterator<Item = Result<T, SceneError>>,
+) -> Result<Vec<T>, Report> {
+    let (mut good, mut bad) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(value) => good.push(value),
+            Err(error) => bad.push(error),
+        }
+    }
+    match bad.len() {
+        0 => Ok(good),
+        1 => Err(Report::new(bad.remove(0))),
+        n => Err(Report::new(SceneError {
+            others: bad,
+            ..plain(format!("{n} cases cannot be validated"))
+        })),
+    }
 }
 
 fn print(text: &str) -> Result<(), Report> {
     match std::io::stdout().write_all(text.as_bytes()) {
         // Whoever reads has seen enough (such as `dwell … | head`).
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        other => other.into_diagnostic(),
+        other => other.map_err(|e| miette!("cannot print the results: {e}")),
     }
 }

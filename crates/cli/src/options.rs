@@ -35,10 +35,10 @@ pub(crate) enum Command {
         #[arg(long, value_enum, default_value_t = MethodName::Bdf)]
         method: MethodName,
         /// Relative tolerance
-        #[arg(long, default_value_t = 1e-10, value_parser = tolerance, value_name = "TOLERANCE")]
+        #[arg(long, default_value = "1e-10", value_parser = tolerance, value_name = "TOLERANCE", allow_negative_numbers = true)]
         rtol: f64,
         /// Absolute tolerance, rad and rad/s (as the relative one, if absent)
-        #[arg(long, value_parser = tolerance, value_name = "TOLERANCE")]
+        #[arg(long, value_parser = tolerance, value_name = "TOLERANCE", allow_negative_numbers = true)]
         atol: Option<f64>,
     },
     /// The scene value that gives a wanted period of the free motion
@@ -49,7 +49,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "VALUE")]
         set: Option<String>,
         /// The wanted period, s (the scene's [calibration], if absent)
-        #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+        #[arg(long, value_parser = time, value_name = "SECONDS", allow_negative_numbers = true)]
         period: Option<f64>,
     },
     /// All checks on all cases, or on those named; exit status 1 if one fails
@@ -79,14 +79,26 @@ impl From<MethodName> for Method {
     }
 }
 
-/// A tolerance that an integrator can keep: below 1e-14 none of them can in double precision.
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "not a number".to_owned())
+}
+
+/// A tolerance that an integrator can keep: below 1e-14 none of them can in double precision, and
+/// above 1e-3 the energy of a motion is off by a quarter within two turns.
 fn tolerance(text: &str) -> Result<f64, String> {
-    let value: f64 = text
-        .parse()
-        .map_err(|_| format!("`{text}` is not a number"))?;
-    if (1e-14..=1e-1).contains(&value) {
+    let value = number(text)?;
+    if (1e-14..=1e-3).contains(&value) {
         Ok(value)
     } else {
-        Err(format!("{value:e} is not between 1e-14 and 0.1"))
+        Err("a tolerance is between 1e-14 and 1e-3".to_owned())
+    }
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err("a period is a time above zero, in seconds".to_owned())
     }
 }

@@ -10,9 +10,10 @@ use crate::equation::Equation;
 use crate::error::DynamicsError;
 use crate::root;
 use diffsol::{
-    NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
+    DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
     OdeSolverStopReason, Vector,
 };
+use dwell_geometry::{PlaceError, Range};
 use dwell_kinetostatics::Reduced;
 use std::cell::{Cell, RefCell};
 use std::f64::consts::TAU;
@@ -20,6 +21,9 @@ use std::f64::consts::TAU;
 /// For two states nalgebra is 2.3 times as fast as faer, with the same steps.
 type Matrix = NalgebraMat<f64>;
 type Solver = NalgebraLU<f64>;
+
+/// Smallest step, s, at a speed of 1 rad/s or less; at a higher one, in proportion shorter.
+const SMALLEST_STEP: f64 = 1e-14;
 
 /// How to integrate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,8 +123,8 @@ pub struct Run {
 /// Integrates a free motion from `start`, until a time or a number of whole turns.
 ///
 /// # Errors
-/// [`DynamicsError`] with the place and the reason: no pose, no inertia, a budget used up, a state
-/// that is not finite, an option that cannot be used.
+/// [`DynamicsError`] with the place and the reason: no pose, no inertia, a limit position, a budget
+/// used up, a state that is not finite, an option that cannot be used.
 pub fn simulate<R: Reduced>(
     model: &R,
     start: State,
@@ -128,6 +132,7 @@ pub fn simulate<R: Reduced>(
     options: &Options,
 ) -> Result<Run, DynamicsError> {
     check(start, until, options)?;
+    let limits = limits(model.range(), start.q)?;
     let equation = RefCell::new(Equation::new(model));
     // What cannot even start is said at once, not after a futile search for a step size.
     equation.borrow_mut().jacobian(start.q, start.q_dot)?;
@@ -138,10 +143,7 @@ pub fn simulate<R: Reduced>(
     let (evaluations, jacobians) = (Cell::new(0), Cell::new(0));
     // The Jacobian is asked for column by column at one state.
     let last = Cell::new(([f64::NAN; 2], [0.0; 2]));
-    let solver = |e: diffsol::DiffsolError| DynamicsError::Solver {
-        t: start.t,
-        reason: e.to_string(),
-    };
+    let solver = |e: DiffsolError| gave_up(&e, start.t);
     let mut problem = OdeBuilder::<Matrix>::new()
         .t0(start.t)
         .rtol(options.relative)
@@ -180,15 +182,15 @@ pub fn simulate<R: Reduced>(
         .map_err(solver)?;
     // The counter runs over the whole integration, and its default of 50 ends long healthy runs.
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
-    problem.ode_options.min_timestep = 1e-14;
+    problem.ode_options.min_timestep = SMALLEST_STEP / start.q_dot.abs().max(1.0);
     let mut run = match options.method {
         Method::Bdf => {
             let mut bdf = problem.bdf::<Solver>().map_err(solver)?;
-            drive(&mut bdf, start, until, options, &failure)
+            drive(&mut bdf, start, until, options, limits, &failure)
         }
         Method::Tsit45 => {
             let mut tsit45 = problem.tsit45().map_err(solver)?;
-            drive(&mut tsit45, start, until, options, &failure)
+            drive(&mut tsit45, start, until, options, limits, &failure)
         }
     }?;
     run.statistics.evaluations = evaluations.get();
@@ -226,6 +228,36 @@ fn check(start: State, until: Until, options: &Options) -> Result<(), DynamicsEr
     }
 }
 
+/// The ends of the range, in the turn in which the motion starts; none if the coordinate turns
+/// fully.
+fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>, DynamicsError> {
+    let Range::Between(from, to) = range else {
+        return Ok(None);
+    };
+    let turns = TAU * ((q - from) / TAU).floor();
+    if q > to + turns {
+        return Err(PlaceError::OutOfRange { q, from, to }.into());
+    }
+    Ok(Some((from + turns, to + turns)))
+}
+
+/// An error of the integrator itself, at the time it had reached.
+fn gave_up(error: &DiffsolError, t: f64) -> DynamicsError {
+    use diffsol::error::OdeSolverError::{
+        StepSizeTooSmall, StopTimeAtCurrentTime, TooManyErrorTestFailures,
+    };
+    match error {
+        DiffsolError::OdeSolverError(StepSizeTooSmall { .. } | TooManyErrorTestFailures { .. }) => {
+            DynamicsError::SmallStep { t }
+        }
+        DiffsolError::OdeSolverError(StopTimeAtCurrentTime) => DynamicsError::TooShort,
+        other => DynamicsError::Solver {
+            t,
+            reason: other.to_string(),
+        },
+    }
+}
+
 /// Keeps the error of an evaluation for the driver; the integrator gets `instead`.
 fn keep<T>(
     result: Result<T, DynamicsError>,
@@ -244,6 +276,7 @@ fn drive<'a, E, S>(
     start: State,
     until: Until,
     options: &Options,
+    limits: Option<(f64, f64)>,
     failure: &RefCell<Option<DynamicsError>>,
 ) -> Result<Run, DynamicsError>
 where
@@ -255,18 +288,20 @@ where
         samples: options.every.map(|_| start).into_iter().collect(),
         ..Run::default()
     };
-    let said = |t: f64, reason: String| {
-        let kept = failure.borrow_mut().take();
-        kept.unwrap_or(DynamicsError::Solver { t, reason })
+    let said = |State { t, q, .. }: State, e: DiffsolError| match failure.borrow_mut().take() {
+        // Within its range the mechanism has a pose everywhere: it is the end that was met.
+        Some(DynamicsError::Place(_)) if limits.is_some() => DynamicsError::Limit { t, q },
+        Some(kept) => kept,
+        None => gave_up(&e, t),
     };
     if let Until::Time(end) = until {
         let stop = solver.set_stop_time(end);
-        stop.map_err(|e| said(start.t, e.to_string()))?;
+        stop.map_err(|e| said(start, e))?;
     }
     let mut scratch = solver.state().y.clone();
     let mut before = start;
     for _ in 0..options.budget {
-        let reason = solver.step().map_err(|e| said(before.t, e.to_string()))?;
+        let reason = solver.step().map_err(|e| said(before, e))?;
         let state = solver.state();
         let now = State {
             t: state.t,
@@ -280,7 +315,8 @@ where
         }
         // Without loads the speed keeps its sign. In the coordinate of an actuator the way through a
         // limit position looks like a smooth return, but the mechanism goes on on another branch.
-        if now.q_dot * start.q_dot < 0.0 {
+        let beyond = limits.is_some_and(|(from, to)| now.q < from || now.q > to);
+        if now.q_dot * start.q_dot < 0.0 || beyond {
             let State { t, q, .. } = before;
             return Err(DynamicsError::Limit { t, q });
         }
@@ -289,7 +325,7 @@ where
         run.steps.push(now);
         let mut at = |t: f64| -> Result<State, DynamicsError> {
             let inside = solver.interpolate_inplace(t, &mut scratch);
-            inside.map_err(|e| said(t, e.to_string()))?;
+            inside.map_err(|e| said(State { t, ..now }, e))?;
             let [q, q_dot] = [0, 1].map(|i| scratch.get_index(i));
             Ok(State { t, q, q_dot })
         };

@@ -51,8 +51,27 @@ pub enum DynamicsError {
         /// The budget.
         steps: usize,
     },
+    /// The integrator's steps became too small to go on.
+    #[error("the integrator's steps become too small at t = {t:e} s")]
+    SmallStep {
+        /// The time reached, s.
+        t: f64,
+    },
+    /// The motion is shorter than what the integrator can tell from nothing.
+    #[error("the motion is too short to compute: its end is its start, to rounding")]
+    TooShort,
+    /// The kinetic energy underflows or overflows.
+    #[error(
+        "the kinetic energy is {energy:e} J at {q_dot:e} rad/s: too far from 1 to compute with"
+    )]
+    BadEnergy {
+        /// The speed at the start, rad/s.
+        q_dot: f64,
+        /// The energy there, J.
+        energy: f64,
+    },
     /// The integrator gave up.
-    #[error("the integrator stopped at t = {t} s: {reason}")]
+    #[error("the integrator stopped at t = {t:e} s: {reason}")]
     Solver {
         /// The time reached, s.
         t: f64,

@@ -42,8 +42,9 @@ impl FreeTurn {
     /// The free motion of a model from a start.
     ///
     /// # Errors
-    /// [`DynamicsError::NoFullTurn`], [`DynamicsError::AtRest`], [`DynamicsError::NoInertia`], or
-    /// [`DynamicsError::NotResolved`] when the inertia varies too sharply.
+    /// [`DynamicsError::NoFullTurn`], [`DynamicsError::AtRest`], [`DynamicsError::BadEnergy`],
+    /// [`DynamicsError::NoInertia`], or [`DynamicsError::NotResolved`] when the inertia varies too
+    /// sharply.
     pub fn new<R: Reduced>(model: &R, start: State) -> Result<Self, DynamicsError> {
         if let Range::Between(from, to) = model.range() {
             return Err(DynamicsError::NoFullTurn { from, to });
@@ -55,10 +56,16 @@ impl FreeTurn {
         let mut inertia =
             |q: f64| -> Result<f64, DynamicsError> { positive(model.inertia(q, &mut work)?.0, q) };
         let energy = 0.5 * inertia(start.q)? * start.q_dot * start.q_dot;
+        if !energy.is_normal() {
+            let q_dot = start.q_dot;
+            return Err(DynamicsError::BadEnergy { q_dot, energy });
+        }
+        // The same position without its whole turns, which would cost it digits.
+        let first = start.q % TAU;
         // Backwards, q falls: the rule runs over the way that is left behind either way.
         let forward = start.q_dot.signum();
         let mut slowness = |part: f64| -> Result<f64, DynamicsError> {
-            Ok((inertia(start.q + forward * TAU * part)? / (2.0 * energy)).sqrt())
+            Ok((inertia(first + forward * TAU * part)? / (2.0 * energy)).sqrt())
         };
         let mut values = Vec::new();
         for k in 0..FEWEST {

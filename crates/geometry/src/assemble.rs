@@ -1,10 +1,12 @@
 //! Putting the mechanism together at the start, on the branch that the rough angles pick.
 
 use crate::error::{AssemblyError, PlaceError};
+use crate::frames::{Attitude, Turning};
 use crate::groups::Unknown;
 use crate::place::Guess;
 use crate::plan::{Kind, Plan, Pose};
 use crate::plane::{Vec2, vec2};
+use std::f64::consts::TAU;
 
 /// One way a group closes: the value of each unknown, as in a seed, and its branch sign.
 struct Way {
@@ -12,11 +14,11 @@ struct Way {
     branch: f64,
 }
 
-/// Angles tried for each class that no rough angle tells about, when Newton's method looks for
+/// Angles tried for each class, besides the rough ones, when Newton's method looks for
 /// all the ways in which a group closes.
-const TRIALS: usize = 6;
+const TRIALS: usize = 4;
 /// Bound on the starts of one group.
-const MOST_STARTS: usize = 6_usize.pow(4);
+const MOST_STARTS: usize = 1024;
 /// Two ways closer than this (rad) are one.
 const SAME: f64 = 1e-6;
 
@@ -72,26 +74,29 @@ impl Plan {
         pose: &mut Pose<f64>,
     ) -> Result<Vec<Way>, AssemblyError> {
         let unknowns = self.groups[g].group.unknowns.clone();
-        let hints: Vec<Option<f64>> = unknowns.iter().map(|&u| self.hint(u, rough)).collect();
-        let open = hints.iter().filter(|h| h.is_none()).count();
-        let starts = u32::try_from(open)
+        let hints: Vec<Option<f64>> = unknowns
+            .iter()
+            .map(|&u| self.hints(u, rough).first().copied())
+            .collect();
+        // The hints first; then, whether or not they lead anywhere, a grid of others, so that the
+        // way nearest to the hints is picked among all that are found.
+        let starts = 1 + u32::try_from(unknowns.len())
             .ok()
-            .and_then(|open| TRIALS.checked_pow(open))
+            .and_then(|n| TRIALS.checked_pow(n))
             .map_or(MOST_STARTS, |s| s.min(MOST_STARTS));
         let mut ways: Vec<Way> = Vec::new();
         let mut refused = None;
         for start in 0..starts {
-            let mut left = start;
+            let mut left = start.saturating_sub(1);
             let guess: Vec<Vec2> = unknowns
                 .iter()
                 .zip(&hints)
                 .map(|(&unknown, hint)| {
-                    let trial = hint.unwrap_or_else(|| {
-                        let k = left % TRIALS;
-                        left /= TRIALS;
-                        // Off the axes, where many mechanisms are singular.
-                        0.3 + std::f64::consts::TAU * k as f64 / TRIALS as f64
-                    });
+                    let k = left % TRIALS;
+                    left /= TRIALS;
+                    // Off the axes, where many mechanisms are singular.
+                    let other = 0.3 + TAU * k as f64 / TRIALS as f64;
+                    let trial = hint.filter(|_| start == 0).unwrap_or(other);
                     match unknown {
                         Unknown::Class(_) => Vec2::from_angle(trial),
                         Unknown::Slide(_) => vec2((trial - 3.0) * self.groups[g].size / 6.0, 0.0),
@@ -131,20 +136,34 @@ impl Plan {
         }
     }
 
-    /// The rough angle of an unknown, from the bodies that turn with it.
-    fn hint(&self, unknown: Unknown, rough: &[Option<f64>]) -> Option<f64> {
+    /// The rough angles of an unknown, from all the bodies that turn with it.
+    fn hints(&self, unknown: Unknown, rough: &[Option<f64>]) -> Vec<f64> {
         let Unknown::Class(class) = unknown else {
-            return None;
+            return Vec::new();
         };
-        let root = self.root_of(class);
-        self.frames
-            .attitudes
-            .iter()
-            .zip(rough)
-            .find_map(|(attitude, angle)| {
-                let angle = (*angle)?;
-                (attitude.frame == root).then(|| angle - attitude.offset.angle())
-            })
+        let of_body = |(attitude, angle): (&Attitude, &Option<f64>)| {
+            let frame = &self.frames.frames[attitude.frame];
+            let angle = (*angle)?;
+            (frame.class == class)
+                .then(|| angle - attitude.offset.angle() - self.driven_angle(attitude.frame))
+        };
+        let bodies = self.frames.attitudes.iter().zip(rough);
+        bodies.filter_map(of_body).collect()
+    }
+
+    /// The angle of a frame from the first frame of its class, at the start.
+    fn driven_angle(&self, mut frame: usize) -> f64 {
+        let mut angle = 0.0;
+        while let Turning::Driven {
+            parent,
+            actuator,
+            sign,
+        } = self.frames.frames[frame].turning
+        {
+            angle += sign * self.start[actuator];
+            frame = parent;
+        }
+        angle
     }
 
     /// Of several ways, the one nearest to the rough angles.
@@ -159,9 +178,10 @@ impl Plan {
             unknowns
                 .iter()
                 .zip(&way.values)
-                .filter_map(|(&u, value)| {
-                    let hint = Vec2::from_angle(self.hint(u, rough)?);
-                    Some((*value - hint).dot(*value - hint))
+                .flat_map(|(&u, value)| {
+                    let apart = |hint| *value - Vec2::from_angle(hint);
+                    let hints = self.hints(u, rough).into_iter();
+                    hints.map(move |hint| apart(hint).dot(apart(hint)))
                 })
                 .sum()
         };

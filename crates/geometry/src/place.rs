@@ -4,6 +4,7 @@ use crate::error::PlaceError;
 use crate::groups::{Group, Unknown};
 use crate::plan::{Aim, Closure, Driven, Kind, Newton, Pin, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
+use crate::range::Range;
 use crate::scalar::Scalar;
 use crate::small;
 use crate::tree::Arm;
@@ -30,6 +31,10 @@ impl Plan {
     /// # Errors
     /// [`PlaceError`] when a group cannot close there, is singular, or `q` is out of range.
     pub fn place<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
+        // Outside its range a closed form may close again, but on a branch that cannot be reached.
+        if self.range != Range::Full {
+            self.range.fold(q[0].value())?;
+        }
         self.place_from(q, pose, Guess::Seed)
     }
 

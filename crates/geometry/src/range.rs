@@ -4,8 +4,9 @@
 use crate::error::{AssemblyError, PlaceError};
 use crate::groups::Unknown;
 use crate::place::Guess;
-use crate::plan::{Kind, Plan, Pose};
+use crate::plan::{Assur, Kind, Plan, Pose};
 use crate::plane::Vec2;
+use crate::scalar::{Dual, Scalar};
 use std::f64::consts::TAU;
 
 /// The range of a single actuator's coordinate.
@@ -13,8 +14,29 @@ use std::f64::consts::TAU;
 pub enum Range {
     /// It turns fully: every coordinate can be reached, with period 2π.
     Full,
-    /// It turns between two limit positions, rad.
+    /// It turns between two limit positions or change points, rad.
     Between(f64, f64),
+}
+
+impl Range {
+    /// The coordinate within the range that is whole turns away from `q`: the same pose.
+    ///
+    /// # Errors
+    /// [`PlaceError::OutOfRange`] where there is none.
+    pub fn fold(self, q: f64) -> Result<f64, PlaceError> {
+        let Self::Between(from, to) = self else {
+            return Ok(q);
+        };
+        if (from..=to).contains(&q) {
+            return Ok(q);
+        }
+        let folded = q - TAU * ((q - from) / TAU).floor();
+        if (from..=to).contains(&folded) {
+            Ok(folded)
+        } else {
+            Err(PlaceError::OutOfRange { q, from, to })
+        }
+    }
 }
 
 /// A stored pose of a Newton group.
@@ -49,19 +71,14 @@ impl Seeds {
         range: Range,
         start: f64,
     ) -> Result<(&Seed, f64), PlaceError> {
-        let out = match range {
-            Range::Full => return Ok(self.around(q - start)),
-            Range::Between(from, to) if q < from || q > to => {
-                PlaceError::OutOfRange { q, from, to }
-            }
-            Range::Between(..) => {
-                let place = self.origin as f64 + ((q - start) / self.step).round();
-                let index = place.clamp(0.0, self.seeds.len() as f64 - 1.0);
-                let away = q - start - (index - self.origin as f64) * self.step;
-                return Ok((&self.seeds[index as usize], away));
-            }
-        };
-        Err(out)
+        if range == Range::Full {
+            return Ok(self.around(q - start));
+        }
+        let q = range.fold(q)?;
+        let place = self.origin as f64 + ((q - start) / self.step).round();
+        let index = place.clamp(0.0, self.seeds.len() as f64 - 1.0);
+        let away = q - start - (index - self.origin as f64) * self.step;
+        Ok((&self.seeds[index as usize], away))
     }
 
     fn around(&self, from_start: f64) -> (&Seed, f64) {
@@ -104,7 +121,8 @@ impl Plan {
         Ok(())
     }
 
-    /// Walks `count` steps away from a pose, noting each; where the branch ends, if it does.
+    /// Walks `count` steps away from a pose, noting each; where the branch ends, if it does. It ends
+    /// at a limit position, and at a change point, where two branches meet.
     fn walk(
         &self,
         mut pose: Pose<f64>,
@@ -113,6 +131,9 @@ impl Plan {
         noted: &mut Vec<Pose<f64>>,
     ) -> Option<f64> {
         let q0 = pose.q[0];
+        let Some(mut margins) = self.margins(&pose) else {
+            return Some(q0);
+        };
         noted.push(pose.clone());
         for k in 1..=count {
             let target = q0 + step * k as f64;
@@ -124,9 +145,10 @@ impl Plan {
                 } else {
                     pose.q[0] + fine
                 };
-                match self.advance(&pose, next) {
-                    Some(reached) => {
+                match self.advance(&pose, &margins, next) {
+                    Some((reached, left)) => {
                         pose = reached;
+                        margins = left;
                         fine = (2.0 * fine.abs()).min(step.abs()).copysign(step);
                     }
                     None => {
@@ -142,8 +164,55 @@ impl Plan {
         None
     }
 
-    /// The pose at `q` on the same branch as a nearby pose, if it can be told to be the same.
-    fn advance(&self, from: &Pose<f64>, q: f64) -> Option<Pose<f64>> {
+    /// By group, the size of its determinant, with its derivative by the coordinate: how far the
+    /// group is from where its branch ends. None where it has ended.
+    fn margins(&self, at: &Pose<f64>) -> Option<Vec<Dual>> {
+        let mut pose: Pose<Dual> = self.pose();
+        for (own, turn) in pose.turn.iter_mut().zip(&at.turn) {
+            *own = turn.lift();
+        }
+        for (own, travel) in pose.slide.iter_mut().zip(&at.slide) {
+            *own = Dual::lift(*travel);
+        }
+        let q = [Dual::variable(at.q[0])];
+        self.place_from(&q, &mut pose, Guess::Pose).ok()?;
+        let margin = |(g, assur): (usize, &Assur)| {
+            let determinant = match &assur.kind {
+                Kind::Pin(_) | Kind::Aim(_) => Dual::lift(1.0) / pose.inverse[g],
+                Kind::Newton(newton) => {
+                    let n = assur.group.unknowns.len();
+                    let (lu, _) = newton.factors(&pose, n);
+                    (0..n).fold(Dual::lift(1.0), |product, i| product * lu[i * n + i])
+                }
+            };
+            if determinant.v < 0.0 {
+                -determinant
+            } else {
+                determinant
+            }
+        };
+        Some(self.groups.iter().enumerate().map(margin).collect())
+    }
+
+    /// The pose at `q` on the same branch as a nearby pose, with its margins, if it can be told to
+    /// be the same. Where the tangent of a margin, from either end, reaches zero within the step,
+    /// two branches may meet in between: a parallelogram's margin falls to zero and rises again on
+    /// the other branch, with the same sign at both ends.
+    fn advance(
+        &self,
+        from: &Pose<f64>,
+        margins: &[Dual],
+        q: f64,
+    ) -> Option<(Pose<f64>, Vec<Dual>)> {
+        let pose = self.reach(from, q)?;
+        let step = q - from.q[0];
+        let left = self.margins(&pose)?;
+        let clear = |(a, b): (&Dual, &Dual)| a.v + a.d * step > 0.0 && b.v - b.d * step > 0.0;
+        margins.iter().zip(&left).all(clear).then_some((pose, left))
+    }
+
+    /// The pose at `q` near another one, if every correction is small beside its prediction.
+    fn reach(&self, from: &Pose<f64>, q: f64) -> Option<Pose<f64>> {
         let mut pose = from.clone();
         self.predict(from, q - from.q[0], &mut pose);
         let predicted = pose.clone();

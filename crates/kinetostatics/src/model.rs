@@ -63,6 +63,9 @@ pub enum ModelError {
     /// The mechanism cannot be put together.
     #[error(transparent)]
     Assembly(#[from] AssemblyError),
+    /// A reaction that no joint of the mechanism has.
+    #[error("the mechanism has no such reaction: {0:?}")]
+    Reaction(Reaction),
     /// Not one mass for each body, or one that is negative or not finite.
     #[error("the masses do not fit the bodies")]
     Masses,
@@ -108,6 +111,13 @@ impl Model {
         };
         if masses.len() != mechanism.bodies.len() || !masses.iter().all(sound) {
             return Err(ModelError::Masses);
+        }
+        let unknown = |r: &&Reaction| {
+            let joint = mechanism.joints.get(r.joint.0);
+            !joint.is_some_and(|j| j.kind.components().contains(&r.component))
+        };
+        if let Some(reaction) = reactions.iter().find(unknown) {
+            return Err(ModelError::Reaction(*reaction));
         }
         let plan = Plan::compile(mechanism, start)?;
         let moves = moving(&plan);

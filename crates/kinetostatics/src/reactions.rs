@@ -108,6 +108,7 @@ impl Sources {
         }
         let at = plan.carried().iter().position(|c| c.joint == joint);
         let Some(carried) = at else {
+            // A joint is in the tree or it is a chord.
             let closure = plan.closures().iter().position(|c| c.joint == joint);
             return Source::Chord {
                 closure: closure.unwrap_or(0),

@@ -1,7 +1,7 @@
 //! Where the mechanism is put together, and how: it picks the branch.
 
 use crate::bodies::Bodies;
-use crate::fields::{Fields, quantity};
+use crate::fields::{Fields, angle};
 use crate::joints::ActuatorText;
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span};
@@ -30,15 +30,15 @@ impl AssemblyText {
             let name = entry.name;
             let known = |problems: &mut Problems| {
                 let what = format!("`{}` in [assembly]", shorten(name));
-                quantity(entry.value, &units.angle, format_args!("{what}"), problems)
+                angle(entry.value, &units.angle, format_args!("{what}"), problems)
             };
             if let Some(k) = actuators.iter().position(|a| a.name == name) {
                 let angle = known(problems);
-                text.start[k] = angle.map(|(_, si)| (si, entry.key.start..entry.value.span().end));
+                text.start[k] = angle.map(|si| (si, entry.key.start..entry.value.span().end));
             } else if let Some(k) = bodies.position(name) {
                 let angle = known(problems);
-                text.rough[k] = angle.map(|(_, si)| (si, entry.key.start..entry.value.span().end));
-                if bodies.ground == Some(k) && angle.is_some_and(|(_, si)| si != 0.0) {
+                text.rough[k] = angle.map(|si| (si, entry.key.start..entry.value.span().end));
+                if bodies.ground == Some(k) && angle.is_some_and(|si| si != 0.0) {
                     problems.push(
                         Problem::new(format!("the ground `{}` cannot be turned", shorten(name)))
                             .at(entry.value.span(), "its angle is 0")

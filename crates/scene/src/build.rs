@@ -53,6 +53,9 @@ struct Sections {
     motion: Option<Span>,
 }
 
+/// Longest title, in characters: it heads a page and a picture.
+const LONGEST_TITLE: usize = 200;
+
 /// What some editors put before the first character of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
@@ -87,6 +90,17 @@ impl<'a> Parts<'a> {
         }
         fields.allow(&SECTIONS, problems);
         let title = text_of(&fields, "title", problems);
+        if let (Some(text), Some(entry)) = (title, fields.get("title"))
+            && text.chars().count() > LONGEST_TITLE
+        {
+            problems.push(
+                Problem::new(format!(
+                    "the title is longer than {LONGEST_TITLE} characters"
+                ))
+                .at(entry.key.clone(), "this text")
+                .help("a title is a line at the head of a page; the rest can go into `note`"),
+            );
+        }
         let note = text_of(&fields, "note", problems);
         let units = Units::read(fields.get("units"), problems);
         // Without bodies every other name would be unknown: one message is enough.
@@ -211,7 +225,7 @@ impl<'a> Parts<'a> {
         Scene {
             title: self.title.map_or_else(|| name.clone(), one_line),
             name,
-            note: self.note.map(str::to_owned),
+            note: self.note.map(printable),
             mechanism,
             masses: self.bodies.list.iter().map(|b| b.mass).collect(),
             points: self.bodies.list.iter().map(points).collect(),
@@ -334,5 +348,12 @@ fn points(b: &BodyText<'_>) -> Vec<(String, Vec2)> {
 
 /// A title heads a page: whatever white space it is written with becomes single spaces.
 fn one_line(text: &str) -> String {
+    let text = printable(text);
     text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Control characters other than line breaks would reach the reader's terminal: they become spaces.
+fn printable(text: &str) -> String {
+    let shown = |c: char| if c.is_control() && c != '\n' { ' ' } else { c };
+    text.chars().map(shown).collect()
 }

@@ -3,6 +3,10 @@
 use miette::{Diagnostic, LabeledSpan, NamedSource};
 use std::sync::Arc;
 
+/// Longest line that is shown, bytes. A longer one is no help to a reader, and the drawing of
+/// columns beyond 65 535 panics.
+const LONGEST_LINE: usize = 2000;
+
 /// Name and text of a scene, shared by the scene and its errors.
 pub(crate) type Source = Arc<NamedSource<String>>;
 
@@ -42,7 +46,8 @@ impl SceneError {
     }
 
     /// An error at ranges of the text. The ranges are cut to the text and to character boundaries,
-    /// since a label outside would keep the whole message from being drawn.
+    /// since a label outside would keep the whole message from being drawn. Where a line to be
+    /// shown is too long for that, the message says line and column instead.
     pub(crate) fn at(
         source: &Source,
         message: String,
@@ -53,12 +58,23 @@ impl SceneError {
         let labels = labels.into_iter().map(|(span, label)| {
             let start = text.floor_char_boundary(span.start);
             let end = text.ceil_char_boundary(span.end).max(start);
-            LabeledSpan::new(Some(label), start, end - start)
+            LabeledSpan::new((!label.is_empty()).then_some(label), start, end - start)
         });
+        let labels: Vec<_> = labels.collect();
+        if let Some(first) = labels.first()
+            && labels.iter().any(|l| has_long_lines(text, l))
+        {
+            let before = text.get(..first.offset()).unwrap_or_default();
+            let line = before.matches('\n').count() + 1;
+            let column = before.rsplit('\n').next().unwrap_or_default();
+            let column = column.chars().count() + 1;
+            let place = format!("{}, line {line}, column {column}", source.name());
+            return Self::bare(format!("{message} ({place})"), help);
+        }
         Self {
             message,
             help,
-            labels: labels.collect(),
+            labels,
             text: Some(Arc::clone(source)),
             others: Vec::new(),
         }
@@ -82,4 +98,17 @@ impl SceneError {
             .map(|l| (slice(l).unwrap_or(""), l.label().unwrap_or("")))
             .collect()
     }
+}
+
+/// Whether one of the lines shown for a label is too long: those it is on, and one on either side.
+fn has_long_lines(text: &str, label: &LabeledSpan) -> bool {
+    let (start, end) = (label.offset(), label.offset() + label.len());
+    let before = text.get(..start).unwrap_or_default();
+    let after = text.get(end..).unwrap_or_default();
+    let from = before.rmatch_indices('\n').nth(1);
+    let to = after.match_indices('\n').nth(1);
+    let from = from.map_or(0, |(at, _)| at + 1);
+    let to = to.map_or(text.len(), |(at, _)| end + at);
+    let shown = text.get(from..to).unwrap_or_default();
+    shown.lines().any(|line| line.len() > LONGEST_LINE)
 }

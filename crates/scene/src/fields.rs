@@ -15,6 +15,9 @@ pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 /// numbers is still finite.
 const LARGEST: f64 = 1e60;
 
+/// Largest angle, rad: beyond it, less than ten digits of the position within a turn are left.
+const LARGEST_ANGLE: f64 = 1e6;
+
 /// A key of a table with its value.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry<'a> {
@@ -165,6 +168,25 @@ pub(crate) fn quantity(
         return Some((written, si));
     }
     too_large(value, what, problems);
+    None
+}
+
+/// An angle in rad.
+pub(crate) fn angle(
+    value: &Value<'_>,
+    unit: &Unit,
+    what: Arguments<'_>,
+    problems: &mut Problems,
+) -> Option<f64> {
+    let (_, si) = quantity(value, unit, what, problems)?;
+    if si.abs() <= LARGEST_ANGLE {
+        return Some(si);
+    }
+    problems.push(
+        Problem::new(format!("{what} is more than {LARGEST_ANGLE:e} rad"))
+            .at(value.span(), "too many turns")
+            .help("take whole turns off it: so large an angle has lost its last digits"),
+    );
     None
 }
 

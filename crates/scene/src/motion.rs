@@ -1,11 +1,12 @@
 //! The free motion, and the one number fitted to a period.
 
-use crate::fields::{Entry, Fields, number, quantity, string};
+use crate::fields::{Entry, Fields, Value, angle, number, quantity, string};
 use crate::joints::ActuatorText;
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span, list};
 use crate::scene::{Calibration, Length};
 use crate::units::Units;
+use std::fmt::Arguments;
 use toml::de::DeValue;
 
 /// `[motion]` as read: what it says of each actuator, in rad and rad/s.
@@ -77,8 +78,12 @@ fn per_actuator(
         return Some(values);
     };
     let what = format!("{key} of [motion]");
+    let read = |value: &Value<'_>, what: Arguments<'_>, problems: &mut Problems| match key {
+        "start" => angle(value, &units.angle, what, problems),
+        _ => quantity(value, &units.angle, what, problems).map(|(_, si)| si),
+    };
     if let DeValue::Integer(_) | DeValue::Float(_) = entry.value.get_ref() {
-        let (_, si) = quantity(entry.value, &units.angle, format_args!("{what}"), problems)?;
+        let si = read(entry.value, format_args!("{what}"), problems)?;
         if let [one] = values.as_mut_slice() {
             *one = Some((si, entry.value.span()));
             return Some(values);
@@ -115,7 +120,7 @@ fn per_actuator(
             continue;
         };
         let what = format_args!("{key} of `{name}` in [motion]");
-        let si = quantity(value.value, &units.angle, what, problems).map(|(_, si)| si);
+        let si = read(value.value, what, problems);
         values[k] = si.map(|si| (si, value.value.span()));
     }
     (problems.count() == count).then_some(values)

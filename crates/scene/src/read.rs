@@ -21,7 +21,9 @@ impl Scene {
         let shown = path.display().to_string();
         let bytes = bytes(path, &shown)?;
         let text = match String::from_utf8(bytes) {
+            Ok(text) if text.contains('\0') => return Err(not_text(&shown)),
             Ok(text) => text,
+            Err(error) if error.as_bytes().contains(&0) => return Err(not_text(&shown)),
             Err(error) => return Err(not_utf8(&shown, &error)),
         };
         let source = Arc::new(NamedSource::new(&shown, text));
@@ -79,6 +81,12 @@ fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, SceneError> {
     Ok(bytes)
 }
 
+/// What holds a zero byte is no text: showing a line of it would help nobody.
+fn not_text(shown: &str) -> SceneError {
+    let help = "is it a scene? If it is, save it as UTF-8".to_owned();
+    SceneError::bare(format!("`{shown}` is not a text file"), Some(help))
+}
+
 fn not_utf8(shown: &str, error: &std::string::FromUtf8Error) -> SceneError {
     let at = error.utf8_error().valid_up_to();
     // Everything before the first bad byte is unchanged by the replacement, so `at` still holds.
@@ -96,6 +104,7 @@ fn not_utf8(shown: &str, error: &std::string::FromUtf8Error) -> SceneError {
 pub(crate) fn syntax(source: &Source) -> Result<Spanned<DeTable<'_>>, SceneError> {
     let text = source.inner();
     DeTable::parse(text).map_err(|e| {
+        let source = &printable(source);
         let span = e.span().unwrap_or(0..0);
         let (message, help) = plainly(
             e.message(),
@@ -105,6 +114,18 @@ pub(crate) fn syntax(source: &Source) -> Result<Spanned<DeTable<'_>>, SceneError
         let message = format!("not valid TOML: {message}");
         SceneError::at(source, message, help, [(span, "here".to_owned())])
     })
+}
+
+/// The text without what a terminal would obey rather than show. Control characters are one byte,
+/// and so is what stands in for them: places stay where they are.
+fn printable(source: &Source) -> Source {
+    let shown = |c: char| match c {
+        '\n' | '\r' | '\t' => c,
+        c if c.is_ascii_control() => '?',
+        c => c,
+    };
+    let text = source.inner().chars().map(shown).collect();
+    Arc::new(NamedSource::new(source.name(), text))
 }
 
 /// The parser's message and a help, for the slips a scene invites: the parser speaks to those who

@@ -4,6 +4,7 @@
 use crate::bodies::Bodies;
 use crate::error::SceneError;
 use crate::names::shorten;
+use crate::place::Place;
 use crate::problem::{Problem, Problems, Span, choices};
 use crate::scene::Scene;
 use dwell_geometry::BodyId;
@@ -76,6 +77,17 @@ impl Scene {
         );
         let source = Arc::new(NamedSource::new(self.source.name(), text));
         Self::build(self.name.clone(), &source)
+    }
+
+    /// Where the number at `path` is written: itself, or the point it belongs to.
+    pub fn place_of(&self, path: &str) -> Place {
+        match self.number_at(path).map(|n| (n.field, n.body)) {
+            None => Place::Whole,
+            Some((Field::Mass, body)) => Place::Mass(body),
+            Some((Field::Inertia, body)) => Place::Inertia(body),
+            Some((Field::Center(_), body)) => Place::Center(body),
+            Some((Field::Point(k, _), body)) => Place::Point(body, k),
+        }
     }
 
     fn number_at(&self, path: &str) -> Option<&Number> {

@@ -3,6 +3,7 @@
 use crate::error::StudyError;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
+use crate::words::{count, number};
 use dwell_geometry::Range;
 use dwell_scene::Scene;
 use std::fmt::Write as _;
@@ -21,9 +22,9 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
     let _ = writeln!(text, "{}", scene.title);
     let _ = writeln!(
         text,
-        "  {} moving bodies, {} joints, 1 degree of freedom, driven by {coordinate}",
-        mechanism.bodies.len() - 1,
-        mechanism.joints.len(),
+        "  {}, {}, 1 degree of freedom, driven by {coordinate}",
+        count(mechanism.bodies.len() - 1, "moving body"),
+        count(mechanism.joints.len(), "joint"),
     );
     let _ = match plan.range() {
         Range::Full => writeln!(text, "  {coordinate} turns fully"),
@@ -34,8 +35,11 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
             to.to_degrees()
         ),
     };
-    let _ = writeln!(text, "  groups, in the order of solution:");
-    for (g, (size, kind)) in plan.group_kinds().into_iter().enumerate() {
+    let groups = plan.group_kinds();
+    if !groups.is_empty() {
+        let _ = writeln!(text, "  groups, in the order of solution:");
+    }
+    for (g, (size, kind)) in groups.into_iter().enumerate() {
         let bodies = plan.group_bodies(g);
         let joints = plan.group_joints(g);
         let bodies: Vec<_> = bodies.iter().map(|&b| mechanism.body_name(b)).collect();
@@ -45,27 +49,31 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
             .collect();
         let _ = writeln!(
             text,
-            "    {}. {} closed by {}: {size} unknown{}, {kind}",
+            "    {}. {} closed by {}: {}, {kind}",
             g + 1,
             bodies.join(", "),
             joints.join(", "),
-            if size == 1 { "" } else { "s" },
+            count(size, "unknown"),
         );
     }
     let mut pose = plan.pose();
     if plan.place(plan.start(), &mut pose).is_ok() {
         let _ = writeln!(
             text,
-            "  branch, as body angles at {coordinate} = {:.6} rad:",
-            plan.start()[0]
+            "  branch, as body angles at {coordinate} = {} rad:",
+            number(plan.start()[0])
         );
+        let names = plan.carried().iter().map(|c| mechanism.body_name(c.body));
+        let width = names.map(|n| n.chars().count()).max().unwrap_or(0);
         for carried in plan.carried() {
             let angle = plan.body_turn(carried.body, &pose).angle();
+            // Rounded first, so that no zero keeps a minus sign.
+            let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
+                .map(|(value, parts)| (value * parts).round() / parts + 0.0);
             let _ = writeln!(
                 text,
-                "    {:<12} {angle:9.6} rad  {:8.3}°",
+                "    {:<width$}  {radians:9.6} rad  {degrees:8.3}°",
                 mechanism.body_name(carried.body),
-                angle.to_degrees()
             );
         }
     }

@@ -1,12 +1,14 @@
 //! Errors of a study, each pointing into the scene file where one of its lines is to blame.
 
+use crate::words::{count, digits, number};
 use dwell_dynamics::DynamicsError;
 use dwell_geometry::{
-    ActuatorId, AssemblyError, BodyId, JointId, Mechanism, PlaceError, Plan, StructureError,
+    ActuatorId, AssemblyError, BodyId, JointId, Mechanism, PlaceError, Plan, Range, StructureError,
 };
 use dwell_kinetostatics::ModelError;
 use dwell_report::ReportError;
 use dwell_scene::{Place, Scene, SceneError};
+use std::f64::consts::TAU;
 use thiserror::Error;
 
 /// A study that cannot be done.
@@ -35,6 +37,15 @@ impl From<SceneError> for StudyError {
 }
 
 type Labels = Vec<(Place, String)>;
+
+/// A gap below this part of the mechanism's size is a matter of the last digits.
+const BARELY: f64 = 1e-6;
+
+/// The largest coordinate of a point in its body, m.
+fn size(scene: &Scene) -> f64 {
+    let points = scene.points.iter().flatten();
+    points.fold(0.0, |m, (_, at)| m.max(at.x.abs()).max(at.y.abs()))
+}
 
 fn body_labels(bodies: &[BodyId], words: &str) -> Labels {
     let label = |&b: &BodyId| (Place::Body(b), words.to_owned());
@@ -66,7 +77,7 @@ fn joint_names(mechanism: &Mechanism, joints: &[JointId]) -> String {
 pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
     let assembly = match error {
         ModelError::Assembly(assembly) => assembly,
-        ModelError::Masses => {
+        ModelError::Masses | ModelError::Reaction(_) => {
             let message = error.to_string();
             return scene
                 .error(message, None, &[(Place::Whole, String::new())])
@@ -81,18 +92,29 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
             joints,
             gap,
         } => {
+            let mut labels = joint_labels(joints, "cannot be joined");
+            labels.push((Place::Assembly, "at this start".to_owned()));
+            let names = names(mechanism, bodies);
+            if *gap <= BARELY * size(scene) {
+                return scene
+                    .error(
+                        format!(
+                            "the start is a limit position, or just beyond it: {names} reach each \
+                             other but for {} m",
+                            digits(*gap, 3)
+                        ),
+                        Some("start a little away from it".to_owned()),
+                        &labels,
+                    )
+                    .into();
+            }
             let missing = if gap.is_finite() {
                 format!(": {} m are missing", number(*gap))
             } else {
                 String::new()
             };
-            let mut labels = joint_labels(joints, "cannot be joined");
-            labels.push((Place::Assembly, "at this start".to_owned()));
             scene.error(
-                format!(
-                    "{} cannot be put together at the start{missing}",
-                    names(mechanism, bodies)
-                ),
+                format!("{names} cannot be put together at the start{missing}"),
                 Some(
                     "check the lengths and points of these bodies, and the actuator's coordinate \
                      in [assembly]; a mechanism with a limited range may need another start"
@@ -171,7 +193,11 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> SceneError {
             let mut labels = body_labels(bodies, "nothing determines its motion");
             labels.extend(actuators());
             scene.error(
-                format!("the mechanism has {dof} degrees of freedom and {given} actuators"),
+                format!(
+                    "the mechanism has {} and {}",
+                    count(*dof, "degree of freedom"),
+                    count(*given, "actuator")
+                ),
                 Some(
                     "each degree of freedom needs an actuator: add one, or a joint that is missing"
                         .to_owned(),
@@ -187,27 +213,50 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> SceneError {
             let mut labels = joint_labels(joints, "among the constraints that are too many");
             let driven = |&a: &ActuatorId| (Place::Actuator(a), "cannot drive this".to_owned());
             labels.extend(too_many.iter().map(driven));
-            let free = mechanism.actuators.len().saturating_sub(*excess);
-            scene.error(
-                format!(
-                    "{excess} constraint{} more than the bodies can follow ({}): with {} \
-                     actuator{}, the joints leave {free} degrees of freedom",
-                    if *excess == 1 { "" } else { "s" },
-                    if joints.is_empty() {
-                        "an actuator".to_owned()
-                    } else {
-                        joint_names(mechanism, joints)
-                    },
-                    mechanism.actuators.len(),
-                    if mechanism.actuators.len() == 1 {
-                        ""
-                    } else {
-                        "s"
-                    },
-                ),
-                Some("take a joint, a bar or an actuator out".to_owned()),
-                &labels,
-            )
+            let given = mechanism.actuators.len();
+            let (moving, held) = (mechanism.bodies.len() - 1, mechanism.joints.len());
+            let freedom = (3 * moving).saturating_sub(2 * held);
+            let (message, help) = if freedom == 0 {
+                (
+                    format!(
+                        "the joints leave the mechanism no degree of freedom: {} and {}, and \
+                         3 · {moving} − 2 · {held} is not above zero",
+                        count(moving, "moving body"),
+                        count(held, "joint"),
+                    ),
+                    "take a joint or a bar out; a mechanism that moves in spite of this count, by its \
+                     special lengths, is not supported",
+                )
+            } else if given > freedom {
+                labels.extend(actuators().filter(
+                    |(place, _)| !matches!(place, Place::Actuator(a) if too_many.contains(a)),
+                ));
+                (
+                    format!(
+                        "the mechanism has {} and {}",
+                        count(freedom, "degree of freedom"),
+                        count(given, "actuator")
+                    ),
+                    "each degree of freedom needs one actuator: take one out, or a joint",
+                )
+            } else {
+                (
+                    format!(
+                        "{} too many{} in a part of the mechanism",
+                        match excess {
+                            1 => "one constraint".to_owned(),
+                            n => count(*n, "constraint"),
+                        },
+                        match joints.as_slice() {
+                            [] => String::new(),
+                            joints => format!(" ({})", joint_names(mechanism, joints)),
+                        },
+                    ),
+                    "take a joint, a bar or an actuator out there; as a whole it has as many \
+                     degrees of freedom as actuators, or more",
+                )
+            };
+            scene.error(message, Some(help.to_owned()), &labels)
         }
         StructureError::GroupNeedsOneActuator { size, bodies } => scene.error(
             format!(
@@ -223,30 +272,69 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> SceneError {
 /// The error where one degree of freedom is needed and the scene has another number.
 pub(crate) fn not_one_actuator(scene: &Scene) -> StudyError {
     let given = scene.mechanism.actuators.len();
-    let label = |a| (Place::Actuator(ActuatorId(a)), "an actuator".to_owned());
+    let label = |a| (Place::Actuator(ActuatorId(a)), "drives it".to_owned());
     let mut labels: Labels = (0..given).map(label).collect();
     if labels.is_empty() {
-        labels.push((Place::Whole, String::new()));
+        labels.push((Place::Whole, "there are no [actuators] in this file".into()));
     }
     scene
         .error(
-            format!("the reduced model needs one degree of freedom; this scene drives {given}"),
+            format!(
+                "the scene has {}: only mechanisms of one degree of freedom can be reduced so far",
+                count(given, "actuator")
+            ),
             Some("give exactly one actuator in [actuators]".to_owned()),
             &labels,
         )
         .into()
 }
 
-/// Explains a motion or a position that failed.
+/// The name of the coordinate.
+fn coordinate(scene: &Scene) -> &str {
+    let first = scene.mechanism.actuators.first();
+    first.map_or("the coordinate", |a| a.name.as_str())
+}
+
+/// Explains a motion that failed.
 pub(crate) fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> StudyError {
-    let motion = |message: String, help: Option<&str>, at: Place, words: &str| {
-        scene
-            .error(message, help.map(str::to_owned), &[(at, words.to_owned())])
-            .into()
+    let phi = coordinate(scene);
+    let motion = |message: String, help: &str, at: Place, label: &str| {
+        let labels = [(at, label.to_owned())];
+        scene.error(message, Some(help.to_owned()), &labels).into()
     };
     let speed = Place::Speed(ActuatorId(0));
     match error {
         DynamicsError::Place(place) => explain_place(scene, plan, place),
+        DynamicsError::Limit { t, q } => {
+            let limit = match plan.range() {
+                Range::Full => String::new(),
+                Range::Between(from, to) => {
+                    // In the turn in which the motion is.
+                    let turns = TAU * ((q - from) / TAU).floor();
+                    let nearest = if q - turns - from < to + turns - q {
+                        from
+                    } else {
+                        to
+                    };
+                    format!(", {} rad,", number(nearest + turns))
+                }
+            };
+            motion(
+                format!(
+                    "the motion reaches a limit position of {phi}{limit} soon after t = {} s, and \
+                     passes to another assembly branch there, which {phi} cannot tell from this one",
+                    digits(*t, 3)
+                ),
+                &match below(*t) {
+                    Some(t) => format!(
+                        "end it before: `duration = {t}` (s); or drive a joint that turns fully"
+                    ),
+                    None => "start farther from it, or drive a joint that turns fully".to_owned(),
+                },
+                Place::Length,
+                "longer than that",
+            )
+        }
         DynamicsError::NoInertia { q, .. } => {
             let label = |b| (Place::Body(BodyId(b)), "no inertia that moves".to_owned());
             let moving = (0..scene.mechanism.bodies.len()).filter(|&b| b != scene.mechanism.ground);
@@ -254,59 +342,148 @@ pub(crate) fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) 
             scene
                 .error(
                     format!(
-                        "the generalised inertia m is zero at {} = {} rad: no body with mass moves there",
-                        scene.mechanism.actuators[0].name,
+                        "the generalised inertia m is zero at {phi} = {} rad: no body with mass \
+                         moves there",
                         number(*q)
                     ),
-                    Some("give the bodies mass and inertia".to_owned()),
+                    Some("give the bodies that move mass and inertia".to_owned()),
                     &labels,
                 )
                 .into()
         }
         DynamicsError::AtRest => motion(
             "the free motion starts at rest, and nothing moves the mechanism".to_owned(),
-            Some("give it a speed in [motion]"),
+            "give it a speed in [motion]",
             speed,
             "no speed",
         ),
+        DynamicsError::BadEnergy { q_dot, energy } => motion(
+            format!(
+                "the kinetic energy at {} rad/s is {} J: too far from 1 to compute with",
+                number(*q_dot),
+                number(*energy)
+            ),
+            "take a speed of a size that occurs; without loads it only scales time and reactions",
+            speed,
+            "this speed",
+        ),
         DynamicsError::NoFullTurn { from, to } => motion(
             format!(
-                "the actuator turns only from {} to {} rad, so the motion has no period of turning",
+                "{phi} turns only from {} to {} rad, so the motion has no period of turning",
                 number(*from),
                 number(*to)
             ),
-            Some("give `duration` (s) instead of `periods`"),
+            "give `duration` (s) instead of `periods`",
             Place::Length,
             "no whole turn is reached",
         ),
-        other => motion(other.to_string(), None, Place::Motion, "this motion"),
+        DynamicsError::NotResolved { points, left } => motion(
+            format!(
+                "the inertia changes too sharply within a turn to find the period by quadrature: \
+                 {points} points leave {} of it open",
+                digits(*left, 2)
+            ),
+            "bars may nearly be in line, at a change point: `dwell reduce` shows where; a motion with \
+             a `duration` is followed without a period",
+            Place::Length,
+            "a period is needed",
+        ),
+        DynamicsError::Budget { t, steps } => motion(
+            format!("{steps} steps take the motion only to t = {} s", number(*t)),
+            "end it before, or follow it less exactly, with a larger --rtol",
+            Place::Length,
+            "too long to be followed",
+        ),
+        DynamicsError::SmallStep { t } => motion(
+            format!(
+                "the motion changes too fast to be followed from t = {} s on: the integrator's steps \
+                 become too small",
+                number(*t)
+            ),
+            "a limit position or a change point may be near: end it before, or check the lengths",
+            Place::Length,
+            "until there",
+        ),
+        DynamicsError::TooShort => motion(
+            "the motion is too short to compute: its end is its start, to rounding".to_owned(),
+            "give it more time",
+            Place::Length,
+            "too short",
+        ),
+        DynamicsError::NotFinite { t } => motion(
+            format!("the motion is no longer finite after t = {} s", number(*t)),
+            "check the speed and the inertias",
+            Place::Motion,
+            "this motion",
+        ),
+        other => motion(
+            other.to_string(),
+            "check the numbers of the motion",
+            Place::Motion,
+            "this motion",
+        ),
     }
+}
+
+/// A time of two digits before `t`, if that leaves any.
+fn below(t: f64) -> Option<String> {
+    let unit = 10_f64.powf(t.log10().floor() - 1.0);
+    let time = (t / unit).floor() * unit;
+    (time.is_normal() && time > 0.0).then(|| digits(time, 2))
 }
 
 /// Explains a position that cannot be placed.
 pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> StudyError {
-    let mut labels = Labels::new();
-    let mut who = String::new();
-    if let Some(group) = error.group() {
-        let joints = plan.group_joints(group);
-        labels = joint_labels(&joints, "cannot stay joined there");
-        who = format!(" ({})", names(&scene.mechanism, &plan.group_bodies(group)));
-    }
-    if labels.is_empty() {
-        labels.push((Place::Actuator(ActuatorId(0)), "this coordinate".to_owned()));
-    }
-    let help = "the actuator's range ends there; `dwell check` shows it".to_owned();
-    scene
-        .error(format!("{error}{who}"), Some(help), &labels)
-        .into()
-}
-
-/// A number with six digits, plainly.
-pub(crate) fn number(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
-        let text = format!("{value:.6}");
-        text.trim_end_matches('0').trim_end_matches('.').to_owned()
-    } else {
-        format!("{value:.5e}")
-    }
+    let phi = coordinate(scene);
+    let joints = error.group().map(|g| plan.group_joints(g));
+    let who = error.group().map_or_else(String::new, |g| {
+        names(&scene.mechanism, &plan.group_bodies(g))
+    });
+    let range_ends = "the range ends there; `dwell check` shows it";
+    let (message, help) = match *error {
+        PlaceError::Unreachable { q, gap, .. } => (
+            format!(
+                "{who} cannot reach each other at {phi} = {} rad: {} m are missing",
+                number(q),
+                digits(gap, 3)
+            ),
+            range_ends,
+        ),
+        PlaceError::Singular { q, .. } => (
+            format!(
+                "{who} are in line at {phi} = {} rad: {phi} does not determine their motion there",
+                number(q)
+            ),
+            match plan.range() {
+                Range::Full => "it is a change point: change a length, or drive another joint",
+                Range::Between(..) => range_ends,
+            },
+        ),
+        PlaceError::NotClosed { q, residual, .. } => (
+            format!(
+                "{who} could not be placed at {phi} = {} rad: {} m stay open",
+                number(q),
+                digits(residual, 3)
+            ),
+            range_ends,
+        ),
+        PlaceError::OutOfRange { q, from, to } => (
+            format!(
+                "{phi} = {} rad is outside its range, {} to {} rad",
+                number(q),
+                number(from),
+                number(to)
+            ),
+            "start within the range; `dwell check` shows it",
+        ),
+        PlaceError::NotFinite { q } => (
+            format!("{phi} = {q} rad is not a finite number"),
+            "check the numbers of the motion",
+        ),
+    };
+    let labels = match joints {
+        Some(joints) if !joints.is_empty() => joint_labels(&joints, "cannot stay joined there"),
+        _ => vec![(Place::MotionStart(ActuatorId(0)), "this coordinate".into())],
+    };
+    scene.error(message, Some(help.to_owned()), &labels).into()
 }

@@ -9,6 +9,7 @@
 
 mod calibrate;
 mod check;
+mod dossier;
 mod error;
 mod figures;
 mod outcome;
@@ -18,6 +19,7 @@ mod reference;
 mod simulate;
 mod subject;
 mod validate;
+mod words;
 
 pub use calibrate::{Calibrated, calibrate, find_value};
 pub use check::check;

@@ -4,6 +4,7 @@ use crate::error::{StudyError, explain_place};
 use crate::figures;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
+use crate::words::digits;
 use dwell_kinetostatics::{Coefficients, Reduced};
 use dwell_report::{Column, Figure, Table, png};
 use dwell_scene::Scene;
@@ -89,10 +90,18 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
     };
     let ((m0, m1), (h0, h1)) = (over(|c| c.m), over(|c| c.half_dm));
     outcome.summary = format!(
-        "{}: {} positions of {}\n  m    from {m0:.9} to {m1:.9} kg m²\n  ½m′  from {h0:.9} to {h1:.9} kg m²/rad\n",
+        "{}: {} positions of {}\n  m    from {} to {} kg m²\n  ½m′  from {} to {} kg m²/rad\n",
         scene.title,
         sweep.q.len(),
         prepared.coordinate(),
+        digits(m0, 9),
+        digits(m1, 9),
+        digits(h0, 9),
+        digits(h1, 9),
     );
+    if m1 == 0.0 {
+        outcome.summary +=
+            "  no body with mass moves: no motion follows from this, and every reaction is zero\n";
+    }
     Ok(outcome)
 }

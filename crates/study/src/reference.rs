@@ -4,7 +4,7 @@ use crate::error::StudyError;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_scene::Scene;
 use dwell_verify::truths::{Point, Sample};
-use serde_json::Value;
+use serde_json::{Map, Value};
 use std::path::Path;
 
 /// Published or independently computed values of a case.
@@ -18,8 +18,22 @@ pub(crate) struct Reference {
     pub(crate) period: Option<f64>,
 }
 
+/// What a reference file holds. The words are for people, and so are numbers of other quantities.
+const KEYS: [&str; 7] = [
+    "title",
+    "source",
+    "definition",
+    "convention",
+    "samples",
+    "free_motion",
+    "others_measured",
+];
+/// What a sample holds beside points, such as `P_m`, and angles, such as `theta_guide_rad`.
+const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
+
 impl Reference {
-    /// Reads the reference of a case; an absent file is an empty reference.
+    /// Reads the reference of a case; an absent file is an empty reference. A key that is not known
+    /// is an error: what is given and never compared would pass for agreement.
     pub(crate) fn read(folder: &Path, scene: &Scene) -> Result<Self, StudyError> {
         let path = folder.join("reference.json");
         if !path.exists() {
@@ -29,90 +43,170 @@ impl Reference {
             path: path.display().to_string(),
             reason,
         };
-        let text = std::fs::read_to_string(&path).map_err(|e| wrong(e.to_string()))?;
-        let value: Value = serde_json::from_str(&text).map_err(|e| wrong(e.to_string()))?;
+        let bytes = std::fs::read(&path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+        let text = String::from_utf8(bytes).map_err(|_| wrong("is not UTF-8 text".to_owned()))?;
+        let text = text.trim_start_matches('\u{feff}');
+        let value: Value =
+            serde_json::from_str(text).map_err(|e| wrong(format!("not valid JSON: {e}")))?;
         Self::from_value(&value, scene).map_err(wrong)
     }
 
     fn from_value(value: &Value, scene: &Scene) -> Result<Self, String> {
+        let fields = object(value, "the file")?;
+        let is_known = |key: &str| KEYS.contains(&key);
+        if let Some(key) = fields.keys().find(|key| !is_known(key)) {
+            return Err(format!(
+                "unknown key `{key}`; known are {}",
+                KEYS.join(", ")
+            ));
+        }
         let samples = match &value["samples"] {
             Value::Null => Vec::new(),
             Value::Array(samples) => samples
                 .iter()
-                .map(|s| sample(s, scene))
+                .enumerate()
+                .map(|(k, s)| sample(s, scene).map_err(|e| format!("samples[{k}]: {e}")))
                 .collect::<Result<_, _>>()?,
             _ => return Err("`samples` is not a list".to_owned()),
         };
-        let period = &value["free_motion"]["period_s"];
+        let period = match &value["free_motion"] {
+            Value::Null => None,
+            motion => {
+                object(motion, "`free_motion`")?;
+                let period = number(motion, "period_s").map_err(|e| format!("free_motion: {e}"))?;
+                if scene.motion.is_none() {
+                    return Err("there is a `free_motion`, but no [motion] in the scene".to_owned());
+                }
+                Some(period)
+            }
+        };
         Ok(Self {
             source: value["source"]
                 .as_str()
                 .unwrap_or("no source given")
                 .to_owned(),
             samples,
-            period: optional(period)?,
+            period,
         })
     }
 }
 
+fn object<'a>(value: &'a Value, what: &str) -> Result<&'a Map<String, Value>, String> {
+    let object = value.as_object();
+    object.ok_or_else(|| format!("{what} is not an object {{ … }}"))
+}
+
 /// A number, or the text of one (fifty digits do not fit a JSON number).
-fn number(value: &Value) -> Result<f64, String> {
+fn parse(value: &Value) -> Option<f64> {
     let parsed = match value {
         Value::String(text) => text.trim().parse().ok(),
         other => other.as_f64(),
     };
-    let finite = parsed.filter(|v: &f64| v.is_finite());
-    finite.ok_or_else(|| format!("{value} is not a number"))
+    parsed.filter(|v: &f64| v.is_finite())
 }
 
-fn optional(value: &Value) -> Result<Option<f64>, String> {
-    match value {
+/// The number of a key.
+fn number(object: &Value, key: &str) -> Result<f64, String> {
+    match &object[key] {
+        Value::Null => Err(format!("`{key}` is missing")),
+        value => parse(value).ok_or_else(|| format!("`{key}` is not a number: {value}")),
+    }
+}
+
+/// The number of a key that may be absent.
+fn optional(object: &Value, key: &str) -> Result<Option<f64>, String> {
+    match &object[key] {
         Value::Null => Ok(None),
-        value => number(value).map(Some),
+        _ => number(object, key).map(Some),
     }
 }
 
 fn sample(value: &Value, scene: &Scene) -> Result<Sample, String> {
-    let q = match (&value["phi_rad"], &value["phi_deg"]) {
-        (Value::Null, Value::Null) => return Err("a sample has neither phi_rad nor phi_deg".into()),
-        (Value::Null, degrees) => number(degrees)?.to_radians(),
-        (radians, _) => number(radians)?,
+    let fields = object(value, "it")?;
+    let q = match (optional(value, "phi_rad")?, optional(value, "phi_deg")?) {
+        (None, None) => return Err("neither `phi_rad` nor `phi_deg` is given".to_owned()),
+        (Some(_), Some(_)) => return Err("both `phi_rad` and `phi_deg` are given".to_owned()),
+        (Some(radians), None) => radians,
+        (None, Some(degrees)) => degrees.to_radians(),
     };
-    let mechanism = &scene.mechanism;
-    let all = mechanism.reactions();
-    let mut reactions = Vec::new();
-    for (name, pair) in value["reactions"].as_object().into_iter().flatten() {
-        let k = all
-            .iter()
-            .position(|&r| mechanism.reaction_name(r) == *name);
-        let k = k.ok_or_else(|| format!("no reaction `{name}` in the scene"))?;
-        reactions.push((k, number(&pair["a"])?, number(&pair["b"])?));
-    }
     let mut points = Vec::new();
-    // A point is published by its name alone, such as `P_m`: any body that has it will do.
-    for (key, place) in value.as_object().into_iter().flatten() {
-        let (Some(name), Some(at)) = (key.strip_suffix("_m"), place.as_array()) else {
+    for (key, at) in fields {
+        if SAMPLE_KEYS.contains(&key.as_str()) || is_angle(key, scene) {
             continue;
-        };
-        let found = scene.points.iter().enumerate().find_map(|(body, points)| {
-            let (_, local) = points.iter().find(|(n, _)| n == name)?;
-            Some((BodyId(body), *local))
-        });
-        let (body, local) = found.ok_or_else(|| format!("no point `{name}` in the scene"))?;
-        let [x, y] = at.as_slice() else {
-            return Err(format!("`{key}` is not a pair of numbers"));
-        };
-        let at = Vec2 {
-            x: number(x)?,
-            y: number(y)?,
-        };
-        points.push(Point { body, local, at });
+        }
+        points.push(point(key, at, scene)?);
     }
-    Ok(Sample {
+    let sample = Sample {
         q,
-        m: optional(&value["m1_kg_m2"])?,
-        half_dm: optional(&value["half_dm1"])?,
-        reactions,
+        m: optional(value, "m1_kg_m2")?,
+        half_dm: optional(value, "half_dm1")?,
+        reactions: reactions(&value["reactions"], scene)?,
         points,
-    })
+    };
+    let nothing = sample.m.is_none() && sample.half_dm.is_none();
+    if nothing && sample.reactions.is_empty() && sample.points.is_empty() {
+        return Err("there is nothing to compare in it".to_owned());
+    }
+    Ok(sample)
+}
+
+/// The reactions of a sample: (index in the mechanism, a, b).
+fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, String> {
+    if value.is_null() {
+        return Ok(Vec::new());
+    }
+    let names: Vec<String> = {
+        let mechanism = &scene.mechanism;
+        let all = mechanism.reactions().into_iter();
+        all.map(|r| mechanism.reaction_name(r)).collect()
+    };
+    let pair = |(name, pair): (&String, &Value)| {
+        let k = names.iter().position(|n| n == name).ok_or_else(|| {
+            format!(
+                "the scene has no reaction `{name}`; it has {}",
+                names.join(", ")
+            )
+        })?;
+        let wrong = |e: String| format!("reaction `{name}`: {e}");
+        object(pair, "it").map_err(wrong)?;
+        let (a, b) = (number(pair, "a"), number(pair, "b"));
+        Ok((k, a.map_err(wrong)?, b.map_err(wrong)?))
+    };
+    let fields = object(value, "`reactions`")?;
+    fields.iter().map(pair).collect()
+}
+
+/// Whether a key gives the angle of a body, such as `theta_guide_rad`. It is not compared: the
+/// points are.
+fn is_angle(key: &str, scene: &Scene) -> bool {
+    let body = key
+        .strip_prefix("theta_")
+        .and_then(|k| k.strip_suffix("_rad"));
+    body.is_some_and(|body| scene.mechanism.bodies.iter().any(|b| b.name == body))
+}
+
+/// A point is published by its name alone, such as `P_m`: any body that has it will do.
+fn point(key: &str, at: &Value, scene: &Scene) -> Result<Point, String> {
+    let Some(name) = key.strip_suffix("_m") else {
+        return Err(format!(
+            "unknown key `{key}`; known are {}, and points such as `P_m`",
+            SAMPLE_KEYS.join(", ")
+        ));
+    };
+    let found = scene.points.iter().enumerate().find_map(|(body, points)| {
+        let (_, local) = points.iter().find(|(n, _)| n == name)?;
+        Some((BodyId(body), *local))
+    });
+    let (body, local) = found.ok_or_else(|| format!("the scene has no point `{name}`"))?;
+    match at.as_array().map(Vec::as_slice) {
+        Some([x, y]) => match (parse(x), parse(y)) {
+            (Some(x), Some(y)) => Ok(Point {
+                body,
+                local,
+                at: Vec2 { x, y },
+            }),
+            _ => Err(format!("`{key}` is not a pair of numbers: {at}")),
+        },
+        _ => Err(format!("`{key}` is not a pair of numbers: {at}")),
+    }
 }

@@ -4,6 +4,7 @@ use crate::error::{StudyError, explain_motion};
 use crate::figures;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
+use crate::words::digits;
 use dwell_dynamics::{
     DynamicsError, FreeTurn, Method, Options, Run, State, Until, simulate as integrate,
 };
@@ -34,6 +35,10 @@ impl Default for Accuracy {
 
 /// Samples of a motion's table: a thousand to a turn, or in all where there is no whole turn.
 const SAMPLES: f64 = 1000.0;
+/// Most samples of a table: what is longer than a hundred turns is sampled less densely.
+const MOST_SAMPLES: f64 = 100_000.0;
+/// Largest change of the energy, of which there should be none, that is not remarked on.
+const ENERGY_KEPT: f64 = 1e-3;
 
 /// A motion with everything that is tabulated of it.
 #[derive(Debug, Clone)]
@@ -67,22 +72,23 @@ impl History {
         let model = &prepared.model;
         let period = match FreeTurn::new(model, start) {
             Ok(turn) => Some(turn.period),
-            // A limited range or a mechanism at rest can still be followed for a given time.
-            Err(DynamicsError::NoFullTurn { .. } | DynamicsError::AtRest)
-                if matches!(length, Length::Duration(_)) =>
-            {
-                None
-            }
+            // Without a period, the motion can still be followed for a given time.
+            Err(
+                DynamicsError::NoFullTurn { .. }
+                | DynamicsError::AtRest
+                | DynamicsError::NotResolved { .. },
+            ) if matches!(length, Length::Duration(_)) => None,
             Err(e) => return Err(e),
         };
         let duration = match (length, period) {
             (Length::Periods(n), Some(period)) => n * period,
             (Length::Periods(n) | Length::Duration(n), _) => n,
         };
+        let sampled = period.map_or(duration, |period| period.min(duration));
         let options = Options {
             relative: accuracy.relative,
             absolute: accuracy.absolute,
-            every: Some(period.unwrap_or(duration) / SAMPLES),
+            every: Some((sampled / SAMPLES).max(duration / MOST_SAMPLES)),
             ..Options::new(accuracy.method, accuracy.relative)
         };
         let run = integrate(model, start, Until::Time(start.t + duration), &options)?;
@@ -135,8 +141,8 @@ pub fn simulate(scene: &Scene, accuracy: &Accuracy) -> Result<Outcome, StudyErro
         return Err(scene
             .error(
                 "the scene has no [motion] to simulate".to_owned(),
-                Some("add [motion] with start, speed, and periods or duration".to_owned()),
-                &[(Place::Whole, String::new())],
+                Some("add [motion] with `speed`, and `periods` or `duration`".to_owned()),
+                &[(Place::Whole, "there is no [motion] in this file".to_owned())],
             )
             .into());
     };
@@ -155,28 +161,37 @@ pub fn simulate(scene: &Scene, accuracy: &Accuracy) -> Result<Outcome, StudyErro
     let work = history.run.statistics;
     let end = history.run.steps.last().map_or(0.0, |s| s.t);
     outcome.summary = format!(
-        "{}: {} from t = {} to {end:.6} s, {} at relative {:e} and absolute {:e}\n",
+        "{}: {} from t = {} to {} s, {} at relative {:e} and absolute {:e}\n",
         scene.title,
         prepared.coordinate(),
         start.t,
+        digits(end, 7),
         accuracy.method.name(),
         accuracy.relative,
         accuracy.absolute,
     );
     if let (Some(turn), Some(period)) = (history.run.turns.first(), history.period) {
         outcome.summary += &format!(
-            "  first whole turn after {:.12} s (by quadrature {period:.12} s)\n",
-            turn.t - start.t
+            "  first whole turn after {} s (by quadrature {} s)\n",
+            digits(turn.t - start.t, 13),
+            digits(period, 13),
         );
     }
+    let change = (high - low) / high;
+    outcome.summary += &if high > 0.0 {
+        format!(
+            "  energy {} J, kept to {change:.1e} of it\n",
+            digits(high, 9)
+        )
+    } else {
+        "  it stays at rest: nothing moves it\n".to_owned()
+    };
+    if change > ENERGY_KEPT {
+        outcome.summary += "  the energy should stay: take a smaller --rtol\n";
+    }
     outcome.summary += &format!(
-        "  energy {high:.9} J, kept to {:.1e} of it\n  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations\n",
-        (high - low) / high,
-        work.steps,
-        work.rejected,
-        work.evaluations,
-        work.jacobians,
-        work.factorisations,
+        "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations\n",
+        work.steps, work.rejected, work.evaluations, work.jacobians, work.factorisations,
     );
     Ok(outcome)
 }

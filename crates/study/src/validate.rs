@@ -1,6 +1,7 @@
 //! `dwell validate`: a case from its folder to its report: everything computed, everything checked.
 
 use crate::calibrate::{Calibrated, find_value};
+use crate::dossier::{document, numbers, snapshot, summary, tables};
 use crate::error::{StudyError, explain_motion};
 use crate::figures::{self, Dwell};
 use crate::outcome::{Outcome, Progress, Step};
@@ -9,16 +10,15 @@ use crate::reduce::Sweep;
 use crate::reference::Reference;
 use crate::simulate::{Accuracy, History};
 use crate::subject::PlanSubject;
-use dwell_findings::{Finding, all_pass};
+use dwell_findings::Finding;
 use dwell_kinetostatics::Reduced;
-use dwell_report::{Block, Column, Document, Figure, Files, Table, json, png, stable};
+use dwell_report::{Figure, Files, png};
 use dwell_scene::{Length, Scene};
 use dwell_verify::{
-    Bench, Case, ErrorCurve, FreeMotion, FreeMotionCase, Rung, free_motion, half_dm_curve,
+    Bench, Case, ErrorCurve, FreeMotion, FreeMotionCase, free_motion, half_dm_curve,
     reaction_curve, spread,
 };
 use rayon::prelude::*;
-use serde::Serialize;
 use std::path::Path;
 
 /// Positions at which every truth is held against the model.
@@ -36,70 +36,14 @@ pub struct Validation {
 }
 
 /// What the checks of a case yield.
-struct Evidence {
-    findings: Vec<Finding>,
-    curves: Vec<ErrorCurve>,
-    motion: Option<FreeMotion>,
-    calibrated: Option<Calibrated>,
-    history: Option<History>,
-    dwell: Option<Dwell>,
-    sweep: Sweep,
-}
-
-/// The numbers of the report, as JSON.
-#[derive(Serialize)]
-struct Numbers<'a> {
-    title: &'a str,
-    note: &'a Option<String>,
-    version: &'static str,
-    passed: bool,
-    period_s: Option<f64>,
-    energy_j: Option<f64>,
-    calibration: Option<Value<'a>>,
-    convergence_slope: Option<f64>,
-    findings: &'a [Finding],
-    ladder: Vec<LadderRow>,
-}
-
-#[derive(Serialize)]
-struct Value<'a> {
-    path: &'a str,
-    unit: &'a str,
-    scene: f64,
-    scene_period_s: f64,
-    found: f64,
-    wanted_period_s: f64,
-}
-
-#[derive(Serialize)]
-struct LadderRow {
-    method: &'static str,
-    tolerance: f64,
-    steps: usize,
-    rejected: usize,
-    evaluations: usize,
-    jacobians: usize,
-    seconds: f64,
-    period_error: f64,
-    energy_drift: f64,
-    reaction_error: f64,
-}
-
-impl From<&Rung> for LadderRow {
-    fn from(r: &Rung) -> Self {
-        Self {
-            method: r.method.name(),
-            tolerance: r.tolerance,
-            steps: r.work.steps,
-            rejected: r.work.rejected,
-            evaluations: r.work.evaluations,
-            jacobians: r.work.jacobians,
-            seconds: r.seconds,
-            period_error: r.period_error,
-            energy_drift: r.drift,
-            reaction_error: r.reaction_error,
-        }
-    }
+pub(crate) struct Evidence {
+    pub(crate) findings: Vec<Finding>,
+    pub(crate) curves: Vec<ErrorCurve>,
+    pub(crate) motion: Option<FreeMotion>,
+    pub(crate) calibrated: Option<Calibrated>,
+    pub(crate) history: Option<History>,
+    pub(crate) dwell: Option<Dwell>,
+    pub(crate) sweep: Sweep,
 }
 
 /// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`. The
@@ -260,238 +204,4 @@ fn pages(prepared: &Prepared<'_>, drawing: Figure, evidence: &Evidence) -> Vec<F
         pages.push(figures::cost(prepared, motion));
     }
     pages
-}
-
-fn tables(prepared: &Prepared<'_>, evidence: &Evidence) -> Vec<(&'static str, Table)> {
-    let mut tables = vec![("reduced", evidence.sweep.table(prepared))];
-    if let Some(history) = &evidence.history {
-        tables.push(("motion", history.table(prepared)));
-    }
-    if let Some(motion) = &evidence.motion {
-        let columns = [
-            ("bdf_or_tsit45", "0 or 1"),
-            ("tolerance", ""),
-            ("steps", ""),
-            ("evaluations", ""),
-            ("jacobians", ""),
-            ("wall_time", "s"),
-            ("period_error", ""),
-            ("energy_drift", ""),
-            ("reaction_error", ""),
-        ];
-        let row = |r: &Rung| {
-            vec![
-                f64::from(u8::from(r.method == dwell_dynamics::Method::Tsit45)),
-                r.tolerance,
-                r.work.steps as f64,
-                r.work.evaluations as f64,
-                r.work.jacobians as f64,
-                r.seconds,
-                r.period_error,
-                r.drift,
-                r.reaction_error,
-            ]
-        };
-        tables.push((
-            "cost",
-            Table {
-                columns: columns.map(|(n, u)| Column::new(n, u)).to_vec(),
-                rows: motion.rungs.iter().map(row).collect(),
-            },
-        ));
-    }
-    tables
-}
-
-fn numbers(scene: &Scene, evidence: &Evidence) -> Result<String, StudyError> {
-    let motion = evidence.motion.as_ref();
-    Ok(json(&Numbers {
-        title: &scene.title,
-        note: &scene.note,
-        version: env!("CARGO_PKG_VERSION"),
-        passed: all_pass(&evidence.findings),
-        period_s: motion.map(|m| m.turn.period),
-        energy_j: motion.map(|m| m.turn.energy),
-        calibration: evidence.calibrated.as_ref().map(|c| Value {
-            path: &c.path,
-            unit: &c.unit,
-            scene: c.present,
-            scene_period_s: c.present_period,
-            found: c.found,
-            wanted_period_s: c.period,
-        }),
-        convergence_slope: motion.map(|m| m.slope),
-        findings: &evidence.findings,
-        ladder: motion.map_or_else(Vec::new, |m| m.rungs.iter().map(LadderRow::from).collect()),
-    })?)
-}
-
-/// The text that every machine reproduces: verdicts, and values to the digits that are stable.
-fn snapshot(prepared: &Prepared<'_>, evidence: &Evidence) -> String {
-    let scene = prepared.scene;
-    let mut text = format!("{}\n\n", scene.title);
-    let mut model_at = prepared.model.model().coefficients();
-    let mut work = prepared.model.work();
-    for q in prepared.sweep(8) {
-        if prepared
-            .model
-            .coefficients(q, &mut work, &mut model_at)
-            .is_ok()
-        {
-            text += &format!(
-                "q = {q:.6}  m = {:.9}  half_dm = {:.9}\n",
-                model_at.m,
-                model_at.half_dm + 0.0
-            );
-        }
-    }
-    if let Some(motion) = &evidence.motion {
-        text += &format!(
-            "\nperiod {:.10} s, energy {:.9} J\n",
-            motion.turn.period, motion.turn.energy
-        );
-    }
-    if let Some(c) = &evidence.calibrated {
-        text += &format!(
-            "{} = {:.9} {} gives {} s\n",
-            c.path, c.found, c.unit, c.period
-        );
-    }
-    text.push('\n');
-    // The measured slope and the words with a machine's own digits stay out.
-    let known: Vec<Finding> = evidence
-        .findings
-        .iter()
-        .cloned()
-        .map(|mut f| {
-            f.compared = String::new();
-            f
-        })
-        .collect();
-    for (finding, line) in known.iter().zip(stable(&known).lines()) {
-        let line = line.split("  [").next().unwrap_or(line);
-        text += &format!("{line}  [{}]\n", finding.truth);
-    }
-    text
-}
-
-fn summary(scene: &Scene, evidence: &Evidence) -> String {
-    let failed: Vec<&Finding> = evidence.findings.iter().filter(|f| !f.pass).collect();
-    let mut text = format!(
-        "{}: {} of {} findings pass\n",
-        scene.name,
-        evidence.findings.len() - failed.len(),
-        evidence.findings.len()
-    );
-    for f in failed {
-        text += &format!(
-            "  FAIL {} ({}): {}; relative {:.1e}, tolerance {:.1e}, worst at {}\n",
-            f.key, f.truth, f.compared, f.relative, f.tolerance, f.worst
-        );
-    }
-    if let Some(motion) = &evidence.motion {
-        text += &format!("  period {:.12} s by quadrature\n", motion.turn.period);
-    }
-    if let Some(c) = &evidence.calibrated {
-        text += &format!(
-            "  {} = {:.12} {} gives {} s; the scene has {}\n",
-            c.path, c.found, c.unit, c.period, c.present
-        );
-    }
-    text
-}
-
-fn document(
-    prepared: &Prepared<'_>,
-    reference: &Reference,
-    pages: &[Figure],
-    evidence: &Evidence,
-) -> Document {
-    let scene = prepared.scene;
-    let mut blocks = Vec::new();
-    if let Some(note) = &scene.note {
-        blocks.push(Block::Text(note.clone()));
-    }
-    let passed = evidence.findings.iter().filter(|f| f.pass).count();
-    blocks.push(Block::Text(format!(
-        "{passed} of {} findings pass. Written by Dwell {}.",
-        evidence.findings.len(),
-        env!("CARGO_PKG_VERSION")
-    )));
-    if !reference.source.is_empty() {
-        blocks.push(Block::Text(format!(
-            "Reference numbers: {}.",
-            reference.source
-        )));
-    }
-    if let Some(c) = &evidence.calibrated {
-        blocks.push(Block::Heading("Agreement by construction".to_owned()));
-        blocks.push(Block::Text(format!(
-            "`{}` is the fitted number of this scene, so the period of {} s is no finding. Found anew: **{:.12} {}** \
-             gives {} s; the scene has the rounded {} {}, which gives {:.12} s.",
-            c.path, c.period, c.found, c.unit, c.period, c.present, c.unit, c.present_period
-        )));
-    }
-    if let Some(d) = &evidence.dwell {
-        blocks.push(Block::Text(format!(
-            "Dwell: `{}` stays within {:.3}° (of a swing of {:.2}°) from {:.1}° to {:.1}° of the actuator.",
-            scene.mechanism.body_name(d.body),
-            d.moves.to_degrees(),
-            d.swing.to_degrees(),
-            d.from.to_degrees(),
-            d.to.to_degrees()
-        )));
-    }
-    blocks.push(Block::Heading("Findings".to_owned()));
-    blocks.push(Block::Findings(evidence.findings.clone()));
-    if let Some(motion) = &evidence.motion {
-        blocks.push(Block::Heading("What a tolerance is worth".to_owned()));
-        blocks.push(Block::Text(
-            "A tolerance bounds the error of one step, not of the motion: BDF's energy error is hundreds of times it. \
-             Errors are relative; times are of the machine that wrote this."
-                .to_owned(),
-        ));
-        let header = [
-            "Method",
-            "Tolerance",
-            "Steps",
-            "Evaluations",
-            "Jacobians",
-            "Time (ms)",
-            "Period",
-            "Energy",
-            "Reaction",
-            "Energy error / tolerance",
-        ];
-        let row = |r: &Rung| {
-            vec![
-                r.method.name().to_owned(),
-                format!("{:.0e}", r.tolerance),
-                r.work.steps.to_string(),
-                r.work.evaluations.to_string(),
-                r.work.jacobians.to_string(),
-                format!("{:.2}", r.seconds * 1e3),
-                format!("{:.1e}", r.period_error),
-                format!("{:.1e}", r.drift),
-                format!("{:.1e}", r.reaction_error),
-                format!("{:.0}", r.drift / r.tolerance),
-            ]
-        };
-        blocks.push(Block::Table {
-            header: header.map(str::to_owned).to_vec(),
-            rows: motion.rungs.iter().map(row).collect(),
-        });
-    }
-    blocks.push(Block::Heading("Pictures".to_owned()));
-    for page in pages {
-        blocks.push(Block::Figure {
-            file: format!("{}/{}.png", scene.name, page.name),
-            alt: page.title.clone(),
-            caption: page.caption.clone(),
-        });
-    }
-    Document {
-        title: scene.title.clone(),
-        blocks,
-    }
 }

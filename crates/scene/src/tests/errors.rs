@@ -109,6 +109,37 @@ fn nothing_nested_or_long_enough_to_break() {
     }
 }
 
+/// Drawing a line of a megabyte helps nobody, and drawing a label beyond column 65 535 panics.
+#[test]
+fn in_a_long_line_the_place_is_said_in_words() {
+    let long = format!("x = [{}] 3", "1,".repeat(500_000));
+    let error = parse(&long).unwrap_err();
+    assert!(render(&error).len() < 1000);
+    assert!(
+        error
+            .message
+            .ends_with("(test.toml, line 1, column 1000008)"),
+        "{}",
+        error.message
+    );
+    // The line before the one at fault is shown as well.
+    let before = format!("note = \"{}\"\nmass = \n", "x".repeat(100_000));
+    let message = parse(&before).unwrap_err().message;
+    assert!(
+        message.ends_with("(test.toml, line 2, column 8)"),
+        "{message}"
+    );
+}
+
+#[test]
+fn what_a_terminal_would_obey_is_not_shown_to_it() {
+    let error = parse("title = \"a\u{1b}[31mb\u{7}\"").unwrap_err();
+    let drawn = render(&error);
+    assert!(drawn.contains("a?[31mb?"), "{drawn}");
+    let text = with("\"Slider-crank\"", "\"a\\u001b[31m\\tb\\u0007\"");
+    assert_eq!(parse(&text).unwrap().title, "a [31m b");
+}
+
 #[test]
 fn an_error_found_later_points_into_the_file() {
     use crate::Place::*;

@@ -6,15 +6,18 @@ use std::time::Instant;
 #[test]
 fn every_number_by_its_path() {
     let scene = parse(WHOLE).unwrap();
-    for (path, value, unit) in [
-        ("ground.points.S[1]", 10.0, "mm"),
-        ("crank.mass", 2.0, "kg"),
-        ("crank.inertia", 1666.0, "kg mm2"),
-        ("crank.center[1]", 1.0, "mm"),
-        ("rod.points.P[0]", 300.0, "mm"),
+    for (path, value, unit, written) in [
+        ("ground.points.S[1]", 10.0, "mm", "S"),
+        ("crank.mass", 2.0, "kg", "2.0"),
+        ("crank.inertia", 1666.0, "kg mm2", "1666.0"),
+        ("crank.center[1]", 1.0, "mm", "[50, 1]"),
+        ("rod.points.P[0]", 300.0, "mm", "P"),
     ] {
         assert_eq!(scene.value(path).unwrap(), value);
         assert_eq!(scene.unit_of(path), unit);
+        let label = (scene.place_of(path), "here".to_owned());
+        let error = scene.error("too heavy".to_owned(), None, &[label]);
+        assert_eq!(error.labelled(), [(written, "here")]);
         assert!(scene.numbers().contains(&path.to_owned()));
     }
     assert_eq!(scene.numbers().len(), 2 * 7 + 3 + 2 + 1);

@@ -281,7 +281,7 @@ fn paths(prepared: &Prepared<'_>, sweep: &Sweep) -> Vec<Shape> {
     let wanted = prepared.scene.requests.paths.iter();
     let path = |path: &PathPoint| {
         let points = (0..sweep.q.len()).map(|i| sweep.point(i, path.body.0, path.at));
-        let pen = Pen::new(Paint::Ink, 2.5).lightness(0.25).dashed();
+        let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
         Shape::line(points.collect(), pen).named("paths")
     };
     wanted.map(path).collect()

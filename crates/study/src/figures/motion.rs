@@ -61,7 +61,11 @@ pub(crate) fn history(prepared: &Prepared<'_>, history: &History, accuracy: &Acc
         let of_unit: Vec<usize> = (0..reactions.len())
             .filter(|&k| reactions[k].1 == unit)
             .collect();
-        for some in of_unit.chunks(TOGETHER).take(2) {
+        let together = of_unit
+            .len()
+            .div_ceil(of_unit.len().div_ceil(TOGETHER).max(1))
+            .max(1);
+        for some in of_unit.chunks(together).take(2) {
             let line = |&k: &usize| {
                 let name = if some.len() > 1 {
                     reactions[k].0.clone()
@@ -75,7 +79,14 @@ pub(crate) fn history(prepared: &Prepared<'_>, history: &History, accuracy: &Acc
                     format!("Reaction {}", reactions[*k].0),
                     reactions[*k].0.clone(),
                 ),
-                _ => ("Reactions".to_owned(), format!("reaction {words}")),
+                [first, .., last] => (
+                    format!(
+                        "Reactions {} to {}",
+                        reactions[*first].0, reactions[*last].0
+                    ),
+                    format!("reaction {words}"),
+                ),
+                [] => continue,
             };
             let unit = if unit == "N" { "N" } else { "N m" };
             panels.push(chart(title, label, unit, some.iter().map(line).collect()));
@@ -87,9 +98,17 @@ pub(crate) fn history(prepared: &Prepared<'_>, history: &History, accuracy: &Acc
         caption: caption(
             prepared,
             &format!(
-                "No torque. {} at relative tolerance {:.0e}; reactions by R = a q̈ + b q̇².",
+                "No torque. {} at relative tolerance {:.0e}; reactions by R = a q̈ + b q̇².{}",
                 accuracy.method.name(),
-                accuracy.relative
+                accuracy.relative,
+                prepared
+                    .scene
+                    .calibration
+                    .as_ref()
+                    .map_or_else(String::new, |c| format!(
+                        " {} is fitted to a period of {} s, so that agreement is by construction.",
+                        c.path, c.period
+                    ))
             ),
         ),
         columns: if panels.len() > 2 { 2 } else { 1 },

@@ -1,0 +1,97 @@
+//! An evaluation at a new coordinate allocates nothing: all memory is the caller's.
+#![allow(clippy::expect_used)]
+
+use allocation_counter::measure;
+use dwell_geometry::{Range, Start};
+use dwell_kinetostatics::{Exact, Model, Reduced};
+use dwell_scene::Scene;
+use std::path::Path;
+
+/// A Scotch yoke: the one here in which a prismatic joint carries a body.
+const YOKE: &str = r#"
+    [bodies]
+    ground.points = { A = [0, 0], G = [0.3, 0] }
+    crank.points = { A = [0, 0], B = [0.1, 0] }
+    block = { points = { B = [0, 0] }, mass = 0.4, center = [0.01, 0.02], inertia = 2e-4 }
+    yoke = { points = { R = [0, 0] }, mass = 1.3, center = [0.05, 0.03], inertia = 4e-3 }
+    [joints]
+    A = { revolute = ["ground.A", "crank.A"] }
+    B = { revolute = ["crank.B", "block.B"] }
+    slot = { prismatic = ["yoke.R", "block.B"], axis = [0.6, 0.8] }
+    guide = { prismatic = ["ground.G", "yoke.R"], axis = [1, 0] }
+    [actuators]
+    phi = { angle = ["ground", "crank"] }
+"#;
+
+fn case(name: &str) -> Scene {
+    let validation = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
+    Scene::read(validation.join(name).join("scene.toml")).expect("a scene")
+}
+
+/// A scene's model with every reaction.
+fn model(scene: &Scene) -> Exact {
+    let start = Start {
+        q: scene.assembly.start.clone(),
+        rough: scene.assembly.rough.clone(),
+    };
+    let reactions = scene.mechanism.reactions();
+    let model = Model::new(&scene.mechanism, &scene.masses, &start, &reactions);
+    Exact::new(model.expect("it assembles")).expect("one actuator")
+}
+
+/// Number of allocations of an evaluation that succeeds or fails as expected.
+fn allocations(name: &str, succeeds: bool, mut evaluate: impl FnMut() -> bool) -> u64 {
+    let mut done = !succeeds;
+    let spent = measure(|| done = evaluate());
+    assert_eq!(done, succeeds, "{name}");
+    spent.count_total
+}
+
+#[test]
+fn an_evaluation_allocates_nothing() {
+    for (scene, largest) in [
+        (case("single-dwell"), 2),
+        (case("crank-rocker"), 2),
+        (case("slotted-rocker"), 1),
+        (case("class-three-six-bar"), 4),
+        (Scene::parse("yoke.toml", YOKE).expect("a scene"), 1),
+    ] {
+        let name = &scene.name;
+        let model = model(&scene);
+        let groups = model.model().plan().group_kinds();
+        let sizes = groups.iter().map(|(n, _)| *n);
+        assert_eq!(sizes.max(), Some(largest), "{name}");
+        assert!(model.reactions() > 0);
+
+        let mut work = model.work();
+        let mut out = model.model().coefficients();
+        let start = model.model().plan().start()[0];
+        let beyond = match model.range() {
+            Range::Full => f64::NAN,
+            Range::Between(_, to) => to + 1.0,
+        };
+        for k in 0..20 {
+            let q = start + 0.05 * f64::from(k);
+            let counts = [
+                allocations(name, true, || {
+                    model.coefficients(q, &mut work, &mut out).is_ok()
+                }),
+                allocations(name, true, || model.inertia(q, &mut work).is_ok()),
+                allocations(name, true, || model.curvature(q, &mut work).is_ok()),
+                allocations(name, false, || model.inertia(beyond, &mut work).is_ok()),
+            ];
+            assert_eq!(counts, [0; 4], "{name} at {q}");
+        }
+    }
+}
+
+#[test]
+fn an_allocation_would_be_counted() {
+    let scene = case("crank-rocker");
+    let model = model(&scene);
+    let count = allocations("work", true, || {
+        let mut work = model.work();
+        model.inertia(0.0, &mut work).is_ok()
+    });
+    assert!(count > 0);
+}
