@@ -68,7 +68,7 @@ fn an_evaluation_allocates_nothing() {
         let start = model.model().plan().start()[0];
         let beyond = match model.range() {
             Range::Full => f64::NAN,
-            Range::Between(_, to) => to + 1.0,
+            Range::Between(_, to) => to + 0.3,
         };
         for k in 0..20 {
             let q = start + 0.05 * f64::from(k);
