@@ -178,7 +178,6 @@ fn val_the_class_three_six_bar_stays_on_its_branch() {
 
 /// At q = 0.83, far from both ends of its range of −1.46 to 1.53, this one is nearly singular.
 #[test]
-#[ignore = "seeds 3° apart are too few near a singular position"]
 fn a_nearly_singular_six_bar_stays_on_its_branch() {
     let bars = SixBar {
         crank: 0.22,
@@ -196,7 +195,6 @@ fn a_nearly_singular_six_bar_stays_on_its_branch() {
 
 /// The same up to its upper end of 0.4614, with the limit position alone.
 #[test]
-#[ignore = "seeds 3° apart are too few near a limit position"]
 fn a_six_bar_stays_on_its_branch_up_to_the_limit_position() {
     let bars = SixBar {
         crank: 0.27,
@@ -215,7 +213,6 @@ fn a_six_bar_stays_on_its_branch_up_to_the_limit_position() {
 /// This one turns back by a whole turn and is elsewhere then, while forward it meets a limit
 /// position. Seen from behind it is the same.
 #[test]
-#[ignore = "refused as not periodic one way round, cut off after a turn the other way round"]
 fn a_branch_that_does_not_close_is_the_same_from_behind() {
     let bars = SixBar {
         crank: 0.28,

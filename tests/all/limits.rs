@@ -1,6 +1,6 @@
 //! Limit positions, where a branch of the assembly ends, and dead points, where no motion can start.
 
-use crate::changes::Setup;
+use crate::changes::{Setup, positions};
 use crate::refusals::refusal;
 use crate::sketch::{FourBar, Sketch, slider_crank};
 use crate::world::scene;
@@ -34,10 +34,22 @@ fn val_the_inertia_near_a_limit_position_and_the_refusal_beyond_it() {
             );
         }
         assert!(model.inertia(end, &mut work).is_ok());
-        for outside in [1e-12, 1e-6, 0.1, 100.0] {
+        // Outside the range, as far as the other end seen after a whole turn.
+        let gap = from + TAU - to;
+        for outside in [1e-12, 1e-6, 0.1, 0.5 * gap, gap - 1e-12] {
             let q = end - inwards * outside;
             let error = model.inertia(q, &mut work).unwrap_err();
             assert_eq!(error, PlaceError::OutOfRange { q, from, to });
+        }
+    }
+    // Whole turns away the pose is the same.
+    let mut inertia = |q: f64| model.inertia(q, &mut work).expect("a pose");
+    for q in positions(model.range(), 12) {
+        let (m, half_dm) = inertia(q);
+        for turns in [-2.0, 1.0, 7.0] {
+            let (there, slope) = inertia(q + turns * TAU);
+            assert!((there - m).abs() < 1e-12 * m, "{q} {turns}: {there} {m}");
+            assert!((slope - half_dm).abs() < 1e-12 * m.max(half_dm.abs()));
         }
     }
 }

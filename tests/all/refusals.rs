@@ -165,7 +165,6 @@ fn bodies_that_do_not_reach_each_other_are_named() {
 }
 
 #[test]
-#[ignore = "PlaceError::Unreachable tells the root of a difference of squares, not a length"]
 fn the_gap_is_the_length_that_is_missing() {
     for (setup, _, missing) in too_short() {
         let AssemblyError::CannotClose { gap, .. } = refusal(&setup) else {
@@ -177,7 +176,6 @@ fn the_gap_is_the_length_that_is_missing() {
 
 /// What no scene can say, but a caller can.
 #[test]
-#[ignore = "Plan::compile takes a start of another length, and panics on a wrong index"]
 fn broken_descriptions_are_refused() {
     let good = FourBar::driven([1.0, 3.5, 3.0, 4.0]).setup(1.0, 0.6);
     let (mut none, mut two) = (good.clone(), good.clone());
@@ -199,7 +197,6 @@ fn broken_descriptions_are_refused() {
 
 /// No angle tells the branches apart, nor does one that is not a number.
 #[test]
-#[ignore = "a rough angle that is not a number picks some branch"]
 fn a_rough_angle_must_be_a_number() {
     let setup = FourBar::driven([1.0, 3.5, 3.0, 4.0]).setup(1.0, f64::NAN);
     refusal(&setup);
@@ -249,19 +246,12 @@ fn an_ambiguous_class_three_group_lists_its_choices() {
 fn a_coordinate_must_be_a_number() {
     for case in CASES {
         let model = Setup::of(&case.scene()).model().expect("a model");
-        let refusal = |q| model.inertia(q, &mut model.work()).unwrap_err();
-        let error = refusal(f64::NAN);
-        assert!(
-            matches!(error, PlaceError::NotFinite { q } if q.is_nan()),
-            "{error:?}"
-        );
-        for q in [f64::INFINITY, f64::NEG_INFINITY] {
-            let error = refusal(q);
-            assert!(
-                error == PlaceError::NotFinite { q }
-                    || matches!(error, PlaceError::OutOfRange { .. }),
-                "{error:?}"
-            );
+        for q in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let error = model.inertia(q, &mut model.work()).unwrap_err();
+            let PlaceError::NotFinite { q: named } = error else {
+                panic!("{}: {error:?}", case.name);
+            };
+            assert_eq!(named.to_bits(), q.to_bits());
         }
     }
 }

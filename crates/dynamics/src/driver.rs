@@ -288,12 +288,13 @@ where
         samples: options.every.map(|_| start).into_iter().collect(),
         ..Run::default()
     };
-    let said = |State { t, q, .. }: State, e: DiffsolError| match failure.borrow_mut().take() {
+    // What the last failed evaluation says of a motion that got as far as a state.
+    let cause = |State { t, q, .. }: State| match failure.borrow_mut().take()? {
         // Within its range the mechanism has a pose everywhere: it is the end that was met.
-        Some(DynamicsError::Place(_)) if limits.is_some() => DynamicsError::Limit { t, q },
-        Some(kept) => kept,
-        None => gave_up(&e, t),
+        DynamicsError::Place(_) if limits.is_some() => Some(DynamicsError::Limit { t, q }),
+        kept => Some(kept),
     };
+    let said = |at: State, e: DiffsolError| cause(at).unwrap_or_else(|| gave_up(&e, at.t));
     if let Until::Time(end) = until {
         let stop = solver.set_stop_time(end);
         stop.map_err(|e| said(start, e))?;
@@ -310,8 +311,8 @@ where
         };
         if !(now.t.is_finite() && now.q.is_finite() && now.q_dot.is_finite() && state.h.is_finite())
         {
-            let kept = failure.borrow_mut().take();
-            return Err(kept.unwrap_or(DynamicsError::NotFinite { t: before.t }));
+            let t = before.t;
+            return Err(cause(before).unwrap_or(DynamicsError::NotFinite { t }));
         }
         // Without loads the speed keeps its sign. In the coordinate of an actuator the way through a
         // limit position looks like a smooth return, but the mechanism goes on on another branch.

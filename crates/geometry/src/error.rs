@@ -33,6 +33,13 @@ pub enum StructureError {
         /// Actuators among which the surplus lies.
         actuators: Vec<ActuatorId>,
     },
+    /// A joint, an actuator or the ground refers to a body that is not there, or the start does not
+    /// fit the mechanism. No scene can say this; a caller can.
+    #[error("the description does not fit together: {what}")]
+    Malformed {
+        /// What does not fit.
+        what: &'static str,
+    },
     /// A group too large for what is stored along one coordinate, with several actuators.
     #[error("a group of {size} unknowns has no closed form, which needs a single actuator")]
     GroupNeedsOneActuator {

@@ -13,6 +13,7 @@ pub mod plane;
 pub mod range;
 pub mod rows;
 pub mod scalar;
+mod seeds;
 mod small;
 pub mod tree;
 

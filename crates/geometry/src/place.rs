@@ -32,7 +32,7 @@ impl Plan {
     /// [`PlaceError`] when a group cannot close there, is singular, or `q` is out of range.
     pub fn place<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
         // Outside its range a closed form may close again, but on a branch that cannot be reached.
-        if self.range != Range::Full {
+        if self.range != Range::Full && q[0].value().is_finite() {
             self.range.fold(q[0].value())?;
         }
         self.place_from(q, pose, Guess::Seed)
@@ -116,7 +116,7 @@ impl Plan {
         pose: &mut Pose<T>,
     ) -> Result<(), PlaceError> {
         let q = pose.q[0];
-        let (seed, away) = newton.seeds.nearest(q.value(), self.range, self.start[0])?;
+        let (seed, away) = newton.seeds.nearest(q.value(), self.range)?;
         // The derivative of the prediction does not matter: Newton's last step replaces it.
         for (i, &unknown) in self.groups[group].group.unknowns.iter().enumerate() {
             let (value, slope) = (seed.values[i], seed.slopes[i]);
@@ -366,7 +366,12 @@ fn place_pin<T: Scalar>(pin: &Pin, group: usize, pose: &mut Pose<T>) -> Result<(
     // (2 × area)² by factors that keep their digits near a stretched or folded triangle.
     let rest = (T::lift(pin.sum2) - square) * (square - T::lift(pin.gap2));
     let size = square.value() * square.value();
-    let reach = root(rest, size, group, pose.q[0].value())? * T::lift(0.5 * pin.branch);
+    let q = pose.q[0].value();
+    let missing = || {
+        let distance = square.value().sqrt();
+        (distance - pin.sum2.sqrt()).max(pin.gap2.sqrt() - distance)
+    };
+    let reach = root(rest, size, group, q, missing)? * T::lift(0.5 * pin.branch);
     let half = T::lift(0.5);
     let excess = T::lift(pin.excess);
     let inverse = T::lift(1.0) / square;
@@ -391,7 +396,8 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
         // n·D = −n₀·w with n₀, w constant in the turning frame.
         let kappa = T::lift(-aim.unit.dot(aim.local));
         let square = known.dot(known);
-        let reach = branch * root(square - kappa * kappa, square.value(), group, q)?;
+        let missing = || kappa.value().abs() - square.value().sqrt();
+        let reach = branch * root(square - kappa * kappa, square.value(), group, q, missing)?;
         let unit = (known * kappa + known.perp() * reach) * (T::lift(1.0) / square);
         // axis·D = reach.
         pose.travel[aim.closure] = reach + T::lift(aim.local.cross(aim.unit));
@@ -404,7 +410,8 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
         let length = aim.local.norm();
         let kappa = -normal.dot(known);
         let square = T::lift(length * length);
-        let reach = branch * root(square - kappa * kappa, square.value(), group, q)?;
+        let missing = || kappa.value().abs() - length;
+        let reach = branch * root(square - kappa * kappa, square.value(), group, q, missing)?;
         let arm = normal * kappa - along * reach;
         pose.travel[aim.closure] = along.dot(known) - reach;
         pose.arm[aim.found] = arm;
@@ -415,8 +422,14 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
     Ok(())
 }
 
-/// Square root of what is left of a length, or the error that says how much is missing.
-fn root<T: Scalar>(rest: T, size: f64, group: usize, q: f64) -> Result<T, PlaceError> {
+/// Square root of what is left of a length, or the error that says how much is missing, m.
+fn root<T: Scalar>(
+    rest: T,
+    size: f64,
+    group: usize,
+    q: f64,
+    missing: impl Fn() -> f64,
+) -> Result<T, PlaceError> {
     let value = rest.value();
     if value > SINGULAR * SINGULAR * size {
         return Ok(rest.sqrt());
@@ -428,7 +441,7 @@ fn root<T: Scalar>(rest: T, size: f64, group: usize, q: f64) -> Result<T, PlaceE
         return Err(PlaceError::Unreachable {
             group,
             q,
-            gap: (-value).sqrt(),
+            gap: missing(),
         });
     }
     Err(PlaceError::Singular {

@@ -4,12 +4,12 @@
 
 mod compile;
 
-use crate::error::AssemblyError;
+use crate::error::{AssemblyError, StructureError};
 use crate::frames::Frames;
 use crate::groups::{self, Group, Unknown};
 use crate::mechanism::{BodyId, JointId, Mechanism};
 use crate::plane::Vec2;
-use crate::range::{self, Range};
+use crate::range::Range;
 use crate::scalar::Scalar;
 use crate::tree::{Arm, Tree};
 
@@ -174,7 +174,7 @@ pub(crate) struct Newton {
     pub(crate) lu: usize,
     pub(crate) pivots: usize,
     pub(crate) branch: f64,
-    pub(crate) seeds: range::Seeds,
+    pub(crate) seeds: crate::seeds::Seeds,
 }
 
 /// One step of placing.
@@ -226,6 +226,7 @@ impl Plan {
     /// [`AssemblyError`] when the structure is not driven by its actuators, the bodies do not
     /// reach each other, or the branch is not told.
     pub fn compile(mechanism: &Mechanism, start: &Start) -> Result<Self, AssemblyError> {
+        check(mechanism, start)?;
         let mut plan = Self::structure(mechanism)?;
         plan.start.clone_from(&start.q);
         let pose = plan.assemble(&start.rough)?;
@@ -333,4 +334,22 @@ impl Plan {
         bodies.dedup();
         bodies
     }
+}
+
+/// Refuses a description whose parts refer to what is not there.
+fn check(mechanism: &Mechanism, start: &Start) -> Result<(), StructureError> {
+    let bodies = mechanism.bodies.len();
+    let ends = mechanism.joints.iter().map(|j| j.bodies);
+    let mut ends = ends.chain(mechanism.actuators.iter().map(|a| a.bodies));
+    let finite = |angle: &Option<f64>| angle.is_none_or(f64::is_finite);
+    let what = if mechanism.ground >= bodies || !ends.all(|e| e.iter().all(|b| b.0 < bodies)) {
+        "a body that is not there"
+    } else if start.q.len() != mechanism.actuators.len() || start.rough.len() != bodies {
+        "the start needs a coordinate for each actuator and a place for each body"
+    } else if !start.q.iter().all(|q| q.is_finite()) || !start.rough.iter().all(finite) {
+        "an angle that is not a finite number"
+    } else {
+        return Ok(());
+    };
+    Err(StructureError::Malformed { what })
 }

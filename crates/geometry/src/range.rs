@@ -3,10 +3,12 @@
 
 use crate::error::{AssemblyError, PlaceError};
 use crate::groups::Unknown;
+use crate::mechanism::BodyId;
 use crate::place::Guess;
 use crate::plan::{Assur, Kind, Plan, Pose};
 use crate::plane::Vec2;
 use crate::scalar::{Dual, Scalar};
+use crate::seeds::{Seed, Seeds};
 use std::f64::consts::TAU;
 
 /// The range of a single actuator's coordinate.
@@ -27,6 +29,9 @@ impl Range {
         let Self::Between(from, to) = self else {
             return Ok(q);
         };
+        if !q.is_finite() {
+            return Err(PlaceError::NotFinite { q });
+        }
         if (from..=to).contains(&q) {
             return Ok(q);
         }
@@ -39,55 +44,16 @@ impl Range {
     }
 }
 
-/// A stored pose of a Newton group.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Seed {
-    /// By unknown of the group: (cos, sin) of a class, or (travel, 0) of a slide.
-    pub(crate) values: Vec<Vec2>,
-    /// By unknown: its derivative with respect to the coordinate.
-    pub(crate) slopes: Vec<f64>,
-}
-
-/// Poses at equal distances, from the start to both ends.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Seeds {
-    pub(crate) step: f64,
-    /// Index of the seed at the start.
-    pub(crate) origin: usize,
-    pub(crate) seeds: Vec<Seed>,
-}
-
-/// Seeds to a turn. A group's pose changes little over 3°, so that Newton's method needs two or
+/// Steps to a turn. A group's pose changes little over 3°, so that Newton's method needs two or
 /// three steps from the prediction; a position that changes faster is followed in finer steps.
 const PER_TURN: usize = 120;
+/// Turns after which a branch that neither ends nor closes is given up.
+const MOST_TURNS: usize = 8;
+/// A step is taken if the tangents of all determinants stay clear of zero over so many times its
+/// length: towards a limit position, where they fall as a square root, the distance left is halved.
+const CLEAR: f64 = 4.0;
 /// Where the branch cannot be followed any further, the step is halved until it is this small, rad.
 const SMALLEST_STEP: f64 = 1e-13;
-
-impl Seeds {
-    /// The seed nearest to `q`, and how far `q` is from it.
-    pub(crate) fn nearest(
-        &self,
-        q: f64,
-        range: Range,
-        start: f64,
-    ) -> Result<(&Seed, f64), PlaceError> {
-        if range == Range::Full {
-            return Ok(self.around(q - start));
-        }
-        let q = range.fold(q)?;
-        let place = self.origin as f64 + ((q - start) / self.step).round();
-        let index = place.clamp(0.0, self.seeds.len() as f64 - 1.0);
-        let away = q - start - (index - self.origin as f64) * self.step;
-        Ok((&self.seeds[index as usize], away))
-    }
-
-    fn around(&self, from_start: f64) -> (&Seed, f64) {
-        let steps = (from_start / self.step).round();
-        let index = steps.rem_euclid(self.seeds.len() as f64);
-        // Taken over whole turns, the seeds repeat: only the distance to the node matters.
-        (&self.seeds[index as usize], from_start - steps * self.step)
-    }
-}
 
 impl Plan {
     /// Follows the branch from the start over the range of a single actuator, both ways, and
@@ -96,48 +62,45 @@ impl Plan {
         if self.actuators != 1 {
             return Ok(());
         }
-        let step = TAU / PER_TURN as f64;
-        let mut ahead = Vec::new();
-        let up = self.walk(start.clone(), step, PER_TURN, &mut ahead);
+        let mut ahead = vec![start.clone()];
+        let mut up = self.walk(&mut ahead, 1.0, 1);
         if up.is_none() {
-            self.check_period(start, &ahead)?;
-            ahead.pop();
-            self.store(&ahead, 0, step);
-            self.range = Range::Full;
-            return Ok(());
+            if self.elsewhere(start, &ahead).is_none() {
+                // The end of the turn is the start again.
+                ahead.pop();
+                self.store(&ahead);
+                self.range = Range::Full;
+                return Ok(());
+            }
+            up = self.walk(&mut ahead, 1.0, MOST_TURNS - 1);
         }
-        let mut back = Vec::new();
-        let down = self.walk(start.clone(), -step, PER_TURN, &mut back);
-        let q0 = self.start[0];
-        // A limit on one side only cannot be: what turns fully one way turns back the same way.
-        let from = down.unwrap_or(q0 - TAU);
-        let to = up.unwrap_or(q0 + TAU);
+        let mut back = vec![start.clone()];
+        let down = self.walk(&mut back, -1.0, MOST_TURNS);
+        let (Some(from), Some(to)) = (down, up) else {
+            let elsewhere = self.elsewhere(start, if up.is_none() { &ahead } else { &back });
+            return Err(AssemblyError::NotPeriodic {
+                bodies: elsewhere.unwrap_or_default(),
+            });
+        };
         back.reverse();
         back.pop();
-        let origin = back.len();
         back.extend(ahead);
-        self.store(&back, origin, step);
+        self.store(&back);
         self.range = Range::Between(from, to);
         Ok(())
     }
 
-    /// Walks `count` steps away from a pose, noting each; where the branch ends, if it does. It ends
-    /// at a limit position, and at a change point, where two branches meet.
-    fn walk(
-        &self,
-        mut pose: Pose<f64>,
-        step: f64,
-        count: usize,
-        noted: &mut Vec<Pose<f64>>,
-    ) -> Option<f64> {
+    /// Walks some turns on from the last pose, noting each pose on the way; where the branch ends, if
+    /// it does. It ends at a limit position, and at a change point, where two branches meet.
+    fn walk(&self, noted: &mut Vec<Pose<f64>>, direction: f64, turns: usize) -> Option<f64> {
+        let mut pose = noted.last()?.clone();
         let q0 = pose.q[0];
         let Some(mut margins) = self.margins(&pose) else {
             return Some(q0);
         };
-        noted.push(pose.clone());
-        for k in 1..=count {
-            let target = q0 + step * k as f64;
-            let mut fine = step;
+        for k in 1..=turns * PER_TURN {
+            let target = q0 + direction * TAU * k as f64 / PER_TURN as f64;
+            let mut fine = target - pose.q[0];
             while pose.q[0] != target {
                 let left = target - pose.q[0];
                 let next = if fine.abs() >= left.abs() {
@@ -147,9 +110,10 @@ impl Plan {
                 };
                 match self.advance(&pose, &margins, next) {
                     Some((reached, left)) => {
+                        noted.push(reached.clone());
                         pose = reached;
                         margins = left;
-                        fine = (2.0 * fine.abs()).min(step.abs()).copysign(step);
+                        fine *= 2.0;
                     }
                     None => {
                         fine = (next - pose.q[0]) * 0.5;
@@ -159,7 +123,6 @@ impl Plan {
                     }
                 }
             }
-            noted.push(pose.clone());
         }
         None
     }
@@ -205,9 +168,9 @@ impl Plan {
         q: f64,
     ) -> Option<(Pose<f64>, Vec<Dual>)> {
         let pose = self.reach(from, q)?;
-        let step = q - from.q[0];
+        let reach = CLEAR * (q - from.q[0]);
         let left = self.margins(&pose)?;
-        let clear = |(a, b): (&Dual, &Dual)| a.v + a.d * step > 0.0 && b.v - b.d * step > 0.0;
+        let clear = |(a, b): (&Dual, &Dual)| a.v + a.d * reach > 0.0 && b.v - b.d * reach > 0.0;
         margins.iter().zip(&left).all(clear).then_some((pose, left))
     }
 
@@ -269,29 +232,23 @@ impl Plan {
         }
     }
 
-    /// After a whole turn every frame must be back where it was.
-    fn check_period(&self, start: &Pose<f64>, ahead: &[Pose<f64>]) -> Result<(), AssemblyError> {
-        let Some(end) = ahead.last() else {
-            return Ok(());
-        };
-        for assur in &self.groups {
-            let elsewhere = assur.group.unknowns.iter().any(|&u| match u {
+    /// The bodies that the last pose has elsewhere than the start; none if it is the same pose.
+    fn elsewhere(&self, start: &Pose<f64>, poses: &[Pose<f64>]) -> Option<Vec<BodyId>> {
+        let end = poses.last()?;
+        let moved = |assur: &&Assur| {
+            assur.group.unknowns.iter().any(|&u| match u {
                 Unknown::Class(c) => {
                     let f = self.root_of(c);
                     (start.turn[f] - end.turn[f]).norm() > 1e-6
                 }
                 Unknown::Slide(s) => (start.slide[s] - end.slide[s]).abs() > 1e-6 * assur.size,
-            });
-            if elsewhere {
-                return Err(AssemblyError::NotPeriodic {
-                    bodies: self.bodies_of(&assur.group),
-                });
-            }
-        }
-        Ok(())
+            })
+        };
+        let group = self.groups.iter().find(moved)?;
+        Some(self.bodies_of(&group.group))
     }
 
-    fn store(&mut self, poses: &[Pose<f64>], origin: usize, step: f64) {
+    fn store(&mut self, poses: &[Pose<f64>]) {
         let mut motion = self.motion();
         let mut all: Vec<Vec<Seed>> = vec![Vec::new(); self.groups.len()];
         for pose in poses {
@@ -300,7 +257,10 @@ impl Plan {
                 if !matches!(assur.kind, Kind::Newton(_)) {
                     continue;
                 }
-                let mut seed = Seed::default();
+                let mut seed = Seed {
+                    q: pose.q[0],
+                    ..Seed::default()
+                };
                 for &unknown in &assur.group.unknowns {
                     let (value, slope) = match unknown {
                         Unknown::Class(c) => {
@@ -323,11 +283,7 @@ impl Plan {
         }
         for (assur, seeds) in self.groups.iter_mut().zip(all) {
             if let Kind::Newton(newton) = &mut assur.kind {
-                newton.seeds = Seeds {
-                    step,
-                    origin,
-                    seeds,
-                };
+                newton.seeds = Seeds(seeds);
             }
         }
     }

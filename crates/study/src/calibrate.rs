@@ -28,7 +28,7 @@ pub struct Calibrated {
 const FARTHEST: f64 = 1e6;
 const FIRST: f64 = 1.0 + 1.0 / 64.0;
 /// How often a step is halved that takes the mechanism apart.
-const HALVINGS: usize = 30;
+const HALVINGS: usize = 12;
 
 /// Finds the value at `path` that gives the `period` (s): outwards from the present value until
 /// the period is passed, then to rounding.

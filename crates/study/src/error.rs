@@ -258,6 +258,9 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> SceneError {
             };
             scene.error(message, Some(help.to_owned()), &labels)
         }
+        StructureError::Malformed { .. } => {
+            scene.error(error.to_string(), None, &[(Place::Whole, String::new())])
+        }
         StructureError::GroupNeedsOneActuator { size, bodies } => scene.error(
             format!(
                 "{} form one group of {size} unknowns, which needs a single actuator so far",

@@ -6,7 +6,7 @@ use crate::frames::{Frame, Frames, Turning};
 use crate::groups::{self, Group, Unknown};
 use crate::mechanism::Mechanism;
 use crate::plane::Vec2;
-use crate::range::{self, Range};
+use crate::range::Range;
 use crate::tree::{Arm, Loop, Tree};
 use std::collections::HashMap;
 
@@ -220,7 +220,7 @@ fn newton(lu: usize, pivots: usize) -> Kind {
         lu,
         pivots,
         branch: 1.0,
-        seeds: range::Seeds::default(),
+        seeds: crate::seeds::Seeds::default(),
     })
 }
 
