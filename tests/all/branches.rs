@@ -3,8 +3,9 @@
 
 use crate::changes::{Setup, direction};
 use crate::sketch::Sketch;
-use dwell_geometry::{BodyId, Range, Vec2, vec2};
+use dwell_geometry::{BodyId, PlaceError, Range, Vec2, vec2};
 use dwell_kinetostatics::Reduced;
+use std::f64::consts::TAU;
 
 /// A Stephenson III six-bar like the one in `validation/`, driven by the angle of the floating
 /// link E F: A at the origin, D on the x axis, E beside the coupler B C.
@@ -210,21 +211,23 @@ fn a_six_bar_stays_on_its_branch_up_to_the_limit_position() {
     assert_eq!(bars.refused_and_elsewhere(), (0, 0));
 }
 
-/// This one turns back by a whole turn and is elsewhere then, while forward it meets a limit
-/// position. Seen from behind it is the same.
+/// This one turns back by more than a whole turn, and is elsewhere after it, while forward it meets
+/// a limit position.
+const MORE_THAN_A_TURN: SixBar = SixBar {
+    crank: 0.28,
+    coupler: 0.8,
+    rocker: 0.61,
+    link5: 0.41,
+    link6: 0.59,
+    d: 0.31,
+    e: [0.21, 0.35],
+    g: [0.23, 0.3],
+    start: -0.7,
+};
+
 #[test]
 fn a_branch_that_does_not_close_is_the_same_from_behind() {
-    let bars = SixBar {
-        crank: 0.28,
-        coupler: 0.8,
-        rocker: 0.61,
-        link5: 0.41,
-        link6: 0.59,
-        d: 0.31,
-        e: [0.21, 0.35],
-        g: [0.23, 0.3],
-        start: -0.7,
-    };
+    let bars = MORE_THAN_A_TURN;
     let (seen, from_behind) = (bars.setup(), bars.setup().mirrored());
     match (seen.model(), from_behind.model()) {
         (Ok(one), Ok(two)) => {
@@ -237,5 +240,20 @@ fn a_branch_that_does_not_close_is_the_same_from_behind() {
         }
         (Err(_), Err(_)) => {}
         (one, two) => panic!("{:?}\n{:?}", one.map(|m| m.range()), two.map(|m| m.range())),
+    }
+}
+
+/// Over more than a turn, whole turns away is another pose: beyond a limit position there is none.
+#[test]
+fn a_coordinate_beyond_a_range_of_more_than_a_turn_is_refused() {
+    let model = MORE_THAN_A_TURN.setup().model().expect("a model");
+    let Range::Between(from, to) = model.range() else {
+        panic!("{:?}", model.range());
+    };
+    assert!(to - from > TAU, "{from} {to}");
+    assert_eq!(MORE_THAN_A_TURN.refused_and_elsewhere(), (0, 0));
+    for q in [from - 0.01, to + 0.01, to + TAU] {
+        let error = model.inertia(q, &mut model.work()).unwrap_err();
+        assert_eq!(error, PlaceError::OutOfRange { q, from, to });
     }
 }

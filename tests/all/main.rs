@@ -2,9 +2,11 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
 
 mod branches;
+mod change_points;
 mod cases;
 mod changes;
 mod derivatives;
+mod findings;
 mod invariance;
 mod limits;
 mod machines;

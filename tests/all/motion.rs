@@ -93,7 +93,7 @@ fn jacobian_is_the_derivative_of_the_acceleration() {
         let model = model_for(&scene(case), &[]);
         let mut equation = Equation::new(&model);
         let (from, to) = match model.range() {
-            Range::Full => (0.0, 6.28),
+            Range::Full => (0.0, std::f64::consts::TAU),
             Range::Between(from, to) => (from + 0.3, to - 0.3),
         };
         for i in 0..20 {

@@ -25,6 +25,10 @@ type Solver = NalgebraLU<f64>;
 /// Smallest step, s, at a speed of 1 rad/s or less; at a higher one, in proportion shorter.
 const SMALLEST_STEP: f64 = 1e-14;
 
+/// A motion this near a limit position, rad, has reached it: the inertia grows as the inverse of
+/// the distance, and the steps would go on shrinking.
+const AT_LIMIT: f64 = 1e-9;
+
 /// How to integrate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
@@ -316,8 +320,9 @@ where
         }
         // Without loads the speed keeps its sign. In the coordinate of an actuator the way through a
         // limit position looks like a smooth return, but the mechanism goes on on another branch.
-        let beyond = limits.is_some_and(|(from, to)| now.q < from || now.q > to);
-        if now.q_dot * start.q_dot < 0.0 || beyond {
+        let ends =
+            limits.is_some_and(|(from, to)| now.q < from + AT_LIMIT || now.q > to - AT_LIMIT);
+        if now.q_dot * start.q_dot < 0.0 || ends {
             let State { t, q, .. } = before;
             return Err(DynamicsError::Limit { t, q });
         }

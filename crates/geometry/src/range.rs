@@ -36,7 +36,8 @@ impl Range {
             return Ok(q);
         }
         let folded = q - TAU * ((q - from) / TAU).floor();
-        if (from..=to).contains(&folded) {
+        // A range of more than a turn holds two poses at such a coordinate: neither is "the" pose.
+        if (from..=to).contains(&folded) && to - from < TAU {
             Ok(folded)
         } else {
             Err(PlaceError::OutOfRange { q, from, to })
@@ -49,6 +50,12 @@ impl Range {
 const PER_TURN: usize = 120;
 /// Turns after which a branch that neither ends nor closes is given up.
 const MOST_TURNS: usize = 8;
+/// A branch ends at a change point where a determinant has fallen to this part of its largest value
+/// so far: its rounding is eps over that part, so any closer noise would decide which branch follows.
+const ENDED: f64 = 1e-6;
+/// A change point is told from a limit position by the product of the determinant and its slope: to
+/// the former it falls as the determinant itself, to the latter (a square root) it stays as it is.
+const FALLEN: f64 = 1e-3;
 /// A step is taken if the tangents of all determinants stay clear of zero over so many times its
 /// length: towards a limit position, where they fall as a square root, the distance left is halved.
 const CLEAR: f64 = 4.0;
@@ -98,6 +105,8 @@ impl Plan {
         let Some(mut margins) = self.margins(&pose) else {
             return Some(q0);
         };
+        let size = |m: &Dual| [m.v, (m.v * m.d).abs()];
+        let mut largest: Vec<[f64; 2]> = margins.iter().map(size).collect();
         for k in 1..=turns * PER_TURN {
             let target = q0 + direction * TAU * k as f64 / PER_TURN as f64;
             let mut fine = target - pose.q[0];
@@ -108,8 +117,20 @@ impl Plan {
                 } else {
                     pose.q[0] + fine
                 };
-                match self.advance(&pose, &margins, next) {
+                let ended = |left: &[Dual]| {
+                    let mut both = left.iter().zip(&largest);
+                    both.any(|(margin, most)| {
+                        let [value, product] = size(margin);
+                        value < ENDED * most[0] && product < FALLEN * most[1]
+                    })
+                };
+                let advanced = self.advance(&pose, &margins, next);
+                match advanced.filter(|(_, left)| !ended(left)) {
                     Some((reached, left)) => {
+                        for (most, margin) in largest.iter_mut().zip(&left) {
+                            let [value, product] = size(margin);
+                            *most = [most[0].max(value), most[1].max(product)];
+                        }
                         noted.push(reached.clone());
                         pose = reached;
                         margins = left;

@@ -30,7 +30,7 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
         Range::Full => writeln!(text, "  {coordinate} turns fully"),
         Range::Between(from, to) => writeln!(
             text,
-            "  {coordinate} turns from {from:.6} to {to:.6} rad ({:.2}° to {:.2}°), limit positions",
+            "  {coordinate} turns from {from:.6} to {to:.6} rad ({:.2}° to {:.2}°), limit positions or change points",
             from.to_degrees(),
             to.to_degrees()
         ),
