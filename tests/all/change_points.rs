@@ -64,7 +64,10 @@ fn a_parallelogram_ends_where_it_is_flat() {
         for k in 1..20 {
             let q = from + (to - from) * f64::from(k) / 20.0;
             let (m, half_dm) = model.inertia(q, &mut work).expect("a pose");
-            assert!((m - expected).abs() < 1e-13 && half_dm.abs() < 1e-12, "{q}: {m}");
+            assert!(
+                (m - expected).abs() < 1e-13 && half_dm.abs() < 1e-12,
+                "{q}: {m}"
+            );
         }
         assert!(matches!(
             model.inertia(to + 0.1, &mut work),

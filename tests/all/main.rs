@@ -2,8 +2,8 @@
 #![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
 
 mod branches;
-mod change_points;
 mod cases;
+mod change_points;
 mod changes;
 mod derivatives;
 mod findings;

@@ -247,13 +247,13 @@ impl Plan {
                     gap,
                 }
             }
-            PlaceError::OutOfRange { .. } | PlaceError::NotFinite { .. } => {
-                AssemblyError::CannotClose {
-                    bodies,
-                    joints,
-                    gap: f64::NAN,
-                }
-            }
+            PlaceError::OtherBranch { .. }
+            | PlaceError::OutOfRange { .. }
+            | PlaceError::NotFinite { .. } => AssemblyError::CannotClose {
+                bodies,
+                joints,
+                gap: f64::NAN,
+            },
         }
     }
 

@@ -113,6 +113,14 @@ pub enum PlaceError {
         /// Determinant relative to the lengths that make it.
         measure: f64,
     },
+    /// Newton's method closed the group on another assembly branch than the start's.
+    #[error("group {group} closes on another assembly branch at q = {q}")]
+    OtherBranch {
+        /// Index of the group in the plan.
+        group: usize,
+        /// The coordinate of the first actuator, rad.
+        q: f64,
+    },
     /// Newton's method did not close the group.
     #[error("group {group} did not close at q = {q} (residual {residual:.1e} m)")]
     NotClosed {
@@ -147,6 +155,7 @@ impl PlaceError {
         match *self {
             Self::Unreachable { group, .. }
             | Self::Singular { group, .. }
+            | Self::OtherBranch { group, .. }
             | Self::NotClosed { group, .. } => Some(group),
             Self::OutOfRange { .. } | Self::NotFinite { .. } => None,
         }

@@ -93,11 +93,8 @@ impl Plan {
         let factored = self.close(group, newton, pose)?;
         // A pose on the other side of a singular position is another branch.
         if guess == Guess::Seed && factored.sign * newton.branch <= 0.0 {
-            return Err(PlaceError::Singular {
-                group,
-                q: pose.q[0].value(),
-                measure: 0.0,
-            });
+            let q = pose.q[0].value();
+            return Err(PlaceError::OtherBranch { group, q });
         }
         for &l in &self.groups[group].group.loops {
             let closure = &self.closures[l];

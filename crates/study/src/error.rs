@@ -462,6 +462,13 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
                 Range::Between(..) => range_ends,
             },
         ),
+        PlaceError::OtherBranch { q, .. } => (
+            format!(
+                "{who} can be placed on another assembly branch only at {phi} = {} rad",
+                number(q)
+            ),
+            "two branches come close to each other there",
+        ),
         PlaceError::NotClosed { q, residual, .. } => (
             format!(
                 "{who} could not be placed at {phi} = {} rad: {} m stay open",

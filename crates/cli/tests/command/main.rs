@@ -1,0 +1,6 @@
+//! The command as it is run: exit status, files, and every word of its messages.
+#![allow(clippy::unwrap_used)]
+
+mod bench;
+mod messages;
+mod results;

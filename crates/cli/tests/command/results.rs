@@ -1,0 +1,258 @@
+//! What the commands write and print when all is well, and what they leave alone when it is not.
+
+use crate::bench::{Bench, home, with};
+use std::fs;
+use std::io::Read as _;
+use std::process::Stdio;
+
+fn case(name: &str) -> String {
+    let path = home().join("validation").join(name).join("scene.toml");
+    path.to_str().unwrap().to_owned()
+}
+
+fn first_line(bench: &Bench, file: &str) -> String {
+    let text = fs::read_to_string(bench.0.join(file)).unwrap();
+    text.lines().next().unwrap().to_owned()
+}
+
+#[test]
+fn check_describes_the_single_dwell_and_writes_nothing() {
+    let bench = Bench::new();
+    let run = bench.run(&["check", &case("single-dwell")]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(bench.contents().is_empty());
+    let mut settings = insta::Settings::clone_current();
+    settings.set_snapshot_path("../snapshots");
+    settings.set_prepend_module_to_snapshot(false);
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!("check-single-dwell", run.out));
+}
+
+#[test]
+fn reduce_writes_a_table_with_units_and_pictures() {
+    let bench = Bench::new();
+    let run = bench.run(&["reduce", &case("single-dwell"), "--out", "o"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert_eq!(
+        bench.files("o"),
+        [
+            "single-dwell-b-reduced.png",
+            "single-dwell-c-reaction.png",
+            "single-dwell-reduced.csv"
+        ]
+    );
+    assert_eq!(
+        first_line(&bench, "o/single-dwell-reduced.csv"),
+        "phi [rad],m [kg m2],half_dm [kg m2/rad],slide.normal a [kg m],slide.normal b [kg m]"
+    );
+    assert!(run.out.contains("o/single-dwell-reduced.csv"));
+    assert!(run.out.contains("kg m²/rad"));
+}
+
+#[test]
+fn simulate_writes_a_table_with_units_and_a_picture() {
+    let bench = Bench::new();
+    for method in ["bdf", "tsit45"] {
+        let scene = case("single-dwell");
+        let run = bench.run(&["simulate", &scene, "--out", "o", "--method", method]);
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+        assert_eq!(
+            bench.files("o"),
+            ["single-dwell-d-motion.png", "single-dwell-motion.csv"]
+        );
+        assert_eq!(
+            first_line(&bench, "o/single-dwell-motion.csv"),
+            "t [s],phi [rad],phi_dot [rad/s],phi_ddot [rad/s2],energy [J],slide.normal [N]"
+        );
+        assert!(
+            run.out.contains("by quadrature 5.419662677064 s"),
+            "{}",
+            run.out
+        );
+        assert!(run.out.contains("energy 0.45508678"), "{}", run.out);
+    }
+}
+
+#[test]
+fn calibrate_finds_the_inertia_of_the_single_dwell() {
+    let bench = Bench::new();
+    let run = bench.run(&["calibrate", &case("single-dwell")]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert_eq!(
+        run.out,
+        "Single-dwell mechanism: crank.inertia = 0.626326641678 kg m2 gives the period 5.42 s\n  \
+         the scene has 0.626 kg m2, which gives 5.419662677064 s\n"
+    );
+    // The other way round, with a value of another kind.
+    let arguments = ["--set", "coupler.mass", "--period", "5.42"];
+    let run = bench.run(&[&["calibrate", &case("single-dwell")], &arguments[..]].concat());
+    assert_eq!(run.status, Some(0));
+    assert!(run.out.contains("coupler.mass = 1.497607"), "{}", run.out);
+    assert!(bench.contents().is_empty());
+}
+
+#[test]
+fn validate_writes_the_report_and_its_status_tells_the_verdict() {
+    let bench = Bench::new();
+    let folder = home().join("validation/single-dwell");
+    let text = |file: &str| fs::read_to_string(folder.join(file)).unwrap();
+    let reference = text("reference.json");
+    bench.put("cases/dwell/scene.toml", text("scene.toml"));
+    bench.put("cases/dwell/reference.json", &reference);
+    let run = bench.run(&["validate", "--folder", "cases"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(
+        run.out.starts_with("dwell: 31 of 31 findings pass\n"),
+        "{}",
+        run.out
+    );
+    let files = bench.files("reports");
+    for file in [
+        "dwell.json",
+        "dwell.md",
+        "dwell.txt",
+        "dwell/a-mechanism.png",
+        "dwell/b-reduced.png",
+        "dwell/c-reaction.png",
+        "dwell/cost.csv",
+        "dwell/d-motion.png",
+        "dwell/e-drift.png",
+        "dwell/f-differences.png",
+        "dwell/g-cost.png",
+        "dwell/motion.csv",
+        "dwell/reduced.csv",
+    ] {
+        assert!(files.iter().any(|f| f == file), "{file} of {files:?}");
+    }
+    assert_eq!(
+        first_line(&bench, "reports/dwell/cost.csv"),
+        "bdf_or_tsit45 [0 or 1],tolerance,steps,evaluations,jacobians,wall_time [s],period_error,\
+         energy_drift,reaction_error"
+    );
+    // One published digit changed, the tenth of m at φ = 0: the check fails, the report says so.
+    let wrong = reference.replacen("0.9101735605", "0.9101735606", 1);
+    assert_ne!(wrong, reference);
+    bench.put("cases/dwell/reference.json", wrong);
+    let run = bench.run(&["validate", "--folder", "cases"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(1), ""));
+    assert!(
+        run.out
+            .starts_with("dwell: 30 of 31 findings pass\n  FAIL published-m ")
+    );
+    let report = fs::read_to_string(bench.0.join("reports/dwell.txt")).unwrap();
+    assert!(report.contains("FAIL  published-m"));
+}
+
+#[test]
+fn a_report_is_left_alone_when_the_next_one_fails() {
+    let bench = Bench::new();
+    bench.put("scene.toml", with(&[]));
+    assert_eq!(bench.run(&["reduce", "scene.toml"]).status, Some(0));
+    // The scene is wrong.
+    bench.put("scene.toml", with(&[("mass = 1.0", "mass = -1.0")]));
+    let before = bench.contents();
+    assert_eq!(bench.run(&["reduce", "scene.toml"]).status, Some(2));
+    assert!(bench.contents() == before);
+    // One of the files cannot be written, so none is.
+    bench.put("scene.toml", with(&[("mass = 1.0", "mass = 2.0")]));
+    let reports = bench.0.join("reports");
+    let table = bench
+        .files("reports")
+        .into_iter()
+        .find(|f| f.ends_with(".csv"));
+    let table = reports.join(table.unwrap());
+    fs::remove_file(&table).unwrap();
+    fs::create_dir(&table).unwrap();
+    let before = bench.contents();
+    let run = bench.run(&["reduce", "scene.toml"]);
+    assert_eq!(run.status, Some(2));
+    assert!(run.err.contains("nothing was written"), "{}", run.err);
+    assert!(bench.contents() == before);
+}
+
+#[test]
+fn a_good_case_is_not_written_when_another_cannot_be_validated() {
+    let bench = Bench::new();
+    bench.put("cases/good/scene.toml", with(&[]));
+    bench.put(
+        "cases/bad/scene.toml",
+        with(&[("C = [0.35, 0]", "C = [0.05, 0]")]),
+    );
+    let before = bench.contents();
+    let run = bench.run(&["validate", "--folder", "cases"]);
+    assert_eq!(run.status, Some(2));
+    assert!(run.err.contains("bad/scene.toml"), "{}", run.err);
+    assert!(bench.contents() == before);
+}
+
+#[test]
+fn a_reader_that_has_seen_enough_is_no_error() {
+    let bench = Bench::new();
+    let mut child = bench
+        .command(&["reduce", &case("single-dwell"), "--out", "o"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let mut said = String::new();
+    child
+        .stderr
+        .take()
+        .unwrap()
+        .read_to_string(&mut said)
+        .unwrap();
+    assert_eq!((child.wait().unwrap().code(), said.as_str()), (Some(0), ""));
+    assert_eq!(bench.files("o").len(), 3);
+}
+
+#[test]
+fn names_in_any_script_and_folders_with_spaces() {
+    let bench = Bench::new();
+    let scene = with(&[])
+        .replace("rocker", "качалка")
+        .replace("[bodies.качалка]", "[bodies.\"качалка\"]")
+        .replace("phi =", "\"φ\" =")
+        .replace("[actuators.phi]", "[actuators.\"φ\"]");
+    bench.put("my case/scene.toml", scene);
+    let run = bench.run(&["reduce", "my case/scene.toml"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    let header = first_line(&bench, "reports/my case-reduced.csv");
+    assert!(header.starts_with("φ [rad],m [kg m2]"), "{header}");
+}
+
+/// Reads what has no speed, no mass or a slack tolerance: true words instead of NaN.
+#[test]
+fn odd_motions_are_told_as_they_are() {
+    let bench = Bench::new();
+    let told = |scene: String, arguments: &[&str]| {
+        bench.put("scene.toml", scene);
+        let run = bench.run(arguments);
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+        assert!(!run.out.contains("NaN"), "{}", run.out);
+        run.out
+    };
+    let rest = [
+        ("speed = 10.0", "speed = 0"),
+        ("periods = 2", "duration = 2"),
+    ];
+    let out = told(with(&rest), &["simulate", "scene.toml"]);
+    assert!(out.contains("it stays at rest: nothing moves it"), "{out}");
+    let fast = [("speed = 10.0", "speed = 1e30")];
+    let out = told(with(&fast), &["simulate", "scene.toml"]);
+    assert!(out.contains("from t = 0 to 1.510126e-29 s"), "{out}");
+    let slack = ["simulate", "scene.toml", "--rtol", "1e-3"];
+    let out = told(with(&[]), &slack);
+    assert!(out.contains("take a smaller --rtol"), "{out}");
+    let massless: String = with(&[])
+        .lines()
+        .filter(|l| {
+            !["mass", "center", "inertia"]
+                .iter()
+                .any(|k| l.starts_with(k))
+        })
+        .map(|l| format!("{l}\n"))
+        .collect();
+    let out = told(massless, &["reduce", "scene.toml"]);
+    assert!(out.contains("no body with mass moves"), "{out}");
+}
