@@ -245,7 +245,6 @@ fn an_ambiguous_class_three_group_lists_its_choices() {
 /// With G ten times too far away no start of Newton's method leads to a pose, whichever of them
 /// happens to be singular.
 #[test]
-#[ignore = "the refusal of the last start is told: SingularStart"]
 fn a_class_three_group_that_does_not_reach_is_not_called_singular() {
     let mut setup = Setup::of(&scene("class-three-six-bar"));
     setup.mechanism.joints[6].points[0] = vec2(5.0, 5.0);

@@ -35,10 +35,10 @@ pub(crate) enum Command {
         #[arg(long, value_enum, default_value_t = MethodName::Bdf)]
         method: MethodName,
         /// Relative tolerance
-        #[arg(long, default_value = "1e-10", value_parser = tolerance, value_name = "TOLERANCE", allow_negative_numbers = true)]
+        #[arg(long, default_value = "1e-10", value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
         rtol: f64,
         /// Absolute tolerance, rad and rad/s (as the relative one, if absent)
-        #[arg(long, value_parser = tolerance, value_name = "TOLERANCE", allow_negative_numbers = true)]
+        #[arg(long, value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
         atol: Option<f64>,
     },
     /// The scene value that gives a wanted period of the free motion
@@ -49,7 +49,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "VALUE")]
         set: Option<String>,
         /// The wanted period, s (the scene's [calibration], if absent)
-        #[arg(long, value_parser = time, value_name = "SECONDS", allow_negative_numbers = true)]
+        #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
         period: Option<f64>,
     },
     /// All checks on all cases, or on those named; exit status 1 if one fails

@@ -126,7 +126,16 @@ impl Plan {
                         });
                     }
                 }
-                Err(e) if e.group() == Some(g) => refused = Some(e),
+                Err(e) if e.group() == Some(g) => {
+                    // Of all refusals the one that came nearest tells most.
+                    let open = |e: &PlaceError| match *e {
+                        PlaceError::NotClosed { residual, .. } => residual,
+                        _ => f64::INFINITY,
+                    };
+                    if refused.as_ref().is_none_or(|kept| open(&e) < open(kept)) {
+                        refused = Some(e);
+                    }
+                }
                 Err(e) => return Err(self.refusal(g, e)),
             }
         }

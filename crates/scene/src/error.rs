@@ -55,7 +55,14 @@ impl SceneError {
         labels: impl IntoIterator<Item = (std::ops::Range<usize>, String)>,
     ) -> Self {
         let text = source.inner();
+        // Nothing is drawn behind the last character: what is missing there is shown at it.
+        let written = text.trim_end();
+        let last = written.char_indices().next_back().map_or(0, |(at, _)| at);
         let labels = labels.into_iter().map(|(span, label)| {
+            let span = match span.start >= written.len() {
+                true => last..written.len(),
+                false => span,
+            };
             let start = text.floor_char_boundary(span.start);
             let end = text.ceil_char_boundary(span.end).max(start);
             LabeledSpan::new((!label.is_empty()).then_some(label), start, end - start)

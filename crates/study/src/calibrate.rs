@@ -73,7 +73,7 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<Calibrated, 
     let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
     let search = Search::outwards(present, present_period, period, &period_with);
     let Some((a, b)) = search.bracket else {
-        let [from, to] = search.values.map(number);
+        let [from, to] = search.values.map(|v| digits(v, 3));
         let [shortest, longest] = search.periods.map(number);
         let met = if shortest == longest {
             format!("the period stays {shortest} s")

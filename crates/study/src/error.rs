@@ -99,9 +99,8 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
                 return scene
                     .error(
                         format!(
-                            "the start is a limit position, or just beyond it: {names} reach each \
-                             other but for {} m",
-                            digits(*gap, 3)
+                            "the start is a limit position, or just beyond it: {names} barely reach \
+                             each other"
                         ),
                         Some("start a little away from it".to_owned()),
                         &labels,
@@ -292,10 +291,10 @@ pub(crate) fn not_one_actuator(scene: &Scene) -> StudyError {
         .into()
 }
 
-/// The name of the coordinate.
-fn coordinate(scene: &Scene) -> &str {
+/// The name of the coordinate, quoted.
+fn coordinate(scene: &Scene) -> String {
     let first = scene.mechanism.actuators.first();
-    first.map_or("the coordinate", |a| a.name.as_str())
+    first.map_or_else(|| "the coordinate".to_owned(), |a| format!("`{}`", a.name))
 }
 
 /// Explains a motion that failed.
@@ -392,7 +391,10 @@ pub(crate) fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) 
             "a period is needed",
         ),
         DynamicsError::Budget { t, steps } => motion(
-            format!("{steps} steps take the motion only to t = {} s", number(*t)),
+            format!(
+                "{steps} steps take the motion only to t = {} s",
+                digits(*t, 2)
+            ),
             "end it before, or follow it less exactly, with a larger --rtol",
             Place::Length,
             "too long to be followed",

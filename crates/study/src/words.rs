@@ -17,8 +17,9 @@ pub(crate) fn digits(value: f64, count: usize) -> String {
     if value == 0.0 {
         "0".to_owned()
     } else if (-4..most).contains(&power) {
+        let rounded: f64 = text.parse().unwrap_or(value);
         let decimals = count as i64 - 1 - i64::from(power);
-        trimmed(&format!("{value:.*}", decimals.max(0) as usize))
+        trimmed(&format!("{rounded:.*}", decimals.max(0) as usize))
     } else {
         format!("{}e{exponent}", trimmed(mantissa))
     }
@@ -68,6 +69,7 @@ mod tests {
             assert_eq!(number(value), six);
             assert_eq!(digits(value, 12), twelve);
         }
+        assert_eq!(digits(2187.41, 2), "2200");
         assert_eq!(count(1, "degree of freedom"), "1 degree of freedom");
         assert_eq!(count(3, "degree of freedom"), "3 degrees of freedom");
         assert_eq!(count(0, "actuator"), "0 actuators");

@@ -1,6 +1,6 @@
 //! What the commands write and print when all is well, and what they leave alone when it is not.
 
-use crate::bench::{Bench, home, with};
+use crate::bench::{Bench, LIMITED, home, with};
 use std::fs;
 use std::io::Read as _;
 use std::process::Stdio;
@@ -238,6 +238,11 @@ fn odd_motions_are_told_as_they_are() {
     ];
     let out = told(with(&rest), &["simulate", "scene.toml"]);
     assert!(out.contains("it stays at rest: nothing moves it"), "{out}");
+    // The duration that is suggested where a motion runs into a limit position.
+    let before = LIMITED.map(|(old, new)| (old, new.replace("= 2", "= 0.065")));
+    let before = before.each_ref().map(|(old, new)| (*old, new.as_str()));
+    let out = told(with(&before), &["simulate", "scene.toml"]);
+    assert!(out.contains("from t = 0 to 0.065 s"), "{out}");
     let fast = [("speed = 10.0", "speed = 1e30")];
     let out = told(with(&fast), &["simulate", "scene.toml"]);
     assert!(out.contains("from t = 0 to 1.510126e-29 s"), "{out}");

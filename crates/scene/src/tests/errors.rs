@@ -126,7 +126,7 @@ fn in_a_long_line_the_place_is_said_in_words() {
     let before = format!("note = \"{}\"\nmass = \n", "x".repeat(100_000));
     let message = parse(&before).unwrap_err().message;
     assert!(
-        message.ends_with("(test.toml, line 2, column 8)"),
+        message.ends_with("(test.toml, line 2, column 6)"),
         "{message}"
     );
 }
