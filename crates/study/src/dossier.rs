@@ -4,12 +4,13 @@ use crate::error::StudyError;
 use crate::prepare::Prepared;
 use crate::reference::Reference;
 use crate::validate::Evidence;
+use dwell_dynamics::Method;
 use dwell_findings::{Finding, all_pass};
 use dwell_geometry::Range;
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Block, Column, Document, Figure, Table, json};
 use dwell_scene::Scene;
-use dwell_verify::Rung;
+use dwell_verify::{FreeMotion, Rung};
 use serde::Serialize;
 
 /// The numbers of the report, as JSON.
@@ -74,39 +75,41 @@ pub(crate) fn tables(prepared: &Prepared<'_>, evidence: &Evidence) -> Vec<(&'sta
         tables.push(("motion", history.table(prepared)));
     }
     if let Some(motion) = &evidence.motion {
-        let columns = [
-            ("bdf_or_tsit45", "0 or 1"),
-            ("tolerance", ""),
-            ("steps", ""),
-            ("evaluations", ""),
-            ("jacobians", ""),
-            ("wall_time", "s"),
-            ("period_error", ""),
-            ("energy_drift", ""),
-            ("reaction_error", ""),
-        ];
-        let row = |r: &Rung| {
-            vec![
-                f64::from(u8::from(r.method == dwell_dynamics::Method::Tsit45)),
-                r.tolerance,
-                r.work.steps as f64,
-                r.work.evaluations as f64,
-                r.work.jacobians as f64,
-                r.seconds,
-                r.period_error,
-                r.drift,
-                r.reaction_error,
-            ]
-        };
-        tables.push((
-            "cost",
-            Table {
-                columns: columns.map(|(n, u)| Column::new(n, u)).to_vec(),
-                rows: motion.rungs.iter().map(row).collect(),
-            },
-        ));
+        tables.push(("cost-bdf", cost(motion, Method::Bdf)));
+        tables.push(("cost-tsit45", cost(motion, Method::Tsit45)));
     }
     tables
+}
+
+/// Work and errors of one method over the ladder of tolerances.
+fn cost(motion: &FreeMotion, method: Method) -> Table {
+    let columns = [
+        ("tolerance", ""),
+        ("steps", ""),
+        ("evaluations", ""),
+        ("jacobians", ""),
+        ("wall_time", "s"),
+        ("period_error", ""),
+        ("energy_drift", ""),
+        ("reaction_error", ""),
+    ];
+    let row = |r: &Rung| {
+        vec![
+            r.tolerance,
+            r.work.steps as f64,
+            r.work.evaluations as f64,
+            r.work.jacobians as f64,
+            r.seconds,
+            r.period_error,
+            r.drift,
+            r.reaction_error,
+        ]
+    };
+    let rungs = motion.rungs.iter().filter(|r| r.method == method);
+    Table {
+        columns: columns.map(|(n, u)| Column::new(n, u)).to_vec(),
+        rows: rungs.map(row).collect(),
+    }
 }
 
 pub(crate) fn numbers(scene: &Scene, evidence: &Evidence) -> Result<String, StudyError> {
