@@ -23,6 +23,9 @@ use std::path::Path;
 
 /// Positions at which every truth is held against the model.
 const POSITIONS: usize = 24;
+/// Most turns that are judged: twenty tolerances are followed over all of them, so a long motion would
+/// take minutes and show no more.
+const MOST_TURNS: usize = 20;
 /// Steps of the progress bar for one case.
 const STEPS: usize = 4;
 
@@ -165,7 +168,7 @@ fn rest(prepared: &Prepared<'_>, reference: &Reference) -> Result<Rest, StudyErr
             };
             let case = FreeMotionCase {
                 start,
-                turns: (turns.floor() as usize).max(1),
+                turns: (turns.floor() as usize).clamp(1, MOST_TURNS),
                 reactions: prepared.reactions(),
                 period: reference.period.map(|p| (p, reference.source.clone())),
             };
