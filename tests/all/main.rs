@@ -1,5 +1,10 @@
 //! Cross-crate tests, in one binary.
-#![allow(clippy::expect_used, clippy::unwrap_used, clippy::panic)]
+#![allow(
+    clippy::expect_used,
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "tests, of which clippy knows only the functions with the attribute"
+)]
 
 mod branches;
 mod cases;

@@ -1,5 +1,5 @@
 //! An evaluation at a new coordinate allocates nothing: all memory is the caller's.
-#![allow(clippy::expect_used)]
+#![allow(clippy::expect_used, reason = "a test")]
 
 use allocation_counter::measure;
 use dwell_geometry::{Range, Start};

@@ -1,6 +1,7 @@
 //! `dwell calibrate`: the scene value that gives a wanted period of the free motion.
 
-use crate::error::{StudyError, explain_motion};
+use crate::error::StudyError;
+use crate::motion_error::explain_motion;
 use crate::outcome::Outcome;
 use crate::prepare::{Prepared, model};
 use crate::words::{digits, number};

@@ -12,6 +12,7 @@ mod check;
 mod dossier;
 mod error;
 mod figures;
+mod motion_error;
 mod outcome;
 mod prepare;
 mod reduce;

@@ -1,7 +1,8 @@
 //! `dwell reduce`: the reduced parameters over the range, as a table and as figures.
 
-use crate::error::{StudyError, explain_place};
+use crate::error::StudyError;
 use crate::figures;
+use crate::motion_error::explain_place;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
 use crate::words::digits;

@@ -1,7 +1,8 @@
 //! `dwell simulate`: the free motion in time, with the requested reactions.
 
-use crate::error::{StudyError, explain_motion};
+use crate::error::StudyError;
 use crate::figures;
+use crate::motion_error::explain_motion;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
 use crate::words::digits;

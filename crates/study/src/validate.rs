@@ -2,8 +2,9 @@
 
 use crate::calibrate::{Calibrated, find_value};
 use crate::dossier::{document, numbers, snapshot, summary, tables};
-use crate::error::{StudyError, explain_motion};
+use crate::error::StudyError;
 use crate::figures::{self, Dwell};
+use crate::motion_error::explain_motion;
 use crate::outcome::{Outcome, Progress, Step};
 use crate::prepare::Prepared;
 use crate::reduce::Sweep;

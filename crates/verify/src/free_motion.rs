@@ -264,9 +264,9 @@ fn quadrature(case: &FreeMotionCase, turn: &FreeTurn) -> Option<Finding> {
         relative,
         scale: "the period".into(),
         worst: "the whole turn".into(),
-        tolerance: 1e-13,
+        tolerance: 4e-14,
         why: "a spectral rule on an exact integrand leaves only the rounding of its sum".into(),
-        pass: relative <= 1e-13,
+        pass: relative <= 4e-14,
     })
 }
 

@@ -1,7 +1,8 @@
 //! The mechanism in several positions, the paths of its points, and a body's dwell.
 
 use super::{caption, coordinate_label};
-use crate::error::{StudyError, explain_place};
+use crate::error::StudyError;
+use crate::motion_error::explain_place;
 use crate::prepare::Prepared;
 use dwell_geometry::{BodyId, JointKind, Plan, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::Reduced;

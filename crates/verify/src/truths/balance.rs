@@ -82,7 +82,7 @@ pub fn balance(bench: &Bench<'_>) -> Vec<Finding> {
         compared,
         over: over_motions(bench),
         scale,
-        tolerance: 1e-11,
+        tolerance: 1e-12,
         why: "rounding of the momentum over the shortest time step that the extrapolation uses",
     };
     vec![

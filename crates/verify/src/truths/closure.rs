@@ -49,7 +49,7 @@ pub fn closure(bench: &Bench<'_>) -> Vec<Finding> {
             compared: "the subject's poses with those reached by following the first one through the range",
             over: bench.over(),
             scale: "the mechanism's size, angles in rad",
-            tolerance: 1e-9,
+            tolerance: 1e-12,
             why: "both ends are closed to rounding; another branch is another configuration",
         }
         .judge(branch(bench)),

@@ -53,7 +53,7 @@ pub fn power(bench: &Bench<'_>) -> Vec<Finding> {
             compared: "tau times q_dot with dE_c/dt, differenced in time along the motion",
             over: over_motions(bench),
             scale: "the largest power of the same motion",
-            tolerance: 1e-11,
+            tolerance: 3e-12,
             why: "rounding of E_c over the shortest time step that the extrapolation uses",
         }
         .judge(all),
