@@ -135,8 +135,8 @@ impl Setup {
         };
         for (j, answer) in self.joints.iter().enumerate() {
             let lower = match self.mechanism.joints[answer.joint].kind {
-                JointKind::Revolute => answer.map[1][0],
                 JointKind::Prismatic { .. } => answer.map[1][0] * original.travel[j],
+                _ => answer.map[1][0],
             };
             for (row, [one, two]) in [answer.map[0], [lower, answer.map[1][1]]]
                 .into_iter()
@@ -228,7 +228,7 @@ impl Setup {
         self.map_reactions(|joint, answer| {
             let signs = match joint.kind {
                 JointKind::Revolute => [1.0, -1.0],
-                JointKind::Prismatic { .. } => [-1.0, -1.0],
+                _ => [-1.0, -1.0],
             };
             for (row, sign) in answer.map.iter_mut().zip(signs) {
                 *row = row.map(|entry| sign * entry);
@@ -327,11 +327,11 @@ pub(crate) fn travels(mechanism: &Mechanism, plan: &Plan, pose: &Pose<f64>) -> V
         root + (point - tree.roots[body]).turn(turn(body))
     };
     let travel = |joint: &Joint| match joint.kind {
-        JointKind::Revolute => 0.0,
         JointKind::Prismatic { axes } => {
             let [one, two] = [0, 1].map(|i| place(joint.bodies[i].0, joint.points[i]));
             (two - one).dot(axes[0].turn(turn(joint.bodies[0].0)))
         }
+        _ => 0.0,
     };
     mechanism.joints.iter().map(travel).collect()
 }

@@ -2,7 +2,7 @@
 
 use crate::changes::Setup;
 use dwell_geometry::{
-    Actuator, Body, BodyId, Joint, JointId, JointKind, Mechanism, Start, Vec2, vec2,
+    Actuator, Body, BodyId, Drive, Joint, JointId, JointKind, Mechanism, Start, Vec2, vec2,
 };
 use dwell_kinetostatics::Mass;
 
@@ -66,7 +66,11 @@ impl Sketch {
     /// An actuator that turns the second body from the first.
     pub(crate) fn drive(&mut self, name: &str, bodies: [BodyId; 2]) {
         let name = name.into();
-        self.mechanism.actuators.push(Actuator { name, bodies });
+        self.mechanism.actuators.push(Actuator {
+            name,
+            bodies,
+            drive: Drive::Angle,
+        });
     }
 
     /// What it takes to make a model of it, with the actuators at `q`.

@@ -19,7 +19,8 @@ pub mod tree;
 
 pub use error::{AssemblyError, PlaceError, StructureError};
 pub use mechanism::{
-    Actuator, ActuatorId, Body, BodyId, Component, Joint, JointId, JointKind, Mechanism, Reaction,
+    Actuator, ActuatorId, Body, BodyId, Component, Coordinate, Drive, Joint, JointId, JointKind,
+    Mechanism, Reaction, Relation,
 };
 pub use motion::{Balance, Motion};
 pub use plan::{Plan, Pose, Start};

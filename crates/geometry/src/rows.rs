@@ -174,6 +174,8 @@ impl Rows {
                 JointKind::Prismatic {
                     axes: [first, second],
                 } => Item::Prismatic(ends, first.perp(), second.angle() - first.angle()),
+                // The other kinds: to come.
+                _ => Item::Revolute(ends),
             });
         }
         for (a, actuator) in mechanism.actuators.iter().enumerate() {
@@ -374,7 +376,9 @@ mod tests {
             actuators: vec![Actuator {
                 name: "phi".into(),
                 bodies: [BodyId(0), BodyId(2)],
+                drive: crate::mechanism::Drive::Angle,
             }],
+            relations: vec![],
         }
     }
 
@@ -448,6 +452,7 @@ mod tests {
                 },
             }],
             actuators: vec![],
+            relations: vec![],
         };
         let rows = Rows::new(&mechanism).unwrap();
         let mut jacobian = vec![0.0; 6];

@@ -135,7 +135,6 @@ impl Tree {
     ) {
         let joint = &mechanism.joints[j];
         let slide = match joint.kind {
-            JointKind::Revolute => None,
             JointKind::Prismatic { axes } => {
                 let axis = axes[0].turn(frames.attitudes[joint.bodies[0].0].offset);
                 let away = if joint.bodies[1].0 == child {
@@ -146,6 +145,7 @@ impl Tree {
                 self.slides += 1;
                 Some((self.slides - 1, away))
             }
+            _ => None,
         };
         let arm = self.arm(frames, parent, point_on(mechanism, j, parent));
         self.place[child] = Some(self.carries.len());
@@ -202,7 +202,6 @@ impl Tree {
         );
         arms.retain(|arm| arm.local != Vec2::ZERO);
         let axis = match joint.kind {
-            JointKind::Revolute => None,
             JointKind::Prismatic { axes } => {
                 let attitude = frames.attitudes[joint.bodies[0].0];
                 Some(Arm {
@@ -210,6 +209,7 @@ impl Tree {
                     local: axes[0].turn(attitude.offset),
                 })
             }
+            _ => None,
         };
         Loop {
             joint: chord,
@@ -231,7 +231,7 @@ fn driven_ranks(mechanism: &Mechanism) -> Vec<u8> {
     let rank = |joint: &crate::mechanism::Joint| match joint.kind {
         JointKind::Revolute if pairs.binary_search(&sorted(joint.bodies)).is_ok() => 0,
         JointKind::Revolute => 1,
-        JointKind::Prismatic { .. } => 2,
+        _ => 2,
     };
     mechanism.joints.iter().map(rank).collect()
 }

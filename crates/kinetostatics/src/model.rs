@@ -112,10 +112,7 @@ impl Model {
         if masses.len() != mechanism.bodies.len() || !masses.iter().all(sound) {
             return Err(ModelError::Masses);
         }
-        let unknown = |r: &&Reaction| {
-            let joint = mechanism.joints.get(r.joint.0);
-            !joint.is_some_and(|j| j.kind.components().contains(&r.component))
-        };
+        let unknown = |r: &&Reaction| !mechanism.components(r.joint).contains(&r.component);
         if let Some(reaction) = reactions.iter().find(unknown) {
             return Err(ModelError::Reaction(*reaction));
         }

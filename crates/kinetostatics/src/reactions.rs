@@ -116,12 +116,12 @@ impl Sources {
             };
         };
         let axis = match mechanism.joints[joint.0].kind {
-            JointKind::Revolute => None,
             JointKind::Prismatic { axes } => {
                 let first = mechanism.joints[joint.0].bodies[0].0;
                 let attitude = plan.frames().attitudes[first];
                 Some((attitude.frame, axes[0].turn(attitude.offset)))
             }
+            _ => None,
         };
         let sign = if self.carried_is_second[carried] {
             1.0

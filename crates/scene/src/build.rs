@@ -182,6 +182,7 @@ impl<'a> Parts<'a> {
                 .iter()
                 .filter_map(|a| a.actuator.clone())
                 .collect(),
+            relations: Vec::new(),
         };
         let start = |said: &[Option<(f64, Span)>], k: usize| said.get(k)?.as_ref().map(|s| s.0);
         let moving = self.motion.as_ref().map_or(&[][..], |m| &m.start);

@@ -224,6 +224,7 @@ pub(crate) fn actuators<'a>(
             actuator: bodies.map(|bodies| Actuator {
                 name: entry.name.to_owned(),
                 bodies,
+                drive: dwell_geometry::Drive::Angle,
             }),
         });
     }

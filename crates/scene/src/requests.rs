@@ -98,11 +98,11 @@ fn components(
     at: &Span,
     problems: &mut Problems,
 ) -> Vec<Component> {
-    let all = joint.kind.components();
+    let all = joint.kind.components(&[]);
     let Some(name) = name else {
         return all.to_vec();
     };
-    if let Some(component) = all.into_iter().find(|c| c.name() == name) {
+    if let Some(component) = all.iter().copied().find(|c| c.name() == name) {
         return vec![component];
     }
     let help = problems.choices(

@@ -150,13 +150,13 @@ impl Dense {
             let [first, second] = joint.bodies.map(|b| b.0);
             let point = self.placed(&self.bodies[second], &at.x, joint.points[1]);
             let (force, couple) = match joint.kind {
-                JointKind::Revolute => (vec2(reaction[0], reaction[1]), 0.0),
                 JointKind::Prismatic { axes } => {
                     let turned = self.bodies[first]
                         .column
                         .map_or(Vec2::IDENTITY, |c| Vec2::from_angle(at.x[c + 2]));
                     (axes[0].perp().turn(turned) * reaction[0], reaction[1])
                 }
+                _ => (vec2(reaction[0], reaction[1]), 0.0),
             };
             pair([first, second], force, point, couple);
         }

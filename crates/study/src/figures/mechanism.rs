@@ -201,7 +201,7 @@ fn linkage(
                 let [from, to] = [middle - along, middle + along].map(|p| [p.x, p.y]);
                 shapes.push(Shape::GroundLine { from, to });
             }
-            JointKind::Prismatic { .. } => {}
+            _ => {}
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The mechanisms of the tests.
 
 use super::subject::DenseSubject;
-use dwell_geometry::{Actuator, Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2};
+use dwell_geometry::{Actuator, Body, BodyId, Drive, Joint, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_verify::{Case, Range, spread};
 use std::f64::consts::PI;
@@ -103,6 +103,7 @@ fn turn(name: &str, on: [usize; 2]) -> Vec<Actuator> {
     vec![Actuator {
         name: name.into(),
         bodies: on.map(BodyId),
+        drive: Drive::Angle,
     }]
 }
 
@@ -127,6 +128,7 @@ pub(crate) fn crank_rocker() -> Setup {
                 pin("D", [0, 3], [[4.0, 0.0], [0.0, 0.0]]),
             ],
             actuators: turn("phi", [0, 1]),
+            relations: vec![],
         },
         masses: vec![Mass::default(), bar(1.0, 1.0), bar(2.0, 3.5), bar(2.0, 3.0)],
         range: Range::Full,
@@ -151,6 +153,7 @@ pub(crate) fn single_dwell() -> Setup {
                 pin("P", [2, 5], [[0.5, 0.0], [0.0, 0.0]]),
             ],
             actuators: turn("phi", [0, 1]),
+            relations: vec![],
         },
         masses: vec![
             Mass::default(),
@@ -199,6 +202,7 @@ pub(crate) fn inverted_slider_crank() -> Setup {
                 pin("B", [1, 3], [[0.16, 0.12], [-0.03, 0.02]]),
             ],
             actuators: turn("drive", [2, 1]),
+            relations: vec![],
         },
         masses: vec![
             Mass {
@@ -245,6 +249,7 @@ pub(crate) fn pendulum() -> Setup {
             ground: 1,
             joints: vec![pin("A", [0, 1], [[0.0, 0.0], [2.0, 1.0]])],
             actuators: turn("phi", [1, 0]),
+            relations: vec![],
         },
         masses: vec![bar(3.0, 0.8), Mass::default()],
         range: Range::Full,

@@ -1,0 +1,93 @@
+//! What acts on a mechanism from outside: each load is a shape that the configuration fixes, times a
+//! magnitude that may depend on time and on what moves.
+
+use dwell_geometry::{BodyId, Coordinate, Vec2};
+use dwell_laws::{Expression, Law};
+
+/// A named load.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    /// The name a table uses.
+    pub name: String,
+    /// Its shape.
+    pub kind: LoadKind,
+    /// Its magnitude.
+    pub magnitude: Magnitude,
+}
+
+/// The shape of a load, and what its magnitude F means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LoadKind {
+    /// Weight of every body: F is the acceleration of gravity, m/s², along this unit vector of the ground.
+    Gravity {
+        /// Unit vector in the ground's frame.
+        direction: Vec2,
+    },
+    /// A force F, N, at a point of a body.
+    Force {
+        /// The body.
+        body: BodyId,
+        /// The point in its frame, m.
+        point: Vec2,
+        /// Unit vector of the force.
+        direction: Vec2,
+        /// Whether the direction is given in, and turns with, the body's frame; else the ground's.
+        follows: bool,
+    },
+    /// A couple F, N·m, of the first body on the second.
+    Torque {
+        /// The two bodies; the first may be the ground.
+        bodies: [BodyId; 2],
+    },
+    /// A spring between two points: F is its stiffness, N/m; it pulls with F (length − free).
+    Spring {
+        /// The bodies.
+        bodies: [BodyId; 2],
+        /// The point on each, m.
+        points: [Vec2; 2],
+        /// Free length, m.
+        free: f64,
+    },
+    /// A torsional spring: F is its stiffness, N·m/rad; couple −F (angle − free) of the first body
+    /// on the second.
+    TorsionSpring {
+        /// The bodies.
+        bodies: [BodyId; 2],
+        /// Free angle of the second from the first, rad.
+        free: f64,
+    },
+    /// A damper between two points: F is its constant, N·s/m; it resists with F × d(length)/dt.
+    Damper {
+        /// The bodies.
+        bodies: [BodyId; 2],
+        /// The point on each, m.
+        points: [Vec2; 2],
+    },
+    /// A torsional damper: F is its constant, N·m·s/rad; couple −F × relative speed on the second.
+    TorsionDamper {
+        /// The bodies.
+        bodies: [BodyId; 2],
+    },
+}
+
+/// The magnitude of a load.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Magnitude {
+    /// Always the same.
+    Constant(f64),
+    /// A law of one signal.
+    Law(Signal, Law),
+    /// An expression of several signals: its variables, in their order.
+    Expression(Expression, Vec<Signal>),
+}
+
+/// What a magnitude can depend on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Signal {
+    /// Time, s.
+    Time,
+    /// A coordinate, rad or m.
+    Value(Coordinate),
+    /// Its speed, rad/s or m/s.
+    Speed(Coordinate),
+}
