@@ -145,8 +145,15 @@ impl Parts<'_> {
         for (r, row) in self.relations.iter().enumerate() {
             equations.push(Equation::Relation(r));
             let classes = row.classes(self.frames).into_iter().map(|c| c - 1);
-            let slides = row.slides().into_iter().filter(|&s| self.driven[s].is_none());
-            needs.push(classes.chain(slides.map(|s| self.frames.classes - 1 + s)).collect());
+            let slides = row
+                .slides()
+                .into_iter()
+                .filter(|&s| self.driven[s].is_none());
+            needs.push(
+                classes
+                    .chain(slides.map(|s| self.frames.classes - 1 + s))
+                    .collect(),
+            );
         }
         (equations, needs)
     }

@@ -195,9 +195,9 @@ impl Plan {
             }
         }
         for &r in &assur.group.relations {
-            let rate =
-                self.relation(r)
-                    .rate(&pose.angle, &pose.slide, &motion.turn, &motion.slide);
+            let rate = self
+                .relation(r)
+                .rate(&pose.angle, &pose.slide, &motion.turn, &motion.slide);
             work[row] = -rate * self.relation_weight(assur, r);
             row += 1;
         }

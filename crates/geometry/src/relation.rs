@@ -82,7 +82,10 @@ impl Terms {
 
     fn of_slide(&self, slide: usize) -> f64 {
         let slides = self.slides.iter();
-        slides.filter(|(s, _)| *s == slide).map(|(_, factor)| factor).sum()
+        slides
+            .filter(|(s, _)| *s == slide)
+            .map(|(_, factor)| factor)
+            .sum()
     }
 }
 
@@ -131,7 +134,8 @@ impl Row {
 
     /// Every frame it names.
     pub(crate) fn frames(&self) -> impl Iterator<Item = usize> {
-        self.terms().flat_map(|terms| terms.turns.iter().map(|t| t.0))
+        self.terms()
+            .flat_map(|terms| terms.turns.iter().map(|t| t.0))
     }
 
     /// The slides it names.
@@ -162,7 +166,9 @@ impl Row {
     pub(crate) fn value<T: Scalar>(&self, angle: &[T], slide: &[T]) -> T {
         let mut value = self.of.value(angle, slide);
         if let Some((law, by)) = &self.law {
-            value -= by.value(angle, slide).through(&law_at(law, by, angle, slide));
+            value -= by
+                .value(angle, slide)
+                .through(&law_at(law, by, angle, slide));
         }
         value
     }
@@ -174,7 +180,10 @@ impl Row {
         };
         let x = by.value(angle, slide);
         let [_, d, dd, ddd] = law_at(law, by, angle, slide);
-        (x.through(&[d, dd, ddd, 0.0]), x.through(&[dd, ddd, 0.0, 0.0]))
+        (
+            x.through(&[d, dd, ddd, 0.0]),
+            x.through(&[dd, ddd, 0.0, 0.0]),
+        )
     }
 
     /// The slope of the law: 0 where there is none.

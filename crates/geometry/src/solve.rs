@@ -433,7 +433,11 @@ impl Plan {
                 let along = pose.arm[along];
                 // |R w| = |D + s u|, or |D| = |w + s u|: where a line meets a circle.
                 let turns_too = class_of(frame) == class;
-                let (from, radius) = if turns_too { (own, known) } else { (known, own) };
+                let (from, radius) = if turns_too {
+                    (own, known)
+                } else {
+                    (known, own)
+                };
                 let off = from.cross(along);
                 let square = radius.dot(radius);
                 let missing = || off.value().abs() - square.value().sqrt();

@@ -112,7 +112,9 @@ mod tests {
         let (mut a, mut beside) = (A, [0.0; 2]);
         assert!(factor(&mut a, &mut beside, 4).measure > 0.1);
         let x = [0.7, -1.2];
-        let mut b: Vec<f64> = (0..4).map(|i| A[2 * i] * x[0] + A[2 * i + 1] * x[1]).collect();
+        let mut b: Vec<f64> = (0..4)
+            .map(|i| A[2 * i] * x[0] + A[2 * i + 1] * x[1])
+            .collect();
         solve(&a, &beside, 4, &mut b);
         assert!((b[0] - x[0]).abs() < 1e-15 && (b[1] - x[1]).abs() < 1e-15);
 

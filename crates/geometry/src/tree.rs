@@ -128,14 +128,7 @@ impl Tree {
         Ok(tree)
     }
 
-    fn carry(
-        &mut self,
-        lowered: &Lowered,
-        frames: &Frames,
-        b: usize,
-        parent: usize,
-        child: usize,
-    ) {
+    fn carry(&mut self, lowered: &Lowered, frames: &Frames, b: usize, parent: usize, child: usize) {
         let bond = &lowered.bonds[b];
         let slide = match bond.tie {
             Tie::Slide { axes, .. } => {

@@ -79,8 +79,7 @@ impl Sources {
                 }
             })
         });
-        let second =
-            |c: &dwell_geometry::tree::Carry| plan.bonds()[c.bond].bodies[1] == c.body;
+        let second = |c: &dwell_geometry::tree::Carry| plan.bonds()[c.bond].bodies[1] == c.body;
         let mut found = Self {
             chords: chords.collect(),
             parent_body: tree.carries.iter().map(|c| c.parent).collect(),

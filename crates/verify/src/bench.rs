@@ -6,7 +6,7 @@ use crate::closing::Closed;
 use crate::dense::{Dense, DenseError};
 use crate::judge::Worst;
 use crate::subject::{Coefficients, Subject, SubjectError};
-use dwell_geometry::{Component, Range, Reaction};
+use dwell_geometry::{Component, Reaction};
 use rayon::prelude::*;
 
 /// The dense mechanism at one sampled position.
@@ -126,9 +126,9 @@ impl<'a> Bench<'a> {
 
     /// The words for the positions judged.
     pub(crate) fn over(&self) -> String {
-        let range = match self.case.range {
-            Range::Full => "over a full turn".to_owned(),
-            Range::Between(low, high) => format!("between {low:.6} and {high:.6} rad"),
+        let range = match self.case.range.limits() {
+            None => "over a full turn".to_owned(),
+            Some((low, high)) => format!("between {low:.6} and {high:.6} rad"),
         };
         format!("{} positions {range}", self.sites.len())
     }
