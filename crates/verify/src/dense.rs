@@ -170,8 +170,8 @@ impl Dense {
         let rows = Rows::new(&mechanism)?;
         let row_scale = rows
             .angular()
-            .into_iter()
-            .map(|angular| if angular { size } else { 1.0 })
+            .iter()
+            .map(|&angular| if angular { size } else { 1.0 })
             .collect();
         Ok(Self {
             mechanism,
