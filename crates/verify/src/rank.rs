@@ -147,8 +147,7 @@ mod tests {
     /// hangs on it by a pin and swings.
     fn table() -> (Mechanism, Vec<[f64; 3]>) {
         let mut joints = vec![];
-        for leg in 1..=3 {
-            let x = leg as f64;
+        for (leg, x) in [(1, 1.0), (2, 2.0), (3, 3.0)] {
             joints.push(pin([0, leg], [vec2(x, 0.0), Vec2::ZERO]));
             joints.push(pin([leg, 4], [vec2(0.0, 2.0), vec2(x, 0.0)]));
         }
@@ -156,7 +155,7 @@ mod tests {
         let lean: f64 = -0.3;
         let up = vec2(0.0, 2.0).turn(Vec2::from_angle(lean));
         let mut poses = vec![[0.0; 3]];
-        poses.extend((1..=3).map(|leg| [leg as f64, 0.0, lean]));
+        poses.extend([1.0, 2.0, 3.0].map(|x| [x, 0.0, lean]));
         poses.push([up.x, up.y, 0.0]);
         poses.push([up.x + 0.4, up.y + 0.9, 0.0]);
         (bars(5, joints), poses)

@@ -362,13 +362,13 @@ impl<'a> Judge<'a> {
                 let acting = m.acting(body);
                 let exact = m.inertia_forces(body);
                 let inertia = self.dense.bodies[body].mass;
-                for c in 0..3 {
+                for (c, exact) in exact.into_iter().enumerate() {
                     let arm = if c == 2 { 1.0 / size } else { 1.0 };
                     let terms = acting.terms[usize::from(c == 2)] * arm;
                     let own = m.pose_noise * terms;
-                    let scale = terms + exact[c].abs() * arm;
+                    let scale = terms + exact.abs() * arm;
                     let at = || format!("{}, {name}", place(m));
-                    claimed.read((acting.sum[c] - exact[c]) * arm, own, scale, at());
+                    claimed.read((acting.sum[c] - exact) * arm, own, scale, at());
                     let factor = if c == 2 {
                         inertia.inertia
                     } else {

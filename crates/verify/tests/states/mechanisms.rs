@@ -1,74 +1,12 @@
 //! Mechanisms with every joint and every drive, under loads.
 
-use super::plain;
+use super::setup::Setup;
 use dwell_geometry::{
     Actuator, Body, BodyId, Coordinate, Drive, Joint, JointId, JointKind, Mechanism, Relation,
     Vec2, vec2,
 };
 use dwell_kinetostatics::{LoadKind, Mass};
 use dwell_laws::{Law, Polynomial};
-use dwell_verify::State;
-
-/// A mechanism, where it starts, what loads it, and how it is moved.
-pub(crate) struct Setup {
-    pub(crate) name: &'static str,
-    pub(crate) mechanism: Mechanism,
-    pub(crate) masses: Vec<Mass>,
-    pub(crate) start: Vec<[f64; 3]>,
-    loads: Vec<(LoadKind, f64)>,
-    /// [q, q̇, q̈] of every actuator, state by state.
-    motions: Vec<[Vec<f64>; 3]>,
-}
-
-impl Setup {
-    pub(crate) fn states(&self) -> Vec<State> {
-        let motions = self.motions.iter().cloned();
-        motions
-            .map(|m| plain::state(&self.mechanism, &self.masses, &self.start, &self.loads, m))
-            .collect()
-    }
-
-    /// The same standing elsewhere.
-    pub(crate) fn moved(mut self, by: Vec2) -> Self {
-        let ground = BodyId(self.mechanism.ground);
-        let shift = |bodies: [BodyId; 2], points: &mut [Vec2; 2]| {
-            for (body, point) in bodies.into_iter().zip(points) {
-                if body == ground {
-                    *point += by;
-                }
-            }
-        };
-        for joint in &mut self.mechanism.joints {
-            shift(joint.bodies, &mut joint.points);
-        }
-        for actuator in &mut self.mechanism.actuators {
-            if let Drive::Length(points) = &mut actuator.drive {
-                shift(actuator.bodies, points);
-            }
-        }
-        for relation in &mut self.mechanism.relations {
-            for coordinate in [&mut relation.of, &mut relation.by] {
-                if let Coordinate::Length { bodies, points } = coordinate {
-                    shift(*bodies, points);
-                }
-            }
-        }
-        for (load, _) in &mut self.loads {
-            if let LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } =
-                load
-            {
-                shift(*bodies, points);
-            }
-        }
-        for (body, pose) in self.start.iter_mut().enumerate() {
-            if body != ground.0 {
-                pose[0] += by.x;
-                pose[1] += by.y;
-            }
-        }
-        self
-    }
-}
 
 pub(crate) fn all() -> Vec<Setup> {
     vec![five_bar(), boom(), epicyclic(), wedge(), cam()]
