@@ -53,6 +53,9 @@ pub enum ReportError {
     /// A table could not be written as CSV.
     #[error("the table cannot be written as CSV: {0}")]
     Csv(#[from] csv::Error),
+    /// A table could not be written as a NumPy archive.
+    #[error("the table cannot be written as a NumPy archive: {0}")]
+    Npz(#[from] zip::result::ZipError),
     /// A value could not be written as JSON.
     #[error("the value cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),

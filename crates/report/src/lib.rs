@@ -29,6 +29,7 @@ mod legend;
 mod log_ticks;
 mod markdown;
 mod marks;
+mod npz;
 mod number;
 mod occupancy;
 mod page;
