@@ -34,6 +34,7 @@ mod number;
 mod occupancy;
 mod page;
 mod png;
+mod raster;
 mod rect;
 mod shape;
 mod sketch;

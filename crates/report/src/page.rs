@@ -2,12 +2,13 @@
 
 use crate::canvas::{Align, Canvas, Drawn, Type};
 use crate::chart::{self, Sheet};
-use crate::drawing;
+use crate::drawing::{self, Stage};
 use crate::figure::{Figure, Panel};
 use crate::fonts::wrapped;
 use crate::rect::{Insets, Rect};
 use crate::shape::Drawing;
 use crate::theme::{CAPTION, CAPTION_GREY, INK, TITLE, WHITE};
+use std::slice::from_ref;
 
 /// Around the page.
 const MARGIN: f64 = 44.0;
@@ -35,14 +36,16 @@ impl Ready<'_> {
     fn insets(&self, cell: &Rect) -> Insets {
         match self {
             Self::Chart(sheet) => sheet.insets(cell),
-            Self::Drawing(drawing) => drawing::insets(drawing, cell),
+            Self::Drawing(drawing) => drawing::insets(from_ref(drawing), cell),
         }
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, cell: &Rect, insets: Insets) -> Drawn {
         match self {
             Self::Chart(sheet) => sheet.draw(canvas, cell, insets),
-            Self::Drawing(drawing) => drawing::draw(canvas, drawing, cell, insets),
+            Self::Drawing(drawing) => {
+                Stage::new(from_ref(drawing), cell, insets).draw(canvas, drawing, cell)
+            }
         }
     }
 }
@@ -193,6 +196,6 @@ fn wanted_height(panel: &Panel, width: f64, lone: bool, stretched: bool) -> f64 
         Panel::Chart(_) if stretched => STRETCHED_HEIGHT * width,
         Panel::Chart(_) if lone => LONE_HEIGHT * width,
         Panel::Chart(_) => chart::HEIGHT * width,
-        Panel::Drawing(drawing) => drawing::height(drawing, width).min(1000.0),
+        Panel::Drawing(drawing) => drawing::height(from_ref(drawing), width).min(1000.0),
     }
 }
