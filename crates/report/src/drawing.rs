@@ -65,6 +65,20 @@ impl Stage {
         Self { frame, legend }
     }
 
+    /// Height that the legend took from the plot.
+    pub(crate) fn legend_above(&self) -> f64 {
+        match &self.legend {
+            Some((legend, _, false)) => legend.height(),
+            _ => 0.0,
+        }
+    }
+
+    /// Where the shapes are.
+    #[cfg(test)]
+    pub(crate) fn plot(&self) -> Rect {
+        self.frame.plot
+    }
+
     /// Draws one of the drawings.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, drawing: &Drawing, cell: &Rect) -> Drawn {
         let frame = &self.frame;

@@ -32,8 +32,28 @@ pub enum ReportError {
         /// Height in pixels.
         height: u32,
     },
+    /// An animation without frames.
+    #[error("animation `{animation}` has no frames: draw at least one")]
+    NoFrames {
+        /// File stem of the animation.
+        animation: String,
+    },
+    /// The frames of an animation are too large, or have no area.
+    #[error(
+        "animation `{animation}` cannot have {frames} frames of {width} by {height} pixels: draw fewer or smaller ones"
+    )]
+    Film {
+        /// File stem of the animation.
+        animation: String,
+        /// Number of frames.
+        frames: usize,
+        /// Width in pixels.
+        width: u64,
+        /// Height in pixels.
+        height: u64,
+    },
     /// The picture could not be encoded.
-    #[error("figure `{figure}` cannot be written as PNG: {reason}")]
+    #[error("figure `{figure}` cannot be encoded: {reason}")]
     Encode {
         /// File stem of the figure.
         figure: String,

@@ -13,6 +13,7 @@
 //! the text measure; ticks, margins and the places of labels are decided here, from measured text and
 //! from where the data lie, because a picture that hides the datum it reports is no evidence.
 
+mod animation;
 mod axes;
 mod canvas;
 mod chart;
@@ -33,6 +34,7 @@ mod npz;
 mod number;
 mod occupancy;
 mod page;
+mod palette;
 mod png;
 mod raster;
 mod rect;
@@ -44,6 +46,7 @@ mod theme;
 mod ticks;
 mod words;
 
+pub use animation::Animation;
 pub use error::ReportError;
 pub use figure::{Axis, Chart, Figure, Mark, Paint, Panel, Scale, Series, Stroke};
 pub use files::Files;

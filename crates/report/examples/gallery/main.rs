@@ -32,6 +32,16 @@ fn main() -> Result<(), ReportError> {
         );
         files.add(format!("{}.png", figure.name), bytes);
     }
+    let film = linkage::film();
+    let start = Instant::now();
+    let bytes = film.gif()?;
+    println!(
+        "{:<24} {:6.1} ms  {:4} kB",
+        film.name,
+        start.elapsed().as_secs_f64() * 1e3,
+        bytes.len() / 1000
+    );
+    files.add(format!("{}.gif", film.name), bytes);
     let start = Instant::now();
     std::thread::scope(|scope| {
         for half in figures.chunks(figures.len().div_ceil(2)) {
