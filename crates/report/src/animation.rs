@@ -172,7 +172,7 @@ fn encoded(pictures: &Pictures, palette: &Palette, delay: u16) -> Result<Vec<u8>
         })?;
         shown = Some(places);
     }
-    encoder.into_inner().map_err(EncodingError::from)
+    encoder.into_inner()
 }
 
 /// The part of a frame that is new, in which old pixels stay.

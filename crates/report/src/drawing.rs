@@ -10,6 +10,7 @@ use crate::shape::{Drawing, Shape};
 use crate::sketch;
 use crate::span::Span;
 use crate::theme::{INK, lightened, rgb};
+use crate::words;
 
 /// Pixels between the shapes and the frame: the room a bearing and its hatching take.
 const PAD: f64 = 54.0;
@@ -48,8 +49,8 @@ pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
     let x_ticks = axes::ticks_across(&frame.x, frame.plot.width());
     let y_ticks = axes::ticks_up(&frame.y, frame.plot.height());
     let own = |drawing: &Drawing| Insets {
-        left: axes::side_room(&drawing.y, &y_ticks, cell),
-        bottom: axes::bottom_room(&drawing.x, &x_ticks, cell),
+        left: axes::side_room(&drawing.y, &y_ticks, words::room_up(cell)),
+        bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
         ..guess
     };
     let all = drawings.iter().map(own).reduce(Insets::max);
@@ -90,11 +91,12 @@ impl Stage {
         for shape in &drawing.shapes {
             sketch::draw(canvas, frame, shape)?;
         }
-        axes::bottom(canvas, frame, cell, &drawing.x, &x)?;
+        axes::bottom(canvas, frame, cell, Some(&drawing.x), &x)?;
         let look = axes::Side {
             ticks: &y,
             color: INK,
             right: false,
+            room: words::room_up(cell),
         };
         axes::side(canvas, frame, cell, &drawing.y, &look)?;
         axes::title(canvas, &drawing.title, &frame.plot, cell)?;

@@ -7,6 +7,7 @@ use crate::figure::{Figure, Panel};
 use crate::fonts::wrapped;
 use crate::rect::{Insets, Rect};
 use crate::shape::Drawing;
+use crate::stack::Stack;
 use crate::theme::{CAPTION, CAPTION_GREY, INK, TITLE, WHITE};
 use std::slice::from_ref;
 
@@ -30,6 +31,7 @@ const CAPTION_LEADING: f64 = 1.4;
 enum Ready<'a> {
     Chart(Sheet<'a>),
     Drawing(&'a Drawing),
+    Stack(Stack<'a>),
 }
 
 impl Ready<'_> {
@@ -37,6 +39,7 @@ impl Ready<'_> {
         match self {
             Self::Chart(sheet) => sheet.insets(cell),
             Self::Drawing(drawing) => drawing::insets(from_ref(drawing), cell),
+            Self::Stack(stack) => stack.insets(cell),
         }
     }
 
@@ -46,6 +49,7 @@ impl Ready<'_> {
             Self::Drawing(drawing) => {
                 Stage::new(from_ref(drawing), cell, insets).draw(canvas, drawing, cell)
             }
+            Self::Stack(stack) => stack.draw(canvas, cell, insets),
         }
     }
 }
@@ -103,6 +107,7 @@ impl<'a> Page<'a> {
                 let panel = match panel {
                     Panel::Chart(chart) => Ready::Chart(Sheet::new(chart)),
                     Panel::Drawing(drawing) => Ready::Drawing(drawing),
+                    Panel::Stack(charts) => Ready::Stack(Stack::new(charts)),
                 };
                 panels.push(Placed {
                     panel,
@@ -197,5 +202,6 @@ fn wanted_height(panel: &Panel, width: f64, lone: bool, stretched: bool) -> f64 
         Panel::Chart(_) if lone => LONE_HEIGHT * width,
         Panel::Chart(_) => chart::HEIGHT * width,
         Panel::Drawing(drawing) => drawing::height(from_ref(drawing), width).min(1000.0),
+        Panel::Stack(charts) => Stack::new(charts).height(width),
     }
 }

@@ -145,7 +145,8 @@ mod tests {
             Just(Stroke::Solid),
             Just(Stroke::Dashed),
             Just(Stroke::Points),
-            Just(Stroke::LineAndPoints)
+            Just(Stroke::LineAndPoints),
+            Just(Stroke::Filled)
         ];
         (points, stroke, "[a-z]{0,14}", any::<bool>(), any::<bool>()).prop_map(
             |(mut points, stroke, name, right_axis, sorted)| {
@@ -182,7 +183,7 @@ mod tests {
         })
     }
 
-    fn chart() -> impl Strategy<Value = Panel> {
+    fn chart(most: usize) -> impl Strategy<Value = Chart> {
         let title = prop_oneof![Just(String::new()), "[A-Z][a-z]{1,9}( [a-z]{1,9}){0,12}"];
         let marks = prop::collection::vec(mark(), 0..4);
         (
@@ -190,20 +191,22 @@ mod tests {
             axis(),
             axis(),
             prop::option::of(axis()),
-            prop::collection::vec(series(), 0..7),
+            prop::collection::vec(series(), 0..=most),
             marks,
         )
-            .prop_map(|(title, x, y, y2, series, marks)| {
-                Chart {
-                    title,
-                    x,
-                    y,
-                    y2,
-                    series,
-                    marks,
-                }
-                .into()
+            .prop_map(|(title, x, y, y2, series, marks)| Chart {
+                title,
+                x,
+                y,
+                y2,
+                series,
+                marks,
             })
+    }
+
+    /// Low plots have no room for long legends.
+    fn stack() -> impl Strategy<Value = Panel> {
+        prop::collection::vec(chart(3), 0..4).prop_map(Panel::Stack)
     }
 
     fn drawing() -> impl Strategy<Value = Panel> {
@@ -226,10 +229,10 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(96))]
+        #![proptest_config(ProptestConfig::with_cases(128))]
         #[test]
         fn no_text_is_cut_or_lies_on_another(
-            panels in prop::collection::vec(prop_oneof![3 => chart(), 1 => drawing()], 0..5),
+            panels in prop::collection::vec(prop_oneof![3 => chart(6).prop_map(Panel::from), 1 => drawing(), 1 => stack()], 0..5),
             columns in 0..4_usize,
             title in "[A-Z][a-z]{1,9}( [a-z]{1,9}){0,20}",
             caption in "([a-z]{1,9} ){0,60}",

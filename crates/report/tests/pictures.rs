@@ -1,6 +1,6 @@
 //! Figures as their readers get them: PNG files.
 
-use dwell_report::{Axis, Chart, Drawing, Figure, Paint, Pen, Series, Shape, png};
+use dwell_report::{Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Series, Shape, Stroke, png};
 use std::collections::BTreeMap;
 
 struct Picture {
@@ -158,6 +158,44 @@ fn a_drawing_keeps_proportions_and_lightens_ghosts() {
         "{filled} pixels in a square of {side}"
     );
     assert_eq!(picture.count(BLUE), 0);
+}
+
+#[test]
+fn a_filled_series_covers_the_area_down_to_zero() {
+    let filled = |height: f64| {
+        // A jump half way: the second half has the other sign.
+        let points = vec![[0.0, height], [0.5, height], [0.5, -height], [1.0, -height]];
+        let chart = Chart {
+            y: Axis::default().within(-1.0, 1.0),
+            series: vec![Series::line("", points).stroke(Stroke::Filled)],
+            ..Chart::default()
+        };
+        Picture::of(&page(1, vec![chart]))
+    };
+    // Blue at an opacity of 0.22 on white.
+    let tint = [199, 224, 238];
+    let [low, high] = [0.3, 0.6].map(|height| filled(height).count(tint) as f64);
+    assert!(low > 20_000.0);
+    // The line and the grid take a little of each.
+    assert!((high / low - 2.0).abs() < 0.1, "{low} and {high} pixels");
+}
+
+#[test]
+fn a_stack_is_one_panel_and_shows_every_chart() {
+    let three = vec![wave(""), wave(""), wave("")];
+    let stack = Figure {
+        panels: vec![three.clone().into()],
+        ..page(1, vec![])
+    };
+    let (stacked, apart) = (Picture::of(&stack), Picture::of(&page(1, three)));
+    assert!(2 * stacked.height < apart.height);
+    // Three curves as long as the plot is wide, each four pixels thick.
+    assert!(stacked.count(BLUE) > 3 * 4 * 1000);
+    let none = Figure {
+        panels: vec![Panel::Stack(vec![])],
+        ..page(1, vec![])
+    };
+    assert_eq!(Picture::of(&none).count(BLUE), 0);
 }
 
 #[test]

@@ -1,7 +1,8 @@
-//! Draws sample figures into a folder and says how long each took: `gallery FOLDER`.
+//! Draws sample figures and a film into a folder and says how long each took: `gallery FOLDER`.
 
 mod charts;
 mod corners;
+mod kinematics;
 mod linkage;
 
 use dwell_report::{Files, ReportError, png};
@@ -19,6 +20,11 @@ fn main() -> Result<(), ReportError> {
         charts::time(),
         charts::errors(),
         corners::corners(),
+        kinematics::ratios(),
+        kinematics::path(),
+        kinematics::motion(),
+        kinematics::cost(),
+        kinematics::profile(),
     ];
     let mut files = Files::new();
     for figure in &figures {
