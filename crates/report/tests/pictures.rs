@@ -162,22 +162,28 @@ fn a_drawing_keeps_proportions_and_lightens_ghosts() {
 
 #[test]
 fn a_filled_series_covers_the_area_down_to_zero() {
-    let filled = |height: f64| {
-        // A jump half way: the second half has the other sign.
-        let points = vec![[0.0, height], [0.5, height], [0.5, -height], [1.0, -height]];
-        let chart = Chart {
-            y: Axis::default().within(-1.0, 1.0),
-            series: vec![Series::line("", points).stroke(Stroke::Filled)],
-            ..Chart::default()
-        };
-        Picture::of(&page(1, vec![chart]))
+    // A jump half way, to the other sign: two of four quarters are filled.
+    let points = vec![[0.0, 0.6], [0.5, 0.6], [0.5, -0.6], [1.0, -0.6]];
+    let chart = Chart {
+        y: Axis::default().within(-1.0, 1.0),
+        series: vec![Series::line("", points).stroke(Stroke::Filled)],
+        ..Chart::default()
     };
+    let picture = Picture::of(&page(1, vec![chart]));
     // Blue at an opacity of 0.22 on white.
     let tint = [199, 224, 238];
-    let [low, high] = [0.3, 0.6].map(|height| filled(height).count(tint) as f64);
-    assert!(low > 20_000.0);
-    // The line and the grid take a little of each.
-    assert!((high / low - 2.0).abs() < 0.1, "{low} and {high} pixels");
+    let width = picture.width as usize;
+    let places = picture.pixels.iter().enumerate();
+    let rows = places.filter(|(_, p)| **p == tint).map(|(i, _)| i / width);
+    let (top, bottom) = (rows.clone().min().unwrap(), rows.max().unwrap());
+    let (left, right) = picture.columns(tint).unwrap();
+    let all = (bottom - top + 1) * (right - left + 1);
+    // As wide as the line, but for its ends.
+    let (first, last) = picture.columns(BLUE).unwrap();
+    assert!(left.abs_diff(first) < 6 && right.abs_diff(last) < 6);
+    // The line and the grid take some hundredths of it.
+    let share = picture.count(tint) as f64 / all as f64;
+    assert!((0.46..0.5).contains(&share), "{share} of {all} pixels");
 }
 
 #[test]
