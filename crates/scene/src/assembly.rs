@@ -1,13 +1,13 @@
 //! Where the mechanism is put together, and how: it picks the branch.
 
 use crate::bodies::Bodies;
-use crate::fields::{Fields, angle};
-use crate::joints::ActuatorText;
+use crate::coordinates::ActuatorText;
+use crate::fields::{Entry, Fields, angle, coordinate};
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span};
 use crate::units::Units;
 
-/// `[assembly]` as read: what it says of each actuator and body, in rad.
+/// `[assembly]` as read: what it says of each actuator, in rad or m, and of each body, in rad.
 #[derive(Debug)]
 pub(crate) struct AssemblyText {
     pub(crate) start: Vec<Option<(f64, Span)>>,
@@ -28,15 +28,13 @@ impl AssemblyText {
         };
         for entry in fields.iter().flat_map(|f| &f.entries) {
             let name = entry.name;
-            let known = |problems: &mut Problems| {
-                let what = format!("`{}` in [assembly]", shorten(name));
-                angle(entry.value, &units.angle, format_args!("{what}"), problems)
-            };
+            let shown = shorten(name);
             if let Some(k) = actuators.iter().position(|a| a.name == name) {
-                let angle = known(problems);
-                text.start[k] = angle.map(|si| (si, entry.key.start..entry.value.span().end));
+                let start = start(entry, &actuators[k], units, problems);
+                text.start[k] = start.map(|si| (si, entry.key.start..entry.value.span().end));
             } else if let Some(k) = bodies.position(name) {
-                let angle = known(problems);
+                let what = format_args!("`{shown}` in [assembly]");
+                let angle = angle(entry.value, &units.angle, what, problems);
                 text.rough[k] = angle.map(|si| (si, entry.key.start..entry.value.span().end));
                 if bodies.ground == Some(k) && angle.is_some_and(|si| si != 0.0) {
                     problems.push(
@@ -63,4 +61,47 @@ impl AssemblyText {
         }
         text
     }
+
+    /// Says which distances that are driven have no start: no two points are at 0 by default.
+    pub(crate) fn check_lengths(
+        &self,
+        actuators: &[ActuatorText<'_>],
+        at: Option<&Span>,
+        problems: &mut Problems,
+    ) {
+        for (a, _) in actuators
+            .iter()
+            .zip(&self.start)
+            .filter(|(a, start)| a.is_distance() && start.is_none())
+        {
+            let name = shorten(a.name);
+            let at = at.unwrap_or(&a.key).clone();
+            problems.push(
+                Problem::new(format!("the length of `{name}` at the start is not given"))
+                    .at(at, "how long?")
+                    .help(format!("add it to [assembly], such as `{name} = 0.5`")),
+            );
+        }
+    }
+}
+
+/// An actuator's coordinate, SI.
+fn start(
+    entry: &Entry<'_>,
+    actuator: &ActuatorText<'_>,
+    units: &Units,
+    problems: &mut Problems,
+) -> Option<f64> {
+    let name = shorten(entry.name);
+    let what = format_args!("`{name}` in [assembly]");
+    let si = coordinate(entry.value, actuator.is_angle(), units, what, problems)?;
+    if actuator.is_distance() && si <= 0.0 {
+        problems.push(
+            Problem::new(format!("{what} is a length that is not above zero"))
+                .at(entry.value.span(), "expected a number above 0")
+                .help("two points that coincide have no line along which to drive them"),
+        );
+        return None;
+    }
+    Some(si)
 }
