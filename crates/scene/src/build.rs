@@ -2,9 +2,9 @@
 
 use crate::assembly::AssemblyText;
 use crate::bodies::{Bodies, BodyText};
+use crate::coordinates::{ActuatorText, Measures, actuators};
 use crate::error::{SceneError, Source};
 use crate::fields::{Entry, Fields, string};
-use crate::coordinates::{ActuatorText, Measures, actuators};
 use crate::joints::{JointText, Joints};
 use crate::keys;
 use crate::loads::{LoadReader, LoadText};
@@ -114,13 +114,7 @@ impl<'a> Parts<'a> {
             .map(|f| actuators(&f, &bodies, &joints, problems))
             .unwrap_or_default();
         let coordinates = section(&fields, "coordinates", false, problems);
-        let measures = Measures::read(
-            &actuators,
-            coordinates.as_ref(),
-            &bodies,
-            &joints,
-            problems,
-        );
+        let measures = Measures::read(&actuators, coordinates.as_ref(), &bodies, &joints, problems);
         joints.relate(&measures, &units, problems);
         // A joint that could not be read may be the one that holds a body.
         if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
@@ -133,8 +127,14 @@ impl<'a> Parts<'a> {
         let motion_text = motion
             .as_ref()
             .map(|f| MotionText::read(f, &actuators, &units, problems));
-        assembly_text.check_lengths(&actuators, assembly.as_ref().map(|f| &f.span), problems);
-        let start = starts(&assembly_text, motion_text.as_ref());
+        let section_of = assembly.as_ref().map(|f| &f.span);
+        let start = starts(
+            &assembly_text,
+            motion_text.as_ref(),
+            &actuators,
+            section_of,
+            problems,
+        );
         let prescribed = section(&fields, "prescribed", false, problems);
         let prescribed_text = prescribed
             .as_ref()
@@ -290,7 +290,7 @@ impl<'a> Parts<'a> {
             inertia: b.inertia_at.clone(),
             center: b.center_at.clone(),
         };
-        let joint = |j: &JointText<'_>| JointPlaces {
+        let joint = |j: &JointText| JointPlaces {
             key: j.key.clone(),
             ends: j.ends.clone(),
             axis: j.axis.clone(),
@@ -340,11 +340,30 @@ fn said(values: &[Option<(f64, Span)>], k: usize) -> Option<f64> {
     values.get(k)?.as_ref().map(|s| s.0)
 }
 
-/// Coordinate of each actuator at assembly: as it says, or where the motion starts, or 0.
-fn starts(assembly: &AssemblyText, motion: Option<&MotionText>) -> Vec<f64> {
+/// Coordinate of each actuator at assembly: as it says, or where the motion starts, or 0. No two
+/// points are at 0 from each other by default: says which distances are missing.
+fn starts(
+    assembly: &AssemblyText,
+    motion: Option<&MotionText>,
+    actuators: &[ActuatorText<'_>],
+    section: Option<&Span>,
+    problems: &mut Problems,
+) -> Vec<f64> {
     let moving = motion.map_or(&[][..], |m| &m.start);
-    let one = |k| said(&assembly.start, k).or(said(moving, k)).unwrap_or(0.0);
-    (0..assembly.start.len()).map(one).collect()
+    let mut starts = Vec::with_capacity(actuators.len());
+    for (k, a) in actuators.iter().enumerate() {
+        let start = said(&assembly.start, k).or(said(moving, k));
+        if a.is_distance() && start.is_none() && !assembly.spoken.contains(&k) {
+            let name = shorten(a.name);
+            problems.push(
+                Problem::new(format!("the length of `{name}` at the start is not given"))
+                    .at(section.unwrap_or(&a.key).clone(), "how long?")
+                    .help(format!("add it to [assembly], such as `{name} = 0.5`")),
+            );
+        }
+        starts.push(start.unwrap_or(0.0));
+    }
+    starts
 }
 
 /// The table of a section. Absent it is an error where it is needed, empty as well.

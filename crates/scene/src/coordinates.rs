@@ -2,7 +2,7 @@
 //! `[coordinates]`.
 
 use crate::bodies::Bodies;
-use crate::fields::{Entry, Fields, two_strings};
+use crate::fields::{Entry, Fields, Value, coordinate, two_strings};
 use crate::joints::Joints;
 use crate::keys;
 use crate::names::{check, shorten};
@@ -10,6 +10,7 @@ use crate::problem::{Problem, Problems, Span};
 use crate::units::{Unit, Units};
 use dwell_geometry::{Actuator, BodyId, Coordinate, Drive, JointId};
 use std::collections::HashMap;
+use std::fmt::Arguments;
 use toml::de::DeValue;
 
 /// An actuator as read; nothing in it if it was wrong.
@@ -33,6 +34,26 @@ impl ActuatorText<'_> {
     pub(crate) fn is_distance(&self) -> bool {
         let drive = self.actuator.as_ref().map(|a| a.drive);
         matches!(drive, Some(Drive::Length(_)))
+    }
+
+    /// A value of its coordinate, SI.
+    pub(crate) fn position(
+        &self,
+        value: &Value<'_>,
+        units: &Units,
+        what: Arguments<'_>,
+        problems: &mut Problems,
+    ) -> Option<f64> {
+        let si = coordinate(value, self.is_angle(), units, what, problems)?;
+        if self.is_distance() && si <= 0.0 {
+            problems.push(
+                Problem::new(format!("{what} is a length that is not above zero"))
+                    .at(value.span(), "expected a number above 0")
+                    .help("two points that coincide have no line along which to drive them"),
+            );
+            return None;
+        }
+        Some(si)
     }
 
     pub(crate) fn unit<'u>(&self, units: &'u Units) -> &'u Unit {
@@ -118,10 +139,6 @@ impl<'a> Measures<'a> {
         None
     }
 
-    pub(crate) fn position(&self, name: &str) -> Option<usize> {
-        self.by_name.get(name).copied()
-    }
-
     pub(crate) fn names(&self) -> impl Iterator<Item = &'a str> + Clone {
         self.list.iter().map(|m| m.name)
     }
@@ -130,9 +147,7 @@ impl<'a> Measures<'a> {
 /// Whether two coordinates are the same, or one the other with the bodies the other way round.
 pub(crate) fn is_same(a: Coordinate, b: Coordinate) -> bool {
     match (a, b) {
-        (Coordinate::Angle([a, b]), Coordinate::Angle(other)) => {
-            other == [a, b] || other == [b, a]
-        }
+        (Coordinate::Angle([a, b]), Coordinate::Angle(other)) => other == [a, b] || other == [b, a],
         (
             Coordinate::Length { bodies, points },
             Coordinate::Length {
@@ -142,8 +157,7 @@ pub(crate) fn is_same(a: Coordinate, b: Coordinate) -> bool {
         ) => {
             let [a, b] = bodies;
             let [p, q] = points;
-            (others, other_points) == (bodies, points)
-                || (others, other_points) == ([b, a], [q, p])
+            (others, other_points) == (bodies, points) || (others, other_points) == ([b, a], [q, p])
         }
         _ => a == b,
     }
@@ -214,10 +228,12 @@ pub(crate) fn actuators<'a>(
         if let Some(other) = list.iter().find(same) {
             let (a, b) = (shorten(other.name), shorten(entry.name));
             problems.push(
-                Problem::new(format!("actuators `{a}` and `{b}` drive the same coordinate"))
-                    .at(other.key.clone(), "one of them")
-                    .at(entry.key.clone(), "and the other")
-                    .help("leave one out: each actuator has a coordinate of its own"),
+                Problem::new(format!(
+                    "actuators `{a}` and `{b}` drive the same coordinate"
+                ))
+                .at(other.key.clone(), "one of them")
+                .at(entry.key.clone(), "and the other")
+                .help("leave one out: each actuator has a coordinate of its own"),
             );
         }
         list.push(text);

@@ -139,7 +139,12 @@ impl<'a> Fields<'a> {
     }
 }
 
-pub(crate) fn mismatch(value: &Value<'_>, expected: &str, what: Arguments<'_>, problems: &mut Problems) {
+pub(crate) fn mismatch(
+    value: &Value<'_>,
+    expected: &str,
+    what: Arguments<'_>,
+    problems: &mut Problems,
+) {
     let found = match value.get_ref() {
         DeValue::String(_) => "a string",
         DeValue::Integer(_) | DeValue::Float(_) => "a number",

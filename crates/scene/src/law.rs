@@ -31,7 +31,9 @@ pub(crate) fn law(
 ) -> Option<Law> {
     let what = format!("{} of {owner}", entry.name);
     match entry.name {
-        "expression" => expression(entry.value, &[reach.variable], &what, problems).map(Law::Expression),
+        "expression" => {
+            expression(entry.value, &[reach.variable], &what, problems).map(Law::Expression)
+        }
         "table" => table(entry, &what, reach, problems),
         "speed" => {
             let (_, speed) = quantity(entry.value, reach.y, format_args!("{what}"), problems)?;
@@ -67,12 +69,7 @@ fn built<T>(
         .ok()
 }
 
-fn table(
-    entry: &Entry<'_>,
-    what: &str,
-    reach: &Reach<'_>,
-    problems: &mut Problems,
-) -> Option<Law> {
+fn table(entry: &Entry<'_>, what: &str, reach: &Reach<'_>, problems: &mut Problems) -> Option<Law> {
     let rows = rows(entry.value, [reach.x, reach.y], what, problems)?;
     let law = spline(entry, what, &rows, problems)?;
     if let Some(end) = reach.end {
@@ -155,9 +152,11 @@ fn profile(
         && 2.0 * ramp > duration
     {
         problems.push(
-            Problem::new(format!("the two ramps of {what} are longer than its duration"))
-                .at(e.value.span(), "at most half of the duration")
-                .help("the speed rises for one ramp and falls for another"),
+            Problem::new(format!(
+                "the two ramps of {what} are longer than its duration"
+            ))
+            .at(e.value.span(), "at most half of the duration")
+            .help("the speed rises for one ramp and falls for another"),
         );
         return None;
     }

@@ -29,9 +29,8 @@ pub(crate) struct LoadText {
 
 /// What loads are read with.
 pub(crate) struct LoadReader<'r> {
-    pub(crate) bodies: &'r Bodies<'r>,
-    pub(crate) measures: &'r Measures<'r>,
-    pub(crate) units: &'r Units,
+    bodies: &'r Bodies<'r>,
+    units: &'r Units,
     /// The signals an expression can name, and their names.
     signals: Vec<(String, Option<Signal>)>,
 }
@@ -44,11 +43,7 @@ struct At {
 }
 
 impl<'r> LoadReader<'r> {
-    pub(crate) fn new(
-        bodies: &'r Bodies<'r>,
-        measures: &'r Measures<'r>,
-        units: &'r Units,
-    ) -> Self {
+    pub(crate) fn new(bodies: &'r Bodies<'r>, measures: &Measures<'_>, units: &'r Units) -> Self {
         let mut signals = vec![("t".to_owned(), Some(Signal::Time))];
         for m in &measures.list {
             signals.push((m.name.to_owned(), m.coordinate.map(Signal::Value)));
@@ -57,7 +52,6 @@ impl<'r> LoadReader<'r> {
         }
         Self {
             bodies,
-            measures,
             units,
             signals,
         }
@@ -69,7 +63,10 @@ impl<'r> LoadReader<'r> {
         let one = |entry: &Entry<'_>| {
             check("a load", entry.name, &entry.key, problems);
             let load = self.load(entry, problems);
-            if let Some(Load { kind: LoadKind::Gravity { .. }, .. }) = load.load
+            if let Some(Load {
+                kind: LoadKind::Gravity { .. },
+                ..
+            }) = load.load
                 && let Some(other) = gravity.replace(entry.key.clone())
             {
                 problems.push(
@@ -141,10 +138,12 @@ impl<'r> LoadReader<'r> {
                 let ends = self.two_points(held, fields, problems);
                 let unit = &self.units.length;
                 let help = "add `free = 0.1`: its length without force";
-                let free = fields.need("free", &entry.key, help, problems).and_then(|e| {
-                    let what = format_args!("the free length of {}", fields.what);
-                    signed(e.value, unit, Sign::NotNegative, what, "", problems)
-                });
+                let free = fields
+                    .need("free", &entry.key, help, problems)
+                    .and_then(|e| {
+                        let what = format_args!("the free length of {}", fields.what);
+                        signed(e.value, unit, Sign::NotNegative, what, "", problems)
+                    });
                 let (bodies, points) = ends?;
                 Some(LoadKind::Spring {
                     bodies,
@@ -159,10 +158,12 @@ impl<'r> LoadReader<'r> {
             "torsion" => {
                 let bodies = self.two_bodies(held, fields, problems);
                 let help = "add `free = 0.0`: the angle at which it is free";
-                let free = fields.need("free", &entry.key, help, problems).and_then(|e| {
-                    let what = format_args!("the free angle of {}", fields.what);
-                    angle(e.value, &self.units.angle, what, problems)
-                });
+                let free = fields
+                    .need("free", &entry.key, help, problems)
+                    .and_then(|e| {
+                        let what = format_args!("the free angle of {}", fields.what);
+                        angle(e.value, &self.units.angle, what, problems)
+                    });
                 Some(LoadKind::TorsionSpring {
                     bodies: bodies?,
                     free: free?,
@@ -191,9 +192,8 @@ impl<'r> LoadReader<'r> {
         });
         let help = "add `direction = [1, 0]`";
         let direction = fields.need("direction", &entry.key, help, problems);
-        let direction = direction.and_then(|e| {
-            unit_vector(e.value, &format!("the direction of {what}"), problems)
-        });
+        let direction = direction
+            .and_then(|e| unit_vector(e.value, &format!("the direction of {what}"), problems));
         let follows = match fields.get("frame") {
             None => Some(false),
             Some(e) => frame(e, what, problems),
@@ -223,13 +223,7 @@ impl<'r> LoadReader<'r> {
     }
 
     /// The ground takes every load without moving: one on it alone is a slip.
-    fn moving(
-        &self,
-        body: BodyId,
-        at: &Span,
-        what: &str,
-        problems: &mut Problems,
-    ) -> Option<()> {
+    fn moving(&self, body: BodyId, at: &Span, what: &str, problems: &mut Problems) -> Option<()> {
         if self.bodies.ground != Some(body.0) {
             return Some(());
         }
@@ -289,10 +283,13 @@ impl<'r> LoadReader<'r> {
         }
         let name = &self.bodies.list[a.0].name;
         problems.push(
-            Problem::new(format!("{} acts between body `{name}` and itself", fields.what))
-                .at(at_a, "this body")
-                .at(at_b, "and the same again")
-                .help("what acts within one rigid body moves nothing"),
+            Problem::new(format!(
+                "{} acts between body `{name}` and itself",
+                fields.what
+            ))
+            .at(at_a, "this body")
+            .at(at_b, "and the same again")
+            .help("what acts within one rigid body moves nothing"),
         );
         None
     }
@@ -389,7 +386,10 @@ impl<'r> LoadReader<'r> {
         let help = problems.choices(name, "signals", names);
         problems.push(
             Problem::new(format!("`{}` is not what a table can be of", shorten(name)))
-                .at(entry.value.span(), "neither the time nor a coordinate or its speed")
+                .at(
+                    entry.value.span(),
+                    "neither the time nor a coordinate or its speed",
+                )
                 .help(help),
         );
         None

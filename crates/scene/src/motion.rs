@@ -1,7 +1,7 @@
 //! The free motion, and the one number fitted to a period.
 
 use crate::coordinates::ActuatorText;
-use crate::fields::{Entry, Fields, Value, coordinate, number, quantity, string};
+use crate::fields::{Entry, Fields, Value, number, quantity, string};
 use crate::keys;
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span, list};
@@ -52,7 +52,10 @@ impl MotionText {
                 problems.push(
                     Problem::new(format!("the speed of {names} at the start is not given"))
                         .at(at.clone(), "how fast?")
-                        .help(format!("in {unit}/s: `speed = {{ {} = 1.0 }}`", missing[0].name)),
+                        .help(format!(
+                            "in {unit}/s: `speed = {{ {} = 1.0 }}`",
+                            missing[0].name
+                        )),
                 );
             }
         }
@@ -82,7 +85,7 @@ fn per_actuator(
     let read = |k: usize, value: &Value<'_>, what: Arguments<'_>, problems: &mut Problems| {
         let actuator = &actuators[k];
         match key {
-            "start" => coordinate(value, actuator.is_angle(), units, what, problems),
+            "start" => actuator.position(value, units, what, problems),
             _ => quantity(value, actuator.unit(units), what, problems).map(|(_, si)| si),
         }
     };

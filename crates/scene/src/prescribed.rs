@@ -1,7 +1,7 @@
 //! Prescribed motions and sweeps: where the actuators are, without the mechanics.
 
 use crate::coordinates::ActuatorText;
-use crate::fields::{Entry, Fields, Sign, Value, array, coordinate, count, signed};
+use crate::fields::{Entry, Fields, Sign, Value, array, count, signed};
 use crate::keys;
 use crate::law::{Reach, law};
 use crate::names::shorten;
@@ -51,7 +51,9 @@ fn by_actuator<'f, 'a>(
         problems.push(
             Problem::new(format!("an actuator is named as `{name}` in {section}"))
                 .at(a.key.clone(), "this name")
-                .help(format!("rename it: in {section} it could not be told from the key")),
+                .help(format!(
+                    "rename it: in {section} it could not be told from the key"
+                )),
         );
         return None;
     }
@@ -61,9 +63,10 @@ fn by_actuator<'f, 'a>(
             entries[k] = Some(entry);
             continue;
         }
-        let names = actuators.iter().map(|a| a.name).chain(table.names());
+        let own = table.keys.iter().map(|k| k.name);
+        let names: Vec<&str> = actuators.iter().map(|a| a.name).chain(own).collect();
         let kind = format!("keys of {section}");
-        let help = problems.choices(entry.name, &kind, names);
+        let help = problems.choices(entry.name, &kind, names.into_iter());
         problems.push(
             Problem::new(format!(
                 "`{}` in {section} is neither an actuator nor a key of it",
@@ -120,13 +123,14 @@ impl PrescribedText {
         let laws: Option<Vec<Law>> = laws.into_iter().collect();
         let whole = |e: &Entry<'_>| e.key.start..e.value.span().end;
         Self {
-            prescribed: duration.zip(points).zip(laws).map(|((duration, points), laws)| {
-                Prescribed {
+            prescribed: duration
+                .zip(points)
+                .zip(laws)
+                .map(|((duration, points), laws)| Prescribed {
                     duration,
                     points,
                     laws,
-                }
-            }),
+                }),
             laws: entries.iter().map(|e| e.map(whole)).collect(),
         }
     }
@@ -148,7 +152,9 @@ fn law_of(
         problems.push(
             Problem::new(format!("{} has no law", fields.what))
                 .at(entry.value.span(), "how does it move?")
-                .help(format!("write it as `{{ speed = 1.0 }}`; the laws are {laws}")),
+                .help(format!(
+                    "write it as `{{ speed = 1.0 }}`; the laws are {laws}"
+                )),
         );
         return None;
     };
@@ -210,7 +216,9 @@ impl SweepText {
                 None => {}
             }
         }
-        let free: Vec<_> = (0..actuators.len()).filter(|&k| entries[k].is_none()).collect();
+        let free: Vec<_> = (0..actuators.len())
+            .filter(|&k| entries[k].is_none())
+            .collect();
         let swept = match (&range, free.as_slice()) {
             (Some((k, ..)), _) => Some(*k),
             (None, [only]) => Some(*only),
@@ -220,7 +228,10 @@ impl SweepText {
             problems.push(
                 Problem::new("[sweep] does not say which actuator is swept")
                     .at(fields.span.clone(), "which one?")
-                    .help(format!("give one of them a range: `{} = [0.0, 1.0]`", actuators[0].name)),
+                    .help(format!(
+                        "give one of them a range: `{} = [0.0, 1.0]`",
+                        actuators[0].name
+                    )),
             );
         }
         let speed = match (fields.get("speed"), swept) {
@@ -268,15 +279,7 @@ fn position(
     let name = shorten(entry.name);
     let read = |value: &Value<'_>, problems: &mut Problems| {
         let what = format_args!("`{name}` in [sweep]");
-        let si = coordinate(value, actuator.is_angle(), units, what, problems)?;
-        if actuator.is_distance() && si <= 0.0 {
-            problems.push(
-                Problem::new(format!("{what} is a length that is not above zero"))
-                    .at(value.span(), "expected a number above 0"),
-            );
-            return None;
-        }
-        Some(si)
+        actuator.position(value, units, what, problems)
     };
     let DeValue::Array(_) = entry.value.get_ref() else {
         return read(entry.value, problems).map(Position::Held);

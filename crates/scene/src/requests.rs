@@ -223,11 +223,7 @@ fn sections_of(
     values.into_iter().flatten().filter_map(one).collect()
 }
 
-fn section_of(
-    value: &Value<'_>,
-    bodies: &Bodies<'_>,
-    problems: &mut Problems,
-) -> Option<Section> {
+fn section_of(value: &Value<'_>, bodies: &Bodies<'_>, problems: &mut Problems) -> Option<Section> {
     let what = "a section in [requests]";
     let DeValue::Table(table) = value.get_ref() else {
         mismatch(value, "a table", format_args!("{what}"), problems);

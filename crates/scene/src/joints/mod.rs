@@ -53,8 +53,14 @@ impl<'a> Joints<'a> {
         let mut joints = Self::default();
         for entry in &fields.entries {
             check("a joint", entry.name, &entry.key, problems);
-            let first = joints.list.len();
+            let (first, count) = (joints.list.len(), problems.count());
             joints.joint(entry, bodies, units, problems);
+            if problems.count() > count {
+                // What is wrong with it is said: nothing follows from the rest of it.
+                for joint in &mut joints.list[first..] {
+                    joint.joint = None;
+                }
+            }
             let all = first..joints.list.len();
             joints.by_name.insert(entry.name.to_owned(), all);
         }
@@ -122,7 +128,11 @@ impl<'a> Joints<'a> {
     /// several bodies have names of their own, which no other joint may have.
     fn name_pins(&mut self, problems: &mut Problems) {
         for (k, joint) in self.list.iter().enumerate() {
-            if self.by_name.get(&joint.name).is_some_and(|r| r.contains(&k)) {
+            if self
+                .by_name
+                .get(&joint.name)
+                .is_some_and(|r| r.contains(&k))
+            {
                 continue;
             }
             let Some(other) = self.by_name.insert(joint.name.clone(), k..k + 1) else {
@@ -133,7 +143,9 @@ impl<'a> Joints<'a> {
                 Problem::new(format!("two joints are named `{name}`"))
                     .at(joint.key.clone(), "one is made from this pin")
                     .at(self.list[other.start].key.clone(), "the other is here")
-                    .help("rename this joint: a pin of several bodies makes joints named `pin-body`"),
+                    .help(
+                        "rename this joint: a pin of several bodies makes joints named `pin-body`",
+                    ),
             );
         }
     }
@@ -155,11 +167,11 @@ impl<'a> Joints<'a> {
             joint: None,
         };
         let what = format!("joint `{}`", shorten(entry.name));
-        let opened = Fields::open(entry, what, problems);
-        let kind = opened
-            .as_ref()
-            .and_then(|f| kind(f, &entry.key, "joint", &JOINTS, problems));
-        let (Some(fields), Some((kind, held))) = (opened, kind) else {
+        let Some(fields) = Fields::open(entry, what, problems) else {
+            self.list.push(text);
+            return;
+        };
+        let Some((kind, held)) = kind(&fields, &entry.key, "joint", &JOINTS, problems) else {
             self.list.push(text);
             return;
         };
@@ -276,12 +288,9 @@ pub(crate) fn kind<'f, 'a>(
             }
             let help = problems.choices(entry.name, &format!("kinds of a {thing}"), words.clone());
             problems.push(
-                Problem::new(format!(
-                    "unknown key `{}` in {what}",
-                    shorten(entry.name)
-                ))
-                .at(entry.key.clone(), "unknown key")
-                .help(help),
+                Problem::new(format!("unknown key `{}` in {what}", shorten(entry.name)))
+                    .at(entry.key.clone(), "unknown key")
+                    .help(help),
             );
         }
         let example = kinds.first().and_then(|t| t.keys.first());
@@ -303,9 +312,13 @@ pub(crate) fn kind<'f, 'a>(
             continue;
         }
         problems.push(
-            Problem::new(format!("{what} is of kind {} and has no `{}`", table.kind(), other.name))
-                .at(other.key.clone(), format!("not for this kind of {thing}"))
-                .help("leave it out"),
+            Problem::new(format!(
+                "{what} is of kind `{}` and has no `{}`",
+                table.kind(),
+                other.name
+            ))
+            .at(other.key.clone(), format!("not for this kind of {thing}"))
+            .help("leave it out"),
         );
     }
     let strange = |e: &&Entry<'_>| !kinds.iter().any(|t| t.knows(e.name));

@@ -55,7 +55,9 @@ impl Joints<'_> {
             }
             Some((first, second))
         });
-        let chosen = fields.one_of(LAWS_OF_RELATIONS.into_iter(), problems).ok()?;
+        let chosen = fields
+            .one_of(LAWS_OF_RELATIONS.into_iter(), problems)
+            .ok()?;
         let Some(chosen) = chosen else {
             let laws = list(LAWS_OF_RELATIONS.into_iter()).unwrap_or_default();
             problems.push(
@@ -78,9 +80,12 @@ impl Joints<'_> {
         };
         if let (Some(e), "expression" | "table") = (fields.get("start"), chosen.name) {
             problems.push(
-                Problem::new(format!("{what} has a `start` that its {} does not need", chosen.name))
-                    .at(e.key.clone(), "only for a sine or a rise")
-                    .help("leave it out, or add it to the function itself"),
+                Problem::new(format!(
+                    "{what} has a `start` that its {} does not need",
+                    chosen.name
+                ))
+                .at(e.key.clone(), "only for a sine or a rise")
+                .help("leave it out, or add it to the function itself"),
             );
             return None;
         }

@@ -4,18 +4,38 @@ use super::Shape::{
     Boolean, Either, Expression, Name, Names, Number, Pair, Rows, Table as One, TwoNames, TwoPairs,
 };
 use super::root::POINTS;
-use super::{Key, PROFILE, SINUSOID, Table, TRAPEZOID, key, table};
+use super::{Key, PROFILE, SINUSOID, TRAPEZOID, Table, key, table};
 
 pub(crate) static BODY: Table = table(
     "[bodies.<body>]",
     "A rigid body. Masses of the ground are read and dropped: it does not move.",
     &[
-        key("points", One(&POINTS), "", "Its points, each a name and where it is in the body's frame.", "{ A = [0, 0], B = [100, 0] }"),
+        key(
+            "points",
+            One(&POINTS),
+            "",
+            "Its points, each a name and where it is in the body's frame.",
+            "{ A = [0, 0], B = [100, 0] }",
+        ),
         key("mass", Number, "mass", "Its mass, 0 or more.", "2.0").or("0"),
-        key("center", Either(&[Name("point"), Pair]), "length", "Its centre of mass: one of its points, or [x, y].", "[50, 1]")
-            .or("none; needed with a mass"),
-        key("inertia", Number, "inertia", "Its moment of inertia about the centre of mass, 0 or more.", "1666.0").or("0"),
-        key("fixed", Boolean, "", "Whether it is the ground.", "false").or("whether its name is `ground`"),
+        key(
+            "center",
+            Either(&[Name("point"), Pair]),
+            "length",
+            "Its centre of mass: one of its points, or [x, y].",
+            "[50, 1]",
+        )
+        .or("none; needed with a mass"),
+        key(
+            "inertia",
+            Number,
+            "inertia",
+            "Its moment of inertia about the centre of mass, 0 or more.",
+            "1666.0",
+        )
+        .or("0"),
+        key("fixed", Boolean, "", "Whether it is the ground.", "false")
+            .or("whether its name is `ground`"),
     ],
 );
 
@@ -31,16 +51,40 @@ const fn held(name: &'static str, doc: &'static str, example: &'static str) -> K
 static REVOLUTE: Table = table(
     "revolute",
     "A pin. Reaction: `x`, `y`.",
-    &[key("revolute", Names("body.point", 2), "", "The points that coincide. With three bodies or more on one pin, the first holds each of the others, in joints named `pin-body`.", "[\"ground.A\", \"crank.A\"]")],
+    &[key(
+        "revolute",
+        Names("body.point", 2),
+        "",
+        "The points that coincide. With three bodies or more on one pin, the first holds each of the others, in joints named `pin-body`.",
+        "[\"ground.A\", \"crank.A\"]",
+    )],
 );
 
 static PRISMATIC: Table = table(
     "prismatic",
     "A slide: the second body's point stays on the line through the first's along the axis, and the axes keep one direction. Reaction: `normal`, `moment`.",
     &[
-        held("prismatic", "The point of each body.", "[\"ground.S\", \"piston.P\"]"),
-        key("axis", Pair, "", "The axis, the same in the frames of both bodies.", "[1, 0]").one_of("axis"),
-        key("axes", TwoPairs, "", "The axis in the frame of each body.", "[[1, 0], [0, 1]]").one_of("axis"),
+        held(
+            "prismatic",
+            "The point of each body.",
+            "[\"ground.S\", \"piston.P\"]",
+        ),
+        key(
+            "axis",
+            Pair,
+            "",
+            "The axis, the same in the frames of both bodies.",
+            "[1, 0]",
+        )
+        .one_of("axis"),
+        key(
+            "axes",
+            TwoPairs,
+            "",
+            "The axis in the frame of each body.",
+            "[[1, 0], [0, 1]]",
+        )
+        .one_of("axis"),
     ],
 );
 
@@ -48,8 +92,18 @@ static SLOT: Table = table(
     "slot",
     "A pin of the second body in a straight slot of the first. Reaction: `normal`.",
     &[
-        held("slot", "A point of the slot, and the pin.", "[\"rocker.O\", \"block.P\"]"),
-        key("axis", Pair, "", "The slot's direction in the first body.", "[1, 0]"),
+        held(
+            "slot",
+            "A point of the slot, and the pin.",
+            "[\"rocker.O\", \"block.P\"]",
+        ),
+        key(
+            "axis",
+            Pair,
+            "",
+            "The slot's direction in the first body.",
+            "[1, 0]",
+        ),
     ],
 );
 
@@ -57,8 +111,19 @@ static WELD: Table = table(
     "weld",
     "Two bodies that are one, so that the action between them is known. Reaction: `x`, `y`, `moment`.",
     &[
-        held("weld", "The points that coincide.", "[\"rod.P\", \"arm.P\"]"),
-        key("angle", Number, "angle", "Angle of the second body's frame from the first's.", "90").or("0"),
+        held(
+            "weld",
+            "The points that coincide.",
+            "[\"rod.P\", \"arm.P\"]",
+        ),
+        key(
+            "angle",
+            Number,
+            "angle",
+            "Angle of the second body's frame from the first's.",
+            "90",
+        )
+        .or("0"),
     ],
 );
 
@@ -67,8 +132,21 @@ static GEAR: Table = table(
     "Two gears; other joints keep their centres at their distance. They mesh as assembled. Reaction: `tooth`.",
     &[
         held("gear", "The centres.", "[\"sun.O\", \"planet.C\"]"),
-        key("radii", Pair, "length", "The pitch radii, above zero.", "[30, 20]"),
-        key("internal", Boolean, "", "Whether the one with the larger radius is a ring around the other.", "true").or("`false`"),
+        key(
+            "radii",
+            Pair,
+            "length",
+            "The pitch radii, above zero.",
+            "[30, 20]",
+        ),
+        key(
+            "internal",
+            Boolean,
+            "",
+            "Whether the one with the larger radius is a ring around the other.",
+            "true",
+        )
+        .or("`false`"),
     ],
 );
 
@@ -76,9 +154,25 @@ static RACK: Table = table(
     "rack",
     "A straight rack (first body) and a pinion (second). Reaction: `tooth`.",
     &[
-        held("rack", "A point of the pitch line, and the pinion's centre.", "[\"rack.P\", \"pinion.C\"]"),
-        key("axis", Pair, "", "The pitch line's direction in the first body.", "[1, 0]"),
-        key("radius", Number, "length", "Pitch radius; below zero for a pinion to the right of the axis.", "20"),
+        held(
+            "rack",
+            "A point of the pitch line, and the pinion's centre.",
+            "[\"rack.P\", \"pinion.C\"]",
+        ),
+        key(
+            "axis",
+            Pair,
+            "",
+            "The pitch line's direction in the first body.",
+            "[1, 0]",
+        ),
+        key(
+            "radius",
+            Number,
+            "length",
+            "Pitch radius; below zero for a pinion to the right of the axis.",
+            "20",
+        ),
     ],
 );
 
@@ -86,9 +180,25 @@ static ROLLING: Table = table(
     "rolling",
     "A disc (second body) that rolls on a straight track of the first. Reaction: `normal`, `tangent`.",
     &[
-        held("rolling", "A point of the track, and the disc's centre.", "[\"ground.T\", \"wheel.C\"]"),
-        key("axis", Pair, "", "The track's direction in the first body.", "[1, 0]"),
-        key("radius", Number, "length", "Radius; below zero for a disc to the right of the axis.", "20"),
+        held(
+            "rolling",
+            "A point of the track, and the disc's centre.",
+            "[\"ground.T\", \"wheel.C\"]",
+        ),
+        key(
+            "axis",
+            Pair,
+            "",
+            "The track's direction in the first body.",
+            "[1, 0]",
+        ),
+        key(
+            "radius",
+            Number,
+            "length",
+            "Radius; below zero for a disc to the right of the axis.",
+            "20",
+        ),
     ],
 );
 
@@ -97,7 +207,13 @@ static DISTANCE: Table = table(
     "Two points keep their distance, as if by a massless link. Reaction: `axial`.",
     &[
         held("distance", "The two points.", "[\"crank.B\", \"piston.P\"]"),
-        key("length", Number, "length", "The distance, above zero.", "200"),
+        key(
+            "length",
+            Number,
+            "length",
+            "The distance, above zero.",
+            "200",
+        ),
     ],
 );
 
@@ -105,15 +221,77 @@ static RELATION: Table = table(
     "relation",
     "One coordinate is a function of another, such as a cam follower's of the cam's angle. Reaction: `force` for a travel or length, `moment` for an angle.",
     &[
-        key("relation", TwoNames("coordinate"), "", "The first coordinate is the function's value, the second its variable.", "[\"rise\", \"phi\"]"),
-        key("expression", Expression, "SI", "The function, of the variable x.", "\"0.01*(1 - cos(x))\"").one_of("law"),
-        key("table", Rows, "angle or length", "Points [x, y] of the function; a smooth curve passes through them.", "[[0, 0], [90, 10], [180, 12]]").one_of("law"),
-        key("sinusoid", One(&SINUSOID), "", "A sine.", "{ amplitude = 10, period = 360 }").one_of("law"),
-        key("polynomial345", One(&PROFILE), "", "A rise by the 3-4-5 polynomial.", "{ rise = 10, duration = 120 }").one_of("law"),
-        key("polynomial4567", One(&PROFILE), "", "A rise by the 4-5-6-7 polynomial.", "{ rise = 10, duration = 120 }").one_of("law"),
-        key("cycloidal", One(&PROFILE), "", "A cycloidal rise.", "{ rise = 10, duration = 120 }").one_of("law"),
-        key("trapezoidal", One(&TRAPEZOID), "", "A rise of trapezoidal slope.", "{ rise = 10, duration = 120, ramp = 30 }").one_of("law"),
-        key("start", Number, "angle or length", "What a sine or a rise starts from.", "5").or("0"),
+        key(
+            "relation",
+            TwoNames("coordinate"),
+            "",
+            "The first coordinate is the function's value, the second its variable.",
+            "[\"rise\", \"phi\"]",
+        ),
+        key(
+            "expression",
+            Expression,
+            "SI",
+            "The function, of the variable x.",
+            "\"0.01*(1 - cos(x))\"",
+        )
+        .one_of("law"),
+        key(
+            "table",
+            Rows,
+            "angle or length",
+            "Points [x, y] of the function; a smooth curve passes through them.",
+            "[[0, 0], [90, 10], [180, 12]]",
+        )
+        .one_of("law"),
+        key(
+            "sinusoid",
+            One(&SINUSOID),
+            "",
+            "A sine.",
+            "{ amplitude = 10, period = 360 }",
+        )
+        .one_of("law"),
+        key(
+            "polynomial345",
+            One(&PROFILE),
+            "",
+            "A rise by the 3-4-5 polynomial.",
+            "{ rise = 10, duration = 120 }",
+        )
+        .one_of("law"),
+        key(
+            "polynomial4567",
+            One(&PROFILE),
+            "",
+            "A rise by the 4-5-6-7 polynomial.",
+            "{ rise = 10, duration = 120 }",
+        )
+        .one_of("law"),
+        key(
+            "cycloidal",
+            One(&PROFILE),
+            "",
+            "A cycloidal rise.",
+            "{ rise = 10, duration = 120 }",
+        )
+        .one_of("law"),
+        key(
+            "trapezoidal",
+            One(&TRAPEZOID),
+            "",
+            "A rise of trapezoidal slope.",
+            "{ rise = 10, duration = 120, ramp = 30 }",
+        )
+        .one_of("law"),
+        key(
+            "start",
+            Number,
+            "angle or length",
+            "What a sine or a rise starts from.",
+            "5",
+        )
+        .or("0"),
     ],
 );
 

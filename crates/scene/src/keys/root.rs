@@ -1,8 +1,6 @@
 //! The scene itself, and the sections that hold no mechanism.
 
-use super::Shape::{
-    Boolean, Kinds, Name, Names, Number, Rows, Table as One, Tables, Text, Word,
-};
+use super::Shape::{Kinds, Name, Names, Number, Table as One, Tables, Text, Word};
 use super::{ACTUATOR, BODY, COORDINATE, JOINTS, LOADS, PRESCRIBED, SWEEP};
 use super::{Key, Shape, Table, key, table};
 use crate::units::{ANGLE_NAMES, LENGTH_NAMES, MASS_NAMES};
@@ -54,8 +52,14 @@ pub(crate) static UNITS: Table = table(
     &[
         key("length", Word(&LENGTH_NAMES), "", "Lengths.", "\"mm\"").or("`\"m\"`"),
         key("mass", Word(&MASS_NAMES), "", "Masses.", "\"kg\"").or("`\"kg\"`"),
-        key("inertia", Text, "", "Moments of inertia: a mass unit and a squared length unit.", "\"kg mm2\"")
-            .or("`\"kg m2\"`; has to be said with a length or mass unit other than SI's"),
+        key(
+            "inertia",
+            Text,
+            "",
+            "Moments of inertia: a mass unit and a squared length unit.",
+            "\"kg mm2\"",
+        )
+        .or("`\"kg m2\"`; has to be said with a length or mass unit other than SI's"),
         key("angle", Word(&ANGLE_NAMES), "", "Angles.", "\"deg\"").or("`\"rad\"`"),
     ],
 );
@@ -63,38 +67,74 @@ pub(crate) static UNITS: Table = table(
 static BODIES: Table = names(
     "[bodies]",
     "One table for each body. The body named `ground` is the ground.",
-    key("<body>", One(&BODY), "", "The body of that name.", "{ points = { A = [0, 0], B = [100, 0] } }"),
+    key(
+        "<body>",
+        One(&BODY),
+        "",
+        "The body of that name.",
+        "{ points = { A = [0, 0], B = [100, 0] } }",
+    ),
 );
 
 static ALL_JOINTS: Table = names(
     "[joints]",
     "One table for each joint. A reaction is the action of the first-named body on the second.",
-    key("<joint>", Kinds(&JOINTS), "", "The joint of that name.", "{ revolute = [\"ground.A\", \"crank.A\"] }"),
+    key(
+        "<joint>",
+        Kinds(&JOINTS),
+        "",
+        "The joint of that name.",
+        "{ revolute = [\"ground.A\", \"crank.A\"] }",
+    ),
 );
 
 static ACTUATORS: Table = names(
     "[actuators]",
     "One table for each actuator: each imposes one independent coordinate.",
-    key("<actuator>", One(&ACTUATOR), "", "The actuator of that name.", "{ angle = [\"ground\", \"crank\"] }"),
+    key(
+        "<actuator>",
+        One(&ACTUATOR),
+        "",
+        "The actuator of that name.",
+        "{ angle = [\"ground\", \"crank\"] }",
+    ),
 );
 
 static COORDINATES: Table = names(
     "[coordinates]",
     "One table for each named measure. Every actuator is one already, under its own name.",
-    key("<coordinate>", One(&COORDINATE), "", "The coordinate of that name.", "{ travel = \"guide\" }"),
+    key(
+        "<coordinate>",
+        One(&COORDINATE),
+        "",
+        "The coordinate of that name.",
+        "{ travel = \"guide\" }",
+    ),
 );
 
 static ALL_LOADS: Table = names(
     "[loads]",
     "One table for each load.",
-    key("<load>", Kinds(&LOADS), "", "The load of that name.", "{ gravity = [0, -9.81] }"),
+    key(
+        "<load>",
+        Kinds(&LOADS),
+        "",
+        "The load of that name.",
+        "{ gravity = [0, -9.81] }",
+    ),
 );
 
 pub(crate) static ASSEMBLY: Table = names(
     "[assembly]",
     "Where the mechanism is put together, which picks its branch. An actuator's coordinate is exact, a body's angle is rough (only gears mesh exactly as the angles given here say).",
-    key("<actuator or body>", Number, "angle or length", "The actuator's coordinate at the start, or the rough angle of the body.", "90")
-        .or("0 for an actuator that drives no distance of two points; unknown for a body"),
+    key(
+        "<actuator or body>",
+        Number,
+        "angle or length",
+        "The actuator's coordinate at the start, or the rough angle of the body.",
+        "90",
+    )
+    .or("0 for an actuator that drives no distance of two points; unknown for a body"),
 );
 
 pub(crate) static REQUESTS: Table = table(
@@ -126,7 +166,13 @@ pub(crate) static SECTION: Table = table(
     "A line between two points of a body.",
     &[
         key("body", Name("body"), "", "The body.", "\"rod\""),
-        key("from", Name("point"), "", "The point where it begins.", "\"B\""),
+        key(
+            "from",
+            Name("point"),
+            "",
+            "The point where it begins.",
+            "\"B\"",
+        ),
         key("to", Name("point"), "", "The point where it ends.", "\"P\""),
     ],
 );
@@ -137,16 +183,34 @@ const EACH: Shape = Shape::Either(&[Number, One(&BY_ACTUATOR)]);
 static BY_ACTUATOR: Table = names(
     "start, speed",
     "A number for each actuator.",
-    key("<actuator>", Number, "angle or length", "That of the actuator.", "30"),
+    key(
+        "<actuator>",
+        Number,
+        "angle or length",
+        "That of the actuator.",
+        "30",
+    ),
 );
 
 pub(crate) static MOTION: Table = table(
     "[motion]",
     "A free motion. A bare number is that of the only actuator.",
     &[
-        key("start", EACH, "angle or length", "Coordinate of each actuator at the start.", "{ phi = 30 }")
-            .or("as in `[assembly]`"),
-        key("speed", EACH, "angle/s or length/s", "Speed of each actuator at the start.", "{ phi = 180 }"),
+        key(
+            "start",
+            EACH,
+            "angle or length",
+            "Coordinate of each actuator at the start.",
+            "{ phi = 30 }",
+        )
+        .or("as in `[assembly]`"),
+        key(
+            "speed",
+            EACH,
+            "angle/s or length/s",
+            "Speed of each actuator at the start.",
+            "{ phi = 180 }",
+        ),
         key("periods", Number, "", "How many periods it lasts.", "2").one_of("length"),
         key("duration", Number, "s", "How long it lasts.", "5.0").one_of("length"),
     ],
@@ -156,7 +220,13 @@ pub(crate) static CALIBRATION: Table = table(
     "[calibration]",
     "One number of the scene fitted to a period of the free motion.",
     &[
-        key("set", Name("number"), "", "The number, by its path.", "\"crank.inertia\""),
+        key(
+            "set",
+            Name("number"),
+            "",
+            "The number, by its path.",
+            "\"crank.inertia\"",
+        ),
         key("period", Number, "s", "The period.", "5.42"),
     ],
 );
@@ -165,6 +235,11 @@ pub(crate) static CALIBRATION: Table = table(
 pub(crate) static POINTS: Table = names(
     "points",
     "The points of a body, in its frame.",
-    key("<point>", Shape::Pair, "length", "The point of that name.", "[100, 0]"),
+    key(
+        "<point>",
+        Shape::Pair,
+        "length",
+        "The point of that name.",
+        "[100, 0]",
+    ),
 );
-
