@@ -253,6 +253,9 @@ fn driven(
     let what = &fields.what;
     fields.allow(&keys::ACTUATOR, problems);
     let Some(measure) = fields.one_of(keys::ACTUATOR.names(), problems).ok()? else {
+        if fields.has_others_than(&keys::ACTUATOR) {
+            return None;
+        }
         problems.push(
             Problem::new(format!("{what} drives nothing"))
                 .at(entry.key.clone(), "which angle or length?")
@@ -289,6 +292,9 @@ fn measured(
     let what = &fields.what;
     fields.allow(&keys::COORDINATE, problems);
     let Some(measure) = fields.one_of(keys::COORDINATE.names(), problems).ok()? else {
+        if fields.has_others_than(&keys::COORDINATE) {
+            return None;
+        }
         problems.push(
             Problem::new(format!("{what} measures nothing"))
                 .at(entry.key.clone(), "which angle, travel or length?")
@@ -349,9 +355,13 @@ fn length(
     bodies: &Bodies<'_>,
     problems: &mut Problems,
 ) -> Option<([BodyId; 2], [dwell_geometry::Vec2; 2])> {
+    let expected = match verb {
+        "drives" => "a sliding joint, or two points [\"body.point\", \"body.point\"]",
+        _ => "two points [\"body.point\", \"body.point\"]",
+    };
     let [(a, at_a), (b, at_b)] = two_strings(
         entry.value,
-        "two points [\"body.point\", \"body.point\"]",
+        expected,
         format_args!("length of {what}"),
         problems,
     )?;

@@ -18,7 +18,14 @@ pub(crate) fn expression(
     };
     let at = problems.within(&value.span(), text, error.span);
     let mut problem = Problem::new(format!("{what}: {}", error.message)).at(at, "here");
-    if let Some(help) = error.help {
+    // With one variable, a name of the scene is a likelier slip than a misspelt constant.
+    let help = match variables {
+        [only] if error.message.starts_with("unknown name") => Some(format!(
+            "the variable here is `{only}`; no other name of the scene is known to it"
+        )),
+        _ => error.help,
+    };
+    if let Some(help) = help {
         problem = problem.help(help);
     }
     problems.push(problem);

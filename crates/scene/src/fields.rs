@@ -119,6 +119,11 @@ impl<'a> Fields<'a> {
         }
     }
 
+    /// Whether it has a key that is none of the table's: what seems to be missing may be that one.
+    pub(crate) fn has_others_than(&self, table: &Table) -> bool {
+        self.entries.iter().any(|e| !table.knows(e.name))
+    }
+
     /// The entry of that key, or a problem that says it is missing; `help` says how to write it.
     pub(crate) fn need(
         &self,

@@ -303,8 +303,10 @@ impl<'r> LoadReader<'r> {
         problems: &mut Problems,
     ) -> Option<Magnitude> {
         let what = format!("{} of {}", entry.name, fields.what);
-        // What pulls back less than nothing feeds a motion without end.
-        let why = "below zero it would drive the motion instead of opposing it";
+        let why = match entry.name {
+            "stiffness" => "below zero it would push away instead of pulling back",
+            _ => "below zero it would feed the motion instead of resisting it",
+        };
         match entry.value.get_ref() {
             DeValue::String(_) => self.expression(entry, &what, problems),
             DeValue::Table(_) => self.table(entry, &what, (sign, why), problems),

@@ -49,11 +49,13 @@ fn by_actuator<'f, 'a>(
     if let Some(a) = actuators.iter().find(|a| table.knows(a.name)) {
         let name = shorten(a.name);
         problems.push(
-            Problem::new(format!("an actuator is named as `{name}` in {section}"))
-                .at(a.key.clone(), "this name")
-                .help(format!(
-                    "rename it: in {section} it could not be told from the key"
-                )),
+            Problem::new(format!(
+                "actuator `{name}` has the name of a key of {section}"
+            ))
+            .at(a.key.clone(), "this name")
+            .help(format!(
+                "rename it: in {section} it could not be told which is meant"
+            )),
         );
         return None;
     }
@@ -121,7 +123,6 @@ impl PrescribedText {
             })
             .collect();
         let laws: Option<Vec<Law>> = laws.into_iter().collect();
-        let whole = |e: &Entry<'_>| e.key.start..e.value.span().end;
         Self {
             prescribed: duration
                 .zip(points)
@@ -131,7 +132,7 @@ impl PrescribedText {
                     points,
                     laws,
                 }),
-            laws: entries.iter().map(|e| e.map(whole)).collect(),
+            laws: entries.iter().map(|e| e.map(|e| e.key.clone())).collect(),
         }
     }
 }
@@ -148,6 +149,9 @@ fn law_of(
     let fields = Fields::open(entry, what, problems)?;
     fields.allow(&keys::LAW, problems);
     let Some(chosen) = fields.one_of(keys::LAW.names(), problems).ok()? else {
+        if fields.has_others_than(&keys::LAW) {
+            return None;
+        }
         let laws = list(keys::LAW.names()).unwrap_or_default();
         problems.push(
             Problem::new(format!("{} has no law", fields.what))
@@ -190,6 +194,7 @@ impl SweepText {
         units: &Units,
         problems: &mut Problems,
     ) -> Self {
+        let before = problems.count();
         let points = points(fields, problems);
         let Some(entries) = by_actuator(fields, &keys::SWEEP, actuators, problems) else {
             return Self {
@@ -197,7 +202,6 @@ impl SweepText {
                 actuators: Vec::new(),
             };
         };
-        let before = problems.count();
         let mut held = start.to_vec();
         let mut range: Option<(usize, [f64; 2], Span)> = None;
         for (k, entry) in entries.iter().enumerate() {
@@ -281,9 +285,9 @@ fn position(
         let what = format_args!("`{name}` in [sweep]");
         actuator.position(value, units, what, problems)
     };
-    let DeValue::Array(_) = entry.value.get_ref() else {
+    if let DeValue::Integer(_) | DeValue::Float(_) = entry.value.get_ref() {
         return read(entry.value, problems).map(Position::Held);
-    };
+    }
     let expected = "a number, or from where to where [from, to]";
     let what = format_args!("`{name}` in [sweep]");
     let values = array(entry.value, expected, what, problems)?;

@@ -78,7 +78,11 @@ fn reactions_of(
             let Some(joint) = &joints.list[k].joint else {
                 continue;
             };
-            for component in components(joint, component, &joints.relations, &at, problems) {
+            let found = components(joint, component, &joints.relations, &at, problems);
+            if found.is_empty() {
+                break;
+            }
+            for component in found {
                 let joint = JointId(k);
                 let reaction = Reaction { joint, component };
                 // Asked for twice, as `slide` and `slide.normal`, it is still one reaction.

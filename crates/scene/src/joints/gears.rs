@@ -1,6 +1,6 @@
 //! Joints of things that roll on each other.
 
-use super::pairs::{axis, two_lengths};
+use super::pairs::{axis, two_radii};
 use crate::fields::{Entry, Fields, Sign, boolean, signed};
 use crate::problem::{Problem, Problems};
 use crate::units::Units;
@@ -19,7 +19,7 @@ pub(super) fn gear(
     };
     let help = "add `radii = [30, 20]`: the pitch radius of each gear";
     let given = fields.need("radii", &entry.key, help, problems)?;
-    let radii = two_lengths(
+    let radii = two_radii(
         given,
         units,
         Sign::Positive,

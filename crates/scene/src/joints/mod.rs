@@ -282,16 +282,19 @@ pub(crate) fn kind<'f, 'a>(
     let what = &fields.what;
     let words = kinds.iter().map(|t| t.kind());
     let Some(entry) = fields.one_of(words.clone(), problems).ok()? else {
-        for entry in &fields.entries {
-            if kinds.iter().any(|t| t.knows(entry.name)) {
-                continue;
-            }
+        let strange = |e: &&Entry<'_>| !kinds.iter().any(|t| t.knows(e.name));
+        for entry in fields.entries.iter().filter(strange) {
             let help = problems.choices(entry.name, &format!("kinds of a {thing}"), words.clone());
+            let name = shorten(entry.name);
             problems.push(
-                Problem::new(format!("unknown key `{}` in {what}", shorten(entry.name)))
+                Problem::new(format!("unknown key `{name}` in {what}"))
                     .at(entry.key.clone(), "unknown key")
                     .help(help),
             );
+        }
+        // A misspelt kind is one slip, not two.
+        if fields.entries.iter().any(|e| strange(&e)) {
+            return None;
         }
         let example = kinds.first().and_then(|t| t.keys.first());
         let example = example.map_or_else(String::new, |k| format!("{} = {}", k.name, k.example));

@@ -1,6 +1,6 @@
 //! The kinds of joints between two links: what they let move.
 
-use crate::fields::{Entry, Fields, POINT, Sign, angle, pair, signed, unit_vector};
+use crate::fields::{Entry, Fields, Sign, angle, pair, signed, unit_vector};
 use crate::problem::{Problem, Problems};
 use crate::units::Units;
 use dwell_geometry::{JointKind, Vec2};
@@ -101,8 +101,8 @@ pub(super) fn distance(
     Some(JointKind::Distance { length })
 }
 
-/// Two numbers of the scene's length unit.
-pub(super) fn two_lengths(
+/// Two radii.
+pub(super) fn two_radii(
     entry: &Entry<'_>,
     units: &Units,
     sign: Sign,
@@ -110,7 +110,12 @@ pub(super) fn two_lengths(
     why: &str,
     problems: &mut Problems,
 ) -> Option<[f64; 2]> {
-    let [a, b] = pair(entry.value, POINT, format_args!("{what}"), problems)?;
+    let [a, b] = pair(
+        entry.value,
+        "two radii [r1, r2]",
+        format_args!("{what}"),
+        problems,
+    )?;
     let mut one = |value, which: &str| {
         let what = format_args!("the {which} of {what}");
         signed(value, &units.length, sign, what, why, problems)

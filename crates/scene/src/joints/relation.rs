@@ -3,7 +3,7 @@
 use super::Joints;
 use crate::coordinates::{Measures, is_same};
 use crate::fields::{Fields, coordinate, two_strings};
-use crate::keys::LAWS_OF_RELATIONS;
+use crate::keys::{JOINTS, LAWS_OF_RELATIONS};
 use crate::law::{Reach, law};
 use crate::problem::{Problem, Problems, list};
 use crate::units::Units;
@@ -59,6 +59,11 @@ impl Joints<'_> {
             .one_of(LAWS_OF_RELATIONS.into_iter(), problems)
             .ok()?;
         let Some(chosen) = chosen else {
+            // Its other keys have been looked at: a misspelt law is one slip, not two.
+            let kind = JOINTS.iter().find(|t| t.kind() == "relation");
+            if kind.is_some_and(|table| fields.has_others_than(table)) {
+                return None;
+            }
             let laws = list(LAWS_OF_RELATIONS.into_iter()).unwrap_or_default();
             problems.push(
                 Problem::new(format!("{what} has no law"))
