@@ -95,7 +95,7 @@ static SLOT: Table = table(
         held(
             "slot",
             "A point of the slot, and the pin.",
-            "[\"rocker.O\", \"block.P\"]",
+            "[\"rod.B\", \"piston.P\"]",
         ),
         key(
             "axis",
@@ -114,7 +114,7 @@ static WELD: Table = table(
         held(
             "weld",
             "The points that coincide.",
-            "[\"rod.P\", \"arm.P\"]",
+            "[\"rod.P\", \"piston.P\"]",
         ),
         key(
             "angle",
@@ -131,7 +131,7 @@ static GEAR: Table = table(
     "gear",
     "Two gears; other joints keep their centres at their distance. They mesh as assembled. Reaction: `tooth`.",
     &[
-        held("gear", "The centres.", "[\"sun.O\", \"planet.C\"]"),
+        held("gear", "The centres.", "[\"crank.A\", \"wheel.C\"]"),
         key(
             "radii",
             Pair,
@@ -157,7 +157,7 @@ static RACK: Table = table(
         held(
             "rack",
             "A point of the pitch line, and the pinion's centre.",
-            "[\"rack.P\", \"pinion.C\"]",
+            "[\"piston.P\", \"wheel.C\"]",
         ),
         key(
             "axis",

@@ -24,11 +24,11 @@ pub(crate) static SCENE: Table = table(
         key("note", Text, "", "What has to be said wherever the results are shown.", "\"A reconstruction.\"")
             .or("none"),
         key("units", One(&UNITS), "", "The units of the numbers below.", "{ length = \"mm\" }").or("SI"),
-        key("bodies", One(&BODIES), "", "The rigid bodies, the ground among them.", "{ ground = { points = { A = [0, 0] } } }"),
+        key("bodies", One(&BODIES), "", "The rigid bodies, the ground among them.", "{ crank = { points = { A = [0, 0], B = [100, 0] } } }"),
         key("joints", One(&ALL_JOINTS), "", "What holds the bodies together.", "{ A = { revolute = [\"ground.A\", \"crank.A\"] } }"),
         key("actuators", One(&ACTUATORS), "", "What drives the mechanism.", "{ phi = { angle = [\"ground\", \"crank\"] } }")
             .or("none"),
-        key("coordinates", One(&COORDINATES), "", "Measures with a name.", "{ rise = { travel = \"guide\" } }")
+        key("coordinates", One(&COORDINATES), "", "Measures with a name.", "{ rise = { travel = \"slide\" } }")
             .or("none"),
         key("assembly", One(&ASSEMBLY), "", "Where and how the mechanism is put together.", "{ phi = 0.5, rod = -0.2 }")
             .or("all 0, nothing rough"),
@@ -38,10 +38,10 @@ pub(crate) static SCENE: Table = table(
             .or("the whole range, or one turn"),
         key("loads", One(&ALL_LOADS), "", "What acts on the mechanism from outside.", "{ weight = { gravity = [0, -9.81] } }")
             .or("none"),
-        key("requests", One(&REQUESTS), "", "What the results hold.", "{ paths = [\"coupler.P\"] }")
+        key("requests", One(&REQUESTS), "", "What the results hold.", "{ paths = [\"rod.P\"] }")
             .or("everything"),
         key("motion", One(&MOTION), "", "A free motion.", "{ speed = 10.0, periods = 2 }").or("none"),
-        key("calibration", One(&CALIBRATION), "", "One number of the scene, fitted so that the free motion has a given period.", "{ set = \"crank.inertia\", period = 5.42 }")
+        key("calibration", One(&CALIBRATION), "", "One number of the scene, fitted so that the free motion has a given period.", "{ set = \"rod.mass\", period = 5.42 }")
             .or("none"),
     ],
 );
@@ -108,7 +108,7 @@ static COORDINATES: Table = names(
         One(&COORDINATE),
         "",
         "The coordinate of that name.",
-        "{ travel = \"guide\" }",
+        "{ travel = \"slide\" }",
     ),
 );
 
@@ -225,7 +225,7 @@ pub(crate) static CALIBRATION: Table = table(
             Name("number"),
             "",
             "The number, by its path.",
-            "\"crank.inertia\"",
+            "\"rod.mass\"",
         ),
         key("period", Number, "s", "The period.", "5.42"),
     ],
