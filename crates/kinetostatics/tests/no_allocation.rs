@@ -2,7 +2,7 @@
 #![allow(clippy::expect_used, reason = "a test")]
 
 use allocation_counter::measure;
-use dwell_geometry::{Range, Start};
+use dwell_geometry::Start;
 use dwell_kinetostatics::{Exact, Model, Reduced};
 use dwell_scene::Scene;
 use std::path::Path;
@@ -66,9 +66,9 @@ fn an_evaluation_allocates_nothing() {
         let mut work = model.work();
         let mut out = model.model().coefficients();
         let start = model.model().plan().start()[0];
-        let beyond = match model.range() {
-            Range::Full => f64::NAN,
-            Range::Between(_, to) => to + 0.3,
+        let beyond = match model.range().limits() {
+            None => f64::NAN,
+            Some((_, to)) => to + 0.3,
         };
         for k in 0..20 {
             let q = start + 0.05 * f64::from(k);
