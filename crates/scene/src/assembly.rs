@@ -1,17 +1,19 @@
 //! Where the mechanism is put together, and how: it picks the branch.
 
 use crate::bodies::Bodies;
+use crate::coordinates::ActuatorText;
 use crate::fields::{Fields, angle};
-use crate::joints::ActuatorText;
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span};
 use crate::units::Units;
 
-/// `[assembly]` as read: what it says of each actuator and body, in rad.
+/// `[assembly]` as read: what it says of each actuator, in rad or m, and of each body, in rad.
 #[derive(Debug)]
 pub(crate) struct AssemblyText {
     pub(crate) start: Vec<Option<(f64, Span)>>,
     pub(crate) rough: Vec<Option<(f64, Span)>>,
+    /// The actuators it speaks of, rightly or wrongly.
+    pub(crate) spoken: Vec<usize>,
 }
 
 impl AssemblyText {
@@ -25,18 +27,19 @@ impl AssemblyText {
         let mut text = Self {
             start: vec![None; actuators.len()],
             rough: vec![None; bodies.list.len()],
+            spoken: Vec::new(),
         };
         for entry in fields.iter().flat_map(|f| &f.entries) {
             let name = entry.name;
-            let known = |problems: &mut Problems| {
-                let what = format!("`{}` in [assembly]", shorten(name));
-                angle(entry.value, &units.angle, format_args!("{what}"), problems)
-            };
+            let shown = shorten(name);
             if let Some(k) = actuators.iter().position(|a| a.name == name) {
-                let angle = known(problems);
-                text.start[k] = angle.map(|si| (si, entry.key.start..entry.value.span().end));
+                let what = format_args!("`{shown}` in [assembly]");
+                text.spoken.push(k);
+                let start = actuators[k].position(entry.value, units, what, problems);
+                text.start[k] = start.map(|si| (si, entry.key.start..entry.value.span().end));
             } else if let Some(k) = bodies.position(name) {
-                let angle = known(problems);
+                let what = format_args!("`{shown}` in [assembly]");
+                let angle = angle(entry.value, &units.angle, what, problems);
                 text.rough[k] = angle.map(|si| (si, entry.key.start..entry.value.span().end));
                 if bodies.ground == Some(k) && angle.is_some_and(|si| si != 0.0) {
                     problems.push(

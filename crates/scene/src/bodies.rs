@@ -1,6 +1,7 @@
 //! The bodies: their points, their masses, and which of them is the ground.
 
-use crate::fields::{Entry, Fields, boolean, pair, quantity};
+use crate::fields::{Entry, Fields, POINT, Value, boolean, pair, quantity, two_strings};
+use crate::keys;
 use crate::names::{check, shorten};
 use crate::problem::{Problem, Problems, Span};
 use crate::units::{Unit, Units};
@@ -8,10 +9,8 @@ use crate::value::{Field, Number};
 use dwell_geometry::{BodyId, Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use std::collections::HashMap;
+use std::fmt::Arguments;
 use toml::de::DeValue;
-
-/// How a point is written.
-pub(crate) const POINT: &str = "two numbers [x, y]";
 
 /// A body as read. What could not be read is zero: the scene fails anyway, and the names still
 /// serve to judge the rest of the file.
@@ -109,6 +108,20 @@ impl<'a> Bodies<'a> {
         None
     }
 
+    /// The two bodies that a value names, each with where.
+    pub(crate) fn find_two(
+        &self,
+        value: &Value<'_>,
+        what: Arguments<'_>,
+        problems: &mut Problems,
+    ) -> Option<[(BodyId, Span); 2]> {
+        let expected = "two bodies [\"body\", \"body\"]";
+        let [(a, at_a), (b, at_b)] = two_strings(value, expected, what, problems)?;
+        let first = self.find(a, &at_a, problems);
+        let second = self.find(b, &at_b, problems);
+        Some([(first?, at_a), (second?, at_b)])
+    }
+
     /// The point of a body named by `body.point`: (body, index of its point). Names hold no dot,
     /// so there is one way to read it.
     pub(crate) fn find_point(
@@ -134,11 +147,23 @@ impl<'a> Bodies<'a> {
             return None;
         };
         let id = self.find(body, at, problems)?;
+        Some((id, self.point_of(id, point, at, problems)?))
+    }
+
+    /// Index of the point of that name of a body.
+    pub(crate) fn point_of(
+        &self,
+        id: BodyId,
+        point: &str,
+        at: &Span,
+        problems: &mut Problems,
+    ) -> Option<usize> {
         let owner = &self.list[id.0];
         if let Some(&k) = owner.by_name.get(point) {
-            return Some((id, k));
+            return Some(k);
         }
         if owner.known {
+            let body = shorten(owner.name);
             let kind = format!("points of `{body}`");
             let help = problems.choices(point, &kind, owner.points.iter().map(|p| p.name));
             problems.push(
@@ -220,10 +245,7 @@ impl BodyReader<'_> {
             center_at: None,
         };
         let Some(table) = table else { return body };
-        table.allow(
-            &["points", "mass", "center", "inertia", "fixed"],
-            self.problems,
-        );
+        table.allow(&keys::BODY, self.problems);
         self.points(&mut body, table);
         self.inertia(&mut body, table);
         body

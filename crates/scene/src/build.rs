@@ -2,15 +2,19 @@
 
 use crate::assembly::AssemblyText;
 use crate::bodies::{Bodies, BodyText};
+use crate::coordinates::{ActuatorText, Measures, actuators};
 use crate::error::{SceneError, Source};
 use crate::fields::{Entry, Fields, string};
-use crate::joints::{ActuatorText, JointText, Joints, actuators};
+use crate::joints::{JointText, Joints};
+use crate::keys;
+use crate::loads::{LoadReader, LoadText};
 use crate::motion::{MotionText, calibration};
 use crate::names::shorten;
-use crate::place::{BodyPlaces, JointPlaces, Places};
+use crate::place::{BodyPlaces, JointPlaces, LoadPlaces, Places};
+use crate::prescribed::{PrescribedText, SweepText};
 use crate::problem::{Problem, Problems, Span};
 use crate::requests::RequestsText;
-use crate::scene::{Assembly, Calibration, Motion, Requests, Scene};
+use crate::scene::{Assembly, Calibration, Motion, NamedCoordinate, Requests, Scene};
 use crate::units::Units;
 use dwell_geometry::{Body, Mechanism, Vec2};
 use toml::de::DeTable;
@@ -19,9 +23,9 @@ impl Scene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
         let text = source.inner();
         let root = crate::read::syntax(source)?;
-        let mut problems = Problems::default();
+        let mut problems = Problems::of(source);
         let parts = Parts::read(text, root.get_ref(), &mut problems);
-        match (parts, problems.into_error(source)) {
+        match (parts, problems.into_error()) {
             (_, Some(error)) => Err(error),
             (Some(parts), None) => Ok(parts.finish(name, Source::clone(source))),
             // Parts are missing only where something was found wrong.
@@ -38,7 +42,13 @@ struct Parts<'a> {
     bodies: Bodies<'a>,
     joints: Joints<'a>,
     actuators: Vec<ActuatorText<'a>>,
+    measures: Measures<'a>,
     assembly: AssemblyText,
+    /// Coordinate of each actuator at assembly, SI.
+    start: Vec<f64>,
+    prescribed: Option<PrescribedText>,
+    sweep: Option<SweepText>,
+    loads: Vec<LoadText>,
     requests: RequestsText,
     motion: Option<MotionText>,
     calibration: Option<(Calibration, Span)>,
@@ -49,6 +59,8 @@ struct Parts<'a> {
 struct Sections {
     units: Option<Span>,
     assembly: Option<Span>,
+    prescribed: Option<Span>,
+    sweep: Option<Span>,
     requests: Option<Span>,
     motion: Option<Span>,
 }
@@ -58,19 +70,6 @@ const LONGEST_TITLE: usize = 200;
 
 /// What some editors put before the first character of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
-
-const SECTIONS: [&str; 10] = [
-    "title",
-    "note",
-    "units",
-    "bodies",
-    "joints",
-    "actuators",
-    "assembly",
-    "requests",
-    "motion",
-    "calibration",
-];
 
 impl<'a> Parts<'a> {
     fn read(text: &str, root: &'a DeTable<'a>, problems: &mut Problems) -> Option<Self> {
@@ -88,7 +87,7 @@ impl<'a> Parts<'a> {
             );
             return None;
         }
-        fields.allow(&SECTIONS, problems);
+        fields.allow(&keys::SCENE, problems);
         let title = text_of(&fields, "title", problems);
         if let (Some(text), Some(entry)) = (title, fields.get("title"))
             && text.chars().count() > LONGEST_TITLE
@@ -108,28 +107,50 @@ impl<'a> Parts<'a> {
         let count = problems.count();
         let bodies = Bodies::read(&bodies, &units, problems);
         let all_bodies_read = problems.count() == count;
-        let joints = section(&fields, "joints", true, problems)
-            .map(|f| Joints::read(&f, &bodies, problems))
+        let mut joints = section(&fields, "joints", true, problems)
+            .map(|f| Joints::read(&f, &bodies, &units, problems))
             .unwrap_or_default();
+        let actuators = section(&fields, "actuators", false, problems)
+            .map(|f| actuators(&f, &bodies, &joints, problems))
+            .unwrap_or_default();
+        let coordinates = section(&fields, "coordinates", false, problems);
+        let measures = Measures::read(&actuators, coordinates.as_ref(), &bodies, &joints, problems);
+        joints.relate(&measures, &units, problems);
         // A joint that could not be read may be the one that holds a body.
         if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
             unjoined(&bodies, &joints, problems);
         }
-        let actuators = section(&fields, "actuators", false, problems)
-            .map(|f| actuators(&f, &bodies, problems))
-            .unwrap_or_default();
         let assembly = section(&fields, "assembly", false, problems);
         let assembly_text =
             AssemblyText::read(assembly.as_ref(), &bodies, &actuators, &units, problems);
+        let motion = section(&fields, "motion", false, problems);
+        let motion_text = motion
+            .as_ref()
+            .map(|f| MotionText::read(f, &actuators, &units, problems));
+        let section_of = assembly.as_ref().map(|f| &f.span);
+        let start = starts(
+            &assembly_text,
+            motion_text.as_ref(),
+            &actuators,
+            section_of,
+            problems,
+        );
+        let prescribed = section(&fields, "prescribed", false, problems);
+        let prescribed_text = prescribed
+            .as_ref()
+            .map(|f| PrescribedText::read(f, &actuators, &start, &units, problems));
+        let sweep = section(&fields, "sweep", false, problems);
+        let sweep_text = sweep
+            .as_ref()
+            .map(|f| SweepText::read(f, &actuators, &start, &units, problems));
+        let loads = section(&fields, "loads", false, problems).map_or_else(Vec::new, |f| {
+            LoadReader::new(&bodies, &measures, &units).read(&f, problems)
+        });
         let requests = section(&fields, "requests", false, problems);
         let requests_text = match &requests {
             Some(f) => RequestsText::read(f, &bodies, &joints, problems),
             None => RequestsText::default(),
         };
-        let motion = section(&fields, "motion", false, problems);
-        let motion_text = motion
-            .as_ref()
-            .map(|f| MotionText::read(f, &actuators, &units, problems));
         let calibration = section(&fields, "calibration", false, problems).and_then(|f| {
             if fields.get("motion").is_none() {
                 problems.push(
@@ -151,6 +172,8 @@ impl<'a> Parts<'a> {
             sections: Sections {
                 units: fields.get("units").map(|e| e.value.span()),
                 assembly: span(&assembly),
+                prescribed: span(&prescribed),
+                sweep: span(&sweep),
                 requests: span(&requests),
                 motion: span(&motion),
             },
@@ -158,7 +181,12 @@ impl<'a> Parts<'a> {
             bodies,
             joints,
             actuators,
+            measures,
             assembly: assembly_text,
+            start,
+            prescribed: prescribed_text,
+            sweep: sweep_text,
+            loads,
             requests: requests_text,
             motion: motion_text,
             calibration,
@@ -182,20 +210,19 @@ impl<'a> Parts<'a> {
                 .iter()
                 .filter_map(|a| a.actuator.clone())
                 .collect(),
-            relations: Vec::new(),
+            relations: self.joints.relations,
         };
-        let start = |said: &[Option<(f64, Span)>], k: usize| said.get(k)?.as_ref().map(|s| s.0);
-        let moving = self.motion.as_ref().map_or(&[][..], |m| &m.start);
         let actuators = 0..self.actuators.len();
+        let named = self.measures.list.iter().skip(self.measures.actuators);
+        let coordinates = named.filter_map(|m| {
+            Some(NamedCoordinate {
+                name: m.name.to_owned(),
+                coordinate: m.coordinate?,
+            })
+        });
+        let coordinates = coordinates.collect();
         let assembly = Assembly {
-            start: actuators
-                .clone()
-                .map(|k| {
-                    start(&self.assembly.start, k)
-                        .or(start(moving, k))
-                        .unwrap_or(0.0)
-                })
-                .collect(),
+            start: self.start,
             rough: self
                 .assembly
                 .rough
@@ -207,10 +234,10 @@ impl<'a> Parts<'a> {
             Some(Motion {
                 start: actuators
                     .clone()
-                    .map(|k| start(&m.start, k).unwrap_or(assembly.start[k]))
+                    .map(|k| said(&m.start, k).unwrap_or(assembly.start[k]))
                     .collect(),
                 speed: actuators
-                    .map(|k| start(&m.speed, k).unwrap_or(0.0))
+                    .map(|k| said(&m.speed, k).unwrap_or(0.0))
                     .collect(),
                 length: m.length.as_ref()?.0,
             })
@@ -222,6 +249,11 @@ impl<'a> Parts<'a> {
             },
             paths: self.requests.paths.into_iter().map(|(p, _)| p).collect(),
             dwell: self.requests.dwell.map(|(d, _)| d),
+            variables: self
+                .requests
+                .variables
+                .map(|all| all.into_iter().map(|(name, _)| name).collect()),
+            sections: self.requests.sections.into_iter().map(|(s, _)| s).collect(),
         };
         Scene {
             title: self.title.map_or_else(|| name.clone(), one_line),
@@ -230,7 +262,11 @@ impl<'a> Parts<'a> {
             mechanism,
             masses: self.bodies.list.iter().map(|b| b.mass).collect(),
             points: self.bodies.list.iter().map(points).collect(),
+            coordinates,
             assembly,
+            prescribed: self.prescribed.and_then(|p| p.prescribed),
+            sweep: self.sweep.and_then(|s| s.sweep),
+            loads: self.loads.into_iter().filter_map(|l| l.load).collect(),
             requests,
             motion,
             calibration: self.calibration.map(|(c, _)| c),
@@ -254,11 +290,20 @@ impl<'a> Parts<'a> {
             inertia: b.inertia_at.clone(),
             center: b.center_at.clone(),
         };
-        let joint = |j: &JointText<'_>| JointPlaces {
+        let joint = |j: &JointText| JointPlaces {
             key: j.key.clone(),
             ends: j.ends.clone(),
             axis: j.axis.clone(),
+            law: j.law.clone(),
         };
+        let load = |l: &LoadText| LoadPlaces {
+            key: l.key.clone(),
+            magnitude: l.magnitude.clone(),
+        };
+        let named = self.measures.list.iter().skip(self.measures.actuators);
+        let prescribed = self.prescribed.as_ref();
+        let swept = self.sweep.as_ref();
+        let variables = self.requests.variables.as_deref().unwrap_or(&[]);
         let motion = self.motion.as_ref();
         let reactions = self.requests.reactions.as_deref().unwrap_or(&[]);
         Places {
@@ -266,13 +311,21 @@ impl<'a> Parts<'a> {
             bodies: self.bodies.list.iter().map(body).collect(),
             joints: self.joints.list.iter().map(joint).collect(),
             actuators: self.actuators.iter().map(|a| a.key.clone()).collect(),
+            coordinates: named.map(|m| m.key.clone()).collect(),
             assembly: self.sections.assembly.clone(),
             start: spans(&self.assembly.start),
             rough: spans(&self.assembly.rough),
+            prescribed: self.sections.prescribed.clone(),
+            laws: prescribed.map_or_else(Vec::new, |p| p.laws.clone()),
+            sweep: self.sections.sweep.clone(),
+            swept: swept.map_or_else(Vec::new, |s| s.actuators.clone()),
+            loads: self.loads.iter().map(load).collect(),
             requests: self.sections.requests.clone(),
             reactions: reactions.iter().map(|r| Some(r.1.clone())).collect(),
             paths: self.requests.paths.iter().map(|p| p.1.clone()).collect(),
             dwell: self.requests.dwell.as_ref().map(|d| d.1.clone()),
+            variables: variables.iter().map(|v| v.1.clone()).collect(),
+            sections: self.requests.sections.iter().map(|s| s.1.clone()).collect(),
             motion: self.sections.motion.clone(),
             motion_start: motion.map_or_else(Vec::new, |m| spans(&m.start)),
             speed: motion.map_or_else(Vec::new, |m| spans(&m.speed)),
@@ -280,6 +333,37 @@ impl<'a> Parts<'a> {
             calibration: self.calibration.as_ref().map(|c| c.1.clone()),
         }
     }
+}
+
+/// What is said of the k-th actuator.
+fn said(values: &[Option<(f64, Span)>], k: usize) -> Option<f64> {
+    values.get(k)?.as_ref().map(|s| s.0)
+}
+
+/// Coordinate of each actuator at assembly: as it says, or where the motion starts, or 0. No two
+/// points are at 0 from each other by default: says which distances are missing.
+fn starts(
+    assembly: &AssemblyText,
+    motion: Option<&MotionText>,
+    actuators: &[ActuatorText<'_>],
+    section: Option<&Span>,
+    problems: &mut Problems,
+) -> Vec<f64> {
+    let moving = motion.map_or(&[][..], |m| &m.start);
+    let mut starts = Vec::with_capacity(actuators.len());
+    for (k, a) in actuators.iter().enumerate() {
+        let start = said(&assembly.start, k).or(said(moving, k));
+        if a.is_distance() && start.is_none() && !assembly.spoken.contains(&k) {
+            let name = shorten(a.name);
+            problems.push(
+                Problem::new(format!("the length of `{name}` at the start is not given"))
+                    .at(section.unwrap_or(&a.key).clone(), "how long?")
+                    .help(format!("add it to [assembly], such as `{name} = 0.5`")),
+            );
+        }
+        starts.push(start.unwrap_or(0.0));
+    }
+    starts
 }
 
 /// The table of a section. Absent it is an error where it is needed, empty as well.

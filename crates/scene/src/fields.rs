@@ -1,9 +1,11 @@
 //! Typed reading of the TOML tree: each reader returns what it was asked for, or says what it
 //! found instead.
 
+use crate::keys::Table;
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span};
-use crate::units::Unit;
+use crate::units::{Unit, Units};
+use dwell_geometry::{Vec2, vec2};
 use std::fmt::{Arguments, Display};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -17,6 +19,9 @@ const LARGEST: f64 = 1e60;
 
 /// Largest angle, rad: beyond it, less than ten digits of the position within a turn are left.
 const LARGEST_ANGLE: f64 = 1e6;
+
+/// How a point or a direction is written.
+pub(crate) const POINT: &str = "two numbers [x, y]";
 
 /// A key of a table with its value.
 #[derive(Debug, Clone)]
@@ -74,10 +79,10 @@ impl<'a> Fields<'a> {
         self.entries.iter().find(|e| e.name == name)
     }
 
-    /// Says which keys are none of `known`.
-    pub(crate) fn allow(&self, known: &[&str], problems: &mut Problems) {
-        for entry in self.entries.iter().filter(|e| !known.contains(&e.name)) {
-            let help = problems.choices(entry.name, "keys here", known.iter().copied());
+    /// Says which keys are none of the table's.
+    pub(crate) fn allow(&self, table: &Table, problems: &mut Problems) {
+        for entry in self.entries.iter().filter(|e| !table.knows(e.name)) {
+            let help = problems.choices(entry.name, "keys here", table.names());
             let name = shorten(entry.name);
             problems.push(
                 Problem::new(format!("unknown key `{name}` in {}", self.what))
@@ -86,9 +91,65 @@ impl<'a> Fields<'a> {
             );
         }
     }
+
+    /// The one of several keys that exclude each other; nothing if none is there, and a problem if
+    /// there are two.
+    pub(crate) fn one_of<'n>(
+        &self,
+        names: impl Iterator<Item = &'n str> + Clone,
+        problems: &mut Problems,
+    ) -> Result<Option<&Entry<'a>>, ()> {
+        let among = |e: &&Entry<'a>| names.clone().any(|n| n == e.name);
+        let mut found = self.entries.iter().filter(among);
+        match (found.next(), found.next()) {
+            (first, None) => Ok(first),
+            (None, Some(_)) => Ok(None),
+            (Some(a), Some(b)) => {
+                problems.push(
+                    Problem::new(format!(
+                        "{} has both `{}` and `{}`",
+                        self.what, a.name, b.name
+                    ))
+                    .at(a.key.clone(), "either this")
+                    .at(b.key.clone(), "or this")
+                    .help("keep one of them"),
+                );
+                Err(())
+            }
+        }
+    }
+
+    /// Whether it has a key that is none of the table's: what seems to be missing may be that one.
+    pub(crate) fn has_others_than(&self, table: &Table) -> bool {
+        self.entries.iter().any(|e| !table.knows(e.name))
+    }
+
+    /// The entry of that key, or a problem that says it is missing; `help` says how to write it.
+    pub(crate) fn need(
+        &self,
+        key: &str,
+        at: &Span,
+        help: &str,
+        problems: &mut Problems,
+    ) -> Option<&Entry<'a>> {
+        let found = self.get(key);
+        if found.is_none() {
+            problems.push(
+                Problem::new(format!("{} has no `{key}`", self.what))
+                    .at(at.clone(), format!("`{key}` is missing"))
+                    .help(help),
+            );
+        }
+        found
+    }
 }
 
-fn mismatch(value: &Value<'_>, expected: &str, what: Arguments<'_>, problems: &mut Problems) {
+pub(crate) fn mismatch(
+    value: &Value<'_>,
+    expected: &str,
+    what: Arguments<'_>,
+    problems: &mut Problems,
+) {
     let found = match value.get_ref() {
         DeValue::String(_) => "a string",
         DeValue::Integer(_) | DeValue::Float(_) => "a number",
@@ -188,6 +249,146 @@ pub(crate) fn angle(
             .help("take whole turns off it: so large an angle has lost its last digits"),
     );
     None
+}
+
+/// A coordinate or its speed, in SI: an angle is not too many turns.
+pub(crate) fn coordinate(
+    value: &Value<'_>,
+    is_angle: bool,
+    units: &Units,
+    what: Arguments<'_>,
+    problems: &mut Problems,
+) -> Option<f64> {
+    if is_angle {
+        return angle(value, &units.angle, what, problems);
+    }
+    quantity(value, &units.length, what, problems).map(|(_, si)| si)
+}
+
+/// What a number has to be, besides finite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Sign {
+    Any,
+    /// Zero or more.
+    NotNegative,
+    /// More than zero.
+    Positive,
+    /// Not zero.
+    NotZero,
+}
+
+/// A number in SI, of the sign it has to have; `why` tells one who gave another.
+pub(crate) fn signed(
+    value: &Value<'_>,
+    unit: &Unit,
+    sign: Sign,
+    what: Arguments<'_>,
+    why: &str,
+    problems: &mut Problems,
+) -> Option<f64> {
+    let (_, si) = quantity(value, unit, what, problems)?;
+    let (good, wrong, expected) = match sign {
+        Sign::Any => return Some(si),
+        Sign::NotNegative => (si >= 0.0, "is negative", "expected 0 or more"),
+        Sign::Positive => (si > 0.0, "is not above zero", "expected a number above 0"),
+        Sign::NotZero => (si != 0.0, "is zero", "expected a number other than 0"),
+    };
+    if good {
+        return Some(si);
+    }
+    let problem = Problem::new(format!("{what} {wrong}")).at(value.span(), expected);
+    problems.push(match why {
+        "" => problem,
+        why => problem.help(why),
+    });
+    None
+}
+
+/// A count of at least two and at most a million.
+pub(crate) fn count(
+    value: &Value<'_>,
+    what: Arguments<'_>,
+    problems: &mut Problems,
+) -> Option<usize> {
+    const MOST: f64 = 1e6;
+    let x = number(value, what, problems)?;
+    if x.fract() == 0.0 && (2.0..=MOST).contains(&x) {
+        return Some(x as usize);
+    }
+    problems.push(
+        Problem::new(format!("{what} is not a whole number from 2 to {MOST:e}"))
+            .at(value.span(), "how many?"),
+    );
+    None
+}
+
+/// The rows [x, y] of a table, as written: two or more, each x above the one before.
+pub(crate) fn rows(
+    value: &Value<'_>,
+    units: [&Unit; 2],
+    what: &str,
+    problems: &mut Problems,
+) -> Option<Vec<[f64; 2]>> {
+    let values = array(
+        value,
+        "rows [[x, y], [x, y], ...]",
+        format_args!("{what}"),
+        problems,
+    )?;
+    let before = problems.count();
+    let mut rows: Vec<[f64; 2]> = Vec::with_capacity(values.len());
+    for (k, row) in values.iter().enumerate() {
+        let name = format!("row {} of {what}", k + 1);
+        let Some([x, y]) = pair(row, "two numbers [x, y]", format_args!("{name}"), problems) else {
+            continue;
+        };
+        let x = quantity(x, units[0], format_args!("x in {name}"), problems);
+        let y = quantity(y, units[1], format_args!("y in {name}"), problems);
+        let (Some((_, x)), Some((_, y))) = (x, y) else {
+            continue;
+        };
+        if rows.last().is_some_and(|last| x <= last[0]) {
+            problems.push(
+                Problem::new(format!("x in {name} is not above that of the row before"))
+                    .at(row.span(), "out of order")
+                    .help("the rows of a table stand in the order of x, each x once"),
+            );
+        }
+        rows.push([x, y]);
+    }
+    if problems.count() != before {
+        return None;
+    }
+    if rows.len() < 2 {
+        problems.push(
+            Problem::new(format!("{what} has fewer than two rows"))
+                .at(value.span(), "no curve")
+                .help("give at least two rows [x, y]"),
+        );
+        return None;
+    }
+    Some(rows)
+}
+
+/// A direction: only the ratio of its components counts, so it has no unit.
+pub(crate) fn unit_vector(value: &Value<'_>, what: &str, problems: &mut Problems) -> Option<Vec2> {
+    let [x, y] = pair(value, POINT, format_args!("{what}"), problems)?;
+    let x = number(x, format_args!("x of {what}"), problems);
+    let y = number(y, format_args!("y of {what}"), problems);
+    let (x, y) = (x?, y?);
+    let largest = x.abs().max(y.abs());
+    if largest == 0.0 {
+        problems.push(
+            Problem::new(format!("{what} has no length"))
+                .at(value.span(), "no direction")
+                .help("give a direction, such as [1, 0]"),
+        );
+        return None;
+    }
+    // Scaled first: the largest and the smallest numbers would lose their direction in a square.
+    let (x, y) = (x / largest, y / largest);
+    let length = x.hypot(y);
+    Some(vec2(x / length, y / length))
 }
 
 /// A string.

@@ -47,12 +47,18 @@
 mod assembly;
 mod bodies;
 mod build;
+mod coordinates;
 mod error;
+mod expression;
 mod fields;
 mod joints;
+mod keys;
+mod law;
+mod loads;
 mod motion;
 mod names;
 mod place;
+mod prescribed;
 mod problem;
 mod read;
 mod requests;
@@ -65,4 +71,7 @@ mod tests;
 
 pub use error::SceneError;
 pub use place::Place;
-pub use scene::{Assembly, Calibration, DwellRequest, Length, Motion, PathPoint, Requests, Scene};
+pub use scene::{
+    Assembly, Calibration, DwellRequest, Length, Motion, NamedCoordinate, PathPoint, Prescribed,
+    Requests, Scene, Section, Sweep,
+};

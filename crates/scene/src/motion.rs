@@ -1,7 +1,8 @@
 //! The free motion, and the one number fitted to a period.
 
-use crate::fields::{Entry, Fields, Value, angle, number, quantity, string};
-use crate::joints::ActuatorText;
+use crate::coordinates::ActuatorText;
+use crate::fields::{Entry, Fields, Value, number, quantity, string};
+use crate::keys;
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span, list};
 use crate::scene::{Calibration, Length};
@@ -9,7 +10,7 @@ use crate::units::Units;
 use std::fmt::Arguments;
 use toml::de::DeValue;
 
-/// `[motion]` as read: what it says of each actuator, in rad and rad/s.
+/// `[motion]` as read: what it says of each actuator, in rad and rad/s or m and m/s.
 #[derive(Debug)]
 pub(crate) struct MotionText {
     pub(crate) start: Vec<Option<(f64, Span)>>,
@@ -24,7 +25,7 @@ impl MotionText {
         units: &Units,
         problems: &mut Problems,
     ) -> Self {
-        fields.allow(&["start", "speed", "periods", "duration"], problems);
+        fields.allow(&keys::MOTION, problems);
         if actuators.is_empty() {
             problems.push(
                 Problem::new("there is a motion but no actuator")
@@ -44,14 +45,17 @@ impl MotionText {
         let (start, speed) = (each("start", problems), each("speed", problems));
         if let Some(speed) = &speed {
             let missing = actuators.iter().zip(speed).filter(|(_, s)| s.is_none());
-            let missing: Vec<_> = missing.map(|(a, _)| a.name).collect();
-            if let Some(names) = list(missing.iter().copied()) {
+            let missing: Vec<_> = missing.map(|(a, _)| a).collect();
+            if let Some(names) = list(missing.iter().map(|a| a.name)) {
                 let at = fields.get("speed").map_or(&fields.span, |e| &e.key);
-                let unit = &units.angle.name;
+                let unit = &missing[0].unit(units).name;
                 problems.push(
                     Problem::new(format!("the speed of {names} at the start is not given"))
                         .at(at.clone(), "how fast?")
-                        .help(format!("in {unit}/s: `speed = {{ {} = 1.0 }}`", missing[0])),
+                        .help(format!(
+                            "in {unit}/s: `speed = {{ {} = 1.0 }}`",
+                            missing[0].name
+                        )),
                 );
             }
         }
@@ -78,12 +82,15 @@ fn per_actuator(
         return Some(values);
     };
     let what = format!("{key} of [motion]");
-    let read = |value: &Value<'_>, what: Arguments<'_>, problems: &mut Problems| match key {
-        "start" => angle(value, &units.angle, what, problems),
-        _ => quantity(value, &units.angle, what, problems).map(|(_, si)| si),
+    let read = |k: usize, value: &Value<'_>, what: Arguments<'_>, problems: &mut Problems| {
+        let actuator = &actuators[k];
+        match key {
+            "start" => actuator.position(value, units, what, problems),
+            _ => quantity(value, actuator.unit(units), what, problems).map(|(_, si)| si),
+        }
     };
     if let DeValue::Integer(_) | DeValue::Float(_) = entry.value.get_ref() {
-        let si = read(entry.value, format_args!("{what}"), problems)?;
+        let si = read(0, entry.value, format_args!("{what}"), problems)?;
         if let [one] = values.as_mut_slice() {
             *one = Some((si, entry.value.span()));
             return Some(values);
@@ -120,7 +127,7 @@ fn per_actuator(
             continue;
         };
         let what = format_args!("{key} of `{name}` in [motion]");
-        let si = read(value.value, what, problems);
+        let si = read(k, value.value, what, problems);
         values[k] = si.map(|si| (si, value.value.span()));
     }
     (problems.count() == count).then_some(values)
@@ -172,7 +179,7 @@ pub(crate) fn calibration(
     fields: &Fields<'_>,
     problems: &mut Problems,
 ) -> Option<(Calibration, Span)> {
-    fields.allow(&["set", "period"], problems);
+    fields.allow(&keys::CALIBRATION, problems);
     let missing = |key: &str, help: &str| {
         Problem::new(format!("[calibration] has no `{key}`"))
             .at(fields.span.clone(), format!("`{key}` is missing"))

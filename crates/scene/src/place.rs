@@ -27,16 +27,32 @@ pub enum Place {
     Joint(JointId),
     /// The first (0) or second (1) point the joint holds.
     JointEnd(JointId, usize),
-    /// The axis or axes of a prismatic joint.
+    /// The axis or axes of a joint.
     Axis(JointId),
+    /// The law of a relation.
+    Law(JointId),
     /// The actuator's name where it is defined.
     Actuator(ActuatorId),
+    /// The name of the k-th of the scene's named coordinates where it is defined.
+    Coordinate(usize),
     /// `[assembly]`.
     Assembly,
     /// The actuator's coordinate at assembly.
     Start(ActuatorId),
     /// The body's rough angle at assembly.
     Rough(BodyId),
+    /// `[prescribed]`.
+    Prescribed,
+    /// The prescribed law of the actuator.
+    Motor(ActuatorId),
+    /// `[sweep]`.
+    Sweep,
+    /// What the sweep says of the actuator.
+    Swept(ActuatorId),
+    /// The name of the k-th of the scene's loads where it is defined.
+    Load(usize),
+    /// How strong the k-th of the scene's loads is.
+    Magnitude(usize),
     /// `[requests]`.
     Requests,
     /// The request for the k-th of the scene's reactions.
@@ -45,6 +61,10 @@ pub enum Place {
     Path(usize),
     /// The request for a dwell.
     Dwell,
+    /// The request for the k-th of the scene's variables.
+    Variable(usize),
+    /// The request for the k-th of the scene's sections.
+    Section(usize),
     /// `[motion]`.
     Motion,
     /// The actuator's coordinate at the start of the motion.
@@ -64,13 +84,21 @@ pub(crate) struct Places {
     pub(crate) bodies: Vec<BodyPlaces>,
     pub(crate) joints: Vec<JointPlaces>,
     pub(crate) actuators: Vec<Span>,
+    pub(crate) coordinates: Vec<Span>,
     pub(crate) assembly: Option<Span>,
     pub(crate) start: Vec<Option<Span>>,
     pub(crate) rough: Vec<Option<Span>>,
+    pub(crate) prescribed: Option<Span>,
+    pub(crate) laws: Vec<Option<Span>>,
+    pub(crate) sweep: Option<Span>,
+    pub(crate) swept: Vec<Option<Span>>,
+    pub(crate) loads: Vec<LoadPlaces>,
     pub(crate) requests: Option<Span>,
     pub(crate) reactions: Vec<Option<Span>>,
     pub(crate) paths: Vec<Span>,
     pub(crate) dwell: Option<Span>,
+    pub(crate) variables: Vec<Span>,
+    pub(crate) sections: Vec<Span>,
     pub(crate) motion: Option<Span>,
     pub(crate) motion_start: Vec<Option<Span>>,
     pub(crate) speed: Vec<Option<Span>>,
@@ -92,6 +120,13 @@ pub(crate) struct JointPlaces {
     pub(crate) key: Span,
     pub(crate) ends: [Span; 2],
     pub(crate) axis: Option<Span>,
+    pub(crate) law: Option<Span>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LoadPlaces {
+    pub(crate) key: Span,
+    pub(crate) magnitude: Option<Span>,
 }
 
 impl Places {
@@ -110,14 +145,24 @@ impl Places {
             Place::Joint(j) => joint(j).map(|j| j.key.clone()),
             Place::JointEnd(j, k) => joint(j)?.ends.get(k).cloned(),
             Place::Axis(j) => joint(j)?.axis.clone(),
+            Place::Law(j) => joint(j)?.law.clone(),
             Place::Actuator(a) => self.actuators.get(a.0).cloned(),
+            Place::Coordinate(k) => self.coordinates.get(k).cloned(),
             Place::Assembly => self.assembly.clone(),
             Place::Start(a) => nth(&self.start, a.0),
             Place::Rough(b) => nth(&self.rough, b.0),
+            Place::Prescribed => self.prescribed.clone(),
+            Place::Motor(a) => nth(&self.laws, a.0),
+            Place::Sweep => self.sweep.clone(),
+            Place::Swept(a) => nth(&self.swept, a.0),
+            Place::Load(k) => self.loads.get(k).map(|l| l.key.clone()),
+            Place::Magnitude(k) => self.loads.get(k)?.magnitude.clone(),
             Place::Requests => self.requests.clone(),
             Place::Reaction(k) => nth(&self.reactions, k),
             Place::Path(k) => self.paths.get(k).cloned(),
             Place::Dwell => self.dwell.clone(),
+            Place::Variable(k) => self.variables.get(k).cloned(),
+            Place::Section(k) => self.sections.get(k).cloned(),
             Place::Motion => self.motion.clone(),
             Place::MotionStart(a) => nth(&self.motion_start, a.0),
             Place::Speed(a) => nth(&self.speed, a.0),
@@ -132,11 +177,18 @@ impl Places {
             Place::Point(b, _) | Place::Mass(b) | Place::Inertia(b) | Place::Center(b) => {
                 Place::Body(b)
             }
-            Place::JointEnd(j, _) | Place::Axis(j) => Place::Joint(j),
+            Place::JointEnd(j, _) | Place::Axis(j) | Place::Law(j) => Place::Joint(j),
+            Place::Motor(_) => Place::Prescribed,
+            Place::Swept(_) => Place::Sweep,
+            Place::Magnitude(k) => Place::Load(k),
             Place::Start(a) => Place::MotionStart(a),
             Place::MotionStart(a) | Place::Speed(a) => Place::Actuator(a),
             Place::Rough(b) => Place::Body(b),
-            Place::Reaction(_) | Place::Path(_) | Place::Dwell => Place::Requests,
+            Place::Reaction(_)
+            | Place::Path(_)
+            | Place::Dwell
+            | Place::Variable(_)
+            | Place::Section(_) => Place::Requests,
             Place::Length => Place::Motion,
             _ => Place::Whole,
         }

@@ -46,13 +46,45 @@ impl Problem {
 }
 
 /// Everything that is wrong with one file.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Problems {
+    source: Source,
     found: Vec<Problem>,
     untold: usize,
 }
 
 impl Problems {
+    pub(crate) fn of(source: &Source) -> Self {
+        Self {
+            source: Source::clone(source),
+            found: Vec::new(),
+            untold: 0,
+        }
+    }
+
+    /// Where in the file a part of a string is. A string with escapes does not stand in the file
+    /// as it reads: then it is the whole of it.
+    pub(crate) fn within(&self, string: &Span, text: &str, part: Span) -> Span {
+        let written = self.source.inner().get(string.clone()).unwrap_or_default();
+        let quotes = match written.get(..3) {
+            Some("\"\"\"" | "\'\'\'") if written.len() >= 6 => 3,
+            _ => 1,
+        };
+        let inner = written.get(quotes..written.len().saturating_sub(quotes));
+        let inner = inner.unwrap_or_default();
+        // A line break right after three quotes is no part of the text.
+        let skipped = match (quotes, inner.find('\n')) {
+            (3, Some(0)) => 1,
+            (3, Some(1)) if inner.starts_with('\r') => 2,
+            _ => 0,
+        };
+        if inner.get(skipped..) != Some(text) || text.is_empty() {
+            return string.clone();
+        }
+        let from = string.start + quotes + skipped;
+        from + part.start..from + part.end
+    }
+
     pub(crate) fn push(&mut self, problem: Problem) {
         if self.full() {
             self.untold += 1;
@@ -86,7 +118,7 @@ impl Problems {
     }
 
     /// The report, or nothing if all is well.
-    pub(crate) fn into_error(mut self, source: &Source) -> Option<SceneError> {
+    pub(crate) fn into_error(mut self) -> Option<SceneError> {
         // In the order of the file, whatever order the sections were read in.
         self.found
             .sort_by_key(|p| p.labels.first().map_or(0, |(span, _)| span.start));
@@ -94,7 +126,7 @@ impl Problems {
         let mut errors: Vec<_> = self
             .found
             .into_iter()
-            .map(|p| p.into_error(source))
+            .map(|p| p.into_error(&self.source))
             .collect();
         if errors.len() < 2 {
             return errors.pop();
@@ -104,7 +136,7 @@ impl Problems {
             let _ = write!(message, "; here are {MOST} of them");
         }
         let mut all = SceneError::bare(message, None);
-        all.text = Some(Source::clone(source));
+        all.text = Some(self.source);
         all.others = errors;
         Some(all)
     }

@@ -1,13 +1,15 @@
 //! What the reader of the results wants to know.
 
 use crate::bodies::Bodies;
-use crate::fields::{Entry, Fields, array, number, string};
+use crate::fields::{Entry, Fields, Value, array, mismatch, number, string};
 use crate::joints::Joints;
+use crate::keys;
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span};
-use crate::scene::{DwellRequest, PathPoint};
-use dwell_geometry::{Component, Joint, JointId, Reaction};
+use crate::scene::{DwellRequest, PathPoint, Section};
+use dwell_geometry::{Component, Joint, JointId, Reaction, Relation};
 use std::collections::HashSet;
+use toml::de::DeValue;
 
 /// `[requests]` as read, each with where it is asked for. No reactions: all of them.
 #[derive(Debug, Default)]
@@ -15,6 +17,8 @@ pub(crate) struct RequestsText {
     pub(crate) reactions: Option<Vec<(Reaction, Span)>>,
     pub(crate) paths: Vec<(PathPoint, Span)>,
     pub(crate) dwell: Option<(DwellRequest, Span)>,
+    pub(crate) variables: Option<Vec<(String, Span)>>,
+    pub(crate) sections: Vec<(Section, Span)>,
 }
 
 impl RequestsText {
@@ -24,14 +28,18 @@ impl RequestsText {
         joints: &Joints<'_>,
         problems: &mut Problems,
     ) -> Self {
-        fields.allow(&["reactions", "paths", "dwell"], problems);
+        fields.allow(&keys::REQUESTS, problems);
         let reactions = fields.get("reactions");
         let paths = fields.get("paths");
         let dwell = fields.get("dwell");
+        let variables = fields.get("variables");
+        let sections = fields.get("sections");
         Self {
             reactions: reactions.map(|e| reactions_of(e, joints, problems)),
             paths: paths.map_or_else(Vec::new, |e| paths_of(e, bodies, problems)),
             dwell: dwell.and_then(|e| Some((dwell_of(e, bodies, problems)?, e.value.span()))),
+            variables: variables.map(|e| variables_of(e, problems)),
+            sections: sections.map_or_else(Vec::new, |e| sections_of(e, bodies, problems)),
         }
     }
 }
@@ -62,43 +70,40 @@ fn reactions_of(
             Some((name, component)) => (name, Some(component)),
             None => (text, None),
         };
-        // Without any joint the scene has a greater problem, reported by now.
-        let Some(&k) = joints.by_name.get(name) else {
-            if joints.list.is_empty() {
+        let Some(range) = joints.find(name, &at, problems) else {
+            continue;
+        };
+        for k in range {
+            // A joint that could not be read has been reported already.
+            let Some(joint) = &joints.list[k].joint else {
                 continue;
+            };
+            let found = components(joint, component, &joints.relations, &at, problems);
+            if found.is_empty() {
+                break;
             }
-            let help = problems.choices(name, "joints", joints.list.iter().map(|j| j.name));
-            problems.push(
-                Problem::new(format!("there is no joint `{}`", shorten(name)))
-                    .at(at, "unknown joint")
-                    .help(help),
-            );
-            continue;
-        };
-        // A joint that could not be read has been reported already.
-        let Some(joint) = &joints.list[k].joint else {
-            continue;
-        };
-        for component in components(joint, component, &at, problems) {
-            let joint = JointId(k);
-            let reaction = Reaction { joint, component };
-            // Asked for twice, as `slide` and `slide.normal`, it is still one reaction.
-            if asked.insert(reaction) {
-                reactions.push((reaction, at.clone()));
+            for component in found {
+                let joint = JointId(k);
+                let reaction = Reaction { joint, component };
+                // Asked for twice, as `slide` and `slide.normal`, it is still one reaction.
+                if asked.insert(reaction) {
+                    reactions.push((reaction, at.clone()));
+                }
             }
         }
     }
     reactions
 }
 
-/// The named component of the joint's reaction, or both.
+/// The named component of the joint's reaction, or all of them.
 fn components(
     joint: &Joint,
     name: Option<&str>,
+    relations: &[Relation],
     at: &Span,
     problems: &mut Problems,
 ) -> Vec<Component> {
-    let all = joint.kind.components(&[]);
+    let all = joint.kind.components(relations);
     let Some(name) = name else {
         return all.to_vec();
     };
@@ -163,7 +168,7 @@ fn dwell_of(
     problems: &mut Problems,
 ) -> Option<DwellRequest> {
     let fields = Fields::open(entry, "dwell in [requests]", problems)?;
-    fields.allow(&["body", "band"], problems);
+    fields.allow(&keys::DWELL, problems);
     let (Some(body), Some(band)) = (fields.get("body"), fields.get("band")) else {
         problems.push(
             Problem::new("dwell in [requests] needs a body and a band")
@@ -197,5 +202,72 @@ fn dwell_of(
     Some(DwellRequest {
         body: id?,
         band: width,
+    })
+}
+
+/// The names of columns, each once.
+fn variables_of(entry: &Entry<'_>, problems: &mut Problems) -> Vec<(String, Span)> {
+    let mut asked = HashSet::new();
+    strings(entry, "an array such as [\"crank.angle\"]", problems)
+        .into_iter()
+        .filter(|(name, _)| asked.insert(*name))
+        .map(|(name, at)| (name.to_owned(), at))
+        .collect()
+}
+
+fn sections_of(
+    entry: &Entry<'_>,
+    bodies: &Bodies<'_>,
+    problems: &mut Problems,
+) -> Vec<(Section, Span)> {
+    let expected = "an array such as [{ body = \"rod\", from = \"B\", to = \"P\" }]";
+    let what = format_args!("sections in [requests]");
+    let values = array(entry.value, expected, what, problems);
+    let one = |value: &Value<'_>| Some((section_of(value, bodies, problems)?, value.span()));
+    values.into_iter().flatten().filter_map(one).collect()
+}
+
+fn section_of(value: &Value<'_>, bodies: &Bodies<'_>, problems: &mut Problems) -> Option<Section> {
+    let what = "a section in [requests]";
+    let DeValue::Table(table) = value.get_ref() else {
+        mismatch(value, "a table", format_args!("{what}"), problems);
+        return None;
+    };
+    let fields = Fields::of(what, value.span(), table);
+    fields.allow(&keys::SECTION, problems);
+    let help = "write it as `{ body = \"rod\", from = \"B\", to = \"P\" }`";
+    let [body, from, to] = ["body", "from", "to"].map(|key| {
+        let entry = fields.need(key, &fields.span, help, problems)?;
+        let what = format_args!("{key} of {what}");
+        Some((string(entry.value, what, problems)?, entry.value.span()))
+    });
+    let (name, at) = body?;
+    let body = bodies.find(name, &at, problems)?;
+    if bodies.ground == Some(body.0) {
+        problems.push(
+            Problem::new(format!("`{}` is the ground: it is not cut", shorten(name)))
+                .at(at, "not a moving body")
+                .help("ask for the sections of a moving body"),
+        );
+        return None;
+    }
+    let from = from.and_then(|(name, at)| bodies.point_of(body, name, &at, problems).zip(Some(at)));
+    let to = to.and_then(|(name, at)| bodies.point_of(body, name, &at, problems).zip(Some(at)));
+    let ((from, at_from), (to, at_to)) = (from?, to?);
+    let points = &bodies.list[body.0].points;
+    let ends = [&points[from], &points[to]];
+    if ends[0].at == ends[1].at {
+        problems.push(
+            Problem::new(format!("{what} of `{}` has no length", shorten(name)))
+                .at(at_from, "from here")
+                .at(at_to, "to the same place")
+                .help("give two points that are apart"),
+        );
+        return None;
+    }
+    Some(Section {
+        body,
+        names: ends.map(|p| p.name.to_owned()),
+        points: ends.map(|p| p.at),
     })
 }

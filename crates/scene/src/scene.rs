@@ -4,8 +4,9 @@ use crate::error::SceneError;
 use crate::place::Places;
 use crate::units::Units;
 use crate::value::Number;
-use dwell_geometry::{BodyId, Mechanism, Reaction, Vec2};
-use dwell_kinetostatics::Mass;
+use dwell_geometry::{ActuatorId, BodyId, Coordinate, Mechanism, Reaction, Vec2};
+use dwell_kinetostatics::{Load, Mass};
+use dwell_laws::Law;
 use miette::NamedSource;
 use std::path::Path;
 use std::sync::Arc;
@@ -26,8 +27,17 @@ pub struct Scene {
     pub masses: Vec<Mass>,
     /// The named points of each body, in its frame, m.
     pub points: Vec<Vec<(String, Vec2)>>,
+    /// The named coordinates of `[coordinates]`. Every actuator's is one besides: see
+    /// [`coordinate`](Self::coordinate).
+    pub coordinates: Vec<NamedCoordinate>,
     /// Where and how the mechanism is put together.
     pub assembly: Assembly,
+    /// The prescribed motion.
+    pub prescribed: Option<Prescribed>,
+    /// The positions of statics and kinematics.
+    pub sweep: Option<Sweep>,
+    /// What acts on the mechanism from outside.
+    pub loads: Vec<Load>,
     /// What is asked for.
     pub requests: Requests,
     /// The free motion.
@@ -44,7 +54,7 @@ pub struct Scene {
 /// Where and how the mechanism is put together at the start; it picks the branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assembly {
-    /// Exact coordinate of each actuator, rad.
+    /// Exact coordinate of each actuator, rad or m.
     pub start: Vec<f64>,
     /// Rough angle of each body, rad, where the scene gives one.
     pub rough: Vec<Option<f64>>,
@@ -59,6 +69,11 @@ pub struct Requests {
     pub paths: Vec<PathPoint>,
     /// A body whose dwell is marked.
     pub dwell: Option<DwellRequest>,
+    /// Names of the columns of the tables, each once; none: all of them. Whether they exist is for
+    /// the level above to find out ([`Place::Variable`](crate::Place::Variable)).
+    pub variables: Option<Vec<String>>,
+    /// Links whose inner forces are wanted.
+    pub sections: Vec<Section>,
 }
 
 /// A point of a moving body whose path is drawn.
@@ -81,12 +96,58 @@ pub struct DwellRequest {
     pub band: f64,
 }
 
+/// A line along a body, whose axial force, shear and bending moment are wanted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Section {
+    /// The body, not the ground.
+    pub body: BodyId,
+    /// Names of the points it runs from and to.
+    pub names: [String; 2],
+    /// The points in the body's frame, m. They differ.
+    pub points: [Vec2; 2],
+}
+
+/// A coordinate with a name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedCoordinate {
+    /// The name: no other coordinate's, no actuator's, no body's.
+    pub name: String,
+    /// What is measured.
+    pub coordinate: Coordinate,
+}
+
+/// A prescribed motion from t = 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Prescribed {
+    /// How long it lasts, s, above zero.
+    pub duration: f64,
+    /// At how many times it is evaluated, the ends among them: two or more.
+    pub points: usize,
+    /// The coordinate of each actuator, rad or m, as a function of the time, s.
+    pub laws: Vec<Law>,
+}
+
+/// Positions: one actuator is swept, the others are held.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    /// The actuator that is swept.
+    pub actuator: ActuatorId,
+    /// From where to where, rad or m; none: over its range, or one turn.
+    pub range: Option<[f64; 2]>,
+    /// Coordinate of each actuator, rad or m: where it is held, or the swept one's at assembly.
+    pub held: Vec<f64>,
+    /// How many positions, the ends among them: two or more.
+    pub points: usize,
+    /// Speed of the swept actuator in kinematics, rad/s or m/s, above zero.
+    pub speed: f64,
+}
+
 /// A free motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// Coordinate of each actuator at the start, rad.
+    /// Coordinate of each actuator at the start, rad or m.
     pub start: Vec<f64>,
-    /// Speed of each actuator at the start, rad/s.
+    /// Speed of each actuator at the start, rad/s or m/s.
     pub speed: Vec<f64>,
     /// How long it lasts.
     pub length: Length,
@@ -111,6 +172,17 @@ pub struct Calibration {
 }
 
 impl Scene {
+    /// The coordinate of that name: an actuator's, or one of `[coordinates]`.
+    pub fn coordinate(&self, name: &str) -> Option<Coordinate> {
+        let actuators = &self.mechanism.actuators;
+        let actuator = actuators.iter().find(|a| a.name == name);
+        let named = || self.coordinates.iter().find(|c| c.name == name);
+        match actuator {
+            Some(a) => Some(a.coordinate()),
+            None => named().map(|c| c.coordinate),
+        }
+    }
+
     /// Reads the text of a scene. `source_name` is the file's name in messages.
     pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
         let name = crate::read::scene_name(Path::new(source_name));

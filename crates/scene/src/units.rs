@@ -1,6 +1,7 @@
 //! Units of a scene. They are converted once, here, and everything after is SI.
 
 use crate::fields::{Entry, Fields, string};
+use crate::keys;
 use crate::names::shorten;
 use crate::problem::{Problem, Problems, Span};
 use std::f64::consts::PI;
@@ -21,6 +22,11 @@ impl Unit {
             times,
             over,
         }
+    }
+
+    /// A unit of SI, whatever its name.
+    pub(crate) fn of_si() -> Self {
+        Self::new("", 1.0, 1.0)
     }
 
     /// `value` of this unit, in SI.
@@ -50,6 +56,19 @@ const MASSES: [Known; 5] = [
 ];
 const ANGLES: [Known; 2] = [("rad", 1.0, 1.0), ("deg", PI, 180.0)];
 
+const fn names_of<const N: usize>(known: &[Known; N]) -> [&'static str; N] {
+    let mut names = [""; N];
+    let mut k = 0;
+    while k < N {
+        names[k] = known[k].0;
+        k += 1;
+    }
+    names
+}
+pub(crate) static LENGTH_NAMES: [&str; 7] = names_of(&LENGTHS);
+pub(crate) static MASS_NAMES: [&str; 5] = names_of(&MASSES);
+pub(crate) static ANGLE_NAMES: [&str; 2] = names_of(&ANGLES);
+
 /// The units of one scene.
 #[derive(Debug, Clone)]
 pub(crate) struct Units {
@@ -74,6 +93,14 @@ impl Default for Units {
 }
 
 impl Units {
+    /// The unit of an angle, or of a length.
+    pub(crate) fn of(&self, is_angle: bool) -> &Unit {
+        match is_angle {
+            true => &self.angle,
+            false => &self.length,
+        }
+    }
+
     /// The units of the scene's `[units]`, SI where it says nothing.
     pub(crate) fn read(section: Option<&Entry<'_>>, problems: &mut Problems) -> Self {
         let mut units = Self::default();
@@ -81,7 +108,7 @@ impl Units {
         let Some(fields) = Fields::open(entry, "[units]", problems) else {
             return units;
         };
-        fields.allow(&["length", "mass", "inertia", "angle"], problems);
+        fields.allow(&keys::UNITS, problems);
         let mut one = |key, find: &dyn Fn(&str) -> Option<Unit>, names: &dyn Fn() -> String| {
             let entry = fields.get(key)?;
             let name = string(

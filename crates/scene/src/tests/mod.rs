@@ -55,10 +55,34 @@ set = "crank.inertia"
 period = 5.42
 "#;
 
+/// Another one, with what the first has not: every kind of joint and load, laws and tables.
+const MACHINE: &str = include_str!("machine.toml");
+
 /// `WHOLE` with one piece of text, which it must contain once, replaced.
 fn with(old: &str, new: &str) -> String {
-    assert_eq!(WHOLE.matches(old).count(), 1, "`{old}` once in the scene");
-    WHOLE.replacen(old, new, 1)
+    changed(WHOLE, old, new)
+}
+
+/// `scene` with one piece of text, which it must contain once, replaced.
+fn changed(scene: &str, old: &str, new: &str) -> String {
+    assert_eq!(scene.matches(old).count(), 1, "`{old}` once in the scene");
+    scene.replacen(old, new, 1)
+}
+
+/// Compares what is written at `path` (from the crate) with what it should be, or writes it if
+/// the environment says `DWELL_WRITE=1`.
+fn same_as_written(path: &str, should: &str) {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    if std::env::var_os("DWELL_WRITE").is_some() {
+        std::fs::write(&path, should).unwrap();
+    }
+    let is = std::fs::read_to_string(&path).unwrap_or_default();
+    let differs = is.lines().zip(should.lines()).find(|(a, b)| a != b);
+    assert!(
+        is == should,
+        "{} is not what it should be; first difference: {differs:?}. DWELL_WRITE=1 writes it.",
+        path.display()
+    );
 }
 
 fn parse(text: &str) -> Result<Scene, SceneError> {
@@ -87,7 +111,9 @@ fn render(error: &SceneError) -> String {
 
 /// Message, labelled text, its label and help of each error, one line each.
 fn told(text: &str) -> Vec<String> {
-    let error = parse(text).expect_err("an error");
+    let Err(error) = parse(text) else {
+        return vec!["nothing is wrong".to_owned()];
+    };
     assert!(!render(&error).is_empty());
     let line = |e: &SceneError| {
         let labels: Vec<_> = e

@@ -1,0 +1,33 @@
+//! Expressions in strings: their errors point at the characters of the file.
+
+use crate::fields::{Value, string};
+use crate::problem::{Problem, Problems};
+use dwell_laws::Expression;
+
+/// The expression of a string, in which the names of `variables` may occur.
+pub(crate) fn expression(
+    value: &Value<'_>,
+    variables: &[&str],
+    what: &str,
+    problems: &mut Problems,
+) -> Option<Expression> {
+    let text = string(value, format_args!("{what}"), problems)?;
+    let error = match Expression::parse(text, variables) {
+        Ok(expression) => return Some(expression),
+        Err(error) => error,
+    };
+    let at = problems.within(&value.span(), text, error.span);
+    let mut problem = Problem::new(format!("{what}: {}", error.message)).at(at, "here");
+    // With one variable, a name of the scene is a likelier slip than a misspelt constant.
+    let help = match variables {
+        [only] if error.message.starts_with("unknown name") => Some(format!(
+            "the variable here is `{only}`; no other name of the scene is known to it"
+        )),
+        _ => error.help,
+    };
+    if let Some(help) = help {
+        problem = problem.help(help);
+    }
+    problems.push(problem);
+    None
+}
