@@ -5,6 +5,7 @@ pub mod error;
 pub mod frames;
 mod groups;
 mod locate;
+pub mod measure;
 pub mod mechanism;
 pub mod motion;
 mod place;
