@@ -1,6 +1,8 @@
 //! A mechanism with masses, ready to be evaluated: inertia forces, the actuators' actions, and
 //! the reactions that were asked for.
 
+use crate::acts::Loads;
+use crate::kinetostatics::Loaded;
 use crate::mass::Mass;
 use crate::reactions::Sources;
 use crate::runs::{Prescribed, Runs};
@@ -20,6 +22,9 @@ pub struct Model {
     pub(crate) inertia: Vec<f64>,
     pub(crate) sources: Sources,
     reactions: Vec<Reaction>,
+    /// By body; the ground has none.
+    pub(crate) masses: Vec<Mass>,
+    pub(crate) loads: Loads,
 }
 
 /// A carried body that has inertia.
@@ -80,6 +85,7 @@ pub struct Workspace<T> {
     pub motion: Motion<T>,
     pub(crate) unit: Runs<T, 2>,
     pub(crate) run: Runs<T, 1>,
+    pub(crate) loaded: Loaded<T>,
 }
 
 /// The actuators' actions and the requested reactions in one state of motion.
@@ -89,6 +95,18 @@ pub struct Actions<T> {
     pub tau: Vec<T>,
     /// By requested reaction: N or N·m.
     pub reactions: Vec<T>,
+}
+
+impl<T: Scalar> Actions<T> {
+    /// Reads them off a run.
+    pub(crate) fn take(&mut self, model: &Model, pose: &Pose<T>, run: &Runs<T, 1>) {
+        for (i, tau) in self.tau.iter_mut().enumerate() {
+            *tau = run.tau(model, i)[0];
+        }
+        for (k, value) in self.reactions.iter_mut().enumerate() {
+            *value = run.reaction(model, pose, k)[0];
+        }
+    }
 }
 
 impl Model {
@@ -149,6 +167,8 @@ impl Model {
         }
         let links = links(&plan, &moves, &massive);
         let sources = Sources::find(mechanism, &plan, reactions);
+        let mut masses = masses.to_vec();
+        masses[mechanism.ground] = Mass::default();
         Ok(Self {
             plan,
             massive,
@@ -156,6 +176,8 @@ impl Model {
             inertia,
             sources,
             reactions: reactions.to_vec(),
+            masses,
+            loads: Loads::default(),
         })
     }
 
@@ -184,6 +206,7 @@ impl Model {
             motion: self.plan.motion(),
             unit: Runs::new(&self.plan, self.links.len()),
             run: Runs::new(&self.plan, self.links.len()),
+            loaded: Loaded::new(self),
         }
     }
 
@@ -195,8 +218,8 @@ impl Model {
         }
     }
 
-    /// Kinetostatics: the actuators' actions and the reactions for prescribed coordinates `q`
-    /// (rad), speeds (rad/s) and accelerations (rad/s²): Jᵀ[λ; τ] = M ẍ + h.
+    /// Kinetostatics of inertia alone, without the loads: the actuators' actions and the reactions for
+    /// prescribed coordinates `q` (rad), speeds (rad/s) and accelerations (rad/s²): Jᵀ[λ; τ] = M ẍ + h.
     ///
     /// # Errors
     /// [`PlaceError`] when there is no pose at `q`.
@@ -215,12 +238,7 @@ impl Model {
         self.plan.speeds(pose, q_dot, motion);
         self.plan.accelerations(pose, q_ddot, motion);
         run.evaluate(self, pose, Prescribed(motion));
-        for (i, tau) in actions.tau.iter_mut().enumerate() {
-            *tau = run.tau(self, i)[0];
-        }
-        for (k, value) in actions.reactions.iter_mut().enumerate() {
-            *value = run.reaction(self, pose, k)[0];
-        }
+        actions.take(self, pose, run);
         Ok(())
     }
 
