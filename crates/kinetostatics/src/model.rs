@@ -6,8 +6,9 @@ use crate::kinetostatics::Loaded;
 use crate::mass::Mass;
 use crate::reactions::Sources;
 use crate::runs::{Prescribed, Runs};
+use dwell_geometry::measure::BodyStates;
 use dwell_geometry::{
-    AssemblyError, Mechanism, Motion, PlaceError, Plan, Pose, Reaction, Scalar, Start, Vec2,
+    AssemblyError, BodyId, Mechanism, Motion, PlaceError, Plan, Pose, Reaction, Scalar, Start, Vec2,
 };
 use thiserror::Error;
 
@@ -246,37 +247,15 @@ impl Model {
     /// Σ m v·a + I ω α, both at the pose, speeds and accelerations in `work`: another way to m
     /// and ½m′, with no reaction in it.
     pub fn energy_and_power(&self, work: &Workspace<f64>) -> (f64, f64) {
-        let Workspace { pose, motion, .. } = work;
-        let carried = self.plan.carried();
-        let mut rates = vec![(Vec2::ZERO, Vec2::ZERO); carried.len()];
-        for (i, c) in carried.iter().enumerate() {
-            let mut rate = c.parent.map_or((Vec2::ZERO, Vec2::ZERO), |p| rates[p]);
-            if let Some(arm) = c.arm {
-                add(&mut rate, pose.arm[arm], c.parent_frame, motion);
-            }
-            if let Some((slide, direction)) = c.slide {
-                let along = pose.arm[direction];
-                add(&mut rate, along * pose.slide[slide], c.frame, motion);
-                rate.0 += along * motion.slide[slide];
-                rate.1 += along * motion.slide_rate[slide]
-                    + along.perp() * (2.0 * motion.turn[c.frame] * motion.slide[slide]);
-            }
-            rates[i] = rate;
-        }
+        let mut states = BodyStates::new(&self.plan);
+        states.fill(&self.plan, &work.pose, &work.motion);
         let (mut energy, mut power) = (0.0, 0.0);
         for body in &self.massive {
-            let mut rate = rates[body.carried];
-            if let Some(arm) = body.arm {
-                add(
-                    &mut rate,
-                    arm.turn(pose.turn[body.frame]),
-                    body.frame,
-                    motion,
-                );
-            }
-            let (w, a) = (motion.turn[body.frame], motion.turn_rate[body.frame]);
-            energy += body.mass * rate.0.dot(rate.0) + body.inertia * w * w;
-            power += body.mass * rate.0.dot(rate.1) + body.inertia * w * a;
+            let id = BodyId(body.body);
+            let center = states.point(id, self.masses[id.0].center);
+            let (w, a) = (states.body(id).spin, states.body(id).spin_rate);
+            energy += body.mass * center.velocity.dot(center.velocity) + body.inertia * w * w;
+            power += body.mass * center.velocity.dot(center.acceleration) + body.inertia * w * a;
         }
         (energy, power)
     }
@@ -325,11 +304,4 @@ fn links(plan: &Plan, moves: &[bool], massive: &[Massive]) -> Vec<Link> {
         }
     }
     links
-}
-
-/// Adds what an arm adds to a point's velocity and acceleration.
-fn add(rate: &mut (Vec2, Vec2), arm: Vec2, frame: usize, motion: &Motion<f64>) {
-    let (w, a) = (motion.turn[frame], motion.turn_rate[frame]);
-    rate.0 += arm.perp() * w;
-    rate.1 += arm.perp() * a - arm * (w * w);
 }

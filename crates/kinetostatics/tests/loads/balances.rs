@@ -13,10 +13,6 @@ fn power_is_balanced() {
             assert!(power.scale > 0.1 && power.loads != 0.0);
             let off = power.residual().abs() / power.scale;
             assert!(off < 1e-13, "{}: {off:e}", case.name);
-            // The same speed of the energy as by the model's other way.
-            let (twice, rate) = case.model.energy_and_power(&case.work);
-            assert!((twice - 2.0 * power.energy).abs() <= 1e-14 * twice);
-            assert!((rate - power.kinetic).abs() <= 1e-13 * power.scale);
         }
     }
 }

@@ -46,6 +46,22 @@ const FIVE_BAR: &str = r#"
     four = -1.6
 "#;
 
+/// An Oldham coupling: a prismatic joint that turns carries a body.
+const OLDHAM: &str = r#"
+    [bodies]
+    ground.points = { A = [0, 0], D = [0.04, 0.015] }
+    input = { points = { A = [0, 0] }, mass = 0.8, center = [0.01, 0.02], inertia = 2e-3 }
+    cross = { points = { M = [0.02, 0.01] }, mass = 0.6, center = [0.03, -0.01], inertia = 1e-3 }
+    output = { points = { D = [0, 0] }, mass = 0.9, center = [-0.02, 0.01], inertia = 3e-3 }
+    [joints]
+    A = { revolute = ["ground.A", "input.A"] }
+    D = { revolute = ["ground.D", "output.D"] }
+    key = { prismatic = ["input.A", "cross.M"], axis = [1, 0] }
+    slot = { prismatic = ["cross.M", "output.D"], axis = [0, 1] }
+    [actuators]
+    phi = { angle = ["ground", "input"] }
+"#;
+
 pub(crate) struct Case {
     pub(crate) name: String,
     pub(crate) mechanism: Mechanism,
@@ -102,7 +118,7 @@ impl Case {
     }
 
     /// Scattered states near the start: (t, q, q̇, q̈), the same in every run.
-    pub(crate) fn states(&self) -> Vec<(f64, Vec<f64>, Vec<f64>, Vec<f64>)> {
+    pub(crate) fn states(&self) -> Vec<State> {
         let mut scatter = Scatter(0.37);
         let n = self.start.len();
         (0..12)
@@ -115,6 +131,9 @@ impl Case {
             .collect()
     }
 }
+
+/// A time, the coordinates, their speeds and accelerations.
+type State = (f64, Vec<f64>, Vec<f64>, Vec<f64>);
 
 /// Numbers scattered evenly between −1 and 1.
 pub(crate) struct Scatter(pub(crate) f64);
@@ -159,7 +178,7 @@ pub(crate) fn case(name: &str) -> Scene {
     Scene::read(validation.join(name).join("scene.toml")).expect("a scene")
 }
 
-/// The validation mechanisms, a yoke and a five-bar, each under loads of every kind.
+/// The validation mechanisms, a yoke, a coupling and a five-bar, each under loads of every kind.
 pub(crate) fn all() -> Vec<Case> {
     let cases = [
         case("single-dwell"),
@@ -167,6 +186,7 @@ pub(crate) fn all() -> Vec<Case> {
         case("slotted-rocker"),
         case("class-three-six-bar"),
         Scene::parse("yoke.toml", YOKE).expect("a scene"),
+        Scene::parse("oldham.toml", OLDHAM).expect("a scene"),
         Scene::parse("five-bar.toml", FIVE_BAR).expect("a scene"),
     ];
     cases
