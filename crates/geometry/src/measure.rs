@@ -404,12 +404,18 @@ mod tests {
         let plan = plan(&mechanism);
         for k in 0..20 {
             let states = states(&plan, Dual::variable(0.3 * f64::from(k)), 1.0);
-            for coordinate in coordinates() {
-                let measured = Measured::find(&mechanism, coordinate).unwrap();
+            let known = coordinates().map(|c| Measured::find(&mechanism, c));
+            // Between points that no joint holds on the axis, too.
+            let free = Measured::Travel {
+                bodies: [CRANK, ROCKER],
+                points: [vec2(0.5, 0.3), vec2(-0.1, 0.7)],
+                axis: vec2(0.6, -0.8),
+            };
+            for measured in known.into_iter().flatten().chain([free]) {
                 let [value, speed, acceleration] = states.measure(measured);
                 // Values below 3, accelerations below 10: some roundings.
-                assert!((value.d - speed.v).abs() < 1e-14, "{coordinate:?}");
-                assert!((speed.d - acceleration.v).abs() < 1e-13, "{coordinate:?}");
+                assert!((value.d - speed.v).abs() < 1e-14, "{measured:?}");
+                assert!((speed.d - acceleration.v).abs() < 1e-13, "{measured:?}");
             }
             for body in 0..4 {
                 let point = states.point(BodyId(body), vec2(0.3, -0.7));
