@@ -1,31 +1,22 @@
-//! Functions of time, each with two derivatives.
+//! Functions of one variable with three derivatives, and expressions of named variables.
 //!
-//! A law gives a quantity together with its first and second derivative, because a prescribed
-//! motion is needed as q, q̇ and q̈ at once. So far there is one law, the polynomial.
+//! A [`Law`] gives a quantity with its first three derivatives, exactly: a prescribed motion is
+//! needed as q, q̇ and q̈ at once, the motion through a cam relation one derivative further. An
+//! [`Expression`] is a formula of several names, as a load has it. Everything is checked when it
+//! is built; evaluation allocates nothing, cannot fail, and shows what is undefined as NaN or ±∞.
 
+pub mod error;
+pub mod expression;
+pub mod law;
 pub mod polynomial;
+pub mod profile;
+pub mod sinusoid;
+pub mod spline;
 
+pub use error::LawError;
+pub use expression::{Expression, ExpressionError};
+pub use law::Law;
 pub use polynomial::Polynomial;
-
-/// A function of one variable that a mechanism or a load can hold.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Law {
-    /// A polynomial.
-    Polynomial(Polynomial),
-}
-
-impl Law {
-    /// The value and its first three derivatives at `x`.
-    pub fn at(&self, x: f64) -> [f64; 4] {
-        match self {
-            Self::Polynomial(polynomial) => {
-                let [v, d, dd] = polynomial.at(x);
-                [v, d, dd, 0.0]
-            }
-        }
-    }
-}
-
-/// An expression of named variables.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Expression;
+pub use profile::{Profile, Shape, Travel};
+pub use sinusoid::Sinusoid;
+pub use spline::Spline;

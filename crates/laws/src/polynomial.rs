@@ -25,17 +25,28 @@ impl Polynomial {
     }
 
     /// The value and its first and second derivative at time `t`.
-    ///
-    /// Horner's rule on the three sums at once: with p ← p t + c for the value, its derivative
-    /// obeys p′ ← p′ t + p and half its second derivative s ← s t + p′, each with the old terms.
     pub fn at(&self, t: f64) -> [f64; 3] {
-        let [mut value, mut first, mut half_second] = [0.0; 3];
+        self.derivatives(t)
+    }
+
+    /// The value and its first N − 1 derivatives at `t`.
+    ///
+    /// Horner's rule on all sums at once: with p ← p t + c for the value, the k-th derivative
+    /// divided by k!, s, obeys s ← s t + (the one before it), each with the old terms.
+    pub(crate) fn derivatives<const N: usize>(&self, t: f64) -> [f64; N] {
+        let mut sums = [0.0; N];
         for &c in self.coefficients.iter().rev() {
-            half_second = half_second * t + first;
-            first = first * t + value;
-            value = value * t + c;
+            for k in (1..N).rev() {
+                sums[k] = sums[k] * t + sums[k - 1];
+            }
+            sums[0] = sums[0] * t + c;
         }
-        [value, first, 2.0 * half_second]
+        let mut factorial = 1.0;
+        for (k, sum) in (0_u32..).zip(&mut sums) {
+            factorial *= f64::from(k.max(1));
+            *sum *= factorial;
+        }
+        sums
     }
 }
 
@@ -55,6 +66,8 @@ mod tests {
             coefficients: vec![5.0, 0.0, 0.0, -2.0, 1.0],
         };
         assert_eq!(law.at(3.0), [32.0, 54.0, 72.0]);
+        // The third: 24·3 − 12.
+        assert_eq!(law.derivatives(3.0), [32.0, 54.0, 72.0, 60.0]);
     }
 
     #[test]

@@ -1,0 +1,118 @@
+//! Expressions of named variables.
+//!
+//! # Language
+//! - Numbers: `2`, `0.5`, `.5`, `1e-3`, `1.5E+2`. There are no units: everything is SI.
+//! - Operators, the loosest first: `+ -`, `* /`, the sign `-x`, `^`. Equals are taken from the
+//!   left, powers from the right: `2^3^2` is 2⁹, `-x^2` is −(x²), `2^-x` is 2⁻ˣ.
+//! - Names: letters, digits, `_` and `.`, not beginning with a digit or a point: `phi.speed`. Any
+//!   other name stands between backticks: `` `my-body.angle` ``, since `my-body` is a difference.
+//! - Constants: `pi`, and `tau` = 2π; a variable of that name comes first. Euler's number is
+//!   `exp(1)`: an `e` would hide a name, or a forgotten one.
+//! - Functions: `sin cos tan asin acos atan sinh cosh tanh exp ln log10 sqrt abs sign floor step`
+//!   of x; `atan2(y, x)`, `hypot(x, y)`, `min(a, b)`, `max(a, b)`; `clamp(x, low, high)`, which is
+//!   `min(max(x, low), high)`; `if(a < b, x, y)`, also with `<=`, `>`, `>=`. `sign(0)` is 0;
+//!   `step(x)` is 0 for x < 0 and else 1.
+//!
+//! # Derivatives
+//! They are exact (Taylor arithmetic; A. Griewank, A. Walther, *Evaluating Derivatives*, chapter
+//! 13), up to the third. Where a function has none, they are defined so: those of `sign`, `floor`
+//! and `step` are 0 everywhere; those of `abs` at a change of sign are the mean of both sides, 0;
+//! `min` and `max` follow their smaller or greater argument, on a tie the first; `if` follows the
+//! branch taken. All else is NaN or infinite, as of `sqrt(x)` at 0, of `hypot` and `atan2` at the
+//! origin, of a power with a variable exponent unless its base is positive. What is not a number
+//! is never hidden by `min`, `max`, `clamp`, `step` or a comparison.
+
+mod error;
+mod function;
+mod jet;
+mod parse;
+mod tape;
+mod token;
+
+use std::fmt;
+
+pub use error::ExpressionError;
+use jet::{Jet, Scalar};
+use tape::{Op, Tape};
+
+/// An expression of named variables, ready to be evaluated. Its language is told
+/// [here](crate::expression). `Display` writes a text that parses to the same expression again.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expression {
+    tape: Tape,
+    /// The variables that occur, in order of first use, and which of the given ones they are.
+    names: Vec<String>,
+    places: Vec<usize>,
+}
+
+impl Expression {
+    /// Reads `text`, in which the names of `variables` may occur.
+    ///
+    /// # Errors
+    /// One error, the first from the left: an unknown name or function, a wrong number of
+    /// arguments, a missing operand or operator, an unbalanced parenthesis, an unexpected
+    /// character, an empty text, a part without variables that is not finite (`1/0`), too deep a
+    /// nesting (about 60 parentheses, or 32 intermediate results at once).
+    pub fn parse(text: &str, variables: &[&str]) -> Result<Self, ExpressionError> {
+        let tape = parse::parse(text, variables)?;
+        let mut places = Vec::new();
+        let mut seen = vec![false; variables.len()];
+        for op in &tape.ops {
+            if let Op::Variable(index) = *op
+                && !std::mem::replace(&mut seen[index], true)
+            {
+                places.push(index);
+            }
+        }
+        let names = places.iter().map(|&i| variables[i].to_owned()).collect();
+        Ok(Self {
+            tape,
+            names,
+            places,
+        })
+    }
+
+    /// The variables that occur, in order of first use.
+    pub fn variables(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The value for `values` of all variables given to [`parse`](Self::parse), in their order. A
+    /// variable without a value is NaN.
+    pub fn at(&self, values: &[f64]) -> f64 {
+        self.tape.run(|i| value(values, i))
+    }
+
+    /// The value, and its first three derivatives with respect to the variable of that place in
+    /// the list given to [`parse`](Self::parse), the others held.
+    pub fn along(&self, values: &[f64], variable: usize) -> [f64; 4] {
+        let jet = self.tape.run(|i| {
+            let value = value(values, i);
+            if i == variable {
+                Jet::variable(value)
+            } else {
+                Jet::constant(value)
+            }
+        });
+        jet.derivatives()
+    }
+}
+
+fn value(values: &[f64], index: usize) -> f64 {
+    values.get(index).copied().unwrap_or(f64::NAN)
+}
+
+impl fmt::Display for Expression {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut table = vec![""; self.places.iter().max().map_or(0, |last| last + 1)];
+        for (&place, name) in self.places.iter().zip(&self.names) {
+            table[place] = name;
+        }
+        f.write_str(&tape::print(&self.tape.ops, |i| table[i]))
+    }
+}
+
+#[cfg(test)]
+mod properties;
+#[cfg(test)]
+mod tests;
