@@ -6,7 +6,7 @@ use dwell_geometry::{Coordinate, Range, Start, vec2};
 use dwell_kinetostatics::{
     Exact, Ledger, Load, LoadKind, Magnitude, Model, Reduced, Shaking, Signal,
 };
-use dwell_laws::{Law, Polynomial};
+use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::Scene;
 use std::path::Path;
 
@@ -101,10 +101,12 @@ fn loads(model: &Model) -> Vec<Load> {
     let length = Coordinate::Length { bodies, points };
     let law = Law::Polynomial(Polynomial::motion(1.0, 2.0, 3.0));
     let direction = vec2(0.0, -1.0);
+    let formula = Expression::parse("t + sin(l)", &["t", "l"]).expect("an expression");
+    let formula = Magnitude::Expression(formula, vec![Signal::Time, Signal::Value(length)]);
     [
         (LoadKind::Gravity { direction }, Magnitude::Constant(9.81)),
         (spring, Magnitude::Law(Signal::Speed(length), law)),
-        (LoadKind::Torque { bodies }, Magnitude::Constant(0.3)),
+        (LoadKind::Torque { bodies }, formula),
     ]
     .map(|(kind, magnitude)| Load {
         name: "load".into(),

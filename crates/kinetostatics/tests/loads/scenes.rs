@@ -2,7 +2,7 @@
 
 use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Start, Vec2, vec2};
 use dwell_kinetostatics::{Actions, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace};
-use dwell_laws::{Law, Polynomial};
+use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::Scene;
 use std::path::Path;
 
@@ -178,6 +178,17 @@ pub(crate) fn case(name: &str) -> Scene {
     Scene::read(validation.join(name).join("scene.toml")).expect("a scene")
 }
 
+/// A load whose magnitude is an expression of time and of an angle with its speed.
+fn formula(name: &str, kind: LoadKind, angle: Coordinate, text: &str) -> Load {
+    let signals = vec![Signal::Time, Signal::Value(angle), Signal::Speed(angle)];
+    let expression = Expression::parse(text, &["t", "angle", "speed"]).expect("an expression");
+    Load {
+        name: name.to_owned(),
+        kind,
+        magnitude: Magnitude::Expression(expression, signals),
+    }
+}
+
 /// The validation mechanisms, a yoke, a coupling and a five-bar, each under loads of every kind.
 pub(crate) fn all() -> Vec<Case> {
     let cases = [
@@ -258,6 +269,12 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
             varied("force", force(false), Signal::Time, &[3.0, -2.0]),
             varied("follower", force(true), Signal::Value(angle), &[5.0, 1.0]),
             varied("torque", torque(ground), Signal::Speed(angle), &[0.4, -0.2]),
+            formula(
+                "fan",
+                torque(ground),
+                angle,
+                "-0.1*speed*abs(speed)*(2 + sin(t + angle))",
+            ),
             load("couple", torque(next), 0.7),
             load("spring", spring, 120.0),
             varied("stiffening", spring, Signal::Value(length), &[10.0, 4.0]),

@@ -145,6 +145,34 @@ fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
     }
 }
 
+/// A magnitude is what its law or formula says of the signals it names.
+#[test]
+fn magnitudes_follow_their_signals() {
+    for mut case in all() {
+        for (t, q, q_dot, q_ddot) in case.states() {
+            case.run(t, &q, &q_dot, &q_ddot);
+            let loads = case.model.loads().iter().zip(&case.work.loads().magnitude);
+            for (load, &f) in loads {
+                let LoadKind::Torque { bodies } = load.kind else {
+                    continue;
+                };
+                let [angle, speed, _] = case.work.states().angle(bodies);
+                let expected = match load.name.as_str() {
+                    "fan" => -0.1 * speed * speed.abs() * (2.0 + (t + angle).sin()),
+                    "torque" => 0.4 - 0.2 * speed,
+                    _ => 0.7,
+                };
+                // Another order of the same few operations.
+                assert!(
+                    (f - expected).abs() <= 1e-15 * f.abs().max(1.0),
+                    "{}",
+                    load.name
+                );
+            }
+        }
+    }
+}
+
 /// Rest is statics, whatever the loads.
 #[test]
 fn statics_is_kinetostatics_at_rest() {
