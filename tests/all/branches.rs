@@ -113,7 +113,7 @@ impl SixBar {
         let setup = self.setup();
         let model = setup.model().expect("a model");
         let plan = model.model().plan();
-        let Range::Between(from, to) = model.range() else {
+        let Some((from, to)) = model.range().limits() else {
             panic!("{:?}", model.range());
         };
         let mut pose = plan.pose();
@@ -247,7 +247,7 @@ fn a_branch_that_does_not_close_is_the_same_from_behind() {
 #[test]
 fn a_coordinate_beyond_a_range_of_more_than_a_turn_is_refused() {
     let model = MORE_THAN_A_TURN.setup().model().expect("a model");
-    let Range::Between(from, to) = model.range() else {
+    let Some((from, to)) = model.range().limits() else {
         panic!("{:?}", model.range());
     };
     assert!(to - from > TAU, "{from} {to}");

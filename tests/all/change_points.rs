@@ -2,7 +2,7 @@
 //! carried on on the other one, whose closed form has the same sign.
 
 use crate::world::model;
-use dwell_geometry::{PlaceError, Range};
+use dwell_geometry::PlaceError;
 use dwell_kinetostatics::Reduced;
 use dwell_scene::Scene;
 use std::f64::consts::PI;
@@ -50,7 +50,7 @@ rocker = 1.0
 fn a_parallelogram_ends_where_it_is_flat() {
     for turned in [0.0, 0.123, -0.7, 0.3] {
         let model = model(&parallelogram(turned));
-        let Range::Between(from, to) = model.range() else {
+        let Some((from, to)) = model.range().limits() else {
             panic!("{turned}: {:?}", model.range());
         };
         // Flat where the crank lies along the ground; the end is told from the other branch by

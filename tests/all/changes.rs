@@ -116,11 +116,11 @@ impl Setup {
     /// The range for a range of the original.
     pub(crate) fn range(&self, original: Range) -> Range {
         match original {
-            Range::Full => Range::Full,
             Range::Between(from, to) => {
                 let (a, b) = (self.q(from), self.q(to));
                 Range::Between(a.min(b), a.max(b))
             }
+            other => other,
         }
     }
 
@@ -343,9 +343,9 @@ pub(crate) fn positions(range: Range, count: u32) -> Vec<f64> {
     (0..count)
         .map(|k| {
             let part = (f64::from(k) * golden + 0.123).fract();
-            match range {
-                Range::Full => (2.0 * part - 1.0) * TAU,
-                Range::Between(from, to) => from + (0.05 + 0.9 * part) * (to - from),
+            match range.limits() {
+                None => (2.0 * part - 1.0) * TAU,
+                Some((from, to)) => from + (0.05 + 0.9 * part) * (to - from),
             }
         })
         .collect()

@@ -2,7 +2,7 @@
 
 use crate::cases::CASES;
 use crate::changes::{Setup, positions};
-use dwell_geometry::{Dual, Range};
+use dwell_geometry::Dual;
 use dwell_kinetostatics::{Coefficients, Exact, Reduced};
 
 /// Largest step of the differences, rad, and the number of halvings.
@@ -35,9 +35,9 @@ fn richardson(f: impl Fn(f64) -> f64, q: f64, largest: f64) -> f64 {
 
 /// Positions for differences: where the range ends, the steps must stay well inside it.
 fn inner(model: &Exact) -> Vec<(f64, f64)> {
-    let step = |q: f64| match model.range() {
-        Range::Full => STEP,
-        Range::Between(from, to) => STEP.min(0.3 * (q - from).min(to - q)),
+    let step = |q: f64| match model.range().limits() {
+        None => STEP,
+        Some((from, to)) => STEP.min(0.3 * (q - from).min(to - q)),
     };
     let at = positions(model.range(), 24);
     at.into_iter().map(|q| (q, step(q))).collect()

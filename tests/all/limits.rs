@@ -4,7 +4,7 @@ use crate::changes::{Setup, positions};
 use crate::refusals::refusal;
 use crate::sketch::{FourBar, Sketch, slider_crank};
 use crate::world::scene;
-use dwell_geometry::{AssemblyError, PlaceError, Range, vec2};
+use dwell_geometry::{AssemblyError, PlaceError, vec2};
 use dwell_kinetostatics::Reduced;
 use std::f64::consts::TAU;
 
@@ -15,7 +15,7 @@ fn val_the_inertia_near_a_limit_position_and_the_refusal_beyond_it() {
     let model = Setup::of(&scene("class-three-six-bar"))
         .model()
         .expect("a model");
-    let Range::Between(from, to) = model.range() else {
+    let Some((from, to)) = model.range().limits() else {
         panic!("{:?}", model.range());
     };
     let mut work = model.work();
@@ -80,7 +80,7 @@ fn val_limit_positions_of_triple_and_double_rockers() {
         let bars = FourBar::driven(lengths);
         for rough in [1.0, -1.0] {
             let model = bars.setup(start, rough).model().expect("a model");
-            let Range::Between(from, to) = model.range() else {
+            let Some((from, to)) = model.range().limits() else {
                 panic!("{lengths:?}: {:?}", model.range());
             };
             println!("{lengths:?}: {:8.1e} {:8.1e}", from - low, to - high);

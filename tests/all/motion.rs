@@ -2,7 +2,7 @@
 
 use crate::world::{model_for, scene};
 use dwell_dynamics::{DynamicsError, Equation, FreeTurn, Method, Options, State, Until, simulate};
-use dwell_geometry::{PlaceError, Range};
+use dwell_geometry::PlaceError;
 use dwell_kinetostatics::{Exact, Reduced};
 
 const START: State = State {
@@ -92,9 +92,9 @@ fn jacobian_is_the_derivative_of_the_acceleration() {
     ] {
         let model = model_for(&scene(case), &[]);
         let mut equation = Equation::new(&model);
-        let (from, to) = match model.range() {
-            Range::Full => (0.0, std::f64::consts::TAU),
-            Range::Between(from, to) => (from + 0.3, to - 0.3),
+        let (from, to) = match model.range().limits() {
+            None => (0.0, std::f64::consts::TAU),
+            Some((from, to)) => (from + 0.3, to - 0.3),
         };
         for i in 0..20 {
             let q = from + (to - from) * f64::from(i) / 19.0;
@@ -174,7 +174,7 @@ fn the_guard_says_what_stopped_the_motion() {
 #[test]
 fn a_limit_position_ends_the_motion_with_its_place() {
     let model = model_for(&scene("class-three-six-bar"), &[]);
-    let Range::Between(_, to) = model.range() else {
+    let Some((_, to)) = model.range().limits() else {
         panic!("a limited range");
     };
     for method in [Method::Bdf, Method::Tsit45] {

@@ -3,7 +3,7 @@
 
 use crate::cases::{CASES, Case};
 use crate::changes::{Rng, Setup, positions};
-use dwell_geometry::{Pose, Range, Vec2};
+use dwell_geometry::{Pose, Vec2};
 use dwell_kinetostatics::{Coefficients, Exact, ExactWork, Reduced};
 use std::f64::consts::TAU;
 
@@ -92,7 +92,7 @@ fn what_the_memory_holds_does_not_matter() {
             for refused in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 assert_eq!(memory.evaluate(&model, refused), None, "{}", case.name);
             }
-            if let Range::Between(from, to) = model.range() {
+            if let Some((from, to)) = model.range().limits() {
                 let outside = 0.5 * (to + from + TAU);
                 assert_eq!(memory.evaluate(&model, outside), None, "{}", case.name);
             }

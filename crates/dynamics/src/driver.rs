@@ -235,7 +235,7 @@ fn check(start: State, until: Until, options: &Options) -> Result<(), DynamicsEr
 /// The ends of the range, in the turn in which the motion starts; none if the coordinate turns
 /// fully.
 fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>, DynamicsError> {
-    let Range::Between(from, to) = range else {
+    let Some((from, to)) = range.limits() else {
         return Ok(None);
     };
     let turns = TAU * ((q - from) / TAU).floor();

@@ -14,7 +14,6 @@
 use crate::driver::State;
 use crate::equation::positive;
 use crate::error::DynamicsError;
-use dwell_geometry::Range;
 use dwell_kinetostatics::Reduced;
 use std::f64::consts::TAU;
 
@@ -46,7 +45,7 @@ impl FreeTurn {
     /// [`DynamicsError::NoInertia`], or [`DynamicsError::NotResolved`] when the inertia varies too
     /// sharply.
     pub fn new<R: Reduced>(model: &R, start: State) -> Result<Self, DynamicsError> {
-        if let Range::Between(from, to) = model.range() {
+        if let Some((from, to)) = model.range().limits() {
             return Err(DynamicsError::NoFullTurn { from, to });
         }
         if start.q_dot == 0.0 {

@@ -3,15 +3,22 @@
 use crate::error::{AssemblyError, PlaceError};
 use crate::frames::{Attitude, Turning};
 use crate::groups::Unknown;
-use crate::place::Guess;
-use crate::plan::{Kind, Plan, Pose};
-use crate::plane::{Vec2, vec2};
+use crate::lower::Tie;
+use crate::place::{Guess, turn};
+use crate::plan::{Branches, How, Kind, Plan, Pose};
+use crate::plane::Vec2;
 use std::f64::consts::TAU;
 
-/// One way a group closes: the value of each unknown, as in a seed, and its branch sign.
+/// One way a group closes: the value of each unknown — (cos, sin), and its counted angle, or its
+/// travel — and what says which way it is.
 struct Way {
-    values: Vec<Vec2>,
+    values: Vec<(Vec2, f64)>,
+    /// Sign of the determinant.
     branch: f64,
+    /// Sign of the root in a closed form.
+    side: f64,
+    /// Whether a length is negative: the same points on the line from the other end.
+    backward: bool,
 }
 
 /// Angles tried for each class, besides the rough ones, when Newton's method looks for
@@ -28,15 +35,21 @@ impl Plan {
         let mut pose = self.pose();
         let q = self.start.clone();
         for g in 0..self.groups.len() {
-            let ways = match self.groups[g].kind {
-                Kind::Newton(_) => self.ways_by_newton(g, rough, &mut pose)?,
-                _ => self.ways_closed(g, &mut pose)?,
+            self.begin(g, rough, &mut pose);
+            let ways = match &self.groups[g].kind {
+                Kind::Solved(solved) if solved.how == How::Newton => {
+                    self.ways_by_newton(g, rough, &mut pose)?
+                }
+                Kind::Solved(solved) if solved.how == How::Linear => {
+                    vec![self.way(g, 1.0, &mut pose)?]
+                }
+                _ => vec![self.way(g, 1.0, &mut pose)?, self.way(g, -1.0, &mut pose)?],
             };
             let way = self.pick(g, ways, rough)?;
             match &mut self.groups[g].kind {
-                Kind::Pin(pin) => pin.branch = way.branch,
-                Kind::Aim(aim) => aim.branch = way.branch,
-                Kind::Newton(newton) => newton.branch = way.branch,
+                Kind::Pin(pin) => pin.branch = way.side,
+                Kind::Aim(aim) => aim.branch = way.side,
+                Kind::Solved(solved) => (solved.branch, solved.side) = (way.branch, way.side),
             }
             self.set(g, &way.values, &mut pose);
         }
@@ -45,25 +58,72 @@ impl Plan {
         Ok(pose)
     }
 
+    /// Before a group is placed for the first time: turns are counted from the rough angles, and
+    /// gears mesh as they are given.
+    fn begin(&mut self, g: usize, rough: &[Option<f64>], pose: &mut Pose<f64>) {
+        for unknown in self.groups[g].group.unknowns.clone() {
+            if let Unknown::Class(class) = unknown
+                && self.counted[self.root_of(class)]
+            {
+                let hint = self.hints(unknown, rough).first().copied();
+                self.set_angle(class, hint.unwrap_or(0.0), pose);
+            }
+        }
+        for driven in &self.groups[g].driven {
+            turn(driven, pose);
+        }
+        for r in self.groups[g].group.relations.clone() {
+            if self.relations[r].as_assembled {
+                let open = self.relations[r].value(&pose.angle, &pose.slide);
+                self.relations[r].of.constant -= open;
+                self.relations[r].as_assembled = false;
+            }
+        }
+    }
+
     /// Places the groups before the next one, and that one.
     fn try_up_to(&self, group: usize, pose: &mut Pose<f64>) -> Result<(), PlaceError> {
         self.place_groups(&self.start, pose, Guess::Pose, group + 1)
     }
 
-    /// Both ways of a closed-form group.
-    fn ways_closed(&mut self, g: usize, pose: &mut Pose<f64>) -> Result<Vec<Way>, AssemblyError> {
-        let mut ways = Vec::new();
-        for branch in [1.0, -1.0] {
-            match &mut self.groups[g].kind {
-                Kind::Pin(pin) => pin.branch = branch,
-                Kind::Aim(aim) => aim.branch = branch,
-                Kind::Newton(_) => {}
-            }
-            self.try_up_to(g, pose).map_err(|e| self.refusal(g, e))?;
-            let values = self.values(g, pose);
-            ways.push(Way { values, branch });
+    /// The way in which a closed form closes its group with one of the signs of its root.
+    fn way(&mut self, g: usize, side: f64, pose: &mut Pose<f64>) -> Result<Way, AssemblyError> {
+        match &mut self.groups[g].kind {
+            Kind::Pin(pin) => pin.branch = side,
+            Kind::Aim(aim) => aim.branch = side,
+            Kind::Solved(solved) => solved.side = side,
         }
-        Ok(ways)
+        self.try_up_to(g, pose).map_err(|e| self.refusal(g, e))?;
+        let branch = match &self.groups[g].kind {
+            Kind::Solved(solved) => self.sign(solved, pose),
+            _ => side,
+        };
+        Ok(Way {
+            values: self.values(g, pose),
+            branch,
+            side,
+            backward: self.backward(g, pose),
+        })
+    }
+
+    /// Whether a line of a group is measured from its far end.
+    fn backward(&self, g: usize, pose: &Pose<f64>) -> bool {
+        let is_length = |bond: usize| {
+            matches!(
+                self.lowered.bonds[bond].tie,
+                Tie::Slide { length: true, .. }
+            )
+        };
+        let group = &self.groups[g].group;
+        let travels = group.loops.iter().any(|&l| {
+            let closure = &self.closures[l];
+            closure.axis.is_some() && is_length(closure.bond) && pose.travel[l] < 0.0
+        });
+        let slides = group.unknowns.iter().any(|u| match *u {
+            Unknown::Slide(s) => is_length(self.tree.slides[s]) && pose.slide[s] < 0.0,
+            Unknown::Class(_) => false,
+        });
+        travels || slides
     }
 
     /// All the ways that Newton's method finds from the rough angles and a grid of others.
@@ -88,7 +148,8 @@ impl Plan {
         let mut refused = None;
         for start in 0..starts {
             let mut left = start.saturating_sub(1);
-            let guess: Vec<Vec2> = unknowns
+            let size = self.groups[g].size;
+            let guess: Vec<(Vec2, f64)> = unknowns
                 .iter()
                 .zip(&hints)
                 .map(|(&unknown, hint)| {
@@ -98,8 +159,8 @@ impl Plan {
                     let other = 0.3 + TAU * k as f64 / TRIALS as f64;
                     let trial = hint.filter(|_| start == 0).unwrap_or(other);
                     match unknown {
-                        Unknown::Class(_) => Vec2::from_angle(trial),
-                        Unknown::Slide(_) => vec2((trial - 3.0) * self.groups[g].size / 6.0, 0.0),
+                        Unknown::Class(_) => (Vec2::from_angle(trial), trial),
+                        Unknown::Slide(_) => (Vec2::ZERO, (trial - 3.0) * size / 6.0),
                     }
                 })
                 .collect();
@@ -107,22 +168,27 @@ impl Plan {
             match self.try_up_to(g, pose) {
                 Ok(()) => {
                     let values = self.values(g, pose);
-                    let Kind::Newton(newton) = &self.groups[g].kind else {
+                    let Kind::Solved(solved) = &self.groups[g].kind else {
                         break;
                     };
-                    let Ok(factored) = self.factor(g, newton, pose) else {
-                        continue;
+                    let branch = if solved.tall() {
+                        1.0
+                    } else {
+                        self.sign(solved, pose)
                     };
                     let far = |way: &Way| {
-                        way.values
-                            .iter()
-                            .zip(&values)
-                            .any(|(a, b)| (*a - *b).norm() > SAME * (1.0 + a.norm()))
+                        let both = way.values.iter().zip(&values);
+                        both.zip(&unknowns).any(|(((a, x), (b, y)), u)| match u {
+                            Unknown::Class(_) => (*a - *b).norm() > SAME,
+                            Unknown::Slide(_) => (x - y).abs() > SAME * (size + x.abs()),
+                        })
                     };
                     if ways.iter().all(far) {
                         ways.push(Way {
                             values,
-                            branch: factored.sign,
+                            branch,
+                            side: 1.0,
+                            backward: self.backward(g, pose),
                         });
                     }
                 }
@@ -177,17 +243,21 @@ impl Plan {
 
     /// Of several ways, the one nearest to the rough angles.
     fn pick(
-        &self,
+        &mut self,
         g: usize,
         mut ways: Vec<Way>,
         rough: &[Option<f64>],
     ) -> Result<Way, AssemblyError> {
+        // A line is measured from its first point, unless nothing else is possible.
+        if ways.iter().any(|way| !way.backward) {
+            ways.retain(|way| !way.backward);
+        }
         let unknowns = &self.groups[g].group.unknowns;
         let distance = |way: &Way| -> f64 {
             unknowns
                 .iter()
                 .zip(&way.values)
-                .flat_map(|(&u, value)| {
+                .flat_map(|(&u, (value, _))| {
                     let apart = |hint| *value - Vec2::from_angle(hint);
                     let hints = self.hints(u, rough).into_iter();
                     hints.map(move |hint| apart(hint).dot(apart(hint)))
@@ -196,9 +266,14 @@ impl Plan {
         };
         ways.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
         let ambiguous = ways.len() > 1 && distance(&ways[1]) - distance(&ways[0]) < SAME;
+        let branches = self.told_apart(g, &ways);
         if ambiguous {
-            return Err(self.ambiguous(g, &ways));
+            return Err(AssemblyError::Ambiguous {
+                bodies: branches.bodies,
+                choices: branches.ways,
+            });
         }
+        self.branches.push(branches);
         ways.into_iter()
             .next()
             .ok_or_else(|| AssemblyError::CannotClose {
@@ -208,7 +283,8 @@ impl Plan {
             })
     }
 
-    fn ambiguous(&self, g: usize, ways: &[Way]) -> AssemblyError {
+    /// The bodies whose angles tell some ways apart, and those angles.
+    fn told_apart(&self, g: usize, ways: &[Way]) -> Branches {
         let unknowns = &self.groups[g].group.unknowns;
         let bodies: Vec<_> = self
             .group_bodies(g)
@@ -225,7 +301,7 @@ impl Plan {
             unknowns
                 .iter()
                 .zip(&way.values)
-                .find_map(|(&u, value)| match u {
+                .find_map(|(&u, (value, _))| match u {
                     Unknown::Class(c) if self.root_of(c) == attitude.frame => {
                         Some(value.turn(attitude.offset).angle())
                     }
@@ -233,11 +309,11 @@ impl Plan {
                 })
                 .unwrap_or(f64::NAN)
         };
-        let choices = ways
+        let ways = ways
             .iter()
             .map(|way| bodies.iter().map(|b| angle(way, b.0)).collect())
             .collect();
-        AssemblyError::Ambiguous { bodies, choices }
+        Branches { bodies, ways }
     }
 
     fn refusal(&self, g: usize, error: PlaceError) -> AssemblyError {
@@ -266,19 +342,33 @@ impl Plan {
         }
     }
 
-    fn values(&self, g: usize, pose: &Pose<f64>) -> Vec<Vec2> {
+    fn values(&self, g: usize, pose: &Pose<f64>) -> Vec<(Vec2, f64)> {
         let value = |&unknown: &Unknown| match unknown {
-            Unknown::Class(c) => pose.turn[self.root_of(c)],
-            Unknown::Slide(s) => vec2(pose.slide[s], 0.0),
+            Unknown::Class(c) => {
+                let root = self.root_of(c);
+                // An angle that is not counted tells nothing that its direction does not.
+                let angle = if self.counted[root] {
+                    pose.angle[root]
+                } else {
+                    0.0
+                };
+                (pose.turn[root], angle)
+            }
+            Unknown::Slide(s) => (Vec2::ZERO, pose.slide[s]),
         };
         self.groups[g].group.unknowns.iter().map(value).collect()
     }
 
-    fn set(&self, g: usize, values: &[Vec2], pose: &mut Pose<f64>) {
-        for (&unknown, value) in self.groups[g].group.unknowns.iter().zip(values) {
+    fn set(&self, g: usize, values: &[(Vec2, f64)], pose: &mut Pose<f64>) {
+        for (&unknown, &(turn, value)) in self.groups[g].group.unknowns.iter().zip(values) {
             match unknown {
-                Unknown::Class(c) => pose.turn[self.root_of(c)] = *value,
-                Unknown::Slide(s) => pose.slide[s] = value.x,
+                Unknown::Class(c) => {
+                    pose.turn[self.root_of(c)] = turn;
+                    if self.counted[self.root_of(c)] {
+                        pose.angle[self.root_of(c)] = value;
+                    }
+                }
+                Unknown::Slide(s) => pose.slide[s] = value,
             }
         }
     }

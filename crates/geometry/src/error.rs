@@ -40,14 +40,6 @@ pub enum StructureError {
         /// What does not fit.
         what: &'static str,
     },
-    /// A group too large for what is stored along one coordinate, with several actuators.
-    #[error("a group of {size} unknowns has no closed form, which needs a single actuator")]
-    GroupNeedsOneActuator {
-        /// Number of unknowns of the group.
-        size: usize,
-        /// Its bodies.
-        bodies: Vec<BodyId>,
-    },
 }
 
 /// The mechanism cannot be put together at the start as asked.
@@ -81,12 +73,6 @@ pub enum AssemblyError {
         bodies: Vec<BodyId>,
         /// Its joints.
         joints: Vec<JointId>,
-    },
-    /// A whole turn of the actuator does not bring the mechanism back.
-    #[error("after a whole turn of the actuator the mechanism has not come back to its start")]
-    NotPeriodic {
-        /// Bodies of the group that is elsewhere.
-        bodies: Vec<BodyId>,
     },
 }
 

@@ -3,7 +3,8 @@
 //! *class* of bodies whose relative angles are known once the actuators' coordinates are.
 
 use crate::error::StructureError;
-use crate::mechanism::{ActuatorId, BodyId, JointId, JointKind, Mechanism};
+use crate::lower::{Bond, Driven, Lowered, Owner, Tie};
+use crate::mechanism::ActuatorId;
 use crate::plane::Vec2;
 
 /// What turns a frame.
@@ -45,8 +46,8 @@ pub struct Attitude {
 /// What holds the angle between two bodies of one class.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coupler {
-    /// A prismatic joint, by its moment.
-    Joint(JointId),
+    /// A slide or a weld, by its moment: index of the bond.
+    Bond(usize),
     /// An angular actuator, by its action.
     Actuator(ActuatorId),
 }
@@ -55,9 +56,9 @@ pub enum Coupler {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Hold {
     /// The body that is held.
-    pub body: BodyId,
+    pub body: usize,
     /// The body it is held against, which comes earlier.
-    pub against: BodyId,
+    pub against: usize,
     /// What holds it.
     pub by: Coupler,
     /// Whether `body` is the first-named of the two.
@@ -73,55 +74,61 @@ pub struct Frames {
     pub attitudes: Vec<Attitude>,
     /// The holds, outwards from each class's first body.
     pub holds: Vec<Hold>,
+    /// Bonds that hold an angle which others hold already: what they bear is not determined.
+    pub spare: Vec<usize>,
     /// Number of classes, the ground's included.
     pub classes: usize,
 }
+
+/// Two ways to one angle agree to the rounding of the axes they come from, rad.
+const SAME_ANGLE: f64 = 1e-9;
 
 impl Frames {
     /// Finds the frames and classes of a mechanism.
     ///
     /// # Errors
-    /// [`StructureError::OverConstrained`] when a prismatic joint or an actuator holds an angle
-    /// that others hold already.
-    pub fn find(mechanism: &Mechanism) -> Result<Self, StructureError> {
-        let n = mechanism.bodies.len();
+    /// [`StructureError::OverConstrained`] when a slide, a weld or an actuator holds an angle
+    /// that others hold already, unless it is a slide or a weld that holds the same angle.
+    pub(crate) fn find(lowered: &Lowered) -> Result<Self, StructureError> {
+        let n = lowered.bodies;
         let mut neighbours: Vec<Vec<(usize, Coupler, bool)>> = vec![Vec::new(); n];
-        let mut connect = |bodies: [BodyId; 2], by: Coupler| {
-            neighbours[bodies[0].0].push((bodies[1].0, by, false));
-            neighbours[bodies[1].0].push((bodies[0].0, by, true));
+        let mut connect = |bodies: [usize; 2], by: Coupler| {
+            neighbours[bodies[0]].push((bodies[1], by, false));
+            neighbours[bodies[1]].push((bodies[0], by, true));
         };
-        for (i, actuator) in mechanism.actuators.iter().enumerate() {
-            connect(actuator.bodies, Coupler::Actuator(ActuatorId(i)));
+        for (i, drive) in lowered.drives.iter().enumerate() {
+            if let Driven::Angle(bodies) = *drive {
+                connect(bodies, Coupler::Actuator(ActuatorId(i)));
+            }
         }
-        for (j, joint) in mechanism.joints.iter().enumerate() {
-            if matches!(joint.kind, JointKind::Prismatic { .. }) {
-                connect(joint.bodies, Coupler::Joint(JointId(j)));
+        for (b, bond) in lowered.bonds.iter().enumerate() {
+            if bond.tie != Tie::Pin {
+                connect(bond.bodies, Coupler::Bond(b));
             }
         }
 
+        let still = Attitude {
+            frame: 0,
+            offset: Vec2::IDENTITY,
+        };
         let mut found = Self {
             frames: vec![Frame {
                 turning: Turning::Ground,
                 class: 0,
             }],
-            attitudes: vec![
-                Attitude {
-                    frame: 0,
-                    offset: Vec2::IDENTITY
-                };
-                n
-            ],
+            attitudes: vec![still; n],
             holds: Vec::new(),
+            spare: Vec::new(),
             classes: 1,
         };
         let mut seen = vec![false; n];
-        let mut used = Surplus::new(mechanism);
-        for root in std::iter::once(mechanism.ground).chain(0..n) {
+        let mut met = Met::new(lowered);
+        for root in std::iter::once(lowered.ground).chain(0..n) {
             if seen[root] {
                 continue;
             }
             seen[root] = true;
-            if root != mechanism.ground {
+            if root != lowered.ground {
                 found.attitudes[root].frame = found.frames.len();
                 found.frames.push(Frame {
                     turning: Turning::Unknown,
@@ -132,19 +139,19 @@ impl Frames {
             let mut queue = vec![root];
             while let Some(body) = queue.pop() {
                 for &(other, by, other_is_first) in &neighbours[body] {
-                    if !used.take(by) {
+                    if !met.first(by) {
                         continue;
                     }
                     if seen[other] {
-                        used.surplus(by);
+                        found.again(lowered, body, other, by, other_is_first, &mut met);
                         continue;
                     }
                     seen[other] = true;
                     found.attitudes[other] =
-                        found.held(mechanism, found.attitudes[body], by, other_is_first);
+                        found.held(lowered, found.attitudes[body], by, other_is_first);
                     found.holds.push(Hold {
-                        body: BodyId(other),
-                        against: BodyId(body),
+                        body: other,
+                        against: body,
                         by,
                         body_is_first: other_is_first,
                     });
@@ -152,34 +159,23 @@ impl Frames {
                 }
             }
         }
-        used.finish()?;
+        met.finish()?;
         Ok(found)
     }
 
     /// The attitude of a body held `by` something against a body of attitude `against`.
     fn held(
         &mut self,
-        mechanism: &Mechanism,
+        lowered: &Lowered,
         against: Attitude,
         by: Coupler,
         is_first: bool,
     ) -> Attitude {
         match by {
-            Coupler::Joint(j) => {
-                let JointKind::Prismatic { axes } = mechanism.joints[j.0].kind else {
-                    return against;
-                };
-                // Both axes point the same way: θ₁ + α₁ = θ₂ + α₂.
-                let (own, other) = if is_first {
-                    (axes[0], axes[1])
-                } else {
-                    (axes[1], axes[0])
-                };
-                Attitude {
-                    frame: against.frame,
-                    offset: against.offset.turn(other).turn_back(own),
-                }
-            }
+            Coupler::Bond(b) => Attitude {
+                frame: against.frame,
+                offset: turned(&lowered.bonds[b], against.offset, is_first),
+            },
             Coupler::Actuator(a) => {
                 let class = self.frames[against.frame].class;
                 self.frames.push(Frame {
@@ -197,51 +193,85 @@ impl Frames {
             }
         }
     }
+
+    /// A coupler between two bodies whose angle is held already.
+    fn again(
+        &mut self,
+        lowered: &Lowered,
+        body: usize,
+        other: usize,
+        by: Coupler,
+        other_is_first: bool,
+        met: &mut Met,
+    ) {
+        let (own, there) = (self.attitudes[body], self.attitudes[other]);
+        if let Coupler::Bond(b) = by
+            && own.frame == there.frame
+        {
+            let wanted = turned(&lowered.bonds[b], own.offset, other_is_first);
+            if (wanted - there.offset).norm() < SAME_ANGLE {
+                self.spare.push(b);
+                return;
+            }
+        }
+        met.too_many.push(match by {
+            Coupler::Bond(b) => lowered.bonds[b].owner,
+            Coupler::Actuator(a) => Owner::Actuator(a),
+        });
+    }
 }
 
-/// Keeps count of the couplers met while walking, and of those that close a cycle of angles.
-struct Surplus {
-    joints: Vec<bool>,
+/// The constant rotation of the other body of a bond, from that of one of them.
+fn turned(bond: &Bond, offset: Vec2, other_is_first: bool) -> Vec2 {
+    match bond.tie {
+        Tie::Pin => offset,
+        // Both axes point the same way: θ₁ + α₁ = θ₂ + α₂.
+        Tie::Slide { axes, .. } => {
+            let (other, own) = if other_is_first {
+                (axes[0], axes[1])
+            } else {
+                (axes[1], axes[0])
+            };
+            offset.turn(own).turn_back(other)
+        }
+        Tie::Weld(angle) if other_is_first => offset.turn_back(angle),
+        Tie::Weld(angle) => offset.turn(angle),
+    }
+}
+
+/// Keeps count of the couplers met while walking, and of those that cannot be.
+struct Met {
+    bonds: Vec<bool>,
     actuators: Vec<bool>,
-    too_many: Vec<Coupler>,
+    too_many: Vec<Owner>,
 }
 
-impl Surplus {
-    fn new(mechanism: &Mechanism) -> Self {
+impl Met {
+    fn new(lowered: &Lowered) -> Self {
         Self {
-            joints: vec![false; mechanism.joints.len()],
-            actuators: vec![false; mechanism.actuators.len()],
+            bonds: vec![false; lowered.bonds.len()],
+            actuators: vec![false; lowered.drives.len()],
             too_many: Vec::new(),
         }
     }
 
     /// Whether the coupler is met for the first time.
-    fn take(&mut self, by: Coupler) -> bool {
+    fn first(&mut self, by: Coupler) -> bool {
         let met = match by {
-            Coupler::Joint(j) => &mut self.joints[j.0],
+            Coupler::Bond(b) => &mut self.bonds[b],
             Coupler::Actuator(a) => &mut self.actuators[a.0],
         };
         !std::mem::replace(met, true)
-    }
-
-    fn surplus(&mut self, by: Coupler) {
-        self.too_many.push(by);
     }
 
     fn finish(self) -> Result<(), StructureError> {
         if self.too_many.is_empty() {
             return Ok(());
         }
-        let mut joints = Vec::new();
-        let mut actuators = Vec::new();
-        for by in &self.too_many {
-            match *by {
-                Coupler::Joint(j) => joints.push(j),
-                Coupler::Actuator(a) => actuators.push(a),
-            }
-        }
+        let excess = self.too_many.len();
+        let (joints, actuators) = Lowered::owners(self.too_many);
         Err(StructureError::OverConstrained {
-            excess: self.too_many.len(),
+            excess,
             joints,
             actuators,
         })

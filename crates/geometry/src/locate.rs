@@ -17,9 +17,12 @@ impl Plan {
         self.roots(pose, &mut roots);
         let mut frames = vec![[0.0; 3]; mechanism.bodies.len()];
         for (carried, root) in self.carried.iter().zip(&roots) {
-            let turn = self.body_turn(carried.body, pose);
-            let origin = *root - self.tree.roots[carried.body.0].turn(turn);
-            frames[carried.body.0] = [origin.x, origin.y, turn.angle()];
+            if carried.body >= frames.len() {
+                continue;
+            }
+            let turn = self.body_turn(BodyId(carried.body), pose);
+            let origin = *root - self.tree.roots[carried.body].turn(turn);
+            frames[carried.body] = [origin.x, origin.y, turn.angle()];
         }
         frames
     }

@@ -4,7 +4,7 @@
 //! A [`BodyStates`] is filled once for a pose and a motion; what is asked of it afterwards costs a
 //! few multiplications and allocates nothing.
 
-use crate::mechanism::{BodyId, Coordinate, JointKind, Mechanism};
+use crate::mechanism::{BodyId, Coordinate, JointId, JointKind, Mechanism};
 use crate::motion::Motion;
 use crate::plan::{Plan, Pose};
 use crate::plane::{Vec2, vec2};
@@ -149,7 +149,7 @@ impl<T: Scalar> BodyStates<T> {
             spin_rate: T::lift(0.0),
         };
         Self {
-            origin: plan.tree().roots[plan.ground],
+            origin: plan.tree().roots[plan.lowered.ground],
             bodies: plan.tree().roots.iter().map(rest).collect(),
         }
     }
@@ -158,8 +158,8 @@ impl<T: Scalar> BodyStates<T> {
     /// here without meaning.
     pub fn fill(&mut self, plan: &Plan, pose: &Pose<T>, motion: &Motion<T>) {
         for (carried, carry) in plan.carried().iter().zip(&plan.tree().carries) {
-            let body = carried.body.0;
-            let mut state = self.bodies[carry.parent.0];
+            let body = carried.body;
+            let mut state = self.bodies[carry.parent];
             if let Some(arm) = carried.arm {
                 let arm = pose.arm[arm];
                 state.velocity = state.velocity_at(arm);
@@ -301,6 +301,18 @@ impl<T: Scalar> Separation<T> {
     }
 }
 
+impl Plan {
+    /// The slope of the law by which a joint relates two coordinates, at a pose; none if it
+    /// relates none.
+    pub fn relation_slope<T: Scalar>(&self, joint: JointId, pose: &Pose<T>) -> Option<T> {
+        let relation = self.parts(joint).1?;
+        self.relation(relation)
+            .law
+            .is_some()
+            .then(|| self.relation(relation).slope(&pose.angle, &pose.slide))
+    }
+}
+
 /// The angle of a direction, in (−π, π] rad, in any kind of number: that of the values, corrected
 /// to first order by what remains when the direction is turned back by it.
 fn angle<T: Scalar>(direction: Vec2<T>) -> T {
@@ -314,7 +326,7 @@ fn angle<T: Scalar>(direction: Vec2<T>) -> T {
 #[allow(clippy::unwrap_used, reason = "tests")]
 mod tests {
     use super::*;
-    use crate::mechanism::{Actuator, Body, Drive, Joint, JointId};
+    use crate::mechanism::{Actuator, Body, Drive, Joint};
     use crate::plan::Start;
     use crate::scalar::Dual;
 

@@ -5,10 +5,9 @@
 //! balance), group by group; the last in the reverse order.
 
 use crate::groups::Unknown;
-use crate::plan::{Assur, Behind, Closure, Driven, Kind, Newton, Plan, Pose};
+use crate::plan::{Assur, Behind, Closure, Driven, Kind, Plan, Pose, Solved};
 use crate::plane::{Vec2, vec2};
 use crate::scalar::Scalar;
-use crate::small;
 
 /// Rates of every frame and slide at a pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +34,8 @@ pub struct Balance<T, const N: usize> {
     /// By closure: the force of the first body on the second, N, as (x, y) for a revolute
     /// chord and as (normal, 0) for a prismatic one.
     pub multiplier: Vec<[Vec2<T>; N]>,
+    /// By relation: its multiplier, N, or N·m where it is between angles.
+    pub relation: Vec<[T; N]>,
     work: Vec<T>,
 }
 
@@ -44,9 +45,9 @@ impl Plan {
         let zero = T::lift(0.0);
         Motion {
             turn: vec![zero; self.frames.frames.len()],
-            slide: vec![zero; self.tree.slides],
+            slide: vec![zero; self.tree.slides.len()],
             turn_rate: vec![zero; self.frames.frames.len()],
-            slide_rate: vec![zero; self.tree.slides],
+            slide_rate: vec![zero; self.tree.slides.len()],
             work: self.work(),
         }
     }
@@ -56,21 +57,26 @@ impl Plan {
         let zero = [T::lift(0.0); N];
         Balance {
             moment: vec![zero; self.frames.frames.len()],
-            push: vec![zero; self.tree.slides],
+            push: vec![zero; self.tree.slides.len()],
             multiplier: vec![[Vec2::zero(); N]; self.closures.len()],
+            relation: vec![zero; self.relations.len()],
             work: self.work(),
         }
     }
 
     fn work<T: Scalar>(&self) -> Vec<T> {
-        let most = self.groups.iter().map(|g| g.group.unknowns.len()).max();
+        let most = self.groups.iter().map(|g| g.group.rows).max();
         vec![T::lift(0.0); most.unwrap_or(0)]
     }
 
     /// Velocities for the actuators' speeds `q_dot` (rad/s).
     pub fn speeds<T: Scalar>(&self, pose: &Pose<T>, q_dot: &[T], motion: &mut Motion<T>) {
         propagate(&self.driven, q_dot, &mut motion.turn);
+        self.drive_slides(q_dot, &mut motion.slide);
         for (assur, &inverse) in self.groups.iter().zip(&pose.inverse) {
+            if assur.skipped {
+                continue;
+            }
             match &assur.kind {
                 Kind::Pin(pin) => {
                     let rate = arms_rate(&pin.known, pose, motion);
@@ -84,7 +90,7 @@ impl Plan {
                     let rate = row_rate(rate, aim.axis, pose.travel[aim.closure], pose, motion);
                     motion.turn[aim.frame] = -(rate * inverse);
                 }
-                Kind::Newton(newton) => self.newton_speeds(assur, newton, pose, q_dot, motion),
+                Kind::Solved(solved) => self.solved_speeds(assur, solved, pose, q_dot, motion),
             }
             propagate(&assur.driven, q_dot, &mut motion.turn);
         }
@@ -94,7 +100,11 @@ impl Plan {
     /// [`Plan::speeds`] left in `motion`.
     pub fn accelerations<T: Scalar>(&self, pose: &Pose<T>, q_ddot: &[T], motion: &mut Motion<T>) {
         propagate(&self.driven, q_ddot, &mut motion.turn_rate);
+        self.drive_slides(q_ddot, &mut motion.slide_rate);
         for (assur, &inverse) in self.groups.iter().zip(&pose.inverse) {
+            if assur.skipped {
+                continue;
+            }
             match &assur.kind {
                 Kind::Pin(pin) => {
                     let (_, known) = arms_rates(&pin.known, pose, motion);
@@ -111,8 +121,8 @@ impl Plan {
                     let rate = row_acceleration(rates, aim.axis, travel, pose, motion);
                     motion.turn_rate[aim.frame] = -(rate * inverse);
                 }
-                Kind::Newton(newton) => {
-                    self.newton_accelerations(assur, newton, pose, q_ddot, motion);
+                Kind::Solved(solved) => {
+                    self.solved_accelerations(assur, solved, pose, q_ddot, motion);
                 }
             }
             propagate(&assur.driven, q_ddot, &mut motion.turn_rate);
@@ -127,6 +137,10 @@ impl Plan {
         balance: &mut Balance<T, N>,
     ) {
         for (assur, &inverse) in self.groups.iter().zip(&pose.inverse).rev() {
+            if assur.skipped {
+                // Nothing acts on it.
+                continue;
+            }
             match &assur.kind {
                 Kind::Pin(pin) => {
                     let one = class_moment(assur, pin.frames[0], &balance.moment);
@@ -140,101 +154,113 @@ impl Plan {
                     balance.multiplier[aim.closure] =
                         std::array::from_fn(|n| vec2(moment[n] * inverse, T::lift(0.0)));
                 }
-                Kind::Newton(newton) => {
-                    self.newton_multipliers(assur, newton, pose, balance);
+                Kind::Solved(solved) => {
+                    self.solved_multipliers(assur, solved, pose, balance);
                 }
             }
             for behind in &assur.behind {
                 press(behind, pose, balance);
             }
+            for &r in &assur.group.relations {
+                self.press_relation(assur, r, pose, balance);
+            }
         }
     }
 
-    // The stages of a group solved by Newton's method, apart from the others: in one function the
+    // The stages of a group solved by its factors, apart from the others: in one function the
     // compiler would keep everything they need at hand for groups that need none of it.
 
     #[inline(never)]
-    fn newton_speeds<T: Scalar>(
+    fn solved_speeds<T: Scalar>(
         &self,
         assur: &Assur,
-        newton: &Newton,
+        solved: &Solved,
         pose: &Pose<T>,
         q_dot: &[T],
         motion: &mut Motion<T>,
     ) {
         self.clear(assur, &mut motion.turn, &mut motion.slide);
         propagate(&assur.driven, q_dot, &mut motion.turn);
+        let mut work = std::mem::take(&mut motion.work);
         let mut row = 0;
         for &l in &assur.group.loops {
+            let rate = gap_rate(&self.closures[l], pose, motion);
             if let Some(axis) = self.closures[l].axis {
-                let rate = gap_rate(&self.closures[l], pose, motion);
-                motion.work[row] = -row_rate(rate, axis, pose.travel[l], pose, motion);
+                work[row] = -row_rate(rate, axis, pose.travel[l], pose, motion);
                 row += 1;
             } else {
-                let rate = gap_rate(&self.closures[l], pose, motion);
-                motion.work[row] = -rate.x;
-                motion.work[row + 1] = -rate.y;
+                work[row] = -rate.x;
+                work[row + 1] = -rate.y;
                 row += 2;
             }
         }
-        let (lu, pivots) = newton.factors(pose, row);
-        small::solve(lu, pivots, &mut motion.work[..row]);
-        self.take(assur, &motion.work, &mut motion.turn, &mut motion.slide);
+        for &r in &assur.group.relations {
+            let rate = self
+                .relation(r)
+                .rate(&pose.angle, &pose.slide, &motion.turn, &motion.slide);
+            work[row] = -rate * self.relation_weight(assur, r);
+            row += 1;
+        }
+        solved.solve(pose, &mut work[..row]);
+        self.take(assur, &work, &mut motion.turn, &mut motion.slide);
+        motion.work = work;
     }
 
     #[inline(never)]
-    fn newton_accelerations<T: Scalar>(
+    fn solved_accelerations<T: Scalar>(
         &self,
         assur: &Assur,
-        newton: &Newton,
+        solved: &Solved,
         pose: &Pose<T>,
         q_ddot: &[T],
         motion: &mut Motion<T>,
     ) {
         self.clear(assur, &mut motion.turn_rate, &mut motion.slide_rate);
         propagate(&assur.driven, q_ddot, &mut motion.turn_rate);
+        let mut work = std::mem::take(&mut motion.work);
         let mut row = 0;
         for &l in &assur.group.loops {
+            let rates = gap_rates(&self.closures[l], pose, motion);
             if let Some(axis) = self.closures[l].axis {
-                let rates = gap_rates(&self.closures[l], pose, motion);
-                let rate = row_acceleration(rates, axis, pose.travel[l], pose, motion);
-                motion.work[row] = -rate;
+                work[row] = -row_acceleration(rates, axis, pose.travel[l], pose, motion);
                 row += 1;
             } else {
-                let (_, rate) = gap_rates(&self.closures[l], pose, motion);
-                motion.work[row] = -rate.x;
-                motion.work[row + 1] = -rate.y;
+                work[row] = -rates.1.x;
+                work[row + 1] = -rates.1.y;
                 row += 2;
             }
         }
-        let (lu, pivots) = newton.factors(pose, row);
-        small::solve(lu, pivots, &mut motion.work[..row]);
-        self.take(
-            assur,
-            &motion.work,
-            &mut motion.turn_rate,
-            &mut motion.slide_rate,
-        );
+        for &r in &assur.group.relations {
+            let value = self.relation(r).acceleration(
+                &pose.angle,
+                &pose.slide,
+                (&motion.turn, &motion.slide),
+                (&motion.turn_rate, &motion.slide_rate),
+            );
+            work[row] = -value * self.relation_weight(assur, r);
+            row += 1;
+        }
+        solved.solve(pose, &mut work[..row]);
+        self.take(assur, &work, &mut motion.turn_rate, &mut motion.slide_rate);
+        motion.work = work;
     }
 
     #[inline(never)]
-    fn newton_multipliers<T: Scalar, const N: usize>(
+    fn solved_multipliers<T: Scalar, const N: usize>(
         &self,
         assur: &Assur,
-        newton: &Newton,
+        solved: &Solved,
         pose: &Pose<T>,
         balance: &mut Balance<T, N>,
     ) {
-        let size = assur.group.unknowns.len();
         for n in 0..N {
             for (value, &unknown) in balance.work.iter_mut().zip(&assur.group.unknowns) {
                 *value = match unknown {
                     Unknown::Class(c) => class_moment(assur, self.root_of(c), &balance.moment)[n],
-                    Unknown::Slide(s) => balance.push[s][n],
+                    Unknown::Slide(s) => balance.push[s][n] * T::lift(assur.scale),
                 };
             }
-            let (lu, pivots) = newton.factors(pose, size);
-            small::solve_transposed(lu, pivots, &mut balance.work[..size]);
+            solved.solve_transposed(pose, &mut balance.work[..solved.rows]);
             let mut row = 0;
             for &l in &assur.group.loops {
                 let first = balance.work[row];
@@ -245,6 +271,67 @@ impl Plan {
                     row += 1;
                 }
                 balance.multiplier[l][n] = vec2(first, second);
+            }
+            for &r in &assur.group.relations {
+                balance.relation[r][n] = balance.work[row] * self.relation_weight(assur, r);
+                row += 1;
+            }
+        }
+    }
+
+    /// Takes a relation's multiplier off the frames and slides that its group does not place.
+    #[inline(never)]
+    fn press_relation<T: Scalar, const N: usize>(
+        &self,
+        assur: &Assur,
+        relation: usize,
+        pose: &Pose<T>,
+        balance: &mut Balance<T, N>,
+    ) {
+        let Balance {
+            moment,
+            push,
+            relation: multipliers,
+            ..
+        } = balance;
+        let multiplier = multipliers[relation];
+        let own = |frame: usize| {
+            assur.group.unknowns.iter().any(|u| match *u {
+                Unknown::Class(c) => self.root_of(c) == frame,
+                Unknown::Slide(_) => false,
+            })
+        };
+        self.relation(relation).press(
+            &pose.angle,
+            &pose.slide,
+            |frame, by| {
+                if !own(frame) {
+                    for (moment, m) in moment[frame].iter_mut().zip(multiplier) {
+                        *moment -= by * m;
+                    }
+                }
+            },
+            |slide, by| {
+                for (push, m) in push[slide].iter_mut().zip(multiplier) {
+                    *push -= by * m;
+                }
+            },
+        );
+    }
+
+    fn relation_weight<T: Scalar>(&self, assur: &Assur, relation: usize) -> T {
+        T::lift(if self.relation(relation).angular {
+            assur.scale
+        } else {
+            1.0
+        })
+    }
+
+    /// Sets the rates of the slides that actuators drive.
+    fn drive_slides<T: Scalar>(&self, rate: &[T], slide: &mut [T]) {
+        for (own, driven) in slide.iter_mut().zip(&self.driven_slides) {
+            if let Some(actuator) = *driven {
+                *own = rate[actuator];
             }
         }
     }
@@ -263,7 +350,7 @@ impl Plan {
         for (&unknown, &value) in assur.group.unknowns.iter().zip(solution) {
             match unknown {
                 Unknown::Class(c) => turn[self.root_of(c)] = value,
-                Unknown::Slide(s) => slide[s] = value,
+                Unknown::Slide(s) => slide[s] = value * T::lift(assur.scale),
             }
         }
     }

@@ -1,20 +1,22 @@
 //! Positions: from the actuators' coordinates to the orientation of every body, group by group.
 
 use crate::error::PlaceError;
-use crate::groups::{Group, Unknown};
-use crate::plan::{Aim, Closure, Driven, Kind, Newton, Pin, Plan, Pose, Step};
+use crate::groups::Unknown;
+use crate::plan::{Aim, Closure, Driven, How, Kind, Pin, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
-use crate::range::Range;
 use crate::scalar::Scalar;
-use crate::small;
 use crate::tree::Arm;
+use std::f64::consts::TAU;
 
 /// Below this determinant, relative to the lengths that make it, nothing is left of the digits.
-const SINGULAR: f64 = 1e-14;
-/// Newton's correction (rad, or relative to the group's size) after which its square is rounding.
-const CONVERGED: f64 = 1e-9;
-/// Newton's method doubles its digits in each step: 30 steps are far more than it needs.
-const MOST_STEPS: usize = 30;
+pub(crate) const SINGULAR: f64 = 1e-14;
+/// Steps to a turn of an actuator where a pose is followed. A group's pose changes little over 3°,
+/// so that Newton's method needs two or three steps; what changes faster is followed in finer steps.
+pub(crate) const PER_TURN: usize = 120;
+
+/// Steps after which a way from the start is given up: no mechanism is driven a thousand turns away
+/// from where it was assembled, but a careless number may say so.
+const MOST_WAY: f64 = 120_000.0;
 
 /// Where Newton's method starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,16 +28,71 @@ pub(crate) enum Guess {
 }
 
 impl Plan {
-    /// Places the mechanism at the coordinates `q` (rad). The pose depends on `q` alone.
+    /// Places the mechanism at the coordinates `q` (rad or m). The pose depends on `q` alone.
     ///
     /// # Errors
     /// [`PlaceError`] when a group cannot close there, is singular, or `q` is out of range.
     pub fn place<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
         // Outside its range a closed form may close again, but on a branch that cannot be reached.
-        if self.range != Range::Full && q[0].value().is_finite() {
+        if self.range.limits().is_some() && q[0].value().is_finite() {
             self.range.fold(q[0].value())?;
         }
+        if self.actuators() > 1 && self.groups.iter().any(|g| g.remembers && !g.skipped) {
+            return self.place_along(q, pose);
+        }
         self.place_from(q, pose, Guess::Seed)
+    }
+
+    /// Follows the straight way from the start to `q`: with several actuators there is no row of
+    /// poses to start from.
+    #[inline(never)]
+    fn place_along<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
+        let Some(home) = &self.home else {
+            return self.place_from(q, pose, Guess::Pose);
+        };
+        for (own, turn) in pose.turn.iter_mut().zip(&home.turn) {
+            *own = turn.lift();
+        }
+        for (own, &angle) in pose.angle.iter_mut().zip(&home.angle) {
+            *own = T::lift(angle);
+        }
+        for (own, &travel) in pose.slide.iter_mut().zip(&home.slide) {
+            *own = T::lift(travel);
+        }
+        let mut steps = 1.0_f64;
+        for (i, (to, from)) in q.iter().zip(&self.start).enumerate() {
+            steps = steps.max(((to.value() - from) / self.step(i)).abs().ceil());
+        }
+        let mut way = std::mem::take(&mut pose.path);
+        let mut result = Ok(());
+        for k in 1..=steps.min(MOST_WAY) as usize {
+            let part = k as f64 / steps;
+            for ((on, &to), &from) in way.iter_mut().zip(q).zip(&self.start) {
+                *on = if part < 1.0 {
+                    T::lift(from + (to.value() - from) * part)
+                } else {
+                    to
+                };
+            }
+            result = self.place_from(&way, pose, Guess::Pose);
+            if result.is_err() {
+                break;
+            }
+        }
+        pose.path = way;
+        result?;
+        self.same_branch(pose)
+    }
+
+    /// A step of an actuator over which a pose changes little, rad or m.
+    pub(crate) fn step(&self, actuator: usize) -> f64 {
+        if self.angular[actuator] {
+            TAU / PER_TURN as f64
+        } else if self.reach > 0.0 {
+            self.reach * TAU / PER_TURN as f64
+        } else {
+            1.0
+        }
     }
 
     pub(crate) fn place_from<T: Scalar>(
@@ -63,237 +120,61 @@ impl Plan {
         }
         for step in &self.steps {
             match step {
+                Step::Slide(slide, actuator) => pose.slide[*slide] = pose.q[*actuator],
                 Step::Turn(driven) => turn(driven, pose),
                 Step::Rotate(arm, Arm { frame, local }) => {
                     pose.arm[*arm] = local.lift::<T>().turn(pose.turn[*frame]);
                 }
                 Step::Solve(g) if *g >= count => return Ok(()),
-                Step::Solve(g) => match &self.groups[*g].kind {
-                    Kind::Pin(pin) => place_pin(pin, *g, pose)?,
-                    Kind::Aim(aim) => place_aim(aim, *g, pose)?,
-                    Kind::Newton(newton) => self.place_by_newton(*g, newton, pose, guess)?,
-                },
+                Step::Solve(g) => {
+                    match &self.groups[*g].kind {
+                        Kind::Pin(pin) => place_pin(pin, *g, pose)?,
+                        Kind::Aim(aim) => place_aim(aim, *g, pose)?,
+                        Kind::Solved(solved) => self.place_solved(*g, solved, pose, guess)?,
+                    }
+                    if self.groups[*g].remembers {
+                        self.count(*g, pose, guess)?;
+                    }
+                }
             }
         }
         Ok(())
     }
 
-    /// Apart from the closed forms, which need little of what this keeps at hand.
+    /// Counts the whole turns of a group's classes where a relation needs them: the number that is
+    /// nearest to the stored angle, or while a branch is followed to the last one.
     #[inline(never)]
-    fn place_by_newton<T: Scalar>(
+    fn count<T: Scalar>(
         &self,
         group: usize,
-        newton: &Newton,
         pose: &mut Pose<T>,
         guess: Guess,
     ) -> Result<(), PlaceError> {
-        if guess == Guess::Seed {
-            self.sow(group, newton, pose)?;
-        }
-        let factored = self.close(group, newton, pose)?;
-        // A pose on the other side of a singular position is another branch.
-        if guess == Guess::Seed && factored.sign * newton.branch <= 0.0 {
-            let q = pose.q[0].value();
-            return Err(PlaceError::OtherBranch { group, q });
-        }
-        for &l in &self.groups[group].group.loops {
-            let closure = &self.closures[l];
-            if let Some((axis, _)) = closure.axis {
-                pose.travel[l] = pose.arm[axis].dot(gap(closure, &pose.arm, &pose.slide));
-            }
-        }
-        Ok(())
-    }
-
-    /// Sets a Newton group's unknowns to the first-order prediction from its nearest seed.
-    fn sow<T: Scalar>(
-        &self,
-        group: usize,
-        newton: &Newton,
-        pose: &mut Pose<T>,
-    ) -> Result<(), PlaceError> {
-        let q = pose.q[0];
-        let (seed, away) = newton.seeds.nearest(q.value(), self.range)?;
-        // The derivative of the prediction does not matter: Newton's last step replaces it.
-        for (i, &unknown) in self.groups[group].group.unknowns.iter().enumerate() {
-            let (value, slope) = (seed.values[i], seed.slopes[i]);
-            match unknown {
-                Unknown::Class(class) => {
-                    let turn = value.turn(Vec2::from_angle(slope * away));
-                    pose.turn[self.root_of(class)] = turn.lift();
-                }
-                Unknown::Slide(slide) => pose.slide[slide] = T::lift(value.x + slope * away),
-            }
-        }
-        Ok(())
-    }
-
-    /// Newton's method; leaves the factors of the Jacobian where it ends.
-    fn close<T: Scalar>(
-        &self,
-        group: usize,
-        newton: &Newton,
-        pose: &mut Pose<T>,
-    ) -> Result<small::Factored, PlaceError> {
-        let q = pose.q[0].value();
-        let size = self.groups[group].size;
-        let n = self.groups[group].group.unknowns.len();
-        let mut residual = f64::INFINITY;
-        let mut once_more = true;
-        for _ in 0..MOST_STEPS {
-            self.turn_group(group, pose);
-            residual = self.residual(group, pose);
-            self.factor(group, newton, pose)?;
-            let mut work = std::mem::take(&mut pose.work);
-            small::solve(
-                &pose.lu[newton.lu..newton.lu + n * n],
-                &pose.pivots[newton.pivots..newton.pivots + n],
-                &mut work[..n],
-            );
-            let mut largest = 0.0_f64;
-            let unknowns = &self.groups[group].group.unknowns;
-            for (&unknown, &step) in unknowns.iter().zip(&work) {
-                let change = match unknown {
-                    Unknown::Class(class) => {
-                        let frame = self.root_of(class);
-                        let (sin, cos) = step.sin_cos();
-                        pose.turn[frame] = pose.turn[frame].turn(vec2(cos, -sin));
-                        step.value().abs()
-                    }
-                    Unknown::Slide(slide) => {
-                        pose.slide[slide] -= step;
-                        step.value().abs() / size
-                    }
-                };
-                largest = if change.is_nan() {
-                    f64::INFINITY
-                } else {
-                    largest.max(change)
-                };
-            }
-            pose.work = work;
-            if !largest.is_finite() {
-                break;
-            }
-            // One step past convergence: it makes the derivative of a dual number exact.
-            if largest < CONVERGED && !std::mem::replace(&mut once_more, false) {
-                self.turn_group(group, pose);
-                return self.factor(group, newton, pose);
-            }
-        }
-        Err(PlaceError::NotClosed { group, q, residual })
-    }
-
-    /// Turns a group's driven frames and rotates the arms of its loops, after its unknowns changed.
-    fn turn_group<T: Scalar>(&self, group: usize, pose: &mut Pose<T>) {
         let assur = &self.groups[group];
-        for driven in &assur.driven {
-            turn(driven, pose);
+        if matches!(&assur.kind, Kind::Solved(s) if s.how == How::Newton) {
+            return Ok(());
         }
-        for &l in &assur.group.loops {
-            let Closure {
-                arms, slides, axis, ..
-            } = &self.closures[l];
-            let slid = slides.iter().map(|&(_, a, _)| a);
-            for arm in arms.iter().chain(axis).map(|&(a, _)| a).chain(slid) {
-                let Arm { frame, local } = self.arms[arm];
-                pose.arm[arm] = local.lift::<T>().turn(pose.turn[frame]);
+        let near = match guess {
+            Guess::Seed => Some(assur.seeds.nearest(pose.q[0].value(), self.range)?),
+            Guess::Pose => None,
+        };
+        for (i, &unknown) in assur.group.unknowns.iter().enumerate() {
+            let Unknown::Class(class) = unknown else {
+                continue;
+            };
+            let root = self.root_of(class);
+            if !self.counted[root] {
+                continue;
             }
+            let expected = match near {
+                Some(near) => assur.seeds.predict(near, i),
+                None => pose.angle[root].value(),
+            };
+            let angle = pose.turn[root].y.atan2(pose.turn[root].x);
+            let turns = ((expected - angle.value()) / TAU).round();
+            pose.angle[root] = angle + T::lift(TAU * turns);
         }
-    }
-
-    /// Writes a Newton group's residual into the work space; its largest component, m.
-    fn residual<T: Scalar>(&self, group: usize, pose: &mut Pose<T>) -> f64 {
-        let mut row = 0;
-        let mut largest = 0.0_f64;
-        for &l in &self.groups[group].group.loops {
-            let closure = &self.closures[l];
-            let open = gap(closure, &pose.arm, &pose.slide);
-            if let Some((axis, _)) = closure.axis {
-                pose.work[row] = pose.arm[axis].perp().dot(open);
-                row += 1;
-            } else {
-                pose.work[row] = open.x;
-                pose.work[row + 1] = open.y;
-                row += 2;
-            }
-        }
-        for value in &pose.work[..row] {
-            largest = largest.max(value.value().abs());
-        }
-        largest
-    }
-
-    /// Assembles and factors a Newton group's Jacobian at the pose.
-    pub(crate) fn factor<T: Scalar>(
-        &self,
-        group: usize,
-        newton: &Newton,
-        pose: &mut Pose<T>,
-    ) -> Result<small::Factored, PlaceError> {
-        let Group { unknowns, loops } = &self.groups[group].group;
-        let n = unknowns.len();
-        let mut row = newton.lu;
-        for &l in loops {
-            let closure = &self.closures[l];
-            let open = gap(closure, &pose.arm, &pose.slide);
-            for (column, &unknown) in unknowns.iter().enumerate() {
-                let change = self.change(closure, unknown, pose);
-                if let Some((axis, frame)) = closure.axis {
-                    let along = pose.arm[axis];
-                    let mut entry = along.perp().dot(change);
-                    if unknown == Unknown::Class(self.frames.frames[frame].class) {
-                        entry -= along.dot(open);
-                    }
-                    pose.lu[row + column] = entry;
-                } else {
-                    pose.lu[row + column] = change.x;
-                    pose.lu[row + n + column] = change.y;
-                }
-            }
-            row += if closure.axis.is_some() { n } else { 2 * n };
-        }
-        let factored = small::factor(
-            &mut pose.lu[newton.lu..newton.lu + n * n],
-            &mut pose.pivots[newton.pivots..newton.pivots + n],
-        );
-        if factored.measure > SINGULAR {
-            Ok(factored)
-        } else {
-            Err(PlaceError::Singular {
-                group,
-                q: pose.q[0].value(),
-                measure: factored.measure,
-            })
-        }
-    }
-
-    /// ∂L/∂unknown of a loop L = P₂ − P₁.
-    fn change<T: Scalar>(&self, closure: &Closure, unknown: Unknown, pose: &Pose<T>) -> Vec2<T> {
-        let mut sum = Vec2::zero();
-        match unknown {
-            Unknown::Class(class) => {
-                let of_class = |frame: usize| self.frames.frames[frame].class == class;
-                for &(arm, frame) in &closure.arms {
-                    if of_class(frame) {
-                        sum += pose.arm[arm].perp();
-                    }
-                }
-                for &(slide, arm, frame) in &closure.slides {
-                    if of_class(frame) {
-                        sum += pose.arm[arm].perp() * pose.slide[slide];
-                    }
-                }
-            }
-            Unknown::Slide(slide) => {
-                for &(s, arm, _) in &closure.slides {
-                    if s == slide {
-                        sum += pose.arm[arm];
-                    }
-                }
-            }
-        }
-        sum
+        Ok(())
     }
 
     /// The frame whose angle is a class's unknown.
@@ -321,12 +202,12 @@ impl Plan {
     }
 
     fn ground_root(&self) -> Vec2 {
-        self.tree.roots[self.ground]
+        self.tree.roots[self.lowered.ground]
     }
 }
 
 /// Turns a frame by its actuator's coordinate.
-fn turn<T: Scalar>(driven: &Driven, pose: &mut Pose<T>) {
+pub(crate) fn turn<T: Scalar>(driven: &Driven, pose: &mut Pose<T>) {
     let (sin, cos) = pose.q[driven.actuator].sin_cos();
     let by = vec2(cos, if driven.sign < 0.0 { -sin } else { sin });
     pose.turn[driven.frame] = if driven.parent == 0 {
@@ -334,6 +215,10 @@ fn turn<T: Scalar>(driven: &Driven, pose: &mut Pose<T>) {
     } else {
         pose.turn[driven.parent].turn(by)
     };
+    if driven.counted {
+        pose.angle[driven.frame] =
+            pose.angle[driven.parent] + T::lift(driven.sign) * pose.q[driven.actuator];
+    }
 }
 
 /// A constant vector and some rotated arms, summed.
@@ -348,7 +233,7 @@ fn sum<T: Scalar>(fixed: Vec2, arms: &[(usize, usize)], arm: &[Vec2<T>]) -> Vec2
 
 /// L = P₂ − P₁ as its arms and slides have it.
 #[inline]
-fn gap<T: Scalar>(closure: &Closure, arm: &[Vec2<T>], slide: &[T]) -> Vec2<T> {
+pub(crate) fn gap<T: Scalar>(closure: &Closure, arm: &[Vec2<T>], slide: &[T]) -> Vec2<T> {
     let mut sum = sum(closure.fixed, &closure.arms, arm);
     for &(s, a, _) in &closure.slides {
         sum += arm[a] * slide[s];
@@ -420,7 +305,7 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
 }
 
 /// Square root of what is left of a length, or the error that says how much is missing, m.
-fn root<T: Scalar>(
+pub(crate) fn root<T: Scalar>(
     rest: T,
     size: f64,
     group: usize,

@@ -7,16 +7,19 @@ mod compile;
 use crate::error::{AssemblyError, StructureError};
 use crate::frames::Frames;
 use crate::groups::{self, Group, Unknown};
-use crate::mechanism::{BodyId, JointId, Mechanism};
+use crate::lower::{Bond, Lowered, Measure, Owner};
+use crate::mechanism::{BodyId, Coordinate, Drive, JointId, JointKind, Mechanism};
 use crate::plane::Vec2;
 use crate::range::Range;
+use crate::relation::Row;
 use crate::scalar::Scalar;
+use crate::seeds::Seeds;
 use crate::tree::{Arm, Tree};
 
 /// How and where the mechanism is put together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {
-    /// The coordinate of each actuator at assembly, rad.
+    /// The coordinate of each actuator at assembly, rad or m.
     pub q: Vec<f64>,
     /// Rough angle of each body, where one is given, rad: picks the assembly branch.
     pub rough: Vec<Option<f64>>,
@@ -25,11 +28,13 @@ pub struct Start {
 /// A mechanism compiled for evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
+    pub(crate) lowered: Lowered,
     pub(crate) frames: Frames,
     pub(crate) tree: Tree,
     pub(crate) arms: Vec<Arm>,
     pub(crate) carried: Vec<Carried>,
     pub(crate) closures: Vec<Closure>,
+    pub(crate) relations: Vec<Row>,
     pub(crate) groups: Vec<Assur>,
     pub(crate) steps: Vec<Step>,
     /// By class: the frame whose angle is the unknown (the ground's for class 0).
@@ -37,19 +42,38 @@ pub struct Plan {
     /// The frames that turn with the ground but for the actuators, each after the one it is
     /// turned from.
     pub(crate) driven: Vec<Driven>,
-    pub(crate) ground: usize,
-    pub(crate) actuators: usize,
+    /// By frame: whether its whole turns are counted, because a relation needs its angle.
+    pub(crate) counted: Vec<bool>,
+    /// By slide: the actuator that drives it.
+    pub(crate) driven_slides: Vec<Option<usize>>,
+    /// By actuator: whether it drives an angle rather than a length.
+    pub(crate) angular: Vec<bool>,
+    /// The largest length in it, m: what a step of a driven length is measured against.
+    pub(crate) reach: f64,
     pub(crate) start: Vec<f64>,
     pub(crate) range: Range,
+    /// The pose at the start, once it is assembled.
+    pub(crate) home: Option<Box<Pose<f64>>>,
+    /// By group: the ways in which it closes at the start, as the angles of its bodies.
+    pub(crate) branches: Vec<Branches>,
+}
+
+/// The ways in which a group closes at the start.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Branches {
+    /// The bodies that tell them apart.
+    pub bodies: Vec<BodyId>,
+    /// For each way, the angle of each of `bodies`, rad; the one that was picked comes first.
+    pub ways: Vec<Vec<f64>>,
 }
 
 /// A moving body, in the order in which bodies carry each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Carried {
-    /// The body.
-    pub body: BodyId,
-    /// The joint that carries it.
-    pub joint: JointId,
+    /// The body; an index beyond the mechanism's bodies is an added, massless one.
+    pub body: usize,
+    /// The bond that carries it.
+    pub bond: usize,
     /// Place of the body that carries it in the same order; none for the ground.
     pub parent: Option<usize>,
     /// Its frame.
@@ -72,20 +96,22 @@ pub(crate) struct Driven {
     pub(crate) sign: f64,
     /// The frame whose angle is the unknown of its class.
     pub(crate) root: usize,
+    /// Whether its whole turns are counted.
+    pub(crate) counted: bool,
 }
 
 /// A loop with its arms in the plan's table: L = P₂ − P₁ = fixed + Σ arms + Σ travel · direction.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Closure {
-    /// The joint that closes the loop.
-    pub joint: JointId,
+    /// The bond that closes the loop.
+    pub bond: usize,
     /// The part of the loop on the ground, m.
     pub fixed: Vec2,
     /// The arms it sums, as (arm, frame).
     pub arms: Vec<(usize, usize)>,
     /// The slides it passes, as (slide, direction arm, frame).
     pub slides: Vec<(usize, usize, usize)>,
-    /// For a prismatic joint, the rotated axis of its first body, as (arm, frame).
+    /// For a slide whose travel nothing measures, the rotated axis of its first body, as (arm, frame).
     pub axis: Option<(usize, usize)>,
 }
 
@@ -100,6 +126,14 @@ pub(crate) struct Assur {
     pub(crate) behind: Vec<Behind>,
     /// Sum of the lengths in its loops, m: what residuals are small against.
     pub(crate) size: f64,
+    /// A power of two near `size`: travels are counted in it, so that pivots can be compared.
+    pub(crate) scale: f64,
+    /// Where Newton's method starts, and where whole turns are counted from.
+    pub(crate) seeds: Seeds,
+    /// Whether the seeds are needed.
+    pub(crate) remembers: bool,
+    /// Whether nothing that was asked for needs it.
+    pub(crate) skipped: bool,
 }
 
 /// The part of a closure that an earlier group or an actuator moves: its multiplier acts there too.
@@ -120,7 +154,7 @@ pub(crate) struct Behind {
 pub(crate) enum Kind {
     Pin(Pin),
     Aim(Aim),
-    Newton(Newton),
+    Solved(Solved),
 }
 
 /// Two bodies pinned to each other and to known points: a triangle.
@@ -167,14 +201,35 @@ pub(crate) struct Aim {
     pub(crate) branch: f64,
 }
 
-/// Any other group: Newton's method from stored seeds.
+/// Any other group, whose motion and forces come from the factors of its Jacobian.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Newton {
+pub(crate) struct Solved {
+    pub(crate) how: How,
+    /// Numbers of equations and unknowns.
+    pub(crate) rows: usize,
+    pub(crate) columns: usize,
     /// Where its factors begin in [`Pose::lu`], and its pivots in [`Pose::pivots`].
     pub(crate) lu: usize,
     pub(crate) pivots: usize,
+    /// Sign of the determinant at the start.
     pub(crate) branch: f64,
-    pub(crate) seeds: crate::seeds::Seeds,
+    /// Sign of the root that a construction takes.
+    pub(crate) side: f64,
+}
+
+/// How a group is placed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum How {
+    /// Newton's method from stored seeds.
+    Newton,
+    /// Its equations are linear in its unknowns.
+    Linear,
+    /// Two classes turn until a loop closes: a triangle with sides that may change.
+    Triangle(usize, usize),
+    /// A class turns and a slide travels until a loop closes.
+    Reach(usize, usize),
+    /// A class turns until a point lies on a line.
+    Guide(usize),
 }
 
 /// One step of placing.
@@ -182,6 +237,8 @@ pub(crate) struct Newton {
 pub(crate) enum Step {
     /// Turn a frame by an actuator's coordinate.
     Turn(Driven),
+    /// Set a slide to an actuator's coordinate: (slide, actuator).
+    Slide(usize, usize),
     /// Solve a group.
     Solve(usize),
     /// Rotate an arm whose frame has become known.
@@ -191,10 +248,12 @@ pub(crate) enum Step {
 /// What placing computes: the orientation of every frame and every rotated arm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pose<T> {
-    /// The actuators' coordinates, rad.
+    /// The actuators' coordinates, rad or m.
     pub q: Vec<T>,
     /// By frame: (cos, sin).
     pub turn: Vec<Vec2<T>>,
+    /// By frame: its angle with whole turns counted, rad; only where a relation needs it.
+    pub angle: Vec<T>,
     /// By arm: its components in ground axes, m.
     pub arm: Vec<Vec2<T>>,
     /// By slide of the tree: its travel, m.
@@ -206,16 +265,7 @@ pub struct Pose<T> {
     pub(crate) lu: Vec<T>,
     pub(crate) pivots: Vec<usize>,
     pub(crate) work: Vec<T>,
-}
-
-impl Newton {
-    /// The group's factors in a pose.
-    pub(crate) fn factors<'a, T>(&self, pose: &'a Pose<T>, n: usize) -> (&'a [T], &'a [usize]) {
-        (
-            &pose.lu[self.lu..self.lu + n * n],
-            &pose.pivots[self.pivots..self.pivots + n],
-        )
-    }
+    pub(crate) path: Vec<T>,
 }
 
 impl Plan {
@@ -227,47 +277,54 @@ impl Plan {
     /// reach each other, or the branch is not told.
     pub fn compile(mechanism: &Mechanism, start: &Start) -> Result<Self, AssemblyError> {
         check(mechanism, start)?;
-        let mut plan = Self::structure(mechanism)?;
+        let mut plan = Self::structure(mechanism, false)?;
         plan.start.clone_from(&start.q);
         let pose = plan.assemble(&start.rough)?;
         plan.follow(&pose)?;
+        plan.home = Some(Box::new(pose));
         Ok(plan)
     }
 
     /// A pose with the right sizes, to be filled by [`Plan::place`].
     pub fn pose<T: Scalar>(&self) -> Pose<T> {
-        let newton = |g: &Assur| match g.kind {
-            Kind::Newton(_) => g.group.unknowns.len(),
-            _ => 0,
+        let solved = || {
+            self.groups.iter().filter_map(|g| match &g.kind {
+                Kind::Solved(solved) => Some(solved),
+                _ => None,
+            })
         };
-        let lu = self.groups.iter().map(|g| newton(g).pow(2)).sum();
-        let pivots = self.groups.iter().map(newton).sum();
-        let most = self.groups.iter().map(newton).max().unwrap_or(0);
         let zero = T::lift(0.0);
         Pose {
-            q: vec![zero; self.actuators],
+            q: vec![zero; self.actuators()],
             turn: vec![Vec2::IDENTITY.lift(); self.frames.frames.len()],
+            angle: vec![zero; self.frames.frames.len()],
             arm: self.arms.iter().map(|a| a.local.lift()).collect(),
-            slide: vec![zero; self.tree.slides],
+            slide: vec![zero; self.tree.slides.len()],
             travel: vec![zero; self.closures.len()],
             inverse: vec![zero; self.groups.len()],
-            lu: vec![zero; lu],
-            pivots: vec![0; pivots],
-            work: vec![zero; most],
+            lu: vec![zero; solved().map(Solved::room).sum()],
+            pivots: vec![0; solved().map(|s| s.columns).sum()],
+            work: vec![zero; solved().map(|s| s.rows).max().unwrap_or(0)],
+            path: vec![zero; self.actuators()],
         }
     }
 
     /// Number of independent coordinates.
     pub fn actuators(&self) -> usize {
-        self.actuators
+        self.angular.len()
     }
 
-    /// The coordinates at which the mechanism was assembled, rad.
+    /// Whether an actuator's coordinate is an angle (rad) rather than a length (m).
+    pub fn is_angle(&self, actuator: usize) -> bool {
+        self.angular[actuator]
+    }
+
+    /// The coordinates at which the mechanism was assembled, rad or m.
     pub fn start(&self) -> &[f64] {
         &self.start
     }
 
-    /// How far the single actuator can turn on this branch.
+    /// How far the single actuator can go on this branch.
     pub fn range(&self) -> Range {
         self.range
     }
@@ -292,12 +349,82 @@ impl Plan {
         &self.tree
     }
 
+    /// The relations between angles and travels, by index, their coupling evaluated by the plan.
+    pub(crate) fn relation(&self, index: usize) -> &Row {
+        &self.relations[index]
+    }
+
+    /// The pins, slides and welds that the mechanism is made of; the bonds of joints come first.
+    pub fn bonds(&self) -> &[Bond] {
+        &self.lowered.bonds
+    }
+
+    /// A joint's first bond and its relation.
+    pub fn parts(&self, joint: JointId) -> (Option<usize>, Option<usize>) {
+        self.lowered.of_joint[joint.0]
+    }
+
+    /// By an actuator that drives a length: its slide.
+    pub fn slide_of(&self, actuator: usize) -> Option<usize> {
+        self.driven_slides
+            .iter()
+            .position(|&by| by == Some(actuator))
+    }
+
+    /// The derivative of a relation with the angle of each body it names.
+    pub fn relation_couples<T: Scalar>(
+        &self,
+        relation: usize,
+        pose: &Pose<T>,
+        mut couple: impl FnMut(usize, T),
+    ) {
+        let ratio = &self.lowered.ratios[relation];
+        let mut each = |sum: &[(Measure, f64)], by: T| {
+            for &(measure, factor) in sum {
+                if let Measure::Angle(body) = measure {
+                    couple(body, by * T::lift(factor));
+                }
+            }
+        };
+        each(&ratio.of, T::lift(1.0));
+        if let Some((_, sum)) = &ratio.law {
+            let slope = self.relations[relation].slope(&pose.angle, &pose.slide);
+            each(sum, -slope);
+        }
+    }
+
+    /// By slide: the actuator that drives it, if any.
+    pub fn driven_slides(&self) -> &[Option<usize>] {
+        &self.driven_slides
+    }
+
+    /// Number of relations.
+    pub fn relations(&self) -> usize {
+        self.relations.len()
+    }
+
+    /// For each group, the ways in which it closes at the start.
+    pub fn branches(&self) -> &[Branches] {
+        &self.branches
+    }
+
     /// For each group in the order of solution: its number of unknowns and how it is solved.
     pub fn group_kinds(&self) -> Vec<(usize, &'static str)> {
-        let name = |g: &Assur| match g.kind {
+        let name = |g: &Assur| match &g.kind {
             Kind::Pin(_) => "pinned dyad, closed form",
             Kind::Aim(_) => "guided point, closed form",
-            Kind::Newton(_) => "Newton from stored seeds",
+            Kind::Solved(solved) if solved.rows > solved.columns => {
+                "Newton from stored seeds, least squares"
+            }
+            Kind::Solved(solved) => match solved.how {
+                How::Newton if self.actuators() == 1 => "Newton from stored seeds",
+                How::Newton => "Newton along the way from the start",
+                How::Linear if g.group.loops.is_empty() => "relation",
+                How::Linear => "slides, closed form",
+                How::Triangle(..) => "pinned dyad of changing length, closed form",
+                How::Reach(..) => "turn and slide, closed form",
+                How::Guide(_) => "guided point, closed form",
+            },
         };
         self.groups
             .iter()
@@ -310,10 +437,24 @@ impl Plan {
         self.bodies_of(&self.groups[group].group)
     }
 
-    /// The joints whose loops a group closes.
+    /// The joints whose loops and relations a group closes.
     pub fn group_joints(&self, group: usize) -> Vec<JointId> {
-        let loops = &self.groups[group].group.loops;
-        loops.iter().map(|&l| self.closures[l].joint).collect()
+        self.group_owners(group).0
+    }
+
+    pub(crate) fn group_owners(
+        &self,
+        group: usize,
+    ) -> (Vec<JointId>, Vec<crate::mechanism::ActuatorId>) {
+        let Group {
+            loops, relations, ..
+        } = &self.groups[group].group;
+        let bonds = loops.iter().map(|&l| self.closures[l].bond);
+        let owners: Vec<Owner> = bonds
+            .map(|b| self.lowered.bonds[b].owner)
+            .chain(relations.iter().map(|&r| self.relations[r].owner))
+            .collect();
+        Lowered::owners(owners)
     }
 
     pub(crate) fn bodies_of(&self, group: &Group) -> Vec<BodyId> {
@@ -321,18 +462,10 @@ impl Plan {
         for &unknown in &group.unknowns {
             match unknown {
                 Unknown::Class(c) => bodies.extend(groups::bodies_of_class(&self.frames, c)),
-                Unknown::Slide(s) => bodies.extend(
-                    self.tree
-                        .carries
-                        .iter()
-                        .filter(|c| c.slide.is_some_and(|(t, _)| t == s))
-                        .map(|c| c.body),
-                ),
+                Unknown::Slide(s) => bodies.extend(groups::bodies_of_slide(&self.tree, s)),
             }
         }
-        bodies.sort_unstable();
-        bodies.dedup();
-        bodies
+        self.lowered.named(bodies)
     }
 }
 
@@ -342,8 +475,36 @@ fn check(mechanism: &Mechanism, start: &Start) -> Result<(), StructureError> {
     let ends = mechanism.joints.iter().map(|j| j.bodies);
     let mut ends = ends.chain(mechanism.actuators.iter().map(|a| a.bodies));
     let finite = |angle: &Option<f64>| angle.is_none_or(f64::is_finite);
+    let travels = |joint: JointId| {
+        let kind = mechanism.joints.get(joint.0).map(|j| j.kind);
+        matches!(
+            kind,
+            Some(JointKind::Prismatic { .. } | JointKind::Slot { .. } | JointKind::Rolling { .. })
+        )
+    };
+    let measurable = |coordinate: Coordinate| match coordinate {
+        Coordinate::Angle(pair) | Coordinate::Length { bodies: pair, .. } => {
+            pair.iter().all(|b| b.0 < bodies)
+        }
+        Coordinate::Travel(joint) => travels(joint),
+    };
+    let related = |kind: JointKind| match kind {
+        JointKind::Relation(r) => r < mechanism.relations.len(),
+        _ => true,
+    };
     let what = if mechanism.ground >= bodies || !ends.all(|e| e.iter().all(|b| b.0 < bodies)) {
         "a body that is not there"
+    } else if !mechanism.joints.iter().all(|j| related(j.kind))
+        || !mechanism
+            .relations
+            .iter()
+            .all(|r| measurable(r.of) && measurable(r.by))
+        || mechanism
+            .actuators
+            .iter()
+            .any(|a| matches!(a.drive, Drive::Travel(joint) if !travels(joint)))
+    {
+        "a coordinate that is not there"
     } else if start.q.len() != mechanism.actuators.len() || start.rough.len() != bodies {
         "the start needs a coordinate for each actuator and a place for each body"
     } else if !start.q.iter().all(|q| q.is_finite()) || !start.rough.iter().all(finite) {

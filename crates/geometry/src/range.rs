@@ -1,14 +1,13 @@
-//! How far a single actuator can turn on the branch of the assembly, and the poses stored along
-//! the way for the groups that Newton's method places.
+//! How far a single actuator can go on the branch of the assembly, and the poses stored along
+//! the way for the groups that need them.
 
 use crate::error::{AssemblyError, PlaceError};
 use crate::groups::Unknown;
-use crate::mechanism::BodyId;
-use crate::place::Guess;
-use crate::plan::{Assur, Kind, Plan, Pose};
-use crate::plane::Vec2;
+use crate::place::{Guess, PER_TURN};
+use crate::plan::{Assur, How, Kind, Plan, Pose};
+use crate::plane::{Vec2, vec2};
 use crate::scalar::{Dual, Scalar};
-use crate::seeds::{Seed, Seeds};
+use crate::seeds::Seed;
 use std::f64::consts::TAU;
 
 /// The range of a single actuator's coordinate.
@@ -16,17 +15,45 @@ use std::f64::consts::TAU;
 pub enum Range {
     /// It turns fully: every coordinate can be reached, with period 2π.
     Full,
+    /// It turns fully, and the mechanism comes back after so many turns.
+    Turns(u32),
     /// It turns between two limit positions or change points, rad.
     Between(f64, f64),
+    /// A driven length goes from one limit position or change point to another, m.
+    Stroke(f64, f64),
+    /// No end was found, and the mechanism does not come back: a length, or gears; or there are
+    /// several actuators.
+    Endless,
+    /// No end was found as far as it was followed, and no position is known beyond: rad or m.
+    Followed(f64, f64),
 }
 
 impl Range {
+    /// The ends, where there are any.
+    pub fn limits(self) -> Option<(f64, f64)> {
+        match self {
+            Self::Between(from, to) | Self::Stroke(from, to) | Self::Followed(from, to) => {
+                Some((from, to))
+            }
+            Self::Full | Self::Turns(_) | Self::Endless => None,
+        }
+    }
+
+    /// What can be added to the coordinate without a change of the pose, rad.
+    pub fn period(self) -> Option<f64> {
+        match self {
+            Self::Full => Some(TAU),
+            Self::Turns(turns) => Some(TAU * f64::from(turns)),
+            _ => None,
+        }
+    }
+
     /// The coordinate within the range that is whole turns away from `q`: the same pose.
     ///
     /// # Errors
     /// [`PlaceError::OutOfRange`] where there is none.
     pub fn fold(self, q: f64) -> Result<f64, PlaceError> {
-        let Self::Between(from, to) = self else {
+        let Some((from, to)) = self.limits() else {
             return Ok(q);
         };
         if !q.is_finite() {
@@ -37,7 +64,8 @@ impl Range {
         }
         let folded = q - TAU * ((q - from) / TAU).floor();
         // A range of more than a turn holds two poses at such a coordinate: neither is "the" pose.
-        if (from..=to).contains(&folded) && to - from < TAU {
+        let turns = matches!(self, Self::Between(..));
+        if turns && (from..=to).contains(&folded) && to - from < TAU {
             Ok(folded)
         } else {
             Err(PlaceError::OutOfRange { q, from, to })
@@ -45,11 +73,8 @@ impl Range {
     }
 }
 
-/// Steps to a turn. A group's pose changes little over 3°, so that Newton's method needs two or
-/// three steps from the prediction; a position that changes faster is followed in finer steps.
-const PER_TURN: usize = 120;
 /// Turns after which a branch that neither ends nor closes is given up.
-const MOST_TURNS: usize = 8;
+const MOST_TURNS: u32 = 8;
 /// A branch ends at a change point where a determinant has fallen to this part of its largest value
 /// so far: its rounding is eps over that part, so any closer noise would decide which branch follows.
 const ENDED: f64 = 1e-6;
@@ -59,6 +84,8 @@ const FALLEN: f64 = 1e-3;
 /// A step is taken if the tangents of all determinants stay clear of zero over so many times its
 /// length: towards a limit position, where they fall as a square root, the distance left is halved.
 const CLEAR: f64 = 4.0;
+/// Two poses are one if they differ by less: rad, or of the lengths of a group.
+const SAME: f64 = 1e-6;
 /// Where the branch cannot be followed any further, the step is halved until it is this small, rad.
 const SMALLEST_STEP: f64 = 1e-13;
 
@@ -66,40 +93,48 @@ impl Plan {
     /// Follows the branch from the start over the range of a single actuator, both ways, and
     /// stores the seeds. With several actuators there is no range to follow.
     pub(crate) fn follow(&mut self, start: &Pose<f64>) -> Result<(), AssemblyError> {
-        if self.actuators != 1 {
+        if self.actuators() != 1 {
+            self.range = Range::Endless;
             return Ok(());
         }
         let mut ahead = vec![start.clone()];
-        let mut up = self.walk(&mut ahead, 1.0, 1);
-        if up.is_none() {
-            if self.elsewhere(start, &ahead).is_none() {
-                // The end of the turn is the start again.
-                ahead.pop();
+        let mut up = None;
+        for turns in 1..=MOST_TURNS {
+            up = self.walk(&mut ahead, 1.0, 1);
+            if up.is_some() {
+                break;
+            }
+            if self.angular[0] && self.same(start, ahead.last()) {
                 self.store(&ahead);
-                self.range = Range::Full;
+                self.range = match turns {
+                    1 => Range::Full,
+                    turns => Range::Turns(turns),
+                };
                 return Ok(());
             }
-            up = self.walk(&mut ahead, 1.0, MOST_TURNS - 1);
         }
         let mut back = vec![start.clone()];
         let down = self.walk(&mut back, -1.0, MOST_TURNS);
-        let (Some(from), Some(to)) = (down, up) else {
-            let elsewhere = self.elsewhere(start, if up.is_none() { &ahead } else { &back });
-            return Err(AssemblyError::NotPeriodic {
-                bodies: elsewhere.unwrap_or_default(),
-            });
-        };
         back.reverse();
         back.pop();
         back.extend(ahead);
         self.store(&back);
-        self.range = Range::Between(from, to);
+        let far = |pose: Option<&Pose<f64>>| pose.map_or(start.q[0], |p| p.q[0]);
+        let (first, last) = (far(back.first()), far(back.last()));
+        self.range = match (down, up) {
+            (Some(from), Some(to)) if self.angular[0] => Range::Between(from, to),
+            (Some(from), Some(to)) => Range::Stroke(from, to),
+            (None, None) if !self.groups.iter().any(|g| g.remembers) => Range::Endless,
+            (None, None) => Range::Followed(first, last),
+            // An end on one side only: the other is as far as it was followed.
+            (from, to) => Range::Stroke(from.unwrap_or(first), to.unwrap_or(last)),
+        };
         Ok(())
     }
 
     /// Walks some turns on from the last pose, noting each pose on the way; where the branch ends, if
     /// it does. It ends at a limit position, and at a change point, where two branches meet.
-    fn walk(&self, noted: &mut Vec<Pose<f64>>, direction: f64, turns: usize) -> Option<f64> {
+    fn walk(&self, noted: &mut Vec<Pose<f64>>, direction: f64, turns: u32) -> Option<f64> {
         let mut pose = noted.last()?.clone();
         let q0 = pose.q[0];
         let Some(mut margins) = self.margins(&pose) else {
@@ -107,8 +142,12 @@ impl Plan {
         };
         let size = |m: &Dual| [m.v, (m.v * m.d).abs()];
         let mut largest: Vec<[f64; 2]> = margins.iter().map(size).collect();
-        for k in 1..=turns * PER_TURN {
-            let target = q0 + direction * TAU * k as f64 / PER_TURN as f64;
+        for k in 1..=turns as usize * PER_TURN {
+            let target = if self.angular[0] {
+                q0 + direction * TAU * k as f64 / PER_TURN as f64
+            } else {
+                q0 + direction * self.step(0) * k as f64
+            };
             let mut fine = target - pose.q[0];
             while pose.q[0] != target {
                 let left = target - pose.q[0];
@@ -138,7 +177,8 @@ impl Plan {
                     }
                     None => {
                         fine = (next - pose.q[0]) * 0.5;
-                        if fine.abs() < SMALLEST_STEP * (1.0 + pose.q[0].abs()) {
+                        let unit = if self.angular[0] { 1.0 } else { self.reach };
+                        if fine.abs() < SMALLEST_STEP * (unit + pose.q[0].abs()) {
                             return Some(pose.q[0]);
                         }
                     }
@@ -155,6 +195,9 @@ impl Plan {
         for (own, turn) in pose.turn.iter_mut().zip(&at.turn) {
             *own = turn.lift();
         }
+        for (own, &angle) in pose.angle.iter_mut().zip(&at.angle) {
+            *own = Dual::lift(angle);
+        }
         for (own, travel) in pose.slide.iter_mut().zip(&at.slide) {
             *own = Dual::lift(*travel);
         }
@@ -163,11 +206,7 @@ impl Plan {
         let margin = |(g, assur): (usize, &Assur)| {
             let determinant = match &assur.kind {
                 Kind::Pin(_) | Kind::Aim(_) => Dual::lift(1.0) / pose.inverse[g],
-                Kind::Newton(newton) => {
-                    let n = assur.group.unknowns.len();
-                    let (lu, _) = newton.factors(&pose, n);
-                    (0..n).fold(Dual::lift(1.0), |product, i| product * lu[i * n + i])
-                }
+                Kind::Solved(solved) => solved.determinant(&pose),
             };
             if determinant.v < 0.0 {
                 -determinant
@@ -202,11 +241,14 @@ impl Plan {
         let predicted = pose.clone();
         self.place_from(&[q], &mut pose, Guess::Pose).ok()?;
         for (g, assur) in self.groups.iter().enumerate() {
-            let Kind::Newton(newton) = &assur.kind else {
+            let Kind::Solved(solved) = &assur.kind else {
                 continue;
             };
-            if self.factor(g, newton, &mut pose).ok()?.sign * newton.branch <= 0.0 {
+            if self.factor(g, solved, &mut pose).ok()?.sign * solved.branch <= 0.0 {
                 return None;
+            }
+            if solved.how != How::Newton {
+                continue;
             }
             for &unknown in &assur.group.unknowns {
                 // A correction as large as the step itself may have led to another branch.
@@ -237,11 +279,15 @@ impl Plan {
         let mut motion = self.motion();
         self.speeds(from, &[1.0], &mut motion);
         for assur in &self.groups {
-            if !matches!(assur.kind, Kind::Newton(_)) {
+            if !matches!(&assur.kind, Kind::Solved(s) if s.how == How::Newton) {
                 continue;
             }
             for &unknown in &assur.group.unknowns {
                 match unknown {
+                    Unknown::Class(c) if self.counted[self.root_of(c)] => {
+                        let f = self.root_of(c);
+                        self.set_angle(c, from.angle[f] + motion.turn[f] * away, pose);
+                    }
                     Unknown::Class(c) => {
                         let f = self.root_of(c);
                         let by = Vec2::from_angle(motion.turn[f] * away);
@@ -253,29 +299,34 @@ impl Plan {
         }
     }
 
-    /// The bodies that the last pose has elsewhere than the start; none if it is the same pose.
-    fn elsewhere(&self, start: &Pose<f64>, poses: &[Pose<f64>]) -> Option<Vec<BodyId>> {
-        let end = poses.last()?;
-        let moved = |assur: &&Assur| {
-            assur.group.unknowns.iter().any(|&u| match u {
+    /// Whether a pose is the start again.
+    fn same(&self, start: &Pose<f64>, end: Option<&Pose<f64>>) -> bool {
+        let Some(end) = end else {
+            return false;
+        };
+        let there = |assur: &Assur| {
+            assur.group.unknowns.iter().all(|&u| match u {
                 Unknown::Class(c) => {
                     let f = self.root_of(c);
-                    (start.turn[f] - end.turn[f]).norm() > 1e-6
+                    (start.turn[f] - end.turn[f]).norm() < SAME
                 }
-                Unknown::Slide(s) => (start.slide[s] - end.slide[s]).abs() > 1e-6 * assur.size,
+                Unknown::Slide(s) => (start.slide[s] - end.slide[s]).abs() < SAME * assur.size,
             })
         };
-        let group = self.groups.iter().find(moved)?;
-        Some(self.bodies_of(&group.group))
+        self.groups.iter().all(there)
     }
 
     fn store(&mut self, poses: &[Pose<f64>]) {
         let mut motion = self.motion();
         let mut all: Vec<Vec<Seed>> = vec![Vec::new(); self.groups.len()];
+        let mut gains: Vec<Vec<f64>> = vec![Vec::new(); self.groups.len()];
+        if !self.groups.iter().any(|g| g.remembers) {
+            return;
+        }
         for pose in poses {
             self.speeds(pose, &[1.0], &mut motion);
             for (assur, seeds) in self.groups.iter().zip(&mut all) {
-                if !matches!(assur.kind, Kind::Newton(_)) {
+                if !assur.remembers {
                     continue;
                 }
                 let mut seed = Seed {
@@ -286,15 +337,12 @@ impl Plan {
                     let (value, slope) = match unknown {
                         Unknown::Class(c) => {
                             let f = self.root_of(c);
-                            (pose.turn[f], motion.turn[f])
+                            let counted = self.counted[f];
+                            let angle = vec2(pose.angle[f], 0.0);
+                            let value = if counted { angle } else { pose.turn[f] };
+                            (value, motion.turn[f])
                         }
-                        Unknown::Slide(s) => (
-                            Vec2 {
-                                x: pose.slide[s],
-                                y: 0.0,
-                            },
-                            motion.slide[s],
-                        ),
+                        Unknown::Slide(s) => (vec2(pose.slide[s], 0.0), motion.slide[s]),
                     };
                     seed.values.push(value);
                     seed.slopes.push(slope);
@@ -302,10 +350,21 @@ impl Plan {
                 seeds.push(seed);
             }
         }
-        for (assur, seeds) in self.groups.iter_mut().zip(all) {
-            if let Kind::Newton(newton) = &mut assur.kind {
-                newton.seeds = Seeds(seeds);
+        for ((seeds, gains), assur) in all.iter_mut().zip(&mut gains).zip(&self.groups) {
+            if let (Some(first), Some(last)) = (seeds.first(), seeds.last()) {
+                let ends = first.values.iter().zip(&last.values);
+                let counted = |u: &Unknown| match *u {
+                    Unknown::Class(c) => self.counted[self.root_of(c)],
+                    Unknown::Slide(_) => false,
+                };
+                *gains = ends
+                    .zip(&assur.group.unknowns)
+                    .map(|((a, b), u)| if counted(u) { b.x - a.x } else { 0.0 })
+                    .collect();
             }
+        }
+        for ((assur, list), gains) in self.groups.iter_mut().zip(all).zip(gains) {
+            assur.seeds = crate::seeds::Seeds { list, gains };
         }
     }
 }

@@ -11,22 +11,47 @@
 //! constraint as a second coordinate means (Jordi, Zayas & Cardona 2008, figure 1). The value of
 //! an actuator's row is its coordinate q.
 //!
-//! With r the arm from a body's origin to its point P, t the first body's axis and n that axis
-//! turned +90°, all in the plane's directions:
+//! With d = P2 − P1, t the first body's axis and n that axis turned +90°, all in the plane's
+//! directions, and ψ the direction of d:
 //!
 //! ```text
-//! revolute   Φ = P2 − P1                                     (1)  two rows, m
-//! prismatic  Φ = n1·(P2 − P1)                                (2)  m
-//!            Φ = (θ2 + α2) − (θ1 + α1), α the axis's angle   (3)  rad, to the nearest turn
-//! actuator   Φ = θ2 − θ1                                     (4)  rad, to the nearest turn
+//! revolute   d                                    (1)  two rows, m
+//! prismatic  n·d                                  (2)  m
+//!            (θ2 + α2) − (θ1 + α1)                (3)  rad, to the nearest turn; α the axis's angle
+//! slot       n·d                                  (4)  m
+//! weld       d, then θ2 − θ1 − angle              (5)  m, m, rad to the nearest turn
+//! gear       r2 (θ2 − ψ) ± r1 (θ1 − ψ) − c        (6)  m; + external, − internal
+//! rack       t·d + r (θ2 − θ1)                    (7)  m
+//! rolling    n·d − r, then t·d + r (θ2 − θ1)      (8)  m
+//! distance   |d| − length                         (9)  m
+//! relation   of − law(by)                         (10) rad or m
+//! actuator   θ2 − θ1, or t·d, or |d|              (11) rad or m
 //! ```
 //!
+//! **Counting.** Rows (6) to (8), and (10) with an angle, feel whole turns of a body. A mechanism
+//! that has one of these is *counted*: its angles in x must be counted from the start on, and (11)
+//! takes an angle as it is. In any other mechanism a body's turn is no different from none, and
+//! (11) is taken to the nearest turn. ψ is counted with the body that holds both centres; where
+//! there is none, to the turn that leaves the row least open. The constant c is set by
+//! [`Rows::mesh`] at the start; until then it is zero.
+//!
 //! **Signs.** Since P2 enters with a plus, the multiplier λₖ of row k in Jᵀλ is the action of the
-//! first-named body on the second. In row (2) the derivative with θ1 turns the normal too, so that
-//! both bodies feel the normal force at the *second* body's point.
+//! first-named body on the second, as [`crate::Component`] tells. In rows along an axis the
+//! derivative with θ1 turns the axis too, so that both bodies feel the force at the *second*
+//! body's point; the rows with r bring the couple that moves it to the pitch point. The
+//! multiplier of (6) has the moment r2 λ on the second body. A relation's λ acts on the bodies of
+//! `of`, and −λ dlaw/dby on those of `by`.
 
-use crate::mechanism::{BodyId, JointKind, Mechanism};
+mod gear;
+mod measure;
+#[cfg(test)]
+mod tests;
+
+use crate::mechanism::{BodyId, Component, Coordinate, Joint, JointId, JointKind, Mechanism};
 use crate::plane::{Vec2, vec2};
+use dwell_laws::Law;
+use gear::Gear;
+use measure::{Column, End, Measure, Places};
 use std::f64::consts::TAU;
 
 /// Why rows cannot be written for a mechanism.
@@ -60,22 +85,50 @@ pub enum RowsError {
         /// Number of bodies.
         bodies: usize,
     },
+    /// A relation names a body that is not there.
+    #[error("relation {relation} names body {body}, but there are {bodies} bodies")]
+    RelationBody {
+        /// Index of the relation.
+        relation: usize,
+        /// Index it names.
+        body: usize,
+        /// Number of bodies.
+        bodies: usize,
+    },
+    /// A joint names a relation that is not there.
+    #[error("joint {joint} names relation {relation}, but there are {relations} relations")]
+    NoRelation {
+        /// Index of the joint.
+        joint: usize,
+        /// Index it names.
+        relation: usize,
+        /// Number of relations.
+        relations: usize,
+    },
+    /// A travel is asked of something that has none.
+    #[error("joint {joint} has no travel: it is no prismatic joint and no slot")]
+    NoTravel {
+        /// Index of the joint.
+        joint: usize,
+    },
 }
 
-/// One end of a joint: the body's first column (`None` for the ground) and the point on it.
-#[derive(Debug, Clone, Copy)]
-struct End {
-    column: Option<usize>,
-    point: Vec2,
-}
-
-/// A pair of rows from a joint, or the single row of an actuator.
-#[derive(Debug, Clone, Copy)]
-enum Item {
-    Revolute([End; 2]),
-    /// Normal of the first body in its own frame, and α2 − α1.
-    Prismatic([End; 2], Vec2, f64),
-    Actuator([Option<usize>; 2]),
+/// One row. An imposed value is subtracted from each.
+#[derive(Debug, Clone)]
+enum Row {
+    /// Σ factor × measure − less, to the nearest turn or not.
+    Sum {
+        terms: Vec<(f64, Measure)>,
+        less: f64,
+        periodic: bool,
+    },
+    Gear(Gear),
+    /// of − law(by).
+    Relation {
+        of: Measure,
+        by: Measure,
+        law: Law,
+    },
 }
 
 /// The rows of a mechanism. Everything they need is copied, so they outlive it.
@@ -84,48 +137,11 @@ enum Item {
 /// `len() × columns()` long, one row after the other, for the Jacobian.
 #[derive(Debug, Clone)]
 pub struct Rows {
-    items: Vec<Item>,
-    body_columns: Vec<Option<usize>>,
+    rows: Vec<Row>,
+    angular: Vec<bool>,
+    body_columns: Vec<Column>,
     columns: usize,
-    rows: usize,
-}
-
-/// Where a point is, and its arm: the point is o + r, and moves by perp(r) per radian.
-struct Placed {
-    at: Vec2,
-    arm: Vec2,
-}
-
-impl End {
-    fn place(self, x: &[f64]) -> Placed {
-        let arm = self.point.turn(direction(self.column, x));
-        let origin = self.column.map_or(Vec2::ZERO, |c| vec2(x[c], x[c + 1]));
-        Placed {
-            at: origin + arm,
-            arm,
-        }
-    }
-
-    /// Velocity of the point, and the part of its acceleration that comes from ω² alone.
-    fn speed(self, arm: Vec2, x_dot: &[f64]) -> (Vec2, Vec2) {
-        self.column.map_or((Vec2::ZERO, Vec2::ZERO), |c| {
-            let omega = x_dot[c + 2];
-            (
-                vec2(x_dot[c], x_dot[c + 1]) + arm.perp() * omega,
-                -arm * (omega * omega),
-            )
-        })
-    }
-}
-
-/// The direction (cos θ, sin θ) of a body's frame.
-fn direction(column: Option<usize>, x: &[f64]) -> Vec2 {
-    column.map_or(Vec2::IDENTITY, |c| Vec2::from_angle(x[c + 2]))
-}
-
-/// A body's angle, or its rate, out of coordinates or speeds.
-fn turning(column: Option<usize>, x: &[f64]) -> f64 {
-    column.map_or(0.0, |c| x[c + 2])
+    counted: bool,
 }
 
 /// The angle less the nearest whole number of turns.
@@ -133,9 +149,207 @@ fn nearest_turn(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
+impl Row {
+    fn one(measure: Measure) -> Self {
+        Self::sum(vec![(1.0, measure)], 0.0)
+    }
+
+    fn sum(terms: Vec<(f64, Measure)>, less: f64) -> Self {
+        Self::Sum {
+            terms,
+            less,
+            periodic: false,
+        }
+    }
+
+    fn direction(columns: [Column; 2], less: f64) -> Self {
+        Self::Sum {
+            terms: vec![(1.0, Measure::Turn(columns))],
+            less,
+            periodic: true,
+        }
+    }
+
+    /// Hands every measure of the row to `term`, with the row's derivative by it.
+    fn each_term(&self, at: &Places<'_>, mut term: impl FnMut(f64, &Measure)) {
+        match self {
+            Self::Sum { terms, .. } => terms.iter().for_each(|(f, m)| term(*f, m)),
+            Self::Gear(gear) => gear.terms().iter().for_each(|(f, m)| term(*f, m)),
+            Self::Relation { of, by, law } => {
+                term(1.0, of);
+                term(-law.at(by.value(at))[1], by);
+            }
+        }
+    }
+
+    fn residual(&self, at: &Places<'_>, x: &[f64], imposed: f64) -> f64 {
+        match self {
+            Self::Sum {
+                terms,
+                less,
+                periodic,
+            } => {
+                let sum: f64 = terms.iter().map(|(f, m)| f * m.value(at)).sum();
+                let open = sum - less - imposed;
+                if *periodic { nearest_turn(open) } else { open }
+            }
+            Self::Gear(gear) => gear.residual(at, x, imposed),
+            Self::Relation { of, by, law } => of.value(at) - law.at(by.value(at))[0] - imposed,
+        }
+    }
+
+    fn curvature(&self, at: &Places<'_>, x_dot: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        self.each_term(at, |factor, measure| {
+            sum += factor * measure.curvature(at, x_dot);
+        });
+        if let Self::Relation { by, law, .. } = self {
+            let rate = by.rate(at, x_dot);
+            sum -= law.at(by.value(at))[2] * rate * rate;
+        }
+        sum
+    }
+}
+
+/// What is needed to write the rows of a mechanism.
+struct Writer<'a> {
+    mechanism: &'a Mechanism,
+    columns: &'a [Column],
+}
+
+impl Writer<'_> {
+    fn ends(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> [End; 2] {
+        [0, 1].map(|i| End {
+            column: self.columns[bodies[i].0],
+            point: points[i],
+        })
+    }
+
+    fn joint(&self, index: usize, joint: &Joint) -> Result<Vec<Row>, RowsError> {
+        let ends = self.ends(joint.bodies, joint.points);
+        let columns = ends.map(|e| e.column);
+        let along = |axis: Vec2| Row::one(Measure::Along(ends, axis));
+        let coincide =
+            || [vec2(1.0, 0.0), vec2(0.0, 1.0)].map(|u| Row::one(Measure::Fixed(ends, u)));
+        let unrolled = |axis: Vec2, radius: f64| {
+            let terms = vec![
+                (1.0, Measure::Along(ends, axis)),
+                (radius, Measure::Turn(columns)),
+            ];
+            Row::sum(terms, 0.0)
+        };
+        Ok(match joint.kind {
+            JointKind::Revolute => coincide().into(),
+            JointKind::Prismatic {
+                axes: [first, second],
+            } => vec![
+                along(first.perp()),
+                Row::direction(columns, first.angle() - second.angle()),
+            ],
+            JointKind::Slot { axis } => vec![along(axis.perp())],
+            JointKind::Weld { angle } => {
+                let mut rows = Vec::from(coincide());
+                rows.push(Row::direction(columns, angle));
+                rows
+            }
+            JointKind::Gear { radii, internal } => vec![Row::Gear(Gear::new(
+                self.mechanism,
+                joint,
+                ends,
+                radii,
+                internal,
+                self.columns,
+            ))],
+            JointKind::Rack { axis, radius } => vec![unrolled(axis, radius)],
+            JointKind::Rolling { axis, radius } => vec![
+                Row::sum(vec![(1.0, Measure::Along(ends, axis.perp()))], radius),
+                unrolled(axis, radius),
+            ],
+            JointKind::Distance { length } => {
+                vec![Row::sum(vec![(1.0, Measure::Length(ends))], length)]
+            }
+            JointKind::Relation(relation) => vec![self.relation(index, relation)?],
+        })
+    }
+
+    fn relation(&self, joint: usize, relation: usize) -> Result<Row, RowsError> {
+        let relations = &self.mechanism.relations;
+        let described = relations.get(relation).ok_or(RowsError::NoRelation {
+            joint,
+            relation,
+            relations: relations.len(),
+        })?;
+        let bodies = self.columns.len();
+        let broken = |body| RowsError::RelationBody {
+            relation,
+            body,
+            bodies,
+        };
+        Ok(Row::Relation {
+            of: self.measure(described.of, broken)?,
+            by: self.measure(described.by, broken)?,
+            law: described.law.clone(),
+        })
+    }
+
+    /// The measure of a coordinate; `broken` is the error for a body that is not there.
+    fn measure(
+        &self,
+        coordinate: Coordinate,
+        broken: impl Fn(usize) -> RowsError,
+    ) -> Result<Measure, RowsError> {
+        let there = |bodies: [BodyId; 2]| match self.absent(bodies) {
+            Some(body) => Err(broken(body)),
+            None => Ok(()),
+        };
+        match coordinate {
+            Coordinate::Angle(bodies) => {
+                there(bodies)?;
+                Ok(Measure::Turn(bodies.map(|b| self.columns[b.0])))
+            }
+            Coordinate::Travel(JointId(joint)) => {
+                let slides = self.mechanism.joints.get(joint);
+                let (slides, axis) = match slides.map(|j| (j, j.kind)) {
+                    Some((j, JointKind::Prismatic { axes })) => (j, axes[0]),
+                    Some((j, JointKind::Slot { axis })) => (j, axis),
+                    _ => return Err(RowsError::NoTravel { joint }),
+                };
+                there(slides.bodies)?;
+                Ok(Measure::Along(
+                    self.ends(slides.bodies, slides.points),
+                    axis,
+                ))
+            }
+            Coordinate::Length { bodies, points } => {
+                there(bodies)?;
+                Ok(Measure::Length(self.ends(bodies, points)))
+            }
+        }
+    }
+
+    fn absent(&self, bodies: [BodyId; 2]) -> Option<usize> {
+        bodies
+            .into_iter()
+            .map(|b| b.0)
+            .find(|&b| b >= self.columns.len())
+    }
+}
+
+/// Whether a joint feels whole turns of a body.
+fn counts(mechanism: &Mechanism, joint: &Joint) -> bool {
+    match joint.kind {
+        JointKind::Gear { .. } | JointKind::Rack { .. } | JointKind::Rolling { .. } => true,
+        JointKind::Relation(r) => {
+            let relation = mechanism.relations.get(r);
+            relation.is_some_and(|r| r.of.is_angle() || r.by.is_angle())
+        }
+        _ => false,
+    }
+}
+
 impl Rows {
-    /// The rows of `mechanism`, or which of its references is broken. The axes of prismatic
-    /// joints are taken as the unit vectors they are documented to be.
+    /// The rows of `mechanism`, or which of its references is broken. Axes are taken as the unit
+    /// vectors they are documented to be.
     pub fn new(mechanism: &Mechanism) -> Result<Self, RowsError> {
         let bodies = mechanism.bodies.len();
         if mechanism.ground >= bodies {
@@ -153,46 +367,48 @@ impl Rows {
                 })
             })
             .collect();
-        let absent = |pair: [BodyId; 2]| pair.into_iter().map(|b| b.0).find(|&b| b >= bodies);
-
-        let mut items = Vec::with_capacity(mechanism.joints.len() + mechanism.actuators.len());
-        for (j, joint) in mechanism.joints.iter().enumerate() {
-            if let Some(body) = absent(joint.bodies) {
+        let writer = Writer {
+            mechanism,
+            columns: &body_columns,
+        };
+        let counted = mechanism.joints.iter().any(|j| counts(mechanism, j));
+        for (joint, described) in mechanism.joints.iter().enumerate() {
+            if let Some(body) = writer.absent(described.bodies) {
                 return Err(RowsError::JointBody {
-                    joint: j,
+                    joint,
                     body,
                     bodies,
                 });
             }
-            let end = |i: usize| End {
-                column: body_columns[joint.bodies[i].0],
-                point: joint.points[i],
+        }
+        let mut rows = Vec::with_capacity(2 * mechanism.joints.len() + mechanism.actuators.len());
+        for (joint, described) in mechanism.joints.iter().enumerate() {
+            rows.extend(writer.joint(joint, described)?);
+        }
+        for (actuator, described) in mechanism.actuators.iter().enumerate() {
+            let broken = |body| RowsError::ActuatorBody {
+                actuator,
+                body,
+                bodies,
             };
-            let ends = [end(0), end(1)];
-            items.push(match joint.kind {
-                JointKind::Revolute => Item::Revolute(ends),
-                JointKind::Prismatic {
-                    axes: [first, second],
-                } => Item::Prismatic(ends, first.perp(), second.angle() - first.angle()),
-                // The other kinds: to come.
-                _ => Item::Revolute(ends),
+            if let Some(body) = writer.absent(described.bodies) {
+                return Err(broken(body));
+            }
+            rows.push(match writer.measure(described.coordinate(), broken)? {
+                Measure::Turn(turned) if !counted => Row::direction(turned, 0.0),
+                measure => Row::one(measure),
             });
         }
-        for (a, actuator) in mechanism.actuators.iter().enumerate() {
-            if let Some(body) = absent(actuator.bodies) {
-                return Err(RowsError::ActuatorBody {
-                    actuator: a,
-                    body,
-                    bodies,
-                });
-            }
-            items.push(Item::Actuator(actuator.bodies.map(|b| body_columns[b.0])));
-        }
+        let reactions = mechanism.reactions();
+        let joints = reactions.iter().map(|r| r.component == Component::Moment);
+        let drives = mechanism.actuators.iter();
+        let angular = joints.chain(drives.map(|a| a.coordinate().is_angle()));
         Ok(Self {
-            items,
+            rows,
+            angular: angular.collect(),
             body_columns,
             columns,
-            rows: 2 * mechanism.joints.len() + mechanism.actuators.len(),
+            counted,
         })
     }
 
@@ -201,14 +417,14 @@ impl Rows {
         self.columns
     }
 
-    /// Number of rows: two per joint, one per actuator.
+    /// Number of rows: one per reaction component, one per actuator.
     pub fn len(&self) -> usize {
-        self.rows
+        self.rows.len()
     }
 
     /// Whether there are no rows at all.
     pub fn is_empty(&self) -> bool {
-        self.rows == 0
+        self.rows.is_empty()
     }
 
     /// The column of the body's x coordinate, followed by those of y and θ; `None` for the ground.
@@ -217,291 +433,56 @@ impl Rows {
     }
 
     /// Whether each row is an angle (rad) rather than a length (m).
-    pub fn angular(&self) -> Vec<bool> {
-        let kinds = |item: &Item| match item {
-            Item::Revolute(_) => [Some(false), Some(false)],
-            Item::Prismatic(..) => [Some(false), Some(true)],
-            Item::Actuator(_) => [Some(true), None],
-        };
-        self.items.iter().flat_map(kinds).flatten().collect()
+    pub fn angular(&self) -> &[bool] {
+        &self.angular
     }
 
-    /// Φₖ(x) − vₖ into `out`, with the imposed values `imposed`; angles to the nearest turn.
-    pub fn residual(&self, x: &[f64], imposed: &[f64], out: &mut [f64]) {
-        let mut k = 0;
-        for item in &self.items {
-            match *item {
-                Item::Revolute([first, second]) => {
-                    let gap = second.place(x).at - first.place(x).at;
-                    out[k] = gap.x - imposed[k];
-                    out[k + 1] = gap.y - imposed[k + 1];
-                    k += 2;
-                }
-                Item::Prismatic([first, second], normal, between) => {
-                    let normal = normal.turn(direction(first.column, x));
-                    let gap = second.place(x).at - first.place(x).at;
-                    let angle = turning(second.column, x) - turning(first.column, x) + between;
-                    out[k] = normal.dot(gap) - imposed[k];
-                    out[k + 1] = nearest_turn(angle - imposed[k + 1]);
-                    k += 2;
-                }
-                Item::Actuator([first, second]) => {
-                    out[k] = nearest_turn(turning(second, x) - turning(first, x) - imposed[k]);
-                    k += 1;
-                }
+    /// Whether the rows feel whole turns of a body, so that the angles in x must be counted.
+    pub fn counted(&self) -> bool {
+        self.counted
+    }
+
+    /// Meshes the gears as they stand at `x_start`: their rows vanish there. Neither the Jacobian
+    /// nor the curvature depends on it.
+    pub fn mesh(&mut self, x_start: &[f64]) {
+        let at = Places::new(x_start);
+        for row in &mut self.rows {
+            if let Row::Gear(gear) = row {
+                gear.mesh(&at, x_start);
             }
+        }
+    }
+
+    /// Φₖ(x) − vₖ into `out`, with the imposed values `imposed`.
+    pub fn residual(&self, x: &[f64], imposed: &[f64], out: &mut [f64]) {
+        let at = Places::new(x);
+        for ((row, value), out) in self.rows.iter().zip(imposed).zip(out) {
+            *out = row.residual(&at, x, *value);
         }
     }
 
     /// ∂Φ/∂x into `out`, row after row.
     pub fn jacobian(&self, x: &[f64], out: &mut [f64]) {
         out.fill(0.0);
-        let width = self.columns;
-        // Adds the row's derivative with one body's x, y and θ, if that body moves.
-        let mut add = |row: usize, column: Option<usize>, [x, y, turn]: [f64; 3]| {
-            if let Some(c) = column {
-                let at = row * width + c;
-                out[at] += x;
-                out[at + 1] += y;
-                out[at + 2] += turn;
-            }
-        };
-        let mut k = 0;
-        for item in &self.items {
-            match *item {
-                Item::Revolute(ends) => {
-                    for (end, sign) in ends.into_iter().zip([-1.0, 1.0]) {
-                        let swing = end.place(x).arm.perp() * sign;
-                        add(k, end.column, [sign, 0.0, swing.x]);
-                        add(k + 1, end.column, [0.0, sign, swing.y]);
+        let at = Places::new(x);
+        for (k, row) in self.rows.iter().enumerate() {
+            let out = &mut out[k * self.columns..(k + 1) * self.columns];
+            row.each_term(&at, |factor, measure| {
+                measure.gradient(&at, |c, derivative| {
+                    for (out, d) in out[c..c + 3].iter_mut().zip(derivative) {
+                        *out += factor * d;
                     }
-                    k += 2;
-                }
-                Item::Prismatic([first, second], normal, _) => {
-                    let n = normal.turn(direction(first.column, x));
-                    let (one, two) = (first.place(x), second.place(x));
-                    // n·perp(r) is the moment r × n. The first body's arm reaches to P2, not to
-                    // P1, because its normal turns with it.
-                    let reach = one.arm + (two.at - one.at);
-                    add(k, first.column, [-n.x, -n.y, -reach.cross(n)]);
-                    add(k, second.column, [n.x, n.y, two.arm.cross(n)]);
-                    add(k + 1, first.column, [0.0, 0.0, -1.0]);
-                    add(k + 1, second.column, [0.0, 0.0, 1.0]);
-                    k += 2;
-                }
-                Item::Actuator([first, second]) => {
-                    add(k, first, [0.0, 0.0, -1.0]);
-                    add(k, second, [0.0, 0.0, 1.0]);
-                    k += 1;
-                }
-            }
+                });
+            });
         }
     }
 
     /// The velocity-squared terms Φ̇ₓ ẋ into `out`, so that Φ̈ = J ẍ + Φ̇ₓ ẋ: the second derivative
     /// of Φ along x + s ẋ at s = 0.
     pub fn curvature(&self, x: &[f64], x_dot: &[f64], out: &mut [f64]) {
-        let mut k = 0;
-        for item in &self.items {
-            match *item {
-                Item::Revolute([first, second]) => {
-                    let (_, pull1) = first.speed(first.place(x).arm, x_dot);
-                    let (_, pull2) = second.speed(second.place(x).arm, x_dot);
-                    out[k] = pull2.x - pull1.x;
-                    out[k + 1] = pull2.y - pull1.y;
-                    k += 2;
-                }
-                Item::Prismatic([first, second], normal, _) => {
-                    // d²(n·d) = n̈·d + 2 ṅ·ḋ + n·d̈, with ṅ = ω1 perp(n) and n̈ = −ω1² n.
-                    let n = normal.turn(direction(first.column, x));
-                    let omega = turning(first.column, x_dot);
-                    let (one, two) = (first.place(x), second.place(x));
-                    let (speed1, pull1) = first.speed(one.arm, x_dot);
-                    let (speed2, pull2) = second.speed(two.arm, x_dot);
-                    out[k] = -omega * omega * n.dot(two.at - one.at)
-                        + 2.0 * omega * n.perp().dot(speed2 - speed1)
-                        + n.dot(pull2 - pull1);
-                    out[k + 1] = 0.0;
-                    k += 2;
-                }
-                Item::Actuator(_) => {
-                    out[k] = 0.0;
-                    k += 1;
-                }
-            }
+        let at = Places::new(x);
+        for (row, out) in self.rows.iter().zip(out) {
+            *out = row.curvature(&at, x_dot);
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mechanism::{Actuator, Body, Joint};
-
-    /// Ground, a bar on a revolute, a block sliding on the bar with offsets everywhere, and the
-    /// block pinned to the ground from the other side, so that every kind of end occurs.
-    fn swinging_block() -> Mechanism {
-        let body = |name: &str| Body { name: name.into() };
-        let joint = |name: &str, bodies: [usize; 2], points, kind| Joint {
-            name: name.into(),
-            bodies: bodies.map(BodyId),
-            points,
-            kind,
-        };
-        Mechanism {
-            bodies: vec![body("bar"), body("ground"), body("block")],
-            ground: 1,
-            joints: vec![
-                joint(
-                    "A",
-                    [1, 0],
-                    [vec2(3.0, -2.0), vec2(0.4, 0.1)],
-                    JointKind::Revolute,
-                ),
-                joint(
-                    "slide",
-                    [0, 2],
-                    [vec2(-0.3, 0.7), vec2(0.2, 0.5)],
-                    JointKind::Prismatic {
-                        axes: [Vec2::from_angle(0.6), Vec2::from_angle(-2.9)],
-                    },
-                ),
-                joint(
-                    "B",
-                    [2, 1],
-                    [vec2(1.1, 0.0), vec2(5.0, 1.0)],
-                    JointKind::Revolute,
-                ),
-            ],
-            actuators: vec![Actuator {
-                name: "phi".into(),
-                bodies: [BodyId(0), BodyId(2)],
-                drive: crate::mechanism::Drive::Angle,
-            }],
-            relations: vec![],
-        }
-    }
-
-    const X: [f64; 6] = [2.5, -1.8, 0.3, 4.0, 1.5, -2.6];
-    const X_DOT: [f64; 6] = [0.7, -0.4, 1.3, -0.2, 0.9, -0.8];
-
-    fn residual_along(rows: &Rows, s: f64) -> Vec<f64> {
-        let x: Vec<f64> = X.iter().zip(X_DOT).map(|(x, v)| x + s * v).collect();
-        let mut out = vec![0.0; rows.len()];
-        rows.residual(&x, &vec![0.0; rows.len()], &mut out);
-        out
-    }
-
-    #[test]
-    fn the_jacobian_is_the_derivative_of_the_residual() {
-        let rows = Rows::new(&swinging_block()).unwrap();
-        assert_eq!((rows.len(), rows.columns()), (7, 6));
-        let mut jacobian = vec![0.0; 7 * 6];
-        rows.jacobian(&X, &mut jacobian);
-        let h = 1e-5;
-        for c in 0..6 {
-            let at = |s: f64| {
-                let mut x = X;
-                x[c] += s;
-                let mut out = vec![0.0; 7];
-                rows.residual(&x, &[0.0; 7], &mut out);
-                out
-            };
-            let (plus, minus) = (at(h), at(-h));
-            for k in 0..7 {
-                let slope = (plus[k] - minus[k]) / (2.0 * h);
-                let error = (jacobian[k * 6 + c] - slope).abs();
-                assert!(error < 1e-9, "row {k}, column {c}: {error:e}");
-            }
-        }
-    }
-
-    #[test]
-    fn the_curvature_is_the_second_derivative_along_a_straight_line() {
-        let rows = Rows::new(&swinging_block()).unwrap();
-        let mut curvature = vec![0.0; 7];
-        rows.curvature(&X, &X_DOT, &mut curvature);
-        let h = 1e-3;
-        let (plus, here, minus) = (
-            residual_along(&rows, h),
-            residual_along(&rows, 0.0),
-            residual_along(&rows, -h),
-        );
-        for k in 0..7 {
-            let second = (plus[k] - 2.0 * here[k] + minus[k]) / (h * h);
-            let error = (curvature[k] - second).abs();
-            assert!(error < 1e-5, "row {k}: {error:e}");
-        }
-    }
-
-    /// A block on the slope of a fixed guide: the normal row's multiplier pushes the block along
-    /// the guide's axis turned +90°, and the ground pushes back on nothing.
-    #[test]
-    fn the_multiplier_is_the_action_of_the_first_body_on_the_second() {
-        let slope = Vec2::from_angle(0.5);
-        let body = |name: &str| Body { name: name.into() };
-        let mechanism = Mechanism {
-            bodies: vec![body("ground"), body("block")],
-            ground: 0,
-            joints: vec![Joint {
-                name: "slide".into(),
-                bodies: [BodyId(0), BodyId(1)],
-                points: [Vec2::ZERO, vec2(0.0, 0.25)],
-                kind: JointKind::Prismatic {
-                    axes: [slope, vec2(1.0, 0.0)],
-                },
-            }],
-            actuators: vec![],
-            relations: vec![],
-        };
-        let rows = Rows::new(&mechanism).unwrap();
-        let mut jacobian = vec![0.0; 6];
-        rows.jacobian(&[1.0, 2.0, 0.5], &mut jacobian);
-        let n = slope.perp();
-        // The force acts at the block's point, whose arm lies along the normal: no moment.
-        for (got, want) in jacobian.iter().zip([n.x, n.y, 0.0, 0.0, 0.0, 1.0]) {
-            assert!((got - want).abs() < 1e-15);
-        }
-        assert_eq!(rows.angular(), [false, true]);
-    }
-
-    #[test]
-    fn angles_are_taken_to_the_nearest_turn_of_the_imposed_value() {
-        let rows = Rows::new(&swinging_block()).unwrap();
-        let (mut near, mut far) = (vec![0.0; 7], vec![0.0; 7]);
-        let mut x = X;
-        rows.residual(&x, &[0.0, 0.0, 0.0, 0.01, 0.0, 0.0, 0.3], &mut near);
-        x[2] += 3.0 * TAU;
-        rows.residual(
-            &x,
-            &[0.0, 0.0, 0.0, 0.01 - TAU, 0.0, 0.0, 0.3 + TAU],
-            &mut far,
-        );
-        for (a, b) in near.iter().zip(&far) {
-            assert!((a - b).abs() < 1e-12);
-        }
-    }
-
-    #[test]
-    fn broken_references_are_named() {
-        let mut mechanism = swinging_block();
-        mechanism.joints[1].bodies[1] = BodyId(9);
-        let error = Rows::new(&mechanism).unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "joint 1 names body 9, but there are 3 bodies"
-        );
-        let mut mechanism = swinging_block();
-        mechanism.ground = 3;
-        assert!(matches!(
-            Rows::new(&mechanism),
-            Err(RowsError::NoGround { .. })
-        ));
-        let mut mechanism = swinging_block();
-        mechanism.actuators[0].bodies[0] = BodyId(7);
-        assert!(matches!(
-            Rows::new(&mechanism),
-            Err(RowsError::ActuatorBody { actuator: 0, .. })
-        ));
     }
 }

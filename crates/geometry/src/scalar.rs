@@ -28,6 +28,11 @@ pub trait Scalar:
     fn sqrt(self) -> Self;
     /// Sine and cosine together.
     fn sin_cos(self) -> (Self, Self);
+    /// The angle of (x, y) = (`other`, `self`) from the x axis, in (−π, π].
+    fn atan2(self, other: Self) -> Self;
+    /// A function of this number, from its value and first three derivatives at
+    /// [`value`](Self::value).
+    fn through(self, derivatives: &[f64; 4]) -> Self;
 }
 
 impl Scalar for f64 {
@@ -46,6 +51,14 @@ impl Scalar for f64 {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         f64::sin_cos(self)
+    }
+    #[inline]
+    fn atan2(self, other: Self) -> Self {
+        f64::atan2(self, other)
+    }
+    #[inline]
+    fn through(self, derivatives: &[f64; 4]) -> Self {
+        derivatives[0]
     }
 }
 
@@ -96,6 +109,21 @@ impl Scalar for Dual {
                 d: -s * self.d,
             },
         )
+    }
+    #[inline]
+    fn atan2(self, other: Self) -> Self {
+        let square = self.v * self.v + other.v * other.v;
+        Self {
+            v: self.v.atan2(other.v),
+            d: (other.v * self.d - self.v * other.d) / square,
+        }
+    }
+    #[inline]
+    fn through(self, derivatives: &[f64; 4]) -> Self {
+        Self {
+            v: derivatives[0],
+            d: derivatives[1] * self.d,
+        }
     }
 }
 

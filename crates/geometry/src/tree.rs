@@ -8,7 +8,7 @@
 
 use crate::error::StructureError;
 use crate::frames::Frames;
-use crate::mechanism::{BodyId, JointId, JointKind, Mechanism};
+use crate::lower::{Driven, Lowered, Tie};
 use crate::plane::Vec2;
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -25,15 +25,15 @@ pub struct Arm {
 /// How a body is carried from an earlier one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Carry {
-    /// The body.
-    pub body: BodyId,
+    /// The body; an index beyond the mechanism's bodies is an added, massless one.
+    pub body: usize,
     /// The body that carries it.
-    pub parent: BodyId,
-    /// The joint that carries it.
-    pub joint: JointId,
-    /// From the parent's root to the joint's point on the parent.
+    pub parent: usize,
+    /// The bond that carries it.
+    pub bond: usize,
+    /// From the parent's root to the bond's point on the parent.
     pub arm: Arm,
-    /// The slide, if the joint is prismatic: its index and the direction, in the frame of both
+    /// The slide, if the bond is one: its index and the direction, in the frame of both
     /// bodies, along which the body moves away from the parent.
     pub slide: Option<(usize, Vec2)>,
 }
@@ -47,23 +47,24 @@ pub struct Tree {
     pub place: Vec<Option<usize>>,
     /// By body: its root, in its own frame, m.
     pub roots: Vec<Vec2>,
-    /// The joints outside the tree.
-    pub chords: Vec<JointId>,
-    /// Number of slides.
-    pub slides: usize,
+    /// The bonds outside the tree.
+    pub chords: Vec<usize>,
+    /// By slide: its bond.
+    pub slides: Vec<usize>,
 }
 
 /// The closure of a chord: P₂ − P₁ as a sum of arms and slides.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Loop {
-    /// The chord.
-    pub joint: JointId,
+pub(crate) struct Loop {
+    /// The chord, by bond.
+    pub(crate) bond: usize,
     /// One arm for each frame it passes, all attachments of that frame summed.
-    pub arms: Vec<Arm>,
+    pub(crate) arms: Vec<Arm>,
     /// The slides it passes, each with the direction it counts along.
-    pub slides: Vec<(usize, Arm)>,
-    /// For a prismatic chord, its axis (first body): only the part along the normal must vanish.
-    pub axis: Option<Arm>,
+    pub(crate) slides: Vec<(usize, Arm)>,
+    /// For a slide whose travel nothing measures, its axis (first body): only the part along the
+    /// normal must vanish.
+    pub(crate) axis: Option<Arm>,
 }
 
 impl Tree {
@@ -72,12 +73,12 @@ impl Tree {
     ///
     /// # Errors
     /// [`StructureError::Detached`] when some bodies cannot be reached.
-    pub fn find(mechanism: &Mechanism, frames: &Frames) -> Result<Self, StructureError> {
-        let n = mechanism.bodies.len();
-        let mut joints_of: Vec<Vec<usize>> = vec![Vec::new(); n];
-        for (j, joint) in mechanism.joints.iter().enumerate() {
-            for body in joint.bodies {
-                joints_of[body.0].push(j);
+    pub(crate) fn find(lowered: &Lowered, frames: &Frames) -> Result<Self, StructureError> {
+        let n = lowered.bodies;
+        let mut bonds_of: Vec<Vec<usize>> = vec![Vec::new(); n];
+        for (b, bond) in lowered.bonds.iter().enumerate() {
+            for body in bond.bodies {
+                bonds_of[body].push(b);
             }
         }
         let mut tree = Self {
@@ -85,77 +86,73 @@ impl Tree {
             place: vec![None; n],
             roots: vec![Vec2::ZERO; n],
             chords: Vec::new(),
-            slides: 0,
+            slides: Vec::new(),
         };
-        let ground = mechanism.ground;
+        let ground = lowered.ground;
         let mut reached = vec![false; n];
-        let mut in_tree = vec![false; mechanism.joints.len()];
+        let mut in_tree = vec![false; lowered.bonds.len()];
         let mut queue = BinaryHeap::new();
         reached[ground] = true;
         // Measured from one of its own points, the ground adds no rounding of where it stands.
-        if let Some(&j) = joints_of[ground].first() {
-            tree.roots[ground] = point_on(mechanism, j, ground);
+        if let Some(&b) = bonds_of[ground].first() {
+            tree.roots[ground] = point_on(lowered, b, ground);
         }
-        let rank = driven_ranks(mechanism);
+        let rank = ranks(lowered);
         let offer = |queue: &mut BinaryHeap<_>, body: usize, depth: usize| {
-            for &j in &joints_of[body] {
-                queue.push(Reverse((rank[j], depth + 1, j, body)));
+            for &b in &bonds_of[body] {
+                queue.push(Reverse((rank[b], depth + 1, b, body)));
             }
         };
         offer(&mut queue, ground, 0);
-        while let Some(Reverse((_, depth, j, parent))) = queue.pop() {
-            let joint = &mechanism.joints[j];
-            let child = joint.bodies[usize::from(joint.bodies[0].0 == parent)].0;
+        while let Some(Reverse((_, depth, b, parent))) = queue.pop() {
+            let bond = &lowered.bonds[b];
+            let child = bond.bodies[usize::from(bond.bodies[0] == parent)];
             if std::mem::replace(&mut reached[child], true) {
                 continue;
             }
-            in_tree[j] = true;
-            tree.roots[child] = point_on(mechanism, j, child);
-            tree.carry(mechanism, frames, j, parent, child);
+            in_tree[b] = true;
+            tree.roots[child] = point_on(lowered, b, child);
+            tree.carry(lowered, frames, b, parent, child);
             offer(&mut queue, child, depth);
         }
-        let detached: Vec<_> = (0..n).filter(|&b| !reached[b]).map(BodyId).collect();
+        let detached = lowered.named((0..n).filter(|&b| !reached[b]));
         if !detached.is_empty() {
             return Err(StructureError::Detached { bodies: detached });
         }
-        tree.chords = (0..in_tree.len())
-            .filter(|&j| !in_tree[j])
-            .map(JointId)
-            .collect();
+        tree.chords = (0..in_tree.len()).filter(|&b| !in_tree[b]).collect();
+        for &chord in &tree.chords {
+            if let Tie::Slide { measured: true, .. } = lowered.bonds[chord].tie {
+                tree.slides.push(chord);
+            }
+        }
         Ok(tree)
     }
 
-    fn carry(
-        &mut self,
-        mechanism: &Mechanism,
-        frames: &Frames,
-        j: usize,
-        parent: usize,
-        child: usize,
-    ) {
-        let joint = &mechanism.joints[j];
-        let slide = match joint.kind {
-            JointKind::Prismatic { axes } => {
-                let axis = axes[0].turn(frames.attitudes[joint.bodies[0].0].offset);
-                let away = if joint.bodies[1].0 == child {
-                    axis
-                } else {
-                    -axis
-                };
-                self.slides += 1;
-                Some((self.slides - 1, away))
+    fn carry(&mut self, lowered: &Lowered, frames: &Frames, b: usize, parent: usize, child: usize) {
+        let bond = &lowered.bonds[b];
+        let slide = match bond.tie {
+            Tie::Slide { axes, .. } => {
+                let axis = axes[0].turn(frames.attitudes[bond.bodies[0]].offset);
+                let away = if bond.bodies[1] == child { axis } else { -axis };
+                self.slides.push(b);
+                Some((self.slides.len() - 1, away))
             }
-            _ => None,
+            Tie::Pin | Tie::Weld(_) => None,
         };
-        let arm = self.arm(frames, parent, point_on(mechanism, j, parent));
+        let arm = self.arm(frames, parent, point_on(lowered, b, parent));
         self.place[child] = Some(self.carries.len());
         self.carries.push(Carry {
-            body: BodyId(child),
-            parent: BodyId(parent),
-            joint: JointId(j),
+            body: child,
+            parent,
+            bond: b,
             arm,
             slide,
         });
+    }
+
+    /// The slide of a bond, if its travel is an unknown or a coordinate.
+    pub(crate) fn slide_of(&self, bond: usize) -> Option<usize> {
+        self.slides.iter().position(|&b| b == bond)
     }
 
     /// The arm from a body's root to one of its points.
@@ -164,12 +161,12 @@ impl Tree {
     }
 
     /// The loop that a chord closes.
-    pub fn close(&self, mechanism: &Mechanism, frames: &Frames, chord: JointId) -> Loop {
-        let joint = &mechanism.joints[chord.0];
+    pub(crate) fn close(&self, lowered: &Lowered, frames: &Frames, chord: usize) -> Loop {
+        let bond = &lowered.bonds[chord];
         let mut arms: Vec<Arm> = Vec::new();
         let mut slides: Vec<(usize, Arm)> = Vec::new();
         // Walk both ends down to the body where they meet, the later one first.
-        let [mut first, mut second] = [0, 1].map(|i| (joint.bodies[i].0, joint.points[i]));
+        let [mut first, mut second] = [0, 1].map(|i| (bond.bodies[i], bond.points[i]));
         while first.0 != second.0 {
             let step_second = self.place[second.0] > self.place[first.0];
             let (end, sign) = if step_second {
@@ -190,10 +187,7 @@ impl Tree {
                 let local = away * sign;
                 slides.push((slide, Arm { frame, local }));
             }
-            *end = (
-                carry.parent.0,
-                point_on(mechanism, carry.joint.0, carry.parent.0),
-            );
+            *end = (carry.parent, point_on(lowered, carry.bond, carry.parent));
         }
         add(
             &mut arms,
@@ -201,18 +195,25 @@ impl Tree {
             1.0,
         );
         arms.retain(|arm| arm.local != Vec2::ZERO);
-        let axis = match joint.kind {
-            JointKind::Prismatic { axes } => {
-                let attitude = frames.attitudes[joint.bodies[0].0];
-                Some(Arm {
-                    frame: attitude.frame,
-                    local: axes[0].turn(attitude.offset),
-                })
+        let mut axis = None;
+        if let Tie::Slide { axes, measured, .. } = bond.tie {
+            let attitude = frames.attitudes[bond.bodies[0]];
+            let frame = attitude.frame;
+            let local = axes[0].turn(attitude.offset);
+            match self.slide_of(chord).filter(|_| measured) {
+                // Its travel is a coordinate: the loop closes along the axis too.
+                Some(own) => slides.push((
+                    own,
+                    Arm {
+                        frame,
+                        local: -local,
+                    },
+                )),
+                None => axis = Some(Arm { frame, local }),
             }
-            _ => None,
-        };
+        }
         Loop {
-            joint: chord,
+            bond: chord,
             arms,
             slides,
             axis,
@@ -220,30 +221,34 @@ impl Tree {
     }
 }
 
-/// By joint: 0 where an actuator drives it, 1 revolute, 2 prismatic.
-fn driven_ranks(mechanism: &Mechanism) -> Vec<u8> {
-    let mut pairs: Vec<[BodyId; 2]> = mechanism
-        .actuators
+/// By bond: 0 where an actuator drives it or its travel is measured, 1 a pin or a weld, 2 a slide.
+fn ranks(lowered: &Lowered) -> Vec<u8> {
+    let mut pairs: Vec<[usize; 2]> = lowered
+        .drives
         .iter()
-        .map(|a| sorted(a.bodies))
+        .filter_map(|drive| match *drive {
+            Driven::Angle(bodies) => Some(sorted(bodies)),
+            Driven::Travel(_) => None,
+        })
         .collect();
     pairs.sort_unstable();
-    let rank = |joint: &crate::mechanism::Joint| match joint.kind {
-        JointKind::Revolute if pairs.binary_search(&sorted(joint.bodies)).is_ok() => 0,
-        JointKind::Revolute => 1,
-        _ => 2,
+    let rank = |bond: &crate::lower::Bond| match bond.tie {
+        Tie::Pin if pairs.binary_search(&sorted(bond.bodies)).is_ok() => 0,
+        Tie::Slide { measured: true, .. } => 0,
+        Tie::Pin | Tie::Weld(_) => 1,
+        Tie::Slide { .. } => 2,
     };
-    mechanism.joints.iter().map(rank).collect()
+    lowered.bonds.iter().map(rank).collect()
 }
 
-fn sorted([a, b]: [BodyId; 2]) -> [BodyId; 2] {
+fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     if a <= b { [a, b] } else { [b, a] }
 }
 
-/// The joint's point on one of its bodies.
-fn point_on(mechanism: &Mechanism, joint: usize, body: usize) -> Vec2 {
-    let joint = &mechanism.joints[joint];
-    joint.points[usize::from(joint.bodies[0].0 != body)]
+/// The bond's point on one of its bodies.
+fn point_on(lowered: &Lowered, bond: usize, body: usize) -> Vec2 {
+    let bond = &lowered.bonds[bond];
+    bond.points[usize::from(bond.bodies[0] != body)]
 }
 
 /// The vector from one point of a body to another, in its frame. What is left of two points that

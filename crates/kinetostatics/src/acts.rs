@@ -124,7 +124,7 @@ impl Loads {
             let mass = masses.get(body.0).copied()?;
             (mass.mass > 0.0).then_some((body, mass))
         };
-        let weights = plan.carried().iter().filter_map(|c| weight(c.body));
+        let weights = plan.carried().iter().filter_map(|c| weight(BodyId(c.body)));
         Ok(Self {
             loads,
             senses,

@@ -42,9 +42,9 @@ impl<T: Scalar> Runs<T, 1> {
     fn bear(&mut self, model: &Model, pose: &Pose<T>, loads: &mut LoadState<T>) {
         let carried = model.plan.carried();
         for (i, body) in carried.iter().enumerate() {
-            let force = loads.force[body.body.0];
+            let force = loads.force[body.body];
             loads.borne[i] = force;
-            self.balance.moment[body.frame][0] -= loads.moment[body.body.0];
+            self.balance.moment[body.frame][0] -= loads.moment[body.body];
             if model.sources.tree_forces {
                 self.held[i][0] -= force;
             }

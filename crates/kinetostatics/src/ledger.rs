@@ -7,7 +7,6 @@ use dwell_geometry::measure::{BodyStates, Measured};
 use dwell_geometry::{
     ActuatorId, BodyId, Joint, JointId, JointKind, Mechanism, Plan, Reaction, Vec2,
 };
-use dwell_laws::Law;
 
 /// Turns reactions and actuator actions into what they do to the bodies.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,7 +22,7 @@ pub struct Ledger {
 struct Entry {
     joint: Joint,
     components: [usize; 3],
-    /// For a relation: both coordinates, with where their couples stand, and its law.
+    /// For a relation: both coordinates, with where their couples stand.
     relation: Option<Related>,
 }
 
@@ -31,7 +30,6 @@ struct Entry {
 struct Related {
     of: (Measured, [Vec2; 2]),
     by: (Measured, [Vec2; 2]),
-    law: Law,
 }
 
 impl Ledger {
@@ -64,7 +62,6 @@ impl Ledger {
                     Some(Related {
                         of: coordinate(relation.of)?,
                         by: coordinate(relation.by)?,
-                        law: relation.law.clone(),
                     })
                 }),
                 _ => None,
@@ -85,14 +82,21 @@ impl Ledger {
 
     /// Everything that acts on a body, or by a body on the ground, at the state that
     /// [`Model::kinetostatics`] evaluated last into `work` and `actions`: joints, actuators, loads.
-    pub fn acts(&self, work: &Workspace<f64>, actions: &Actions<f64>, acts: &mut Vec<Act>) {
+    pub fn acts(
+        &self,
+        model: &Model,
+        work: &Workspace<f64>,
+        actions: &Actions<f64>,
+        acts: &mut Vec<Act>,
+    ) {
         let states = work.states();
         acts.clear();
         for (j, entry) in self.joints.iter().enumerate() {
             let by = By::Joint(JointId(j));
             let value = |i: usize| actions.reactions[entry.components[i]];
             if let Some(relation) = &entry.relation {
-                relate(relation, value(0), by, states, acts);
+                let slope = model.plan().relation_slope(JointId(j), &work.pose);
+                relate(relation, value(0), slope.unwrap_or(0.0), by, states, acts);
             } else {
                 joint_acts(&entry.joint, value, by, states, acts);
             }
@@ -108,13 +112,13 @@ impl Ledger {
 
 /// What a relation of = law(by) does: the other coordinate feels −λ times the law's slope.
 fn relate(
-    Related { of, by: other, law }: &Related,
+    Related { of, by: other }: &Related,
     lambda: f64,
+    slope: f64,
     by: By,
     states: &BodyStates,
     acts: &mut Vec<Act>,
 ) {
-    let slope = law.at(states.measure(other.0)[0])[1];
     push(*of, lambda, by, states, acts);
     push(*other, -lambda * slope, by, states, acts);
 }
@@ -277,7 +281,6 @@ pub(crate) fn meeting(mechanism: &Mechanism, plan: &Plan, bodies: [BodyId; 2]) -
 mod tests {
     use super::*;
     use dwell_geometry::{Actuator, Body, Drive, Start, vec2};
-    use dwell_laws::Polynomial;
 
     const GROUND: BodyId = BodyId(0);
     const ONE: BodyId = BodyId(1);
@@ -460,16 +463,13 @@ mod tests {
         let relation = Related {
             of: (of, points),
             by: (by, points),
-            law: Law::Polynomial(Polynomial {
-                coefficients: vec![0.3, 0.5, -0.4],
-            }),
         };
         let states = states([-0.7, 2.3]);
         let mut acts = Vec::new();
-        relate(&relation, 3.0, By::Joint(JointId(0)), &states, &mut acts);
+        let joint = By::Joint(JointId(0));
+        relate(&relation, 3.0, 0.8, joint, &states, &mut acts);
         let power: f64 = acts.iter().map(|act| act.power(&states)).sum();
-        let [angle, turning, _] = states.measure(by);
-        let rate = states.measure(of)[1] - (0.5 - 0.8 * angle) * turning;
+        let rate = states.measure(of)[1] - 0.8 * states.measure(by)[1];
         assert!((power - 3.0 * rate).abs() < 1e-14);
     }
 }

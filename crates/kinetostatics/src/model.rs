@@ -146,12 +146,12 @@ impl Model {
                     mass,
                     inertia,
                     center,
-                } = masses[carried.body.0];
-                let arm = plan.tree().arm(plan.frames(), carried.body.0, center).local;
+                } = masses.get(carried.body).copied().unwrap_or_default();
+                let arm = plan.tree().arm(plan.frames(), carried.body, center).local;
                 let arm = (arm != Vec2::ZERO && mass > 0.0).then_some(arm);
                 (mass > 0.0 || inertia > 0.0).then(|| Massive {
                     carried: i,
-                    body: carried.body.0,
+                    body: carried.body,
                     frame: carried.frame,
                     mass,
                     inertia,

@@ -1,9 +1,10 @@
-//! Where each requested reaction comes from: a chord's multiplier, the force in a joint of the
-//! tree, or the couple that holds two bodies at an angle.
+//! Where each requested reaction comes from: the force in a bond (a chord's multiplier, or what a
+//! joint of the tree bears), the couple that holds two bodies at an angle, or a relation's multiplier.
 
 use crate::model::Model;
 use crate::runs::Runs;
 use dwell_geometry::frames::{Coupler, Turning};
+use dwell_geometry::lower::Tie;
 use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Scalar, Vec2, vec2};
 use std::array;
 
@@ -14,27 +15,34 @@ pub(crate) struct End {
     /// Its place among the carried bodies; none for the ground.
     pub(crate) carried: Option<usize>,
     pub(crate) frame: usize,
-    /// From the body's root to the joint's point, in its frame, m; none where they coincide.
+    /// From the body's root to the bond's point, in its frame, m; none where they coincide.
     pub(crate) arm: Option<Vec2>,
+}
+
+/// A direction along which a force is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Along {
+    /// The ground's x or y axis, times a sign.
+    X(f64),
+    Y(f64),
+    /// A constant vector in a frame.
+    Frame(usize, Vec2),
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Source {
-    /// A component of a chord's multiplier.
-    Chord {
-        closure: usize,
-        component: Component,
-    },
-    /// A component of the force on a carried body, times a sign; for a prismatic joint, along the
-    /// normal of the axis with these components in this frame.
-    Carry {
-        carried: usize,
-        sign: f64,
-        component: Component,
-        axis: Option<(usize, Vec2)>,
-    },
+    /// The multiplier of a chord that closes along its normal only.
+    Normal(usize),
+    /// A component of the force in a chord, by closure.
+    Chord(usize, Along),
+    /// A component of the force on a carried body.
+    Carry(usize, Along),
     /// The couple on a held body, times a sign.
     Hold { body: usize, sign: f64 },
+    /// The multiplier of a relation.
+    Relation(usize),
+    /// Held by others already: nothing is left for this one.
+    Spare,
 }
 
 /// The sources of the requested reactions, and what they need.
@@ -51,16 +59,18 @@ pub(crate) struct Sources {
     pub(crate) carried_is_second: Vec<bool>,
     /// By actuator: the frames that its coordinate turns, with the sign.
     pub(crate) driven: Vec<Vec<(usize, f64)>>,
+    /// By actuator: the slide it drives.
+    pub(crate) slides: Vec<Option<usize>>,
 }
 
 impl Sources {
     pub(crate) fn find(mechanism: &Mechanism, plan: &Plan, reactions: &[Reaction]) -> Self {
         let tree = plan.tree();
         let chords = plan.closures().iter().map(|closure| {
-            let joint = &mechanism.joints[closure.joint.0];
+            let bond = &plan.bonds()[closure.bond];
             [0, 1].map(|i| {
-                let body = joint.bodies[i].0;
-                let arm = tree.arm(plan.frames(), body, joint.points[i]);
+                let body = bond.bodies[i];
+                let arm = tree.arm(plan.frames(), body, bond.points[i]);
                 End {
                     body,
                     carried: tree.place[body],
@@ -69,18 +79,18 @@ impl Sources {
                 }
             })
         });
-        let second =
-            |c: &dwell_geometry::tree::Carry| mechanism.joints[c.joint.0].bodies[1] == c.body;
+        let second = |c: &dwell_geometry::tree::Carry| plan.bonds()[c.bond].bodies[1] == c.body;
         let mut found = Self {
             chords: chords.collect(),
-            parent_body: tree.carries.iter().map(|c| c.parent.0).collect(),
+            parent_body: tree.carries.iter().map(|c| c.parent).collect(),
             carried_is_second: tree.carries.iter().map(second).collect(),
             driven: driven(plan),
+            slides: (0..plan.actuators()).map(|a| plan.slide_of(a)).collect(),
             ..Self::default()
         };
         for &reaction in reactions {
             let source = found.source(mechanism, plan, reaction);
-            found.tree_forces |= !matches!(source, Source::Chord { .. });
+            found.tree_forces |= matches!(source, Source::Carry(..) | Source::Hold { .. });
             found.moments |= matches!(source, Source::Hold { .. });
             found.sources.push(source);
         }
@@ -96,45 +106,69 @@ impl Sources {
 
     fn source(&self, mechanism: &Mechanism, plan: &Plan, reaction: Reaction) -> Source {
         let Reaction { joint, component } = reaction;
-        if component == Component::Moment {
-            let by = Coupler::Joint(joint);
-            // Every prismatic joint holds a body: a cycle of holds has been refused.
-            if let Some(hold) = plan.frames().holds.iter().find(|h| h.by == by) {
-                return Source::Hold {
-                    body: hold.body.0,
-                    sign: if hold.body_is_first { -1.0 } else { 1.0 },
-                };
+        let (bond, relation) = plan.parts(joint);
+        let kind = mechanism.joints[joint.0].kind;
+        match (component, bond, relation) {
+            (Component::Tooth | Component::Tangent | Component::Force, _, Some(relation)) => {
+                Source::Relation(relation)
             }
-        }
-        let at = plan.carried().iter().position(|c| c.joint == joint);
-        let Some(carried) = at else {
-            // A joint is in the tree or it is a chord.
-            let closure = plan.closures().iter().position(|c| c.joint == joint);
-            return Source::Chord {
-                closure: closure.unwrap_or(0),
-                component,
-            };
-        };
-        let axis = match mechanism.joints[joint.0].kind {
-            JointKind::Prismatic { axes } => {
-                let first = mechanism.joints[joint.0].bodies[0].0;
-                let attitude = plan.frames().attitudes[first];
-                Some((attitude.frame, axes[0].turn(attitude.offset)))
+            (Component::Moment, _, Some(relation)) if matches!(kind, JointKind::Relation(_)) => {
+                Source::Relation(relation)
             }
-            _ => None,
-        };
-        let sign = if self.carried_is_second[carried] {
-            1.0
-        } else {
-            -1.0
-        };
-        Source::Carry {
-            carried,
-            sign,
-            component,
-            axis,
+            (Component::Moment, Some(bond), _) => held(plan, bond),
+            (_, Some(bond), _) => self.force(plan, bond, component),
+            _ => Source::Spare,
         }
     }
+
+    /// A component of the force in a bond.
+    fn force(&self, plan: &Plan, bond: usize, component: Component) -> Source {
+        let described = &plan.bonds()[bond];
+        let in_frame = |body: usize, local: Vec2| {
+            let attitude = plan.frames().attitudes[body];
+            Along::Frame(attitude.frame, local.turn(attitude.offset))
+        };
+        let along = match (component, described.tie) {
+            (Component::Y, _) => Along::Y(1.0),
+            (Component::Normal, Tie::Slide { axes, .. }) => {
+                in_frame(described.bodies[0], axes[0].perp())
+            }
+            // The line of a distance is the x axis of its second body.
+            (Component::Axial, _) => in_frame(described.bodies[1], Vec2::IDENTITY),
+            _ => Along::X(1.0),
+        };
+        if let Some(carried) = plan.carried().iter().position(|c| c.bond == bond) {
+            let sign = if self.carried_is_second[carried] {
+                1.0
+            } else {
+                -1.0
+            };
+            let signed = match along {
+                Along::X(_) => Along::X(sign),
+                Along::Y(_) => Along::Y(sign),
+                Along::Frame(frame, local) => Along::Frame(frame, local * sign),
+            };
+            return Source::Carry(carried, signed);
+        }
+        // A bond is in the tree or it is a chord.
+        let closure = plan.closures().iter().position(|c| c.bond == bond);
+        let closure = closure.unwrap_or(0);
+        if plan.closures()[closure].axis.is_some() {
+            Source::Normal(closure)
+        } else {
+            Source::Chord(closure, along)
+        }
+    }
+}
+
+/// The couple in a bond that holds an angle.
+fn held(plan: &Plan, bond: usize) -> Source {
+    let by = Coupler::Bond(bond);
+    let hold = plan.frames().holds.iter().find(|h| h.by == by);
+    hold.map_or(Source::Spare, |hold| Source::Hold {
+        body: hold.body,
+        sign: if hold.body_is_first { -1.0 } else { 1.0 },
+    })
 }
 
 /// By actuator, the frames it turns, directly or through others.
@@ -160,31 +194,21 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     /// The `k`th requested reaction in each run, N or N·m.
     #[inline]
     pub(crate) fn reaction(&self, model: &Model, pose: &Pose<T>, k: usize) -> [T; N] {
+        let component = |force: &[Vec2<T>; N], along: Along| {
+            let along = match along {
+                Along::X(sign) => vec2(T::lift(sign), T::lift(0.0)),
+                Along::Y(sign) => vec2(T::lift(0.0), T::lift(sign)),
+                Along::Frame(frame, local) => local.lift().turn(pose.turn[frame]),
+            };
+            array::from_fn(|n| force[n].dot(along))
+        };
         match model.sources.sources[k] {
-            Source::Chord { closure, component } => {
-                let multiplier = &self.balance.multiplier[closure];
-                array::from_fn(|n| match component {
-                    Component::Y => multiplier[n].y,
-                    _ => multiplier[n].x,
-                })
-            }
-            Source::Carry {
-                carried,
-                sign,
-                component,
-                axis,
-            } => {
-                let force = &self.held[carried];
-                let along = match (component, axis) {
-                    (Component::Y, _) => vec2(T::lift(0.0), T::lift(sign)),
-                    (_, Some((frame, local))) => {
-                        (local * sign).lift().turn(pose.turn[frame]).perp()
-                    }
-                    _ => vec2(T::lift(sign), T::lift(0.0)),
-                };
-                array::from_fn(|n| force[n].dot(along))
-            }
+            Source::Normal(closure) => self.balance.multiplier[closure].map(|m| m.x),
+            Source::Chord(closure, along) => component(&self.balance.multiplier[closure], along),
+            Source::Carry(carried, along) => component(&self.held[carried], along),
             Source::Hold { body, sign } => self.couple[body].map(|c| c * T::lift(sign)),
+            Source::Relation(relation) => self.balance.relation[relation],
+            Source::Spare => [T::lift(0.0); N],
         }
     }
 }

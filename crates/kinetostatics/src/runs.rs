@@ -237,7 +237,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
         for (link, root) in model.links.iter().zip(&self.acceleration) {
             if let Some(first) = link.first {
                 let first = first.lift().turn(pose.turn[link.frame]);
-                let body = carried[link.carried].body.0;
+                let body = carried[link.carried].body;
                 add(&mut self.couple[body], root.map(|a| first.cross(a)));
             }
         }
@@ -256,6 +256,12 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
                 add(&mut self.couple[end.body], moment);
             }
         }
+        for r in 0..model.plan.relations() {
+            let multiplier = self.balance.relation[r];
+            model.plan.relation_couples(r, pose, |body, by| {
+                add(&mut self.couple[body], multiplier.map(|m| -(by * m)));
+            });
+        }
         for (i, body) in carried.iter().enumerate() {
             let force = self.held[i];
             let parent = model.sources.parent_body[i];
@@ -270,7 +276,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
                 let on = if model.sources.carried_is_second[i] {
                     parent
                 } else {
-                    body.body.0
+                    body.body
                 };
                 add(&mut self.couple[on], force.map(|f| reach.cross(f)));
             }
@@ -281,13 +287,16 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     #[inline(never)]
     pub(crate) fn along_holds(&mut self, model: &Model) {
         for hold in model.plan.frames().holds.iter().rev() {
-            let couple = self.couple[hold.body.0];
-            add(&mut self.couple[hold.against.0], couple);
+            let couple = self.couple[hold.body];
+            add(&mut self.couple[hold.against], couple);
         }
     }
 
     /// An actuator's action on its second body, from what remains on the frames it turns.
     pub(crate) fn tau(&self, model: &Model, actuator: usize) -> [T; N] {
+        if let Some(slide) = model.sources.slides[actuator] {
+            return self.balance.push[slide];
+        }
         let mut sum = [T::lift(0.0); N];
         for &(frame, sign) in &model.sources.driven[actuator] {
             add(

@@ -2,7 +2,7 @@
 #![allow(clippy::expect_used, reason = "a test")]
 
 use allocation_counter::measure;
-use dwell_geometry::{Coordinate, Range, Start, vec2};
+use dwell_geometry::{BodyId, Coordinate, Start, vec2};
 use dwell_kinetostatics::{
     Exact, Ledger, Load, LoadKind, Magnitude, Model, Reduced, Shaking, Signal,
 };
@@ -69,9 +69,9 @@ fn an_evaluation_allocates_nothing() {
         let mut work = model.work();
         let mut out = model.model().coefficients();
         let start = model.model().plan().start()[0];
-        let beyond = match model.range() {
-            Range::Full => f64::NAN,
-            Range::Between(_, to) => to + 0.3,
+        let beyond = match model.range().limits() {
+            None => f64::NAN,
+            Some((_, to)) => to + 0.3,
         };
         for k in 0..20 {
             let q = start + 0.05 * f64::from(k);
@@ -91,7 +91,7 @@ fn an_evaluation_allocates_nothing() {
 /// Loads of every cost: weight, a spring, a magnitude that has to be measured, a torque.
 fn loads(model: &Model) -> Vec<Load> {
     let ground = model.plan().tree().carries[0].parent;
-    let bodies = [ground, model.plan().carried()[0].body];
+    let bodies = [ground, model.plan().carried()[0].body].map(BodyId);
     let points = [vec2(0.3, 0.2), vec2(-0.1, 0.4)];
     let spring = LoadKind::Spring {
         bodies,
@@ -136,7 +136,7 @@ fn loads_and_balances_allocate_nothing() {
             let done = model.kinetostatics(0.5, &q, &[2.0], &[-3.0], &mut work, &mut actions);
             model.generalised_forces(&mut work, &mut powers);
             model.load_powers(&work, &mut powers);
-            ledger.acts(&work, &actions, &mut acts);
+            ledger.acts(&model, &work, &actions, &mut acts);
             let shaking = ledger.shaking(&model, &work, &acts);
             let power = model.power(&work, &actions);
             let rest = model.statics(0.5, &q, &mut work, &mut actions);

@@ -4,7 +4,7 @@ use crate::error::StudyError;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
 use crate::words::{count, number};
-use dwell_geometry::Range;
+use dwell_geometry::BodyId;
 use dwell_scene::Scene;
 use std::fmt::Write as _;
 
@@ -26,9 +26,9 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
         count(mechanism.bodies.len() - 1, "moving body"),
         count(mechanism.joints.len(), "joint"),
     );
-    let _ = match plan.range() {
-        Range::Full => writeln!(text, "  {coordinate} turns fully"),
-        Range::Between(from, to) => writeln!(
+    let _ = match plan.range().limits() {
+        None => writeln!(text, "  {coordinate} turns fully"),
+        Some((from, to)) => writeln!(
             text,
             "  {coordinate} turns from {from:.6} to {to:.6} rad ({:.2}° to {:.2}°), limit positions or change points",
             from.to_degrees(),
@@ -63,28 +63,33 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
             "  branch, as body angles at {coordinate} = {} rad:",
             number(plan.start()[0])
         );
-        let names = plan.carried().iter().map(|c| mechanism.body_name(c.body));
+        let named = || {
+            let carried = plan.carried().iter();
+            carried.filter(|c| c.body < mechanism.bodies.len())
+        };
+        let names = named().map(|c| mechanism.body_name(BodyId(c.body)));
         let width = names.map(|n| n.chars().count()).max().unwrap_or(0);
-        for carried in plan.carried() {
-            let angle = plan.body_turn(carried.body, &pose).angle();
+        for carried in named() {
+            let angle = plan.body_turn(BodyId(carried.body), &pose).angle();
             // Rounded first, so that no zero keeps a minus sign.
             let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
                 .map(|(value, parts)| (value * parts).round() / parts + 0.0);
             let _ = writeln!(
                 text,
                 "    {:<width$}  {radians:9.6} rad  {degrees:8.3}°",
-                mechanism.body_name(carried.body),
+                mechanism.body_name(BodyId(carried.body)),
             );
         }
     }
     let massless: Vec<_> = plan
         .carried()
         .iter()
+        .filter(|c| c.body < mechanism.bodies.len())
         .filter(|c| {
-            let mass = &scene.masses[c.body.0];
+            let mass = &scene.masses[c.body];
             mass.mass == 0.0 && mass.inertia == 0.0
         })
-        .map(|c| mechanism.body_name(c.body))
+        .map(|c| mechanism.body_name(BodyId(c.body)))
         .collect();
     if !massless.is_empty() {
         let _ = writeln!(

@@ -6,7 +6,6 @@ use crate::reference::Reference;
 use crate::validate::Evidence;
 use dwell_dynamics::Method;
 use dwell_findings::{Finding, all_pass};
-use dwell_geometry::Range;
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Block, Column, Document, Figure, Table, json};
 use dwell_scene::Scene;
@@ -139,9 +138,9 @@ pub(crate) fn numbers(scene: &Scene, evidence: &Evidence) -> Result<String, Stud
 pub(crate) fn snapshot(prepared: &Prepared<'_>, evidence: &Evidence) -> String {
     let scene = prepared.scene;
     let mut text = format!("{}\n\n", scene.title);
-    let (from, to) = match prepared.model.range() {
-        Range::Full => (0.0, std::f64::consts::TAU),
-        Range::Between(from, to) => (from, to),
+    let (from, to) = match prepared.model.range().limits() {
+        None => (0.0, std::f64::consts::TAU),
+        Some((from, to)) => (from, to),
     };
     let mut at = prepared.model.model().coefficients();
     let mut work = prepared.model.work();

@@ -153,14 +153,6 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
                 &labels,
             )
         }
-        AssemblyError::NotPeriodic { bodies } => scene.error(
-            format!(
-                "after a whole turn of the actuator {} are not back where they were",
-                names(mechanism, bodies)
-            ),
-            Some("mechanisms that repeat only after several turns are not supported yet".to_owned()),
-            &body_labels(bodies, "elsewhere after a turn"),
-        ),
     }
     .into()
 }
@@ -256,14 +248,6 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> SceneError {
         StructureError::Malformed { .. } => {
             scene.error(error.to_string(), None, &[(Place::Whole, String::new())])
         }
-        StructureError::GroupNeedsOneActuator { size, bodies } => scene.error(
-            format!(
-                "{} form one group of {size} unknowns, which needs a single actuator so far",
-                names(mechanism, bodies)
-            ),
-            None,
-            &body_labels(bodies, "in the group"),
-        ),
     }
 }
 

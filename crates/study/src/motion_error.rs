@@ -3,7 +3,7 @@
 use crate::error::{Labels, StudyError, joint_labels, names};
 use crate::words::{digits, number};
 use dwell_dynamics::DynamicsError;
-use dwell_geometry::{ActuatorId, BodyId, PlaceError, Plan, Range};
+use dwell_geometry::{ActuatorId, BodyId, PlaceError, Plan};
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
 
@@ -24,9 +24,9 @@ pub(crate) fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) 
     match error {
         DynamicsError::Place(place) => explain_place(scene, plan, place),
         DynamicsError::Limit { t, q } => {
-            let limit = match plan.range() {
-                Range::Full => String::new(),
-                Range::Between(from, to) => {
+            let limit = match plan.range().limits() {
+                None => String::new(),
+                Some((from, to)) => {
                     // In the turn in which the motion is.
                     let turns = TAU * ((q - from) / TAU).floor();
                     let nearest = if q - turns - from < to + turns - q {
@@ -175,9 +175,9 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
                 "{who} are in line at {phi} = {} rad: {phi} does not determine their motion there",
                 number(q)
             ),
-            match plan.range() {
-                Range::Full => "it is a change point: change a length, or drive another joint",
-                Range::Between(..) => range_ends,
+            match plan.range().limits() {
+                None => "it is a change point: change a length, or drive another joint",
+                Some(_) => range_ends,
             },
         ),
         PlaceError::OtherBranch { q, .. } => (

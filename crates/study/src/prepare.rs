@@ -2,7 +2,7 @@
 
 use crate::error::{StudyError, explain_model, not_one_actuator};
 use dwell_dynamics::State;
-use dwell_geometry::{Range, Reaction, Start};
+use dwell_geometry::{Reaction, Start};
 use dwell_kinetostatics::{Exact, Model, Reduced};
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
@@ -63,9 +63,9 @@ impl<'a> Prepared<'a> {
     /// `count` + 1 equally spaced coordinates over the range, rad: over a turn from 0, or between
     /// the limit positions, of which a thousandth is left out where everything grows.
     pub fn sweep(&self, count: usize) -> Vec<f64> {
-        let (from, to) = match self.model.range() {
-            Range::Full => (0.0, TAU),
-            Range::Between(from, to) => {
+        let (from, to) = match self.model.range().limits() {
+            None => (0.0, TAU),
+            Some((from, to)) => {
                 let margin = 1e-3 * (to - from);
                 (from + margin, to - margin)
             }

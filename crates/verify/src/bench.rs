@@ -6,7 +6,7 @@ use crate::closing::Closed;
 use crate::dense::{Dense, DenseError};
 use crate::judge::Worst;
 use crate::subject::{Coefficients, Subject, SubjectError};
-use dwell_geometry::{Component, Range, Reaction};
+use dwell_geometry::{Component, Reaction};
 use rayon::prelude::*;
 
 /// The dense mechanism at one sampled position.
@@ -79,7 +79,15 @@ impl<'a> Bench<'a> {
     /// Closes the mechanism at every position and measures the scales. A position that does not
     /// close is noted, not an error: the others are still judged.
     pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self, DenseError> {
-        let dense = Dense::new(case.mechanism, case.masses)?;
+        let actuators = case.mechanism.actuators.len();
+        if actuators != 1 {
+            return Err(DenseError::Actuators { actuators });
+        }
+        let mut dense = Dense::new(case.mechanism, case.masses)?;
+        // Gears mesh as the subject first shows them: from there on they must keep step.
+        if let Some(poses) = case.positions.first().and_then(|&q| subject.poses(q).ok()) {
+            dense.mesh(&poses)?;
+        }
         let tried: Vec<_> = case
             .positions
             .par_iter()
@@ -109,13 +117,18 @@ impl<'a> Bench<'a> {
 
     /// `phi = 1.3 rad`.
     pub(crate) fn place(&self, q: f64) -> String {
-        let name = self
-            .case
-            .mechanism
-            .actuators
-            .first()
-            .map_or("q", |a| a.name.as_str());
-        format!("{name} = {q:.6} rad")
+        let actuator = self.case.mechanism.actuators.first();
+        let name = actuator.map_or("q", |a| a.name.as_str());
+        format!("{name} = {q:.6} {}", self.unit())
+    }
+
+    /// Unit of the coordinate.
+    pub(crate) fn unit(&self) -> &'static str {
+        if self.dense.drives_an_angle() {
+            "rad"
+        } else {
+            "m"
+        }
     }
 
     /// `phi = 1.3 rad, slide.normal`.
@@ -126,9 +139,9 @@ impl<'a> Bench<'a> {
 
     /// The words for the positions judged.
     pub(crate) fn over(&self) -> String {
-        let range = match self.case.range {
-            Range::Full => "over a full turn".to_owned(),
-            Range::Between(low, high) => format!("between {low:.6} and {high:.6} rad"),
+        let range = match self.case.range.limits() {
+            None => "over a full turn".to_owned(),
+            Some((low, high)) => format!("between {low:.6} and {high:.6} {}", self.unit()),
         };
         format!("{} positions {range}", self.sites.len())
     }
@@ -301,9 +314,14 @@ fn scales(dense: &Dense, sites: &[Site], varying: &[usize], reactions: &[Reactio
     }
     let varying_or_all = if s.m_varying > 0.0 { s.m_varying } else { s.m };
     s.half_dm = s.half_dm.max(B_FLOOR * varying_or_all);
-    s.a[1] = s.a[1].max(s.m);
-    s.b[1] = s.b[1].max(s.half_dm);
-    s.a[0] = s.a[0].max(FORCE_FLOOR * varying_or_all / dense.size());
-    s.b[0] = s.b[0].max(B_FLOOR * s.a[0]);
+    // τ is a moment, or a force if the coordinate is a length; the other unit has a floor.
+    let (tau, other, arm) = match dense.drives_an_angle() {
+        true => (1, 0, dense.size()),
+        false => (0, 1, 1.0 / dense.size()),
+    };
+    s.a[tau] = s.a[tau].max(s.m);
+    s.b[tau] = s.b[tau].max(s.half_dm);
+    s.a[other] = s.a[other].max(FORCE_FLOOR * varying_or_all / arm);
+    s.b[other] = s.b[other].max(B_FLOOR * s.a[other]);
     s
 }

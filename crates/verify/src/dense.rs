@@ -8,7 +8,7 @@
 
 use crate::closing::Closed;
 use dwell_geometry::rows::{Rows, RowsError};
-use dwell_geometry::{BodyId, JointKind, Mechanism, Vec2, vec2};
+use dwell_geometry::{BodyId, Coordinate, Drive, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
 
 /// Why the dense side cannot answer.
@@ -43,8 +43,8 @@ pub enum DenseError {
         /// Its length.
         length: f64,
     },
-    /// One degree of freedom for now.
-    #[error("{actuators} actuators: the truths are written for one")]
+    /// The truths of the reduced model are those of one degree of freedom.
+    #[error("{actuators} actuators: the reduced model is that of one")]
     Actuators {
         /// Number of actuators.
         actuators: usize,
@@ -87,7 +87,7 @@ pub(crate) struct DenseBody {
 /// The mechanism, its masses and its rows, all dense, in moved frames.
 ///
 /// Where a method takes a row or a body it is an index into the mechanism's reactions, followed by
-/// the actuator, or into its bodies; speeds have as many numbers as there are coordinates.
+/// the actuators, or into its bodies; speeds have as many numbers as there are coordinates.
 #[derive(Debug, Clone)]
 pub struct Dense {
     pub(crate) mechanism: Mechanism,
@@ -98,50 +98,37 @@ pub struct Dense {
 }
 
 impl Dense {
-    /// Moves the frames and writes the rows.
+    /// Moves the frames and writes the rows, as many as there are coordinates.
     pub fn new(mechanism: &Mechanism, masses: &[Mass]) -> Result<Self, DenseError> {
-        let mut mechanism = mechanism.clone();
-        let rows = Rows::new(&mechanism)?;
-        if rows.len() != rows.columns() {
-            return Err(DenseError::NotSquare {
-                rows: rows.len(),
-                columns: rows.columns(),
-            });
+        let dense = Self::of_any_shape(mechanism, masses)?;
+        let (rows, columns) = (dense.rows.len(), dense.rows.columns());
+        if rows == columns {
+            Ok(dense)
+        } else {
+            Err(DenseError::NotSquare { rows, columns })
         }
+    }
+
+    /// The same whatever the number of rows: it can be measured, but not closed.
+    pub(crate) fn of_any_shape(mechanism: &Mechanism, masses: &[Mass]) -> Result<Self, DenseError> {
+        let mut mechanism = mechanism.clone();
+        // References first: what follows indexes by them.
+        let columns = Rows::new(&mechanism)?;
         if masses.len() != mechanism.bodies.len() {
             return Err(DenseError::Masses {
                 masses: masses.len(),
                 bodies: mechanism.bodies.len(),
             });
         }
-        if mechanism.actuators.len() != 1 {
-            return Err(DenseError::Actuators {
-                actuators: mechanism.actuators.len(),
-            });
-        }
-        for (joint, described) in mechanism.joints.iter().enumerate() {
-            if let JointKind::Prismatic { axes } = described.kind {
-                for length in axes.map(Vec2::norm) {
-                    // Any other length would scale a reaction silently.
-                    if length.is_nan() || (length - 1.0).abs() > 1e-12 {
-                        return Err(DenseError::Axis { joint, length });
-                    }
-                }
-            }
-        }
-
-        let shifts = attachment_means(&mechanism);
-        for joint in &mut mechanism.joints {
-            for (point, body) in joint.points.iter_mut().zip(joint.bodies) {
-                *point -= shifts[body.0];
-            }
-        }
+        check_axes(&mechanism)?;
+        let shifts = attachment_means(&mut mechanism);
+        each_attachment(&mut mechanism, |body, point| *point -= shifts[body]);
         let bodies: Vec<_> = masses
             .iter()
             .zip(shifts)
             .enumerate()
             .map(|(b, (mass, shift))| DenseBody {
-                column: rows.column(BodyId(b)),
+                column: columns.column(BodyId(b)),
                 mass: Mass {
                     // Where nothing has no mass does not matter; far away it would cost digits.
                     center: if mass.mass == 0.0 {
@@ -154,24 +141,12 @@ impl Dense {
                 shift,
             })
             .collect();
-        let arms = mechanism.joints.iter().flat_map(|j| j.points);
-        let centers = bodies.iter().map(|b| b.mass.center);
-        let reach =
-            |points: &mut dyn Iterator<Item = Vec2>| points.map(Vec2::norm).fold(0.0, f64::max);
-        // A single link on a pin has no arms; then its centre of mass gives the size.
-        let size = [
-            reach(&mut arms.into_iter()),
-            reach(&mut centers.into_iter()),
-            1.0,
-        ]
-        .into_iter()
-        .find(|&s| s > 0.0)
-        .unwrap_or(1.0);
+        let size = size(&mut mechanism, &bodies);
         let rows = Rows::new(&mechanism)?;
         let row_scale = rows
             .angular()
-            .into_iter()
-            .map(|angular| if angular { size } else { 1.0 })
+            .iter()
+            .map(|&angular| if angular { size } else { 1.0 })
             .collect();
         Ok(Self {
             mechanism,
@@ -182,15 +157,28 @@ impl Dense {
         })
     }
 
-    /// The largest distance of an attachment from the middle of its body, m: what a radian is
-    /// compared with.
+    /// Meshes the gears as they stand in the frames of all bodies: there their rows vanish.
+    pub fn mesh(&mut self, poses: &[[f64; 3]]) -> Result<(), DenseError> {
+        let x = self.start(poses)?;
+        self.rows.mesh(&x);
+        Ok(())
+    }
+
+    /// The largest distance of an attachment from the middle of its body, or the largest radius,
+    /// m: what a radian is compared with.
     pub fn size(&self) -> f64 {
         self.size
     }
 
-    /// Index of the actuator's row; the rows before it are the reactions.
+    /// Index of the first actuator's row; the rows before it are the reactions.
     pub fn actuator_row(&self) -> usize {
-        2 * self.mechanism.joints.len()
+        self.rows.len() - self.mechanism.actuators.len()
+    }
+
+    /// Whether the first actuator's coordinate is an angle.
+    pub(crate) fn drives_an_angle(&self) -> bool {
+        let first = self.mechanism.actuators.first();
+        first.is_none_or(|a| a.coordinate().is_angle())
     }
 
     /// Dense coordinates out of the frames of all bodies.
@@ -226,16 +214,83 @@ impl Dense {
     }
 }
 
-/// The mean of each body's attachments in its own frame.
-fn attachment_means(mechanism: &Mechanism) -> Vec<Vec2> {
-    let mut sums = vec![(Vec2::ZERO, 0_u32); mechanism.bodies.len()];
-    for joint in &mechanism.joints {
-        for (point, body) in joint.points.iter().zip(joint.bodies) {
-            sums[body.0].0 += *point;
-            sums[body.0].1 += 1;
+/// Any other length than one would scale a reaction silently.
+fn check_axes(mechanism: &Mechanism) -> Result<(), DenseError> {
+    for (joint, described) in mechanism.joints.iter().enumerate() {
+        let axes = match described.kind {
+            JointKind::Prismatic { axes } => axes,
+            JointKind::Slot { axis }
+            | JointKind::Rack { axis, .. }
+            | JointKind::Rolling { axis, .. } => [axis; 2],
+            _ => continue,
+        };
+        for length in axes.map(Vec2::norm) {
+            if length.is_nan() || (length - 1.0).abs() > 1e-12 {
+                return Err(DenseError::Axis { joint, length });
+            }
         }
     }
+    Ok(())
+}
+
+/// Every point of the mechanism that is given in a body's frame, with the body.
+fn each_attachment(mechanism: &mut Mechanism, mut visit: impl FnMut(usize, &mut Vec2)) {
+    let mut pair = |bodies: [BodyId; 2], points: &mut [Vec2; 2]| {
+        for (body, point) in bodies.into_iter().zip(points) {
+            visit(body.0, point);
+        }
+    };
+    for joint in &mut mechanism.joints {
+        // A relation is between coordinates: where its joint's points are means nothing.
+        if !matches!(joint.kind, JointKind::Relation(_)) {
+            pair(joint.bodies, &mut joint.points);
+        }
+    }
+    for relation in &mut mechanism.relations {
+        for coordinate in [&mut relation.of, &mut relation.by] {
+            if let Coordinate::Length { bodies, points } = coordinate
+                && bodies.iter().all(|b| b.0 < mechanism.bodies.len())
+            {
+                pair(*bodies, points);
+            }
+        }
+    }
+    for actuator in &mut mechanism.actuators {
+        if let Drive::Length(points) = &mut actuator.drive {
+            pair(actuator.bodies, points);
+        }
+    }
+}
+
+/// The mean of each body's attachments in its own frame.
+fn attachment_means(mechanism: &mut Mechanism) -> Vec<Vec2> {
+    let mut sums = vec![(Vec2::ZERO, 0_u32); mechanism.bodies.len()];
+    each_attachment(mechanism, |body, point| {
+        sums[body].0 += *point;
+        sums[body].1 += 1;
+    });
     sums.into_iter()
         .map(|(sum, count)| sum * (1.0 / f64::from(count.max(1))))
         .collect()
+}
+
+fn size(mechanism: &mut Mechanism, bodies: &[DenseBody]) -> f64 {
+    let mut arms: f64 = 0.0;
+    each_attachment(mechanism, |_, point| arms = arms.max(point.norm()));
+    for joint in &mechanism.joints {
+        arms = match joint.kind {
+            JointKind::Gear { radii, .. } => arms.max(radii[0]).max(radii[1]),
+            JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => {
+                arms.max(radius.abs())
+            }
+            JointKind::Distance { length } => arms.max(length),
+            _ => arms,
+        };
+    }
+    // A single link on a pin has no arms; then its centre of mass gives the size.
+    let centers = bodies.iter().map(|b| b.mass.center.norm());
+    [arms, centers.fold(0.0, f64::max)]
+        .into_iter()
+        .find(|&s| s > 0.0)
+        .unwrap_or(1.0)
 }

@@ -18,6 +18,7 @@
 //! Source: L. Jordi, E. Zayas, S. Cardona, *Reduced parameters for the dynamic study of a system
 //! of one degree of freedom*, TMT 2008; cited as (Jordi, Zayas & Cardona 2008, eq. n).
 
+mod acts;
 mod all;
 mod bench;
 mod case;

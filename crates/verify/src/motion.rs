@@ -1,5 +1,5 @@
 //! Mechanics of the dense mechanism: speeds and accelerations of the centres of mass, kinetic
-//! energy, momentum, and the reactions as forces at points.
+//! energy and momentum.
 //!
 //! With u and w two sets of speeds of all coordinates at one configuration,
 //!
@@ -13,29 +13,8 @@
 
 use crate::closing::Closed;
 use crate::dense::{Dense, DenseBody};
-use crate::subject::{Actions, Coefficients};
-use dwell_geometry::{JointKind, Vec2, vec2};
-
-/// One action on one body: a force at a point of the plane, and a couple.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Act {
-    pub(crate) body: usize,
-    pub(crate) force: Vec2,
-    pub(crate) at: Vec2,
-    pub(crate) couple: f64,
-}
-
-impl Act {
-    /// Moment about a point.
-    pub(crate) fn moment(&self, about: Vec2) -> f64 {
-        (self.at - about).cross(self.force) + self.couple
-    }
-
-    /// Moment about a point with its terms taken as absolute values: what rounding is relative to.
-    pub(crate) fn moment_terms(&self, about: Vec2) -> f64 {
-        (self.at - about).norm() * self.force.norm() + self.couple.abs()
-    }
-}
+use crate::subject::Coefficients;
+use dwell_geometry::{Vec2, vec2};
 
 impl Dense {
     /// ⟨u, w⟩ of the whole mechanism, eq. (1), kg m² for two speeds per rad/s.
@@ -116,58 +95,23 @@ impl Dense {
         self.placed(body, &at.x, body.mass.center)
     }
 
-    fn center_velocity(&self, body: &DenseBody, at: &Closed, u: &[f64]) -> Vec2 {
+    pub(crate) fn center_velocity(&self, body: &DenseBody, at: &Closed, u: &[f64]) -> Vec2 {
         body.column.map_or(Vec2::ZERO, |c| {
             let arm = body.mass.center.turn(Vec2::from_angle(at.x[c + 2]));
             vec2(u[c], u[c + 1]) + arm.perp() * u[c + 2]
         })
     }
 
-    fn center_acceleration(&self, body: &DenseBody, at: &Closed, u: &[f64], a: &[f64]) -> Vec2 {
+    pub(crate) fn center_acceleration(
+        &self,
+        body: &DenseBody,
+        at: &Closed,
+        u: &[f64],
+        a: &[f64],
+    ) -> Vec2 {
         body.column.map_or(Vec2::ZERO, |c| {
             let arm = body.mass.center.turn(Vec2::from_angle(at.x[c + 2]));
             vec2(a[c], a[c + 1]) + arm.perp() * a[c + 2] - arm * (u[c + 2] * u[c + 2])
         })
-    }
-
-    /// Everything the joints and the actuator do, body by body. A joint's first body acts on its
-    /// second, and feels the opposite at the same point: the second body's point. The normal of a
-    /// prismatic joint turns with its first body.
-    pub(crate) fn acts(&self, at: &Closed, actions: &Actions) -> Vec<Act> {
-        let mut acts = Vec::new();
-        let mut pair = |bodies: [usize; 2], force: Vec2, point: Vec2, couple: f64| {
-            for (body, sign) in bodies.into_iter().zip([-1.0, 1.0]) {
-                acts.push(Act {
-                    body,
-                    force: force * sign,
-                    at: point,
-                    couple: couple * sign,
-                });
-            }
-        };
-        let reactions = actions.reactions.chunks_exact(2);
-        for (joint, reaction) in self.mechanism.joints.iter().zip(reactions) {
-            let [first, second] = joint.bodies.map(|b| b.0);
-            let point = self.placed(&self.bodies[second], &at.x, joint.points[1]);
-            let (force, couple) = match joint.kind {
-                JointKind::Prismatic { axes } => {
-                    let turned = self.bodies[first]
-                        .column
-                        .map_or(Vec2::IDENTITY, |c| Vec2::from_angle(at.x[c + 2]));
-                    (axes[0].perp().turn(turned) * reaction[0], reaction[1])
-                }
-                _ => (vec2(reaction[0], reaction[1]), 0.0),
-            };
-            pair([first, second], force, point, couple);
-        }
-        for actuator in &self.mechanism.actuators {
-            pair(
-                actuator.bodies.map(|b| b.0),
-                Vec2::ZERO,
-                Vec2::ZERO,
-                actions.tau,
-            );
-        }
-        acts
     }
 }

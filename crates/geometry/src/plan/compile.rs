@@ -1,73 +1,96 @@
 //! From a mechanism to its plan: which group is solved how, and which arms are rotated when.
 
-use super::{Aim, Assur, Behind, Carried, Closure, Driven, Kind, Newton, Pin, Plan, Step};
+use super::{Aim, Assur, Behind, Carried, Closure, Driven, How, Kind, Pin, Plan, Solved, Step};
 use crate::error::StructureError;
 use crate::frames::{Frame, Frames, Turning};
-use crate::groups::{self, Group, Unknown};
-use crate::mechanism::Mechanism;
+use crate::groups::{self, Group, Parts, Unknown};
+use crate::lower::{self, Lowered};
+use crate::mechanism::{Drive, Mechanism};
 use crate::plane::Vec2;
 use crate::range::Range;
+use crate::relation::Row;
+use crate::seeds::Seeds;
 use crate::tree::{Arm, Loop, Tree};
 use std::collections::HashMap;
 
 impl Plan {
     /// The structure alone: branches and seeds still to be found.
-    pub(super) fn structure(mechanism: &Mechanism) -> Result<Self, StructureError> {
-        let frames = Frames::find(mechanism)?;
-        let tree = Tree::find(mechanism, &frames)?;
+    pub(super) fn structure(mechanism: &Mechanism, repeated: bool) -> Result<Self, StructureError> {
+        let lowered = Lowered::new(mechanism);
+        let frames = Frames::find(&lowered)?;
+        let tree = Tree::find(&lowered, &frames)?;
         let loops: Vec<Loop> = tree
             .chords
             .iter()
-            .map(|&chord| tree.close(mechanism, &frames, chord))
+            .map(|&chord| tree.close(&lowered, &frames, chord))
             .collect();
-        let groups = groups::order(mechanism, &frames, &tree, &loops)?;
+        let relations = Row::all(&lowered, &frames, &tree);
+        let driven_slides = driven_slides(&lowered, &tree);
+        let parts = Parts {
+            lowered: &lowered,
+            frames: &frames,
+            tree: &tree,
+            loops: &loops,
+            relations: &relations,
+            driven: &driven_slides,
+        };
+        let groups = groups::order(&parts, repeated)?;
         let mut class_roots = vec![0; frames.classes];
         for (f, frame) in frames.frames.iter().enumerate() {
             if frame.turning == Turning::Unknown {
                 class_roots[frame.class] = f;
             }
         }
-        let mut table = ArmTable::new(&frames, &class_roots, &groups);
+        let counted = counted(&frames, &relations);
+        let mut table = ArmTable::new(&frames, &class_roots, &groups, &counted);
         let closures: Vec<Closure> = loops.iter().map(|l| table.closure(l)).collect();
         let carried = tree
             .carries
             .iter()
             .map(|c| table.carried(&frames, &tree, c))
             .collect();
+        let angular = mechanism.actuators.iter().map(|a| a.drive == Drive::Angle);
         let mut plan = Self {
-            driven: driven(&frames, &class_roots, |class| class == 0),
+            driven: driven(&frames, &class_roots, &counted, |class| class == 0),
             class_roots,
-            ground: mechanism.ground,
-            actuators: mechanism.actuators.len(),
+            angular: angular.collect(),
             start: vec![0.0; mechanism.actuators.len()],
             range: Range::Full,
+            home: None,
+            branches: Vec::new(),
+            reach: 0.0,
             arms: Vec::new(),
             groups: Vec::new(),
             steps: Vec::new(),
+            lowered,
             frames,
             tree,
             carried,
             closures,
+            relations,
+            counted,
+            driven_slides,
         };
         plan.arms.clone_from(&table.arms);
+        plan.reach = plan.largest_length();
         let (mut lu, mut pivots) = (0, 0);
         for group in groups {
             let assur = plan.prepare(group, lu, pivots);
-            if let Kind::Newton(_) = assur.kind {
-                let n = assur.group.unknowns.len();
-                if plan.actuators != 1 {
-                    return Err(StructureError::GroupNeedsOneActuator {
-                        size: n,
-                        bodies: plan.bodies_of(&assur.group),
-                    });
-                }
-                lu += n * n;
-                pivots += n;
+            if let Kind::Solved(solved) = &assur.kind {
+                lu += solved.room();
+                pivots += solved.columns;
             }
             plan.groups.push(assur);
         }
-        plan.steps = table.steps(&plan.groups);
+        plan.steps = table.steps(&plan.groups, &plan.driven_slides);
         Ok(plan)
+    }
+
+    /// The largest distance between two points of one body, m.
+    fn largest_length(&self) -> f64 {
+        let arms = self.arms.iter().map(|a| a.local.norm());
+        let fixed = self.closures.iter().map(|c| c.fixed.norm());
+        arms.chain(fixed).fold(0.0, f64::max)
     }
 
     /// Chooses how a group is solved.
@@ -76,29 +99,9 @@ impl Plan {
             let class = self.frames.frames[frame].class;
             class > 0 && group.unknowns.contains(&Unknown::Class(class))
         };
-        let is_root = |frame: usize| self.frames.frames[frame].turning == Turning::Unknown;
-        let simple = group.loops.len() == 1
-            && group
-                .unknowns
-                .iter()
-                .all(|u| matches!(u, Unknown::Class(_)));
-        let first = group.loops[0];
-        let closure = &self.closures[first];
-        let (turning, known): (Vec<_>, Vec<_>) =
-            closure.arms.iter().partition(|&&(_, f)| in_group(f));
-        let roots_only = turning.iter().all(|&(_, f)| is_root(f)) && closure.slides.is_empty();
-        let kind = match (closure.axis, turning.as_slice()) {
-            (None, &[one, two]) if simple && roots_only => {
-                Kind::Pin(self.prepare_pin(first, [one, two], known))
-            }
-            (Some((axis, frame)), arms)
-                if simple && roots_only && group.unknowns.len() == 1 && arms.len() <= 1 =>
-            {
-                self.prepare_aim(first, (axis, frame), in_group(frame), arms.first(), known)
-                    .map_or_else(|| newton(lu, pivots), Kind::Aim)
-            }
-            _ => newton(lu, pivots),
-        };
+        let kind = self
+            .closed_form(&group)
+            .unwrap_or_else(|| self.solved(&group, lu, pivots));
         let needs_turning = |frame: usize| match self.frames.frames[frame].turning {
             Turning::Ground => false,
             Turning::Driven { .. } => true,
@@ -121,21 +124,120 @@ impl Plan {
                 }
             })
             .collect();
-        let size = group
-            .loops
-            .iter()
-            .flat_map(|&l| &self.closures[l].arms)
-            .map(|&(a, _)| self.arms[a].local.norm())
-            .chain(group.loops.iter().map(|&l| self.closures[l].fixed.norm()))
-            .sum();
+        let size = self.size(&group);
+        let counts = group.unknowns.iter().any(|u| match u {
+            Unknown::Class(c) => self.counted[self.class_roots[*c]],
+            Unknown::Slide(_) => false,
+        });
+        let remembers = match &kind {
+            Kind::Solved(solved) => match solved.how {
+                How::Newton => true,
+                How::Linear => false,
+                _ => counts,
+            },
+            _ => counts,
+        };
         Assur {
-            driven: driven(&self.frames, &self.class_roots, |class| {
+            driven: driven(&self.frames, &self.class_roots, &self.counted, |class| {
                 group.unknowns.contains(&Unknown::Class(class))
             }),
             group,
             kind,
             behind,
             size,
+            scale: size.log2().round().exp2(),
+            seeds: Seeds::default(),
+            remembers,
+            skipped: false,
+        }
+    }
+
+    /// Sum of the lengths in a group's loops, m; that of the mechanism where there are none.
+    fn size(&self, group: &Group) -> f64 {
+        let closures = || group.loops.iter().map(|&l| &self.closures[l]);
+        let arms = closures().flat_map(|c| &c.arms);
+        let size: f64 = arms
+            .map(|&(a, _)| self.arms[a].local.norm())
+            .chain(closures().map(|c| c.fixed.norm()))
+            .sum();
+        if size > 0.0 {
+            size
+        } else if self.reach > 0.0 {
+            self.reach
+        } else {
+            1.0
+        }
+    }
+
+    /// The two closed forms whose motion and forces are closed forms too.
+    fn closed_form(&self, group: &Group) -> Option<Kind> {
+        let turns = |u: &Unknown| matches!(u, Unknown::Class(_));
+        let (&[first], true) = (group.loops.as_slice(), group.relations.is_empty()) else {
+            return None;
+        };
+        if !group.unknowns.iter().all(turns) || group.rows != group.unknowns.len() {
+            return None;
+        }
+        let in_group = |frame: usize| {
+            let class = self.frames.frames[frame].class;
+            class > 0 && group.unknowns.contains(&Unknown::Class(class))
+        };
+        let closure = &self.closures[first];
+        let is_root = |frame: usize| self.frames.frames[frame].turning == Turning::Unknown;
+        let (turning, known): (Vec<_>, Vec<_>) =
+            closure.arms.iter().partition(|&&(_, f)| in_group(f));
+        if !turning.iter().all(|&(_, f)| is_root(f)) || !closure.slides.is_empty() {
+            return None;
+        }
+        match (closure.axis, turning.as_slice()) {
+            (None, &[one, two]) => Some(Kind::Pin(self.prepare_pin(first, [one, two], known))),
+            (Some((axis, frame)), arms) if group.unknowns.len() == 1 && arms.len() <= 1 => self
+                .prepare_aim(first, (axis, frame), in_group(frame), arms.first(), known)
+                .map(Kind::Aim),
+            _ => None,
+        }
+    }
+
+    fn solved(&self, group: &Group, lu: usize, pivots: usize) -> Kind {
+        let columns = group.unknowns.len();
+        Kind::Solved(Solved {
+            how: if group.rows == columns {
+                self.how(group)
+            } else {
+                How::Newton
+            },
+            rows: group.rows,
+            columns,
+            lu,
+            pivots,
+            branch: 1.0,
+            side: 1.0,
+        })
+    }
+
+    /// How a group without a closed form for everything is placed.
+    fn how(&self, group: &Group) -> How {
+        let class = |c: usize| group.unknowns.contains(&Unknown::Class(c));
+        let slide = |s: usize| group.unknowns.contains(&Unknown::Slide(s));
+        let turns = group
+            .unknowns
+            .iter()
+            .any(|u| matches!(u, Unknown::Class(_)));
+        let linear = |&r: &usize| self.relations[r].linear_in(&self.frames, class, slide);
+        if (!turns || group.loops.is_empty()) && group.relations.iter().all(linear) {
+            return How::Linear;
+        }
+        let &[l] = group.loops.as_slice() else {
+            return How::Newton;
+        };
+        let closure = &self.closures[l];
+        let once = |s: usize| closure.slides.iter().filter(|x| x.0 == s).count() == 1;
+        match (group.unknowns.as_slice(), closure.axis) {
+            _ if !group.relations.is_empty() => How::Newton,
+            (&[Unknown::Class(one), Unknown::Class(two)], None) => How::Triangle(one, two),
+            (&[Unknown::Class(c), Unknown::Slide(s)], None) if once(s) => How::Reach(c, s),
+            (&[Unknown::Class(c)], Some(_)) => How::Guide(c),
+            _ => How::Newton,
         }
     }
 
@@ -195,8 +297,36 @@ impl Plan {
     }
 }
 
+/// By slide: the actuator that drives it.
+fn driven_slides(lowered: &Lowered, tree: &Tree) -> Vec<Option<usize>> {
+    let mut driven = vec![None; tree.slides.len()];
+    for (i, drive) in lowered.drives.iter().enumerate() {
+        if let lower::Driven::Travel(bond) = *drive
+            && let Some(slide) = tree.slide_of(bond)
+        {
+            driven[slide] = Some(i);
+        }
+    }
+    driven
+}
+
+/// By frame: whether it belongs to a class that a relation names.
+fn counted(frames: &Frames, relations: &[Row]) -> Vec<bool> {
+    let mut classes = vec![false; frames.classes];
+    for frame in relations.iter().flat_map(Row::frames) {
+        classes[frames.frames[frame].class] = true;
+    }
+    let counted = |f: &Frame| classes[f.class];
+    frames.frames.iter().map(counted).collect()
+}
+
 /// The driven frames of some classes, each after the one it is turned from.
-fn driven(frames: &Frames, roots: &[usize], of: impl Fn(usize) -> bool) -> Vec<Driven> {
+fn driven(
+    frames: &Frames,
+    roots: &[usize],
+    counted: &[bool],
+    of: impl Fn(usize) -> bool,
+) -> Vec<Driven> {
     let all = frames.frames.iter().enumerate();
     all.filter_map(|(frame, &Frame { turning, class })| match turning {
         Turning::Driven {
@@ -209,19 +339,23 @@ fn driven(frames: &Frames, roots: &[usize], of: impl Fn(usize) -> bool) -> Vec<D
             actuator,
             sign,
             root: roots[class],
+            counted: counted[frame],
         }),
         _ => None,
     })
     .collect()
 }
 
-fn newton(lu: usize, pivots: usize) -> Kind {
-    Kind::Newton(Newton {
-        lu,
-        pivots,
-        branch: 1.0,
-        seeds: crate::seeds::Seeds::default(),
-    })
+impl Solved {
+    /// Room for its factors: those of a tall matrix keep a factor for each column beside it.
+    pub(super) fn room(&self) -> usize {
+        let beside = if self.rows > self.columns {
+            self.columns
+        } else {
+            0
+        };
+        self.rows * self.columns + beside
+    }
 }
 
 /// Collects arms, each once, and the steps that make their frames known.
@@ -236,20 +370,20 @@ struct ArmTable {
 }
 
 impl ArmTable {
-    fn new(frames: &Frames, roots: &[usize], groups: &[Group]) -> Self {
+    fn new(frames: &Frames, roots: &[usize], groups: &[Group], counted: &[bool]) -> Self {
         let mut table = Self {
             arms: Vec::new(),
             seen: HashMap::new(),
             known_at: vec![0; frames.frames.len()],
             steps: Vec::new(),
         };
-        table.turn(driven(frames, roots, |class| class == 0));
+        table.turn(driven(frames, roots, counted, |class| class == 0));
         for (g, group) in groups.iter().enumerate() {
             table.steps.push(Step::Solve(g));
             for &unknown in &group.unknowns {
                 if let Unknown::Class(class) = unknown {
                     table.known_at[roots[class]] = table.steps.len();
-                    table.turn(driven(frames, roots, |c| c == class));
+                    table.turn(driven(frames, roots, counted, |c| c == class));
                 }
             }
         }
@@ -276,7 +410,7 @@ impl ArmTable {
         let (still, moving): (Vec<Arm>, Vec<Arm>) =
             one.arms.iter().partition(|a| self.known_at[a.frame] == 0);
         Closure {
-            joint: one.joint,
+            bond: one.bond,
             fixed: still.iter().fold(Vec2::ZERO, |sum, a| sum + a.local),
             arms: moving.iter().map(|&a| (self.index(a), a.frame)).collect(),
             slides: one
@@ -289,13 +423,13 @@ impl ArmTable {
     }
 
     fn carried(&mut self, frames: &Frames, tree: &Tree, carry: &crate::tree::Carry) -> Carried {
-        let frame = frames.attitudes[carry.body.0].frame;
+        let frame = frames.attitudes[carry.body].frame;
         let fixed = carry.arm.local == Vec2::ZERO
             || frames.frames[carry.arm.frame].turning == Turning::Ground;
         Carried {
             body: carry.body,
-            joint: carry.joint,
-            parent: tree.place[carry.parent.0],
+            bond: carry.bond,
+            parent: tree.place[carry.parent],
             frame,
             parent_frame: carry.arm.frame,
             arm: (!fixed).then(|| self.index(carry.arm)),
@@ -306,24 +440,27 @@ impl ArmTable {
     }
 
     /// The steps, with each arm rotated as soon as its frame is known, unless its group finds it.
-    fn steps(self, groups: &[Assur]) -> Vec<Step> {
+    fn steps(self, groups: &[Assur], slides: &[Option<usize>]) -> Vec<Step> {
         let mut waiting: Vec<Vec<Step>> = vec![Vec::new(); self.steps.len() + 1];
-        let found = |arm: usize| {
-            groups.iter().any(|assur| match &assur.kind {
-                Kind::Pin(pin) => pin.arms.contains(&arm),
-                Kind::Aim(aim) => aim.found == arm,
-                Kind::Newton(_) => false,
-            })
-        };
+        let mut found = vec![false; self.arms.len()];
+        for assur in groups {
+            match &assur.kind {
+                Kind::Pin(pin) => pin.arms.iter().for_each(|&arm| found[arm] = true),
+                Kind::Aim(aim) => found[aim.found] = true,
+                Kind::Solved(_) => {}
+            }
+        }
         for (i, &arm) in self.arms.iter().enumerate() {
-            if !found(i) {
+            if !found[i] {
                 waiting[self.known_at[arm.frame]].push(Step::Rotate(i, arm));
             }
         }
+        let driven = slides.iter().enumerate();
+        let driven = driven.filter_map(|(s, by)| by.map(|actuator| Step::Slide(s, actuator)));
         // What waits for nothing is on the ground, where it lies as it is.
         let rotations = waiting.into_iter().skip(1);
         let both = self.steps.into_iter().zip(rotations);
-        both.flat_map(|(step, arms)| std::iter::once(step).chain(arms))
-            .collect()
+        let turned = both.flat_map(|(step, arms)| std::iter::once(step).chain(arms));
+        driven.chain(turned).collect()
     }
 }

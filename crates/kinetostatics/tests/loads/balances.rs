@@ -26,7 +26,7 @@ fn every_body_is_balanced() {
         let mut acts = Vec::new();
         for (t, q, q_dot, q_ddot) in case.states() {
             case.run(t, &q, &q_dot, &q_ddot);
-            ledger.acts(&case.work, &case.actions, &mut acts);
+            ledger.acts(&case.model, &case.work, &case.actions, &mut acts);
             let states = case.work.states();
             for b in 0..case.mechanism.bodies.len() {
                 let id = BodyId(b);
@@ -71,7 +71,7 @@ fn joints_are_ideal() {
         let mut acts = Vec::new();
         for (t, q, q_dot, q_ddot) in case.states() {
             case.run(t, &q, &q_dot, &q_ddot);
-            ledger.acts(&case.work, &case.actions, &mut acts);
+            ledger.acts(&case.model, &case.work, &case.actions, &mut acts);
             let states = case.work.states();
             for j in 0..case.mechanism.joints.len() {
                 let own = |a: &&Act| a.by == By::Joint(dwell_geometry::JointId(j));
@@ -100,7 +100,7 @@ fn the_frame_feels_the_same_by_momentum_and_by_reactions() {
         let mut acts = Vec::new();
         for (t, q, q_dot, q_ddot) in case.states() {
             case.run(t, &q, &q_dot, &q_ddot);
-            ledger.acts(&case.work, &case.actions, &mut acts);
+            ledger.acts(&case.model, &case.work, &case.actions, &mut acts);
             let shaking = ledger.shaking(&case.model, &case.work, &acts);
             let [one, two] = [shaking.by_momentum, shaking.by_reactions];
             let states = case.work.states();

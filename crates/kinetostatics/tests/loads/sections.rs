@@ -25,7 +25,7 @@ const BAR: &str = r#"
 
 fn link(case: &Case, acts: &mut Vec<Act>, body: BodyId, points: [Vec2; 2]) -> LinkForces {
     let ledger = Ledger::new(&case.mechanism, &case.model).expect("every reaction");
-    ledger.acts(&case.work, &case.actions, acts);
+    ledger.acts(&case.model, &case.work, &case.actions, acts);
     let found = ledger.link_forces(&case.model, body, points, &case.work, acts);
     found.expect("a link with a length")
 }
@@ -117,7 +117,7 @@ fn sections_close_at_the_second_end() {
         for (t, q, q_dot, q_ddot) in case.states().into_iter().take(4) {
             case.run(t, &q, &q_dot, &q_ddot);
             let mut acts = Vec::new();
-            ledger.acts(&case.work, &case.actions, &mut acts);
+            ledger.acts(&case.model, &case.work, &case.actions, &mut acts);
             for b in (0..case.mechanism.bodies.len()).filter(|&b| b != case.mechanism.ground) {
                 let body = BodyId(b);
                 // A line across the body with all that acts within its length.

@@ -13,16 +13,13 @@ pub(crate) use motion::history;
 pub(crate) use steps::steps;
 
 use crate::prepare::Prepared;
-use dwell_geometry::Range;
 use dwell_kinetostatics::Reduced;
 
 /// The foot of a figure over the range, which says why curves may leave it.
 pub(crate) fn range_caption(prepared: &Prepared<'_>, words: &str) -> String {
-    let limits = match prepared.model.range() {
-        Range::Full => "",
-        Range::Between(..) => {
-            " Towards the limit positions at both ends everything grows without bound."
-        }
+    let limits = match prepared.model.range().limits() {
+        None => "",
+        Some(_) => " Towards the limit positions at both ends everything grows without bound.",
     };
     caption(prepared, &format!("{words}{limits}"))
 }

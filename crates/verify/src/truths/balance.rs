@@ -129,7 +129,7 @@ fn at(bench: &Bench<'_>, site: &Site, motion: [f64; 2]) -> Result<Balance, Subje
             rate[2].value.abs(),
         ],
     };
-    for act in dense.acts(&site.closed, &actions) {
+    for act in dense.acts(&site.closed, &actions.reactions, &[actions.tau]) {
         if act.body == bench.case.mechanism.ground {
             // What acts on the ground is the opposite of what the ground does.
             balance.acting[0] -= act.force.x;

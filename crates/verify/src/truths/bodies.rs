@@ -15,11 +15,11 @@
 //! largest force is left.
 
 use super::{MOTIONS, over_motions, place_in, time_step};
+use crate::acts::Act;
 use crate::bench::{Bench, FORCE_FLOOR, Site};
 use crate::closing::Closed;
 use crate::differences::{Estimate, Order, derivatives};
 use crate::judge::{Check, Reading, Worst};
-use crate::motion::Act;
 use crate::subject::SubjectError;
 use dwell_findings::Finding;
 use dwell_laws::Polynomial;
@@ -110,7 +110,7 @@ fn at(bench: &Bench<'_>, site: &Site, motion: [f64; 2]) -> Result<Vec<Equations>
     let dense = &bench.dense;
     let [q_dot, q_ddot] = motion;
     let actions = bench.subject.actions(site.q, q_dot, q_ddot)?;
-    let acts = dense.acts(&site.closed, &actions);
+    let acts = dense.acts(&site.closed, &actions.reactions, &[actions.tau]);
     let second = accelerations(bench, site, motion);
     let moving = dense
         .bodies

@@ -62,7 +62,8 @@ fn pass(bench: &Bench<'_>, site: &Site, law: &Polynomial, t: f64) -> Option<(Clo
 
 /// `phi = 1.3 rad, 1 rad/s, 0.7 rad/s2`.
 fn place_in(bench: &Bench<'_>, q: f64, [q_dot, q_ddot]: [f64; 2]) -> String {
-    format!("{}, {q_dot} rad/s, {q_ddot} rad/s2", bench.place(q))
+    let unit = bench.unit();
+    format!("{}, {q_dot} {unit}/s, {q_ddot} {unit}/s2", bench.place(q))
 }
 
 /// What a table of motions adds to "24 positions …".

@@ -52,9 +52,9 @@ impl DenseSubject {
             .flat_map(|b| rough[b])
             .collect();
         let first = subject.close(&start, q0).expect("the rough poses close");
-        let (low, high) = match range {
-            Range::Full => (q0, q0 + TAU),
-            Range::Between(low, high) => (low, high),
+        let (low, high) = match range.limits() {
+            None => (q0, q0 + TAU),
+            Some((low, high)) => (low, high),
         };
         for end in [low, high] {
             let steps = ((end - q0).abs() / 0.01).ceil() as u32;
