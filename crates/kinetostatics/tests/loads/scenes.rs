@@ -1,5 +1,6 @@
 //! Mechanisms under loads of every kind.
 
+use crate::machines::{self, Machine};
 use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Start, Vec2, vec2};
 use dwell_kinetostatics::{Actions, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace};
 use dwell_laws::{Expression, Law, Polynomial};
@@ -69,6 +70,8 @@ pub(crate) struct Case {
     pub(crate) work: Workspace<f64>,
     pub(crate) actions: Actions<f64>,
     pub(crate) masses: Vec<Mass>,
+    /// How far states may lie from the start: 1 for an angle, less for a length.
+    pub(crate) reach: f64,
     start: Vec<f64>,
 }
 
@@ -78,17 +81,36 @@ impl Case {
             q: scene.assembly.start.clone(),
             rough: scene.assembly.rough.clone(),
         };
-        let mechanism = scene.mechanism.clone();
-        let reactions = mechanism.reactions();
-        let model = Model::new(&mechanism, &scene.masses, &start, &reactions)
-            .expect("it assembles")
+        let machine = Machine {
+            name: "",
+            mechanism: scene.mechanism.clone(),
+            masses: scene.masses.clone(),
+            start,
+        };
+        Self {
+            name: scene.name.clone(),
+            ..Self::built(machine, loads)
+        }
+    }
+
+    fn built(machine: Machine, loads: impl FnOnce(&Mechanism) -> Vec<Load>) -> Self {
+        let Machine {
+            name,
+            mechanism,
+            masses,
+            start,
+        } = machine;
+        let model = Model::new(&mechanism, &masses, &start, &mechanism.reactions())
+            .unwrap_or_else(|e| panic!("{name}: {e}"))
             .with_loads(&mechanism, loads(&mechanism))
             .expect("loads of the mechanism");
         Self {
-            name: scene.name.clone(),
+            name: name.to_owned(),
             work: model.workspace(),
             actions: model.actions(),
-            masses: scene.masses.clone(),
+            masses,
+            // A length is driven over less than an angle.
+            reach: if model.plan().is_angle(0) { 1.0 } else { 0.1 },
             start: start.q,
             mechanism,
             model,
@@ -120,12 +142,17 @@ impl Case {
     /// Scattered states near the start: (t, q, q̇, q̈), the same in every run.
     pub(crate) fn states(&self) -> Vec<State> {
         let mut scatter = Scatter(0.37);
+        let reach = self.reach;
         let n = self.start.len();
         (0..12)
             .map(|_| {
                 let t = scatter.next(3.0);
-                let q = self.start.iter().map(|q| q + scatter.next(0.3)).collect();
-                let mut rates = |by| (0..n).map(|_| scatter.next(by)).collect();
+                let q = self
+                    .start
+                    .iter()
+                    .map(|q| q + scatter.next(0.3 * reach))
+                    .collect();
+                let mut rates = |by| (0..n).map(|_| scatter.next(by * reach)).collect();
                 (t, q, rates(6.0), rates(40.0))
             })
             .collect()
@@ -189,7 +216,7 @@ fn formula(name: &str, kind: LoadKind, angle: Coordinate, text: &str) -> Load {
     }
 }
 
-/// The validation mechanisms, a yoke, a coupling and a five-bar, each under loads of every kind.
+/// The validation mechanisms, a yoke, a coupling, a five-bar and a machine for each kind of joint and drive, all under loads of every kind.
 pub(crate) fn all() -> Vec<Case> {
     let cases = [
         case("single-dwell"),
@@ -200,9 +227,10 @@ pub(crate) fn all() -> Vec<Case> {
         Scene::parse("oldham.toml", OLDHAM).expect("a scene"),
         Scene::parse("five-bar.toml", FIVE_BAR).expect("a scene"),
     ];
-    cases
-        .iter()
-        .map(|scene| Case::of(scene, every_kind))
+    let scenes = cases.iter().map(|scene| Case::of(scene, every_kind));
+    let machines = machines::all().into_iter();
+    scenes
+        .chain(machines.map(|machine| Case::built(machine, every_kind)))
         .collect()
 }
 

@@ -4,7 +4,7 @@ use crate::scenes::{Case, all, body, case, load};
 use crate::statics::SLIDER_CRANK;
 use dwell_geometry::measure::Measured;
 use dwell_geometry::{Mechanism, Vec2, vec2};
-use dwell_kinetostatics::{LoadKind, Magnitude};
+use dwell_kinetostatics::{By, LoadKind, Magnitude};
 
 /// Over any motion a spring's power is −k (length − free) times the length's own speed, and a
 /// damper's −c times its square; the same with angles.
@@ -16,6 +16,10 @@ fn springs_give_back_and_dampers_dissipate() {
             let mut powers = vec![0.0; case.model.loads().len()];
             case.model.load_powers(&case.work, &mut powers);
             let states = case.work.states();
+            let acts_of = |i| {
+                let acts = case.work.loads().acts.iter();
+                acts.filter(move |a| a.by == By::Load(i))
+            };
             for (i, load) in case.model.loads().iter().enumerate() {
                 let f = case.work.loads().magnitude[i];
                 let (measured, free) = match load.kind {
@@ -38,10 +42,14 @@ fn springs_give_back_and_dampers_dissipate() {
                     Some(free) => -f * (value - free) * speed,
                     None => -f * speed * speed,
                 };
-                // Against the absolute power of both ends: they may nearly cancel.
-                let acts = case.work.loads().acts.iter();
-                let own = acts.filter(|a| a.by == dwell_kinetostatics::By::Load(i));
-                let scale: f64 = own.map(|a| a.power(states).abs()).sum();
+                // Against the two parts of a stretch, each times the speed of both ends: the parts
+                // may nearly cancel, and so may the ends.
+                let size = f.abs() * (value.abs() + free.unwrap_or(speed).abs());
+                let own = acts_of(i).map(|act| {
+                    let body = states.body(act.body);
+                    size * (body.velocity_at(act.arm).norm() + body.spin.abs())
+                });
+                let scale: f64 = own.sum();
                 let off = (powers[i] - expected).abs();
                 assert!(
                     off <= 1e-13 * scale.max(expected.abs()),

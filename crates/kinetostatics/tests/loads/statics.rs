@@ -101,7 +101,7 @@ fn a_massless_slider_crank_carries_the_piston_force() {
 
 /// By a fifth-order difference of the potential along q.
 fn potential_slope(case: &mut Case, q: f64) -> f64 {
-    let h = 2e-3;
+    let h = 2e-3 * case.reach;
     let mut at = |k: f64| {
         case.run(0.0, &[q + k * h], &[0.0], &[0.0]);
         let loads = case.model.loads().len();
