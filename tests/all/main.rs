@@ -8,6 +8,7 @@
 
 mod branches;
 mod cases;
+mod chain;
 mod change_points;
 mod changes;
 mod derivatives;

@@ -193,19 +193,11 @@ impl Parts<'_> {
     fn bodies_of(&self, u: usize) -> Vec<usize> {
         let classes = self.frames.classes - 1;
         if u < classes {
-            bodies_of_class(self.frames, u + 1)
+            self.frames.members[u + 1].clone()
         } else {
             bodies_of_slide(self.tree, u - classes)
         }
     }
-}
-
-/// The bodies of a class.
-pub(crate) fn bodies_of_class(frames: &Frames, class: usize) -> Vec<usize> {
-    let all = frames.attitudes.iter().enumerate();
-    all.filter(|(_, a)| frames.frames[a.frame].class == class)
-        .map(|(b, _)| b)
-        .collect()
 }
 
 /// The bodies that a slide carries itself.

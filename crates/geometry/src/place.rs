@@ -101,31 +101,38 @@ impl Plan {
         pose: &mut Pose<T>,
         guess: Guess,
     ) -> Result<(), PlaceError> {
-        self.place_groups(q, pose, guess, self.groups.len())
-    }
-
-    /// Places the first `count` groups only (while a branch is still to be picked).
-    pub(crate) fn place_groups<T: Scalar>(
-        &self,
-        q: &[T],
-        pose: &mut Pose<T>,
-        guess: Guess,
-        count: usize,
-    ) -> Result<(), PlaceError> {
         for (own, &value) in pose.q.iter_mut().zip(q) {
             if !value.value().is_finite() {
                 return Err(PlaceError::NotFinite { q: value.value() });
             }
             *own = value;
         }
-        for step in &self.steps {
+        self.place_from_here(&self.steps, pose, guess)
+    }
+
+    /// Places one group at the start, with what follows the one before it: while a branch is still
+    /// to be picked, and all groups before it are placed.
+    pub(crate) fn place_group(&self, group: usize, pose: &mut Pose<f64>) -> Result<(), PlaceError> {
+        let from = group
+            .checked_sub(1)
+            .map_or(0, |before| self.solve_steps[before] + 1);
+        let steps = &self.steps[from..=self.solve_steps[group]];
+        self.place_from_here(steps, pose, Guess::Pose)
+    }
+
+    fn place_from_here<T: Scalar>(
+        &self,
+        steps: &[Step],
+        pose: &mut Pose<T>,
+        guess: Guess,
+    ) -> Result<(), PlaceError> {
+        for step in steps {
             match step {
                 Step::Slide(slide, actuator) => pose.slide[*slide] = pose.q[*actuator],
                 Step::Turn(driven) => turn(driven, pose),
                 Step::Rotate(arm, Arm { frame, local }) => {
                     pose.arm[*arm] = local.lift::<T>().turn(pose.turn[*frame]);
                 }
-                Step::Solve(g) if *g >= count => return Ok(()),
                 Step::Solve(g) => {
                     match &self.groups[*g].kind {
                         Kind::Pin(pin) => place_pin(pin, *g, pose)?,

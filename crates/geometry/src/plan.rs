@@ -37,6 +37,10 @@ pub struct Plan {
     pub(crate) relations: Vec<Row>,
     pub(crate) groups: Vec<Assur>,
     pub(crate) steps: Vec<Step>,
+    /// By bond: its place in the tree or among the closures.
+    pub(crate) bond_places: Vec<BondPlace>,
+    /// By group: the step that solves it.
+    pub(crate) solve_steps: Vec<usize>,
     /// By class: the frame whose angle is the unknown (the ground's for class 0).
     pub(crate) class_roots: Vec<usize>,
     /// The frames that turn with the ground but for the actuators, each after the one it is
@@ -65,6 +69,15 @@ pub struct Branches {
     pub bodies: Vec<BodyId>,
     /// For each way, the angle of each of `bodies`, rad; the one that was picked comes first.
     pub ways: Vec<Vec<f64>>,
+}
+
+/// Where a bond is in the plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BondPlace {
+    /// It carries a body: index in [`Plan::carried`].
+    Carries(usize),
+    /// It closes a loop: index in [`Plan::closures`].
+    Closes(usize),
 }
 
 /// A moving body, in the order in which bodies carry each other.
@@ -364,6 +377,11 @@ impl Plan {
         self.lowered.of_joint[joint.0]
     }
 
+    /// Where a bond is in the plan.
+    pub fn bond_place(&self, bond: usize) -> BondPlace {
+        self.bond_places[bond]
+    }
+
     /// By an actuator that drives a length: its slide.
     pub fn slide_of(&self, actuator: usize) -> Option<usize> {
         self.driven_slides
@@ -461,7 +479,7 @@ impl Plan {
         let mut bodies = Vec::new();
         for &unknown in &group.unknowns {
             match unknown {
-                Unknown::Class(c) => bodies.extend(groups::bodies_of_class(&self.frames, c)),
+                Unknown::Class(c) => bodies.extend(&self.frames.members[c]),
                 Unknown::Slide(s) => bodies.extend(groups::bodies_of_slide(&self.tree, s)),
             }
         }

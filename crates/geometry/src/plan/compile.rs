@@ -1,6 +1,8 @@
 //! From a mechanism to its plan: which group is solved how, and which arms are rotated when.
 
-use super::{Aim, Assur, Behind, Carried, Closure, Driven, How, Kind, Pin, Plan, Solved, Step};
+use super::{
+    Aim, Assur, Behind, BondPlace, Carried, Closure, Driven, How, Kind, Pin, Plan, Solved, Step,
+};
 use crate::error::StructureError;
 use crate::frames::{Frame, Frames, Turning};
 use crate::groups::{self, Group, Parts, Unknown};
@@ -42,7 +44,8 @@ impl Plan {
             }
         }
         let counted = counted(&frames, &relations);
-        let mut table = ArmTable::new(&frames, &class_roots, &groups, &counted);
+        let all_driven = all_driven(&frames, &class_roots, &counted);
+        let mut table = ArmTable::new(&frames, &class_roots, &groups, &all_driven);
         let closures: Vec<Closure> = loops.iter().map(|l| table.closure(l)).collect();
         let carried = tree
             .carries
@@ -51,7 +54,7 @@ impl Plan {
             .collect();
         let angular = mechanism.actuators.iter().map(|a| a.drive == Drive::Angle);
         let mut plan = Self {
-            driven: driven(&frames, &class_roots, &counted, |class| class == 0),
+            driven: driven(&all_driven, |class| class == 0),
             class_roots,
             angular: angular.collect(),
             start: vec![0.0; mechanism.actuators.len()],
@@ -62,6 +65,8 @@ impl Plan {
             arms: Vec::new(),
             groups: Vec::new(),
             steps: Vec::new(),
+            solve_steps: Vec::new(),
+            bond_places: bond_places(&lowered, &tree),
             lowered,
             frames,
             tree,
@@ -75,7 +80,7 @@ impl Plan {
         plan.reach = plan.largest_length();
         let (mut lu, mut pivots) = (0, 0);
         for group in groups {
-            let assur = plan.prepare(group, lu, pivots);
+            let assur = plan.prepare(group, &all_driven, lu, pivots);
             if let Kind::Solved(solved) = &assur.kind {
                 lu += solved.room();
                 pivots += solved.columns;
@@ -83,6 +88,11 @@ impl Plan {
             plan.groups.push(assur);
         }
         plan.steps = table.steps(&plan.groups, &plan.driven_slides);
+        let steps = plan.steps.iter().enumerate();
+        plan.solve_steps = steps
+            .filter(|(_, step)| matches!(step, Step::Solve(_)))
+            .map(|(i, _)| i)
+            .collect();
         Ok(plan)
     }
 
@@ -94,7 +104,13 @@ impl Plan {
     }
 
     /// Chooses how a group is solved.
-    fn prepare(&self, group: Group, lu: usize, pivots: usize) -> Assur {
+    fn prepare(
+        &self,
+        group: Group,
+        all_driven: &[(usize, Driven)],
+        lu: usize,
+        pivots: usize,
+    ) -> Assur {
         let in_group = |frame: usize| {
             let class = self.frames.frames[frame].class;
             class > 0 && group.unknowns.contains(&Unknown::Class(class))
@@ -138,7 +154,7 @@ impl Plan {
             _ => counts,
         };
         Assur {
-            driven: driven(&self.frames, &self.class_roots, &self.counted, |class| {
+            driven: driven(all_driven, |class| {
                 group.unknowns.contains(&Unknown::Class(class))
             }),
             group,
@@ -297,6 +313,18 @@ impl Plan {
     }
 }
 
+/// By bond: where it is in the plan.
+fn bond_places(lowered: &Lowered, tree: &Tree) -> Vec<BondPlace> {
+    let mut places = vec![BondPlace::Closes(0); lowered.bonds.len()];
+    for (c, &chord) in tree.chords.iter().enumerate() {
+        places[chord] = BondPlace::Closes(c);
+    }
+    for (i, carry) in tree.carries.iter().enumerate() {
+        places[carry.bond] = BondPlace::Carries(i);
+    }
+    places
+}
+
 /// By slide: the actuator that drives it.
 fn driven_slides(lowered: &Lowered, tree: &Tree) -> Vec<Option<usize>> {
     let mut driven = vec![None; tree.slides.len()];
@@ -320,30 +348,34 @@ fn counted(frames: &Frames, relations: &[Row]) -> Vec<bool> {
     frames.frames.iter().map(counted).collect()
 }
 
-/// The driven frames of some classes, each after the one it is turned from.
-fn driven(
-    frames: &Frames,
-    roots: &[usize],
-    counted: &[bool],
-    of: impl Fn(usize) -> bool,
-) -> Vec<Driven> {
+/// Every driven frame with its class, each after the one it is turned from.
+fn all_driven(frames: &Frames, roots: &[usize], counted: &[bool]) -> Vec<(usize, Driven)> {
     let all = frames.frames.iter().enumerate();
     all.filter_map(|(frame, &Frame { turning, class })| match turning {
         Turning::Driven {
             parent,
             actuator,
             sign,
-        } if of(class) => Some(Driven {
-            frame,
-            parent,
-            actuator,
-            sign,
-            root: roots[class],
-            counted: counted[frame],
-        }),
+        } => Some((
+            class,
+            Driven {
+                frame,
+                parent,
+                actuator,
+                sign,
+                root: roots[class],
+                counted: counted[frame],
+            },
+        )),
         _ => None,
     })
     .collect()
+}
+
+/// Those of some classes.
+fn driven(all: &[(usize, Driven)], of: impl Fn(usize) -> bool) -> Vec<Driven> {
+    let picked = all.iter().filter(|(class, _)| of(*class));
+    picked.map(|(_, driven)| *driven).collect()
 }
 
 impl Solved {
@@ -370,20 +402,25 @@ struct ArmTable {
 }
 
 impl ArmTable {
-    fn new(frames: &Frames, roots: &[usize], groups: &[Group], counted: &[bool]) -> Self {
+    fn new(
+        frames: &Frames,
+        roots: &[usize],
+        groups: &[Group],
+        all_driven: &[(usize, Driven)],
+    ) -> Self {
         let mut table = Self {
             arms: Vec::new(),
             seen: HashMap::new(),
             known_at: vec![0; frames.frames.len()],
             steps: Vec::new(),
         };
-        table.turn(driven(frames, roots, counted, |class| class == 0));
+        table.turn(driven(all_driven, |class| class == 0));
         for (g, group) in groups.iter().enumerate() {
             table.steps.push(Step::Solve(g));
             for &unknown in &group.unknowns {
                 if let Unknown::Class(class) = unknown {
                     table.known_at[roots[class]] = table.steps.len();
-                    table.turn(driven(frames, roots, counted, |c| c == class));
+                    table.turn(driven(all_driven, |c| c == class));
                 }
             }
         }
