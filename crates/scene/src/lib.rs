@@ -63,6 +63,7 @@ mod problem;
 mod read;
 mod requests;
 mod scene;
+mod schema;
 mod units;
 mod value;
 
@@ -75,3 +76,4 @@ pub use scene::{
     Assembly, Calibration, DwellRequest, Length, Motion, NamedCoordinate, PathPoint, Prescribed,
     Requests, Scene, Section, Sweep,
 };
+pub use schema::schema;
