@@ -13,6 +13,7 @@ mod changes;
 mod derivatives;
 mod findings;
 mod invariance;
+mod joints;
 mod limits;
 mod machines;
 mod motion;

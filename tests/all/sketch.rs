@@ -2,7 +2,8 @@
 
 use crate::changes::Setup;
 use dwell_geometry::{
-    Actuator, Body, BodyId, Drive, Joint, JointId, JointKind, Mechanism, Start, Vec2, vec2,
+    Actuator, Body, BodyId, Drive, Joint, JointId, JointKind, Mechanism, Relation, Start, Vec2,
+    vec2,
 };
 use dwell_kinetostatics::Mass;
 
@@ -53,7 +54,7 @@ impl Sketch {
         self.joint(name, first, second, JointKind::Prismatic { axes })
     }
 
-    fn joint(&mut self, name: &str, first: On, second: On, kind: JointKind) -> JointId {
+    pub(crate) fn joint(&mut self, name: &str, first: On, second: On, kind: JointKind) -> JointId {
         self.mechanism.joints.push(Joint {
             name: name.into(),
             bodies: [first.0, second.0],
@@ -70,6 +71,36 @@ impl Sketch {
             name,
             bodies,
             drive: Drive::Angle,
+        });
+    }
+
+    /// An actuator that drives the travel of a joint between the two bodies.
+    pub(crate) fn drive_travel(&mut self, name: &str, bodies: [BodyId; 2], joint: JointId) {
+        self.mechanism.actuators.push(Actuator {
+            name: name.into(),
+            bodies,
+            drive: Drive::Travel(joint),
+        });
+    }
+
+    /// An actuator that drives the distance of two points.
+    pub(crate) fn drive_length(&mut self, name: &str, bodies: [BodyId; 2], points: [Vec2; 2]) {
+        self.mechanism.actuators.push(Actuator {
+            name: name.into(),
+            bodies,
+            drive: Drive::Length(points),
+        });
+    }
+
+    /// A relation, as a joint between the two bodies of its first coordinate.
+    pub(crate) fn relate(&mut self, name: &str, bodies: [BodyId; 2], relation: Relation) {
+        let kind = JointKind::Relation(self.mechanism.relations.len());
+        self.mechanism.relations.push(relation);
+        self.mechanism.joints.push(Joint {
+            name: name.into(),
+            bodies,
+            points: [Vec2::ZERO; 2],
+            kind,
         });
     }
 

@@ -6,6 +6,7 @@ pub mod frames;
 mod groups;
 mod locate;
 pub mod lower;
+pub mod measure;
 pub mod mechanism;
 pub mod motion;
 mod place;

@@ -1,5 +1,6 @@
 //! Where the bodies are, in the ground's axes: for those who draw or check them.
 
+use crate::frames::Turning;
 use crate::mechanism::{BodyId, Mechanism};
 use crate::plan::{Plan, Pose};
 use crate::plane::Vec2;
@@ -11,7 +12,40 @@ impl Plan {
         pose.turn[attitude.frame].turn(attitude.offset)
     }
 
-    /// The frame of every body, the ground's included: origin x, y (m) and angle in (−π, π] rad.
+    /// The angle of a body's frame, rad: whole turns are counted where actuators turn it from the
+    /// ground or a relation needs them, else it is in (−π, π].
+    pub fn body_angle(&self, body: BodyId, pose: &Pose<f64>) -> f64 {
+        let attitude = self.frames.attitudes[body.0];
+        match self.driven_turn(attitude.frame, pose) {
+            _ if self.counted[attitude.frame] => {
+                pose.angle[attitude.frame] + attitude.offset.angle()
+            }
+            Some(angle) => angle + attitude.offset.angle(),
+            None => self.body_turn(body, pose).angle(),
+        }
+    }
+
+    /// The angle of a frame that actuators turn from the ground's.
+    fn driven_turn(&self, mut frame: usize, pose: &Pose<f64>) -> Option<f64> {
+        let mut angle = 0.0;
+        loop {
+            match self.frames.frames[frame].turning {
+                Turning::Ground => return Some(angle),
+                Turning::Unknown => return None,
+                Turning::Driven {
+                    parent,
+                    actuator,
+                    sign,
+                } => {
+                    angle += sign * pose.q[actuator];
+                    frame = parent;
+                }
+            }
+        }
+    }
+
+    /// The frame of every body, the ground's included: origin x, y (m) and
+    /// [angle](Self::body_angle), rad.
     pub fn body_frames(&self, mechanism: &Mechanism, pose: &Pose<f64>) -> Vec<[f64; 3]> {
         let mut roots = Vec::new();
         self.roots(pose, &mut roots);
@@ -22,7 +56,8 @@ impl Plan {
             }
             let turn = self.body_turn(BodyId(carried.body), pose);
             let origin = *root - self.tree.roots[carried.body].turn(turn);
-            frames[carried.body] = [origin.x, origin.y, turn.angle()];
+            let angle = self.body_angle(BodyId(carried.body), pose);
+            frames[carried.body] = [origin.x, origin.y, angle];
         }
         frames
     }

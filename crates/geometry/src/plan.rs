@@ -81,7 +81,7 @@ pub struct Carried {
     /// The frame of the body that carries it.
     pub parent_frame: usize,
     /// The rotated arm from the parent's root to the joint; none where it has no length or
-    /// belongs to the ground, so that it does not move.
+    /// belongs to the ground itself. (A body that slides without turning carries moments by it.)
     pub arm: Option<usize>,
     /// The slide of a prismatic joint: its index, and the rotated direction of its travel.
     pub slide: Option<(usize, usize)>,

@@ -1,13 +1,24 @@
 //! Masses, reactions and the reduced model of a mechanism.
 
+pub mod acts;
+pub mod balance;
+mod bearing;
+pub mod kinetostatics;
+pub mod ledger;
 pub mod load;
 pub mod mass;
 pub mod model;
 mod reactions;
 pub mod reduced;
 mod runs;
+pub mod section;
 
+pub use acts::{Act, By, LoadError, LoadState};
+pub use balance::{PowerBalance, Shaking, Wrench};
+pub use kinetostatics::KinetostaticsError;
+pub use ledger::Ledger;
 pub use load::{Load, LoadKind, Magnitude, Signal};
 pub use mass::Mass;
 pub use model::{Actions, Model, ModelError, Workspace};
 pub use reduced::{Coefficients, Exact, ExactWork, Inertia, Reduced};
+pub use section::{Distribution, LinkForces, Section};

@@ -77,7 +77,7 @@ pub enum Magnitude {
     Constant(f64),
     /// A law of one signal.
     Law(Signal, Law),
-    /// An expression of several signals: its variables, in their order.
+    /// An expression of several signals, one for each variable it was parsed with, in their order.
     Expression(Expression, Vec<Signal>),
 }
 

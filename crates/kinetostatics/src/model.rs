@@ -1,11 +1,14 @@
 //! A mechanism with masses, ready to be evaluated: inertia forces, the actuators' actions, and
 //! the reactions that were asked for.
 
+use crate::acts::Loads;
+use crate::kinetostatics::Loaded;
 use crate::mass::Mass;
 use crate::reactions::Sources;
 use crate::runs::{Prescribed, Runs};
+use dwell_geometry::measure::BodyStates;
 use dwell_geometry::{
-    AssemblyError, Mechanism, Motion, PlaceError, Plan, Pose, Reaction, Scalar, Start, Vec2,
+    AssemblyError, BodyId, Mechanism, Motion, PlaceError, Plan, Pose, Reaction, Scalar, Start, Vec2,
 };
 use thiserror::Error;
 
@@ -20,6 +23,9 @@ pub struct Model {
     pub(crate) inertia: Vec<f64>,
     pub(crate) sources: Sources,
     reactions: Vec<Reaction>,
+    /// By body; the ground has none.
+    pub(crate) masses: Vec<Mass>,
+    pub(crate) loads: Loads,
 }
 
 /// A carried body that has inertia.
@@ -80,6 +86,7 @@ pub struct Workspace<T> {
     pub motion: Motion<T>,
     pub(crate) unit: Runs<T, 2>,
     pub(crate) run: Runs<T, 1>,
+    pub(crate) loaded: Loaded<T>,
 }
 
 /// The actuators' actions and the requested reactions in one state of motion.
@@ -89,6 +96,18 @@ pub struct Actions<T> {
     pub tau: Vec<T>,
     /// By requested reaction: N or N·m.
     pub reactions: Vec<T>,
+}
+
+impl<T: Scalar> Actions<T> {
+    /// Reads them off a run.
+    pub(crate) fn take(&mut self, model: &Model, pose: &Pose<T>, run: &Runs<T, 1>) {
+        for (i, tau) in self.tau.iter_mut().enumerate() {
+            *tau = run.tau(model, i)[0];
+        }
+        for (k, value) in self.reactions.iter_mut().enumerate() {
+            *value = run.reaction(model, pose, k)[0];
+        }
+    }
 }
 
 impl Model {
@@ -149,6 +168,8 @@ impl Model {
         }
         let links = links(&plan, &moves, &massive);
         let sources = Sources::find(mechanism, &plan, reactions);
+        let mut masses = masses.to_vec();
+        masses[mechanism.ground] = Mass::default();
         Ok(Self {
             plan,
             massive,
@@ -156,6 +177,8 @@ impl Model {
             inertia,
             sources,
             reactions: reactions.to_vec(),
+            masses,
+            loads: Loads::default(),
         })
     }
 
@@ -184,6 +207,7 @@ impl Model {
             motion: self.plan.motion(),
             unit: Runs::new(&self.plan, self.links.len()),
             run: Runs::new(&self.plan, self.links.len()),
+            loaded: Loaded::new(self),
         }
     }
 
@@ -195,8 +219,8 @@ impl Model {
         }
     }
 
-    /// Kinetostatics: the actuators' actions and the reactions for prescribed coordinates `q`
-    /// (rad), speeds (rad/s) and accelerations (rad/s²): Jᵀ[λ; τ] = M ẍ + h.
+    /// Kinetostatics of inertia alone, without the loads: the actuators' actions and the reactions for
+    /// prescribed coordinates `q` (rad), speeds (rad/s) and accelerations (rad/s²): Jᵀ[λ; τ] = M ẍ + h.
     ///
     /// # Errors
     /// [`PlaceError`] when there is no pose at `q`.
@@ -215,12 +239,7 @@ impl Model {
         self.plan.speeds(pose, q_dot, motion);
         self.plan.accelerations(pose, q_ddot, motion);
         run.evaluate(self, pose, Prescribed(motion));
-        for (i, tau) in actions.tau.iter_mut().enumerate() {
-            *tau = run.tau(self, i)[0];
-        }
-        for (k, value) in actions.reactions.iter_mut().enumerate() {
-            *value = run.reaction(self, pose, k)[0];
-        }
+        actions.take(self, pose, run);
         Ok(())
     }
 
@@ -228,37 +247,15 @@ impl Model {
     /// Σ m v·a + I ω α, both at the pose, speeds and accelerations in `work`: another way to m
     /// and ½m′, with no reaction in it.
     pub fn energy_and_power(&self, work: &Workspace<f64>) -> (f64, f64) {
-        let Workspace { pose, motion, .. } = work;
-        let carried = self.plan.carried();
-        let mut rates = vec![(Vec2::ZERO, Vec2::ZERO); carried.len()];
-        for (i, c) in carried.iter().enumerate() {
-            let mut rate = c.parent.map_or((Vec2::ZERO, Vec2::ZERO), |p| rates[p]);
-            if let Some(arm) = c.arm {
-                add(&mut rate, pose.arm[arm], c.parent_frame, motion);
-            }
-            if let Some((slide, direction)) = c.slide {
-                let along = pose.arm[direction];
-                add(&mut rate, along * pose.slide[slide], c.frame, motion);
-                rate.0 += along * motion.slide[slide];
-                rate.1 += along * motion.slide_rate[slide]
-                    + along.perp() * (2.0 * motion.turn[c.frame] * motion.slide[slide]);
-            }
-            rates[i] = rate;
-        }
+        let mut states = BodyStates::new(&self.plan);
+        states.fill(&self.plan, &work.pose, &work.motion);
         let (mut energy, mut power) = (0.0, 0.0);
         for body in &self.massive {
-            let mut rate = rates[body.carried];
-            if let Some(arm) = body.arm {
-                add(
-                    &mut rate,
-                    arm.turn(pose.turn[body.frame]),
-                    body.frame,
-                    motion,
-                );
-            }
-            let (w, a) = (motion.turn[body.frame], motion.turn_rate[body.frame]);
-            energy += body.mass * rate.0.dot(rate.0) + body.inertia * w * w;
-            power += body.mass * rate.0.dot(rate.1) + body.inertia * w * a;
+            let id = BodyId(body.body);
+            let center = states.point(id, self.masses[id.0].center);
+            let (w, a) = (states.body(id).spin, states.body(id).spin_rate);
+            energy += body.mass * center.velocity.dot(center.velocity) + body.inertia * w * w;
+            power += body.mass * center.velocity.dot(center.acceleration) + body.inertia * w * a;
         }
         (energy, power)
     }
@@ -307,11 +304,4 @@ fn links(plan: &Plan, moves: &[bool], massive: &[Massive]) -> Vec<Link> {
         }
     }
     links
-}
-
-/// Adds what an arm adds to a point's velocity and acceleration.
-fn add(rate: &mut (Vec2, Vec2), arm: Vec2, frame: usize, motion: &Motion<f64>) {
-    let (w, a) = (motion.turn[frame], motion.turn_rate[frame]);
-    rate.0 += arm.perp() * w;
-    rate.1 += arm.perp() * a - arm * (w * w);
 }

@@ -108,12 +108,13 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
         }
         if model.sources.moments {
             self.twist(model, pose, rates);
+            self.along_holds(model);
         }
     }
 
     /// Accelerations of the roots, and each body's own inertia force and its moment about its
     /// root: Σ m r×a = I α + (Σ m r)×(the root's acceleration).
-    fn accelerate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+    pub(crate) fn accelerate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         let moments = self.balance.moment.iter_mut().zip(&model.inertia);
         for (frame, (moment, &inertia)) in moments.enumerate() {
             *moment = rates.turning(frame).map(|rate| rate * T::lift(inertia));
@@ -147,7 +148,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
 
     /// Carries the inertia forces down the tree: moments on the frames, pushes on the slides.
     #[inline]
-    fn collect(&mut self, model: &Model, pose: &Pose<T>) {
+    pub(crate) fn collect(&mut self, model: &Model, pose: &Pose<T>) {
         let Balance { moment, push, .. } = &mut self.balance;
         push.fill([T::lift(0.0); N]);
         for (i, link) in model.links.iter().enumerate().rev() {
@@ -173,7 +174,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
 
     /// Notes each body's own inertia force: the first part of what its joint must exert on it.
     #[inline(never)]
-    fn note(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+    pub(crate) fn note(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         self.held.fill([Vec2::zero(); N]);
         for (link, force) in model.links.iter().zip(&self.force) {
             self.held[link.carried] = *force;
@@ -189,7 +190,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     /// What each joint of the tree exerts on the body it carries: the inertia forces of all that
     /// hangs on it, less what the chords exert there.
     #[inline(never)]
-    fn hold(&mut self, model: &Model, pose: &Pose<T>) {
+    pub(crate) fn hold(&mut self, model: &Model, pose: &Pose<T>) {
         for (c, ends) in model.sources.chords.iter().enumerate() {
             let force = self.chord_force(model, pose, c);
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
@@ -224,9 +225,9 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// The couples that prismatic joints and actuators exert: each body's moment balance about
-    /// its root, then along the holds from the outermost body inwards.
+    /// its root, still to be handed on along the holds.
     #[inline(never)]
-    fn twist(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+    pub(crate) fn twist(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         self.couple.fill([T::lift(0.0); N]);
         let carried = model.plan.carried();
         for body in &model.massive {
@@ -280,6 +281,11 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
                 add(&mut self.couple[on], force.map(|f| reach.cross(f)));
             }
         }
+    }
+
+    /// Hands the couples on to the bodies that those they act on are held against.
+    #[inline(never)]
+    pub(crate) fn along_holds(&mut self, model: &Model) {
         for hold in model.plan.frames().holds.iter().rev() {
             let couple = self.couple[hold.body];
             add(&mut self.couple[hold.against], couple);

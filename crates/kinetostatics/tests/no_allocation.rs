@@ -2,8 +2,11 @@
 #![allow(clippy::expect_used, reason = "a test")]
 
 use allocation_counter::measure;
-use dwell_geometry::Start;
-use dwell_kinetostatics::{Exact, Model, Reduced};
+use dwell_geometry::{BodyId, Coordinate, Start, vec2};
+use dwell_kinetostatics::{
+    Exact, Ledger, Load, LoadKind, Magnitude, Model, Reduced, Shaking, Signal,
+};
+use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::Scene;
 use std::path::Path;
 
@@ -82,6 +85,64 @@ fn an_evaluation_allocates_nothing() {
             ];
             assert_eq!(counts, [0; 4], "{name} at {q}");
         }
+    }
+}
+
+/// Loads of every cost: weight, a spring, a magnitude that has to be measured, a torque.
+fn loads(model: &Model) -> Vec<Load> {
+    let ground = model.plan().tree().carries[0].parent;
+    let bodies = [ground, model.plan().carried()[0].body].map(BodyId);
+    let points = [vec2(0.3, 0.2), vec2(-0.1, 0.4)];
+    let spring = LoadKind::Spring {
+        bodies,
+        points,
+        free: 0.02,
+    };
+    let length = Coordinate::Length { bodies, points };
+    let law = Law::Polynomial(Polynomial::motion(1.0, 2.0, 3.0));
+    let direction = vec2(0.0, -1.0);
+    let formula = Expression::parse("t + sin(l)", &["t", "l"]).expect("an expression");
+    let formula = Magnitude::Expression(formula, vec![Signal::Time, Signal::Value(length)]);
+    [
+        (LoadKind::Gravity { direction }, Magnitude::Constant(9.81)),
+        (spring, Magnitude::Law(Signal::Speed(length), law)),
+        (LoadKind::Torque { bodies }, formula),
+    ]
+    .map(|(kind, magnitude)| Load {
+        name: "load".into(),
+        kind,
+        magnitude,
+    })
+    .into()
+}
+
+#[test]
+fn loads_and_balances_allocate_nothing() {
+    for scene in [
+        case("single-dwell"),
+        case("class-three-six-bar"),
+        Scene::parse("yoke.toml", YOKE).expect("a scene"),
+    ] {
+        let (name, mechanism) = (&scene.name, &scene.mechanism);
+        let model = model(&scene).model().clone();
+        let loads = loads(&model);
+        let model = model.with_loads(mechanism, loads).expect("they fit");
+        let ledger = Ledger::new(mechanism, &model).expect("every reaction");
+        let (mut work, mut actions) = (model.workspace(), model.actions());
+        let mut acts = Vec::with_capacity(100);
+        let mut powers = [0.0; 3];
+        let q = [model.plan().start()[0] + 0.1];
+        let spent = allocations(name, true, || {
+            let done = model.kinetostatics(0.5, &q, &[2.0], &[-3.0], &mut work, &mut actions);
+            model.generalised_forces(&mut work, &mut powers);
+            model.load_powers(&work, &mut powers);
+            ledger.acts(&model, &work, &actions, &mut acts);
+            let shaking = ledger.shaking(&model, &work, &acts);
+            let power = model.power(&work, &actions);
+            let rest = model.statics(0.5, &q, &mut work, &mut actions);
+            done.is_ok() && rest.is_ok() && power.scale > 0.0 && shaking != Shaking::default()
+        });
+        assert_eq!(spent, 0, "{name}");
     }
 }
 

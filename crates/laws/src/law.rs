@@ -39,44 +39,52 @@ mod tests {
     use super::*;
     use crate::{Shape, Travel};
 
-    /// One law of each kind.
-    fn laws() -> [Law; 5] {
+    /// One law of each kind, and every shape of profile.
+    fn laws() -> Vec<Law> {
         let travel = Travel {
             start: 0.5,
             rise: 2.0,
             duration: 3.0,
             delay: -1.0,
         };
-        [
+        let table = [[-2.0, 1.0], [0.0, -1.0], [1.0, 2.0], [3.0, 0.0], [4.0, 1.0]];
+        let mut laws = vec![
             Law::Polynomial(Polynomial {
                 coefficients: vec![1.0, -2.0, 0.5, 0.25, -0.125],
             }),
-            Law::Profile(Profile::new(Shape::Cycloidal, travel).expect("a profile")),
-            Law::Spline(
-                Spline::through(&[[-2.0, 1.0], [0.0, -1.0], [1.0, 2.0], [3.0, 0.0], [4.0, 1.0]])
-                    .expect("a spline"),
-            ),
+            Law::Spline(Spline::through(&table).expect("a spline")),
             Law::Sinusoid(
                 Sinusoid::starting_at(0.3, 0.7, 2.0 * PI / 3.0, 0.4).expect("a sinusoid"),
             ),
             Law::Expression(Expression::parse("x^2*exp(-x)/(4 + x^2)", &["x"]).expect("a formula")),
-        ]
+        ];
+        for shape in [
+            Shape::Polynomial345,
+            Shape::Polynomial4567,
+            Shape::Cycloidal,
+            Shape::Trapezoidal { ramp: 0.7 },
+        ] {
+            laws.push(Law::Profile(
+                Profile::new(shape, travel).expect("a profile"),
+            ));
+        }
+        laws
     }
 
     /// Each derivative against the differences of the one before it. Sixth order with a step of
-    /// 0.01: truncation h⁶ f⁗‴/140 below 1e-12 × 3⁷/140, rounding below 1e-16/h; largest seen 2e-11.
+    /// 0.01: truncation h⁶ f⁗‴/140, for the sinusoid 1e-12 × 0.7 × 3¹⁰/140 = 3e-10 in the third.
     #[test]
     fn every_derivative_is_that_of_the_entry_before_it() {
         let h = 0.01;
         for law in laws() {
-            // No knot of the spline, no end of the profile within the stencil.
+            // No knot of the spline, no end or corner of a profile within the stencil.
             for x in [-0.83, 0.41, 0.9, 1.55] {
                 let exact = law.at(x);
                 for k in 0..3 {
                     let d = |n: f64| law.at(x + n * h)[k] - law.at(x - n * h)[k];
                     let difference = (45.0 * d(1.0) - 9.0 * d(2.0) + d(3.0)) / (60.0 * h);
                     let error = (difference - exact[k + 1]).abs();
-                    assert!(error < 1e-10, "{law:?} at {x}, {}: {error:e}", k + 1);
+                    assert!(error < 5e-10, "{law:?} at {x}, {}: {error:e}", k + 1);
                 }
             }
         }

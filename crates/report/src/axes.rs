@@ -80,14 +80,18 @@ pub(crate) fn ticks_up(span: &Span, length: f64) -> Ticks {
     })
 }
 
-/// Room a vertical axis needs beside the plot.
-pub(crate) fn side_room(axis: &Axis, ticks: &Ticks, cell: &Rect) -> f64 {
+/// Room a vertical axis needs beside the plot, if its label has `room` upwards.
+pub(crate) fn side_room(axis: &Axis, ticks: &Ticks, room: f64) -> f64 {
     let wide = ticks.labels.iter().map(|label| width(label, TICK, false));
-    TICK_LENGTH + TICK_GAP + wide.fold(0.0, f64::max) + label_room(&words::up(axis, ticks, cell))
+    TICK_LENGTH + TICK_GAP + wide.fold(0.0, f64::max) + label_room(&words::up(axis, ticks, room))
 }
 
-/// Room the horizontal axis needs below the plot.
-pub(crate) fn bottom_room(axis: &Axis, ticks: &Ticks, cell: &Rect) -> f64 {
+/// Room the horizontal axis needs below the plot; without words only that for its ticks, and for half a label of the
+/// vertical axis.
+pub(crate) fn bottom_room(axis: Option<&Axis>, ticks: &Ticks, cell: &Rect) -> f64 {
+    let Some(axis) = axis else {
+        return TICK_LENGTH.max(0.6 * TICK);
+    };
     TICK_LENGTH + TICK_GAP + TICK + label_room(&words::across(axis, ticks, cell))
 }
 
@@ -136,12 +140,12 @@ pub(crate) fn grid(canvas: &mut Canvas<'_>, frame: &Frame, x: &Ticks, y: &Ticks)
     Ok(())
 }
 
-/// Draws the horizontal axis: spine, ticks, words.
+/// Draws the horizontal axis: spine, ticks, and words if there are any.
 pub(crate) fn bottom(
     canvas: &mut Canvas<'_>,
     frame: &Frame,
     cell: &Rect,
-    axis: &Axis,
+    axis: Option<&Axis>,
     ticks: &Ticks,
 ) -> Drawn {
     let plot = &frame.plot;
@@ -151,9 +155,12 @@ pub(crate) fn bottom(
     for (value, label) in ticks.major.iter().zip(&ticks.labels) {
         if let Some(x) = frame.across(*value) {
             canvas.line(&[[x, plot.y1], [x, plot.y1 + TICK_LENGTH]], spine)?;
-            canvas.text(label, [x, baseline], Type::new(TICK, INK, Align::Middle))?;
+            if axis.is_some() {
+                canvas.text(label, [x, baseline], Type::new(TICK, INK, Align::Middle))?;
+            }
         }
     }
+    let Some(axis) = axis else { return Ok(()) };
     let top = plot.y1 + TICK_LENGTH + TICK_GAP + TICK + LABEL_GAP;
     let words = words::across(axis, ticks, cell);
     for (line, baseline) in words.baselines() {
@@ -187,7 +194,7 @@ pub(crate) fn side(
         }
     }
     // Lines that read upwards follow each other to the right.
-    let words = words::up(axis, look.ticks, cell);
+    let words = words::up(axis, look.ticks, look.room);
     let left = if look.right {
         cell.x1 - words.height()
     } else {
@@ -195,7 +202,10 @@ pub(crate) fn side(
     };
     for (line, baseline) in words.baselines() {
         let text = Type::new(words.size, look.color, Align::Middle);
-        canvas.text_upwards(line, [left + baseline, plot.centre()[1]], text)?;
+        // A plot that gave way to a legend is not in the middle of its cell, and in a stack the next cell is near.
+        let half = 0.5 * width(line, words.size, false) + LABEL_GAP;
+        let middle = plot.centre()[1].min(cell.y1 - half).max(cell.y0 + half);
+        canvas.text_upwards(line, [left + baseline, middle], text)?;
     }
     Ok(())
 }
@@ -205,6 +215,8 @@ pub(crate) struct Side<'a> {
     pub(crate) ticks: &'a Ticks,
     pub(crate) color: Rgb,
     pub(crate) right: bool,
+    /// Room for the label upwards.
+    pub(crate) room: f64,
 }
 
 /// Draws the title of a panel.
@@ -212,7 +224,9 @@ pub(crate) fn title(canvas: &mut Canvas<'_>, title: &str, plot: &Rect, cell: &Re
     let words = words::title(title, cell);
     for (line, baseline) in words.baselines() {
         let look = Type::new(words.size, INK, Align::Start).bold();
-        canvas.text(line, [plot.x0, cell.y0 + baseline], look)?;
+        // Beside a vertical axis with many words a long title has to begin before the plot.
+        let x = plot.x0.min(cell.x1 - width(line, words.size, true));
+        canvas.text(line, [x, cell.y0 + baseline], look)?;
     }
     Ok(())
 }

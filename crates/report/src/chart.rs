@@ -2,22 +2,25 @@
 
 use crate::axes::{self, Frame, Side};
 use crate::canvas::{Align, Canvas, Drawn, Line, Type};
-use crate::curve::clipped;
+use crate::curve::{clipped, clipped_area};
 use crate::extent::Extent;
-use crate::figure::{Chart, Paint, Series, Stroke};
+use crate::figure::{Axis, Chart, Paint, Series, Stroke};
 use crate::labels::{self, EndLabel};
 use crate::legend::{self, Entry, Sample};
 use crate::marks;
 use crate::occupancy::Occupancy;
 use crate::rect::{Insets, Rect};
 use crate::span::Span;
-use crate::theme::{CURVE, GREY, INK, LABEL, Rgb, automatic, rgb};
+use crate::theme::{CURVE, GREY, INK, LABEL, Rgb, SPINE, automatic, lightened, rgb};
 use crate::ticks::Ticks;
+use crate::words;
 
 /// Height of a chart's cell as a share of its width.
 pub(crate) const HEIGHT: f64 = 0.68;
 /// Markers of a line closer together than this say nothing more.
 const MARKER_STEP: f64 = 15.0;
+/// Opacity of an area.
+const FILL: f64 = 0.22;
 
 /// How a series looks.
 #[derive(Debug, Clone, Copy)]
@@ -50,6 +53,10 @@ pub(crate) struct Sheet<'a> {
     x: Span,
     y: Span,
     y2: Option<Span>,
+    /// The horizontal axis in words; a chart in a stack leaves them to the lowest.
+    x_axis: Option<&'a Axis>,
+    /// Room for the words of a vertical axis, if it is not that of a cell of its own.
+    room: Option<f64>,
 }
 
 /// Where things go in the cell.
@@ -60,22 +67,57 @@ struct Layout {
     taken: Occupancy,
 }
 
+/// Room for the words "no data".
+fn no_data(frame: &Frame) -> Rect {
+    let [x, y] = frame.plot.centre();
+    Rect::sized(x, y, 0.0, 0.0).grown(2.5 * LABEL)
+}
+
 impl<'a> Sheet<'a> {
     pub(crate) fn new(chart: &'a Chart) -> Self {
-        let looks = chart
-            .series
-            .iter()
-            .enumerate()
-            .map(|(i, series)| look(series, i))
-            .collect();
-        let Extent { x, y, y2 } = Extent::of(chart);
+        Self::with(chart, Extent::of(chart), Some(&chart.x), None)
+    }
+
+    /// Charts over the horizontal axis of the first, with plots about as high as given.
+    pub(crate) fn stacked(charts: &'a [Chart], plot: f64) -> Vec<Self> {
+        let Some(first) = charts.first() else {
+            return Vec::new();
+        };
+        let x = Extent::across(&first.x, charts);
+        let lowest = charts.len() - 1;
+        let sheet = |(place, chart)| {
+            let axis = (place == lowest).then_some(&first.x);
+            Self::with(chart, Extent::over(x, chart), axis, Some(plot))
+        };
+        charts.iter().enumerate().map(sheet).collect()
+    }
+
+    fn with(
+        chart: &'a Chart,
+        Extent { x, y, y2 }: Extent,
+        x_axis: Option<&'a Axis>,
+        room: Option<f64>,
+    ) -> Self {
+        let looks = chart.series.iter().enumerate();
         Self {
             chart,
-            looks,
+            looks: looks.map(|(i, series)| look(series, i)).collect(),
             x,
             y,
             y2,
+            x_axis,
+            room,
         }
+    }
+
+    fn room_up(&self, cell: &Rect) -> f64 {
+        self.room.unwrap_or_else(|| words::room_up(cell))
+    }
+
+    /// Whether a place is within the horizontal span.
+    #[cfg(test)]
+    pub(crate) fn shows(&self, x: f64) -> bool {
+        (self.x.low..=self.x.high).contains(&x)
     }
 
     fn frame(&self, plot: Rect) -> Frame {
@@ -97,12 +139,12 @@ impl<'a> Sheet<'a> {
             left: sides,
             top: axes::top_room(&chart.title, cell),
             right: axes::right_room(),
-            bottom: axes::bottom_room(&chart.x, &x_ticks, cell),
+            bottom: axes::bottom_room(self.x_axis, &x_ticks, cell),
         };
-        let height = cell.inside(insets).height();
-        insets.left = axes::side_room(&chart.y, &axes::ticks_up(&self.y, height), cell);
+        let (height, room) = (cell.inside(insets).height(), self.room_up(cell));
+        insets.left = axes::side_room(&chart.y, &axes::ticks_up(&self.y, height), room);
         if let (Some(axis), Some(span)) = (&chart.y2, &self.y2) {
-            insets.right = axes::side_room(axis, &axes::ticks_up(span, height), cell);
+            insets.right = axes::side_room(axis, &axes::ticks_up(span, height), room);
         }
         if let Some(ends) = labels::at_ends(chart, &self.looks, &self.frame(cell.inside(insets))) {
             insets.right = insets.right.max(labels::room(&ends));
@@ -125,8 +167,11 @@ impl<'a> Sheet<'a> {
         axes::grid(canvas, &frame, &x_ticks, &y_ticks)?;
         marks::lines(canvas, &frame, &chart.marks)?;
         // Under the curves: a marker at the very edge is a datum, the spine is not.
-        axes::bottom(canvas, &frame, cell, &chart.x, &x_ticks)?;
+        axes::bottom(canvas, &frame, cell, self.x_axis, &x_ticks)?;
         self.sides(canvas, &frame, cell, &y_ticks)?;
+        for (series, look) in chart.series.iter().zip(&self.looks) {
+            self.area(canvas, &frame, series, look)?;
+        }
         for (series, look) in chart.series.iter().zip(&self.looks) {
             self.series(canvas, &frame, series, look)?;
         }
@@ -143,7 +188,7 @@ impl<'a> Sheet<'a> {
             let [x, y] = frame.plot.centre();
             let look = Type::new(LABEL, GREY, Align::Middle);
             canvas.text_beside("no data", [x, y], look)?;
-            written.push(Rect::sized(x, y, 0.0, 0.0).grown(2.5 * LABEL));
+            written.push(no_data(&frame));
         }
         marks::words(canvas, &frame, &chart.marks, &taken, written)
     }
@@ -161,6 +206,7 @@ impl<'a> Sheet<'a> {
             ticks,
             color: color(false),
             right: false,
+            room: self.room_up(cell),
         };
         axes::side(canvas, frame, cell, &chart.y, &left)?;
         let Some((axis, span)) = second else {
@@ -176,6 +222,7 @@ impl<'a> Sheet<'a> {
                 ticks,
                 color: color(true),
                 right: true,
+                room: self.room_up(cell),
             },
         )
     }
@@ -247,6 +294,35 @@ impl<'a> Sheet<'a> {
         series.points.iter().filter_map(place).collect()
     }
 
+    /// Fills the area between a series and zero, and draws the line of zero.
+    fn area(&self, canvas: &mut Canvas<'_>, frame: &Frame, series: &Series, look: &Look) -> Drawn {
+        let zero = frame.up(0.0, series.right_axis);
+        let Some(zero) = zero.filter(|_| series.stroke == Stroke::Filled) else {
+            return Ok(());
+        };
+        let places: Vec<Option<[f64; 2]>> = series
+            .points
+            .iter()
+            .map(|p| frame.point(*p, series.right_axis))
+            .collect();
+        for run in places.split(Option::is_none) {
+            let mut area: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
+            let (Some(first), Some(last)) = (area.first(), area.last()) else {
+                continue;
+            };
+            let base = [[last[0], zero], [first[0], zero]];
+            area.extend(base);
+            let area = clipped_area(&area, &frame.plot);
+            if area.len() > 2 {
+                canvas.polygon(&area, look.line.color, FILL)?;
+            }
+            for line in clipped(base.map(Some), &frame.plot) {
+                canvas.line(&line, Line::solid(INK, SPINE))?;
+            }
+        }
+        Ok(())
+    }
+
     fn has_data(&self, frame: &Frame) -> bool {
         self.chart
             .series
@@ -268,6 +344,9 @@ impl<'a> Sheet<'a> {
                 .for_each(|p| taken.point(p));
         }
         marks::note(frame, &self.chart.marks, &mut taken);
+        if !self.has_data(frame) {
+            taken.block(&no_data(frame));
+        }
         taken
     }
 
@@ -296,7 +375,8 @@ impl<'a> Sheet<'a> {
                 sample: Sample {
                     line,
                     marker,
-                    patch: None,
+                    patch: (series.stroke == Stroke::Filled)
+                        .then(|| lightened(look.line.color, 1.0 - FILL)),
                 },
             }
         };
@@ -318,7 +398,7 @@ impl<'a> Sheet<'a> {
         let step = match series.stroke {
             Stroke::Points => 2.0,
             Stroke::LineAndPoints => MARKER_STEP,
-            Stroke::Solid | Stroke::Dashed => return Ok(()),
+            Stroke::Solid | Stroke::Dashed | Stroke::Filled => return Ok(()),
         };
         let mut last: Option<[f64; 2]> = None;
         for p in self.visible(frame, series) {

@@ -10,6 +10,7 @@ use crate::shape::{Drawing, Shape};
 use crate::sketch;
 use crate::span::Span;
 use crate::theme::{INK, lightened, rgb};
+use crate::words;
 
 /// Pixels between the shapes and the frame: the room a bearing and its hatching take.
 const PAD: f64 = 54.0;
@@ -18,69 +19,98 @@ const ASPECT: (f64, f64) = (0.42, 0.95);
 /// What labels take from the width, before they are known.
 const SIDES: f64 = 170.0;
 
-/// Height of the cell that suits the drawing at this width.
-pub(crate) fn height(drawing: &Drawing, width: f64) -> f64 {
+/// Drawings that take turns in one cell, or one alone: laid out so that nothing moves but the shapes.
+pub(crate) struct Stage {
+    frame: Frame,
+    legend: Option<(Legend, Rect, bool)>,
+}
+
+/// Height of the cell that suits the drawings at this width.
+pub(crate) fn height(drawings: &[Drawing], width: f64) -> f64 {
     let plot = (width - SIDES).max(100.0);
-    let [[x0, x1], [y0, y1]] = bounds(drawing);
+    let [[x0, x1], [y0, y1]] = bounds(drawings);
     let wanted = (plot - 2.0 * PAD).max(1.0) * (y1 - y0) / (x1 - x0) + 2.0 * PAD;
     let plot_height = wanted.clamp(ASPECT.0 * plot, ASPECT.1 * plot);
-    let Insets { top, bottom, .. } = insets(drawing, &Rect::sized(0.0, 0.0, width, plot_height));
+    let Insets { top, bottom, .. } = insets(drawings, &Rect::sized(0.0, 0.0, width, plot_height));
     top + plot_height + bottom
 }
 
 /// Strips the labels need in a cell of this size.
-pub(crate) fn insets(drawing: &Drawing, cell: &Rect) -> Insets {
+pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
+    let title = drawings.iter().map(|d| axes::top_room(&d.title, cell));
     // A first guess: ticks depend on the plot, and the plot on their labels.
-    let mut insets = Insets {
+    let guess = Insets {
         left: 0.7 * SIDES,
-        top: axes::top_room(&drawing.title, cell),
+        top: title.fold(0.0, f64::max),
         right: axes::right_room(),
         bottom: 0.6 * SIDES,
     };
-    let frame = fitted(drawing, cell.inside(insets));
+    let frame = fitted(bounds(drawings), cell.inside(guess));
     let x_ticks = axes::ticks_across(&frame.x, frame.plot.width());
     let y_ticks = axes::ticks_up(&frame.y, frame.plot.height());
-    insets.bottom = axes::bottom_room(&drawing.x, &x_ticks, cell);
-    insets.left = axes::side_room(&drawing.y, &y_ticks, cell);
-    insets
+    let own = |drawing: &Drawing| Insets {
+        left: axes::side_room(&drawing.y, &y_ticks, words::room_up(cell)),
+        bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
+        ..guess
+    };
+    let all = drawings.iter().map(own).reduce(Insets::max);
+    all.unwrap_or(guess)
 }
 
-/// Draws it.
-pub(crate) fn draw(
-    canvas: &mut Canvas<'_>,
-    drawing: &Drawing,
-    cell: &Rect,
-    insets: Insets,
-) -> Drawn {
-    let mut frame = fitted(drawing, cell.inside(insets));
-    let entries = entries(drawing);
-    let legend = (!entries.is_empty()).then(|| place(drawing, &entries, &mut frame));
-    let (x, y) = (
-        axes::ticks_across(&frame.x, frame.plot.width()),
-        axes::ticks_up(&frame.y, frame.plot.height()),
-    );
-    axes::grid(canvas, &frame, &x, &y)?;
-    for shape in &drawing.shapes {
-        sketch::draw(canvas, &frame, shape)?;
+impl Stage {
+    /// One frame and one legend for all.
+    pub(crate) fn new(drawings: &[Drawing], cell: &Rect, insets: Insets) -> Self {
+        let mut frame = fitted(bounds(drawings), cell.inside(insets));
+        let entries = entries(drawings);
+        let legend = (!entries.is_empty()).then(|| place(drawings, &entries, &mut frame));
+        Self { frame, legend }
     }
-    axes::bottom(canvas, &frame, cell, &drawing.x, &x)?;
-    let look = axes::Side {
-        ticks: &y,
-        color: INK,
-        right: false,
-    };
-    axes::side(canvas, &frame, cell, &drawing.y, &look)?;
-    axes::title(canvas, &drawing.title, &frame.plot, cell)?;
-    if let Some((legend, place, inside)) = legend {
-        legend.draw(canvas, &place, inside)?;
+
+    /// Height that the legend took from the plot.
+    pub(crate) fn legend_above(&self) -> f64 {
+        match &self.legend {
+            Some((legend, _, false)) => legend.height(),
+            _ => 0.0,
+        }
     }
-    Ok(())
+
+    /// Where the shapes are.
+    #[cfg(test)]
+    pub(crate) fn plot(&self) -> Rect {
+        self.frame.plot
+    }
+
+    /// Draws one of the drawings.
+    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, drawing: &Drawing, cell: &Rect) -> Drawn {
+        let frame = &self.frame;
+        let (x, y) = (
+            axes::ticks_across(&frame.x, frame.plot.width()),
+            axes::ticks_up(&frame.y, frame.plot.height()),
+        );
+        axes::grid(canvas, frame, &x, &y)?;
+        for shape in &drawing.shapes {
+            sketch::draw(canvas, frame, shape)?;
+        }
+        axes::bottom(canvas, frame, cell, Some(&drawing.x), &x)?;
+        let look = axes::Side {
+            ticks: &y,
+            color: INK,
+            right: false,
+            room: words::room_up(cell),
+        };
+        axes::side(canvas, frame, cell, &drawing.y, &look)?;
+        axes::title(canvas, &drawing.title, &frame.plot, cell)?;
+        match &self.legend {
+            Some((legend, place, inside)) => legend.draw(canvas, place, *inside),
+            None => Ok(()),
+        }
+    }
 }
 
 /// The legend and its place; the plot gives way if no place in it is free.
-fn place(drawing: &Drawing, entries: &[Entry], frame: &mut Frame) -> (Legend, Rect, bool) {
+fn place(drawings: &[Drawing], entries: &[Entry], frame: &mut Frame) -> (Legend, Rect, bool) {
     let mut taken = Occupancy::new(frame.plot);
-    for shape in &drawing.shapes {
+    for shape in drawings.iter().flat_map(|d| &d.shapes) {
         sketch::note(frame, shape, &mut taken);
     }
     if let Some((legend, place)) = legend::inside(entries, &frame.plot, &taken) {
@@ -88,21 +118,21 @@ fn place(drawing: &Drawing, entries: &[Entry], frame: &mut Frame) -> (Legend, Re
     }
     let mut plot = frame.plot;
     let (legend, place) = legend::above(entries, &mut plot);
-    *frame = fitted(drawing, plot);
+    *frame = fitted(bounds(drawings), plot);
     (legend, place, false)
 }
 
 /// Extent of the shapes and of the axes' own ranges: never empty.
-fn bounds(drawing: &Drawing) -> [[f64; 2]; 2] {
+fn bounds(drawings: &[Drawing]) -> [[f64; 2]; 2] {
     let points = || {
-        drawing
-            .shapes
+        drawings
             .iter()
+            .flat_map(|d| &d.shapes)
             .flat_map(sketch::points)
             .filter(|p| p.iter().all(|v| v.is_finite()))
     };
-    let side = |axis: &Axis, i: usize| {
-        let own = axis.range.into_iter().flatten();
+    let side = |axis: fn(&Drawing) -> &Axis, i: usize| {
+        let own = drawings.iter().filter_map(|d| axis(d).range).flatten();
         let linear = Axis {
             scale: Scale::Linear,
             range: None,
@@ -114,14 +144,13 @@ fn bounds(drawing: &Drawing) -> [[f64; 2]; 2] {
             .filter(|v| v.abs() < 1e150);
         (all.clone().count() > 0).then(|| Span::of(&linear, all, 0.0))
     };
-    let (x, y) = (side(&drawing.x, 0), side(&drawing.y, 1));
+    let (x, y) = (side(|d| &d.x, 0), side(|d| &d.y, 1));
     let ends = |span: Option<Span>| span.map_or([0.0, 1.0], |s| [s.low, s.high]);
     [ends(x), ends(y)]
 }
 
 /// The frame in which the shapes keep their proportions and fill the plot.
-fn fitted(drawing: &Drawing, plot: Rect) -> Frame {
-    let [[x0, x1], [y0, y1]] = bounds(drawing);
+fn fitted([[x0, x1], [y0, y1]]: [[f64; 2]; 2], plot: Rect) -> Frame {
     let pad = PAD.min(0.2 * plot.width()).min(0.2 * plot.height());
     // Units in a pixel: the larger of the two fits both ways.
     let unit =
@@ -142,9 +171,9 @@ fn fitted(drawing: &Drawing, plot: Rect) -> Frame {
     }
 }
 
-fn entries(drawing: &Drawing) -> Vec<Entry> {
+fn entries(drawings: &[Drawing]) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
-    for shape in &drawing.shapes {
+    for shape in drawings.iter().flat_map(|d| &d.shapes) {
         let (Shape::Polyline {
             pen,
             name: Some(name),
@@ -227,7 +256,7 @@ mod tests {
             Rect::sized(0.0, 0.0, 300.0, 900.0),
         ] {
             for side in [1e-6, 0.3, 1e6] {
-                let frame = fitted(&square(side), plot);
+                let frame = fitted(bounds(&[square(side)]), plot);
                 let [a, b] = [
                     frame.point([0.0, 0.0], false).unwrap(),
                     frame.point([side, side], false).unwrap(),
@@ -245,9 +274,12 @@ mod tests {
             ..Drawing::default()
         };
         for drawing in [Drawing::default(), dot] {
-            let frame = fitted(&drawing, Rect::sized(0.0, 0.0, 500.0, 300.0));
+            let frame = fitted(
+                bounds(std::slice::from_ref(&drawing)),
+                Rect::sized(0.0, 0.0, 500.0, 300.0),
+            );
             assert!(frame.x.low < frame.x.high && frame.y.low < frame.y.high);
-            assert!(height(&drawing, 900.0) > 100.0);
+            assert!(height(&[drawing], 900.0) > 100.0);
         }
     }
 
@@ -265,10 +297,10 @@ mod tests {
             link(0.0),
         ];
         assert_eq!(
-            entries(&Drawing {
+            entries(&[Drawing {
                 shapes,
                 ..Drawing::default()
-            })
+            }])
             .len(),
             1
         );

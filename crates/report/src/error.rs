@@ -32,8 +32,28 @@ pub enum ReportError {
         /// Height in pixels.
         height: u32,
     },
+    /// An animation without frames.
+    #[error("animation `{animation}` has no frames: draw at least one")]
+    NoFrames {
+        /// File stem of the animation.
+        animation: String,
+    },
+    /// The frames of an animation are too large, or have no area.
+    #[error(
+        "animation `{animation}` cannot have {frames} frames of {width} by {height} pixels: draw fewer or smaller ones"
+    )]
+    Film {
+        /// File stem of the animation.
+        animation: String,
+        /// Number of frames.
+        frames: usize,
+        /// Width in pixels.
+        width: u64,
+        /// Height in pixels.
+        height: u64,
+    },
     /// The picture could not be encoded.
-    #[error("figure `{figure}` cannot be written as PNG: {reason}")]
+    #[error("figure `{figure}` cannot be encoded: {reason}")]
     Encode {
         /// File stem of the figure.
         figure: String,
@@ -53,6 +73,9 @@ pub enum ReportError {
     /// A table could not be written as CSV.
     #[error("the table cannot be written as CSV: {0}")]
     Csv(#[from] csv::Error),
+    /// A table could not be written as a NumPy archive.
+    #[error("the table cannot be written as a NumPy archive: {0}")]
+    Npz(#[from] zip::result::ZipError),
     /// A value could not be written as JSON.
     #[error("the value cannot be written as JSON: {0}")]
     Json(#[from] serde_json::Error),

@@ -19,41 +19,41 @@ pub(crate) struct Extent {
 impl Extent {
     /// The axes' own ranges, or the extent of the data and of the reference lines and points.
     pub(crate) fn of(chart: &Chart) -> Self {
-        let places = || chart.marks.iter().filter_map(place);
-        let lines_only = chart
-            .series
-            .iter()
-            .all(|s| matches!(s.stroke, Stroke::Solid | Stroke::Dashed));
+        Self::over(Self::across(&chart.x, std::slice::from_ref(chart)), chart)
+    }
+
+    /// What a horizontal axis must show to be that of all these charts.
+    pub(crate) fn across(axis: &Axis, charts: &[Chart]) -> Span {
+        let places = charts.iter().flat_map(|c| &c.marks).filter_map(place);
+        let series = || charts.iter().flat_map(|c| &c.series);
+        let lines_only = series().all(|s| !marked(s.stroke));
         // A point that has no height, such as an error of exactly 0, still took place: charts over the same time
         // keep the same axis.
-        let across = chart
-            .series
-            .iter()
+        let across = series()
             .flat_map(|s| &s.points)
             .filter(|p| p[1].is_finite())
             .map(|p| p[0]);
         // A revolution is shown as exactly one.
-        let margin = if lines_only || chart.x.scale == Scale::Degrees {
+        let margin = if lines_only || axis.scale == Scale::Degrees {
             0.0
         } else {
             MARKER_MARGIN
         };
-        let x = Span::of(
-            &chart.x,
-            across.chain(places().filter_map(|p| p[0])),
-            margin,
-        );
+        Span::of(axis, across.chain(places.filter_map(|p| p[0])), margin)
+    }
+
+    /// The spans of a chart whose horizontal one is given.
+    pub(crate) fn over(x: Span, chart: &Chart) -> Self {
+        let places = || chart.marks.iter().filter_map(place);
         let heights = |axis: &Axis, right: bool| {
             let here = |s: &&Series| (s.right_axis && chart.y2.is_some()) == right;
             let shown = |p: &&[f64; 2]| drawable(x.scale, p[0]) && (x.low..=x.high).contains(&p[0]);
-            let data = chart
-                .series
-                .iter()
-                .filter(here)
-                .flat_map(|s| &s.points)
-                .filter(shown);
+            let series = || chart.series.iter().filter(here);
+            let data = series().flat_map(|s| &s.points).filter(shown);
             let marks = places().filter(|_| !right).filter_map(|p| p[1]);
-            Span::of(axis, data.map(|p| p[1]).chain(marks), MARGIN)
+            let zero = series().any(|s| s.stroke == Stroke::Filled).then_some(0.0);
+            let all = data.map(|p| p[1]).chain(marks).chain(zero);
+            Span::of(axis, all, MARGIN)
         };
         Self {
             x,
@@ -61,6 +61,11 @@ impl Extent {
             y2: chart.y2.as_ref().map(|axis| heights(axis, true)),
         }
     }
+}
+
+/// Whether a series has markers, which need room at the ends.
+fn marked(stroke: Stroke) -> bool {
+    matches!(stroke, Stroke::Points | Stroke::LineAndPoints)
 }
 
 /// Where a mark is, on the axes it belongs to. Bands and power laws go as far as the axes do.

@@ -24,6 +24,15 @@ pub enum Panel {
     Chart(Chart),
     /// A scaled drawing with equal axes.
     Drawing(Drawing),
+    /// Charts one below another over one horizontal axis, that of the first: a position, its speed and its acceleration, or
+    /// the forces along a link.
+    Stack(Vec<Chart>),
+}
+
+impl From<Vec<Chart>> for Panel {
+    fn from(charts: Vec<Chart>) -> Self {
+        Self::Stack(charts)
+    }
 }
 
 impl From<Chart> for Panel {
@@ -178,6 +187,9 @@ pub enum Stroke {
     Points,
     /// A line with markers.
     LineAndPoints,
+    /// A line, with the area between it and zero lightly filled; zero is always shown. Two points of one place are a
+    /// jump. Between logarithmic heights, which have no zero, a line alone.
+    Filled,
 }
 
 /// A colour by its role.

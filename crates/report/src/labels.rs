@@ -37,7 +37,7 @@ pub(crate) fn at_ends(chart: &Chart, looks: &[Look], frame: &Frame) -> Option<Ve
         if series.name.trim().is_empty() {
             continue;
         }
-        if !matches!(series.stroke, Stroke::Solid | Stroke::Dashed) {
+        if matches!(series.stroke, Stroke::Points | Stroke::LineAndPoints) {
             return None;
         }
         let [x, y] = series

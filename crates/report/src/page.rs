@@ -2,12 +2,14 @@
 
 use crate::canvas::{Align, Canvas, Drawn, Type};
 use crate::chart::{self, Sheet};
-use crate::drawing;
+use crate::drawing::{self, Stage};
 use crate::figure::{Figure, Panel};
 use crate::fonts::wrapped;
 use crate::rect::{Insets, Rect};
 use crate::shape::Drawing;
+use crate::stack::Stack;
 use crate::theme::{CAPTION, CAPTION_GREY, INK, TITLE, WHITE};
+use std::slice::from_ref;
 
 /// Around the page.
 const MARGIN: f64 = 44.0;
@@ -29,20 +31,25 @@ const CAPTION_LEADING: f64 = 1.4;
 enum Ready<'a> {
     Chart(Sheet<'a>),
     Drawing(&'a Drawing),
+    Stack(Stack<'a>),
 }
 
 impl Ready<'_> {
     fn insets(&self, cell: &Rect) -> Insets {
         match self {
             Self::Chart(sheet) => sheet.insets(cell),
-            Self::Drawing(drawing) => drawing::insets(drawing, cell),
+            Self::Drawing(drawing) => drawing::insets(from_ref(drawing), cell),
+            Self::Stack(stack) => stack.insets(cell),
         }
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, cell: &Rect, insets: Insets) -> Drawn {
         match self {
             Self::Chart(sheet) => sheet.draw(canvas, cell, insets),
-            Self::Drawing(drawing) => drawing::draw(canvas, drawing, cell, insets),
+            Self::Drawing(drawing) => {
+                Stage::new(from_ref(drawing), cell, insets).draw(canvas, drawing, cell)
+            }
+            Self::Stack(stack) => stack.draw(canvas, cell, insets),
         }
     }
 }
@@ -100,6 +107,7 @@ impl<'a> Page<'a> {
                 let panel = match panel {
                     Panel::Chart(chart) => Ready::Chart(Sheet::new(chart)),
                     Panel::Drawing(drawing) => Ready::Drawing(drawing),
+                    Panel::Stack(charts) => Ready::Stack(Stack::new(charts)),
                 };
                 panels.push(Placed {
                     panel,
@@ -193,6 +201,7 @@ fn wanted_height(panel: &Panel, width: f64, lone: bool, stretched: bool) -> f64 
         Panel::Chart(_) if stretched => STRETCHED_HEIGHT * width,
         Panel::Chart(_) if lone => LONE_HEIGHT * width,
         Panel::Chart(_) => chart::HEIGHT * width,
-        Panel::Drawing(drawing) => drawing::height(drawing, width).min(1000.0),
+        Panel::Drawing(drawing) => drawing::height(from_ref(drawing), width).min(1000.0),
+        Panel::Stack(charts) => Stack::new(charts).height(width),
     }
 }

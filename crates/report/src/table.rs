@@ -1,6 +1,7 @@
 //! Tables of numbers as CSV.
 
 use crate::error::ReportError;
+use std::fmt::Write as _;
 
 /// A column of a table.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -26,18 +27,19 @@ impl Column {
 pub struct Table {
     /// The columns.
     pub columns: Vec<Column>,
-    /// The rows, each as long as `columns`.
+    /// The rows, each as long as `columns`; NaN where there is no value.
     pub rows: Vec<Vec<f64>>,
 }
 
 impl Table {
     /// The table as CSV text: a header `name [unit]`, then the rows with the fewest digits that give back every bit.
-    /// What is not finite is written `NaN`, `inf` or `-inf`.
+    /// A NaN is an empty field; what is infinite is written `inf` or `-inf`.
     ///
     /// # Errors
     ///
     /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Csv`] if the writer refuses.
     pub fn csv(&self) -> Result<String, ReportError> {
+        self.check_rows()?;
         let mut writer = csv::Writer::from_writer(Vec::new());
         let header = |c: &Column| {
             if c.unit.is_empty() {
@@ -47,22 +49,38 @@ impl Table {
             }
         };
         writer.write_record(self.columns.iter().map(header))?;
-        for (row, values) in self.rows.iter().enumerate() {
-            if values.len() != self.columns.len() {
-                return Err(ReportError::Row {
-                    row,
-                    found: values.len(),
-                    expected: self.columns.len(),
-                });
+        // One field for all: a string for each would be most of the time of a large table.
+        let mut field = String::new();
+        for row in &self.rows {
+            for value in row {
+                field.clear();
+                if !value.is_nan() {
+                    // `Debug` of a float is its shortest exact form, with an exponent where that is shorter. It is
+                    // written to a string, which never refuses.
+                    let _ = write!(field, "{value:?}");
+                }
+                writer.write_field(&field)?;
             }
-            // `Debug` of a float is its shortest exact form, with an exponent where that is shorter.
-            writer.write_record(values.iter().map(|v| format!("{v:?}")))?;
+            writer.write_record(None::<&[u8]>)?;
         }
         let bytes = writer
             .into_inner()
             .map_err(|e| csv::Error::from(e.into_error()))?;
         // Only strings have been written.
         Ok(String::from_utf8_lossy(&bytes).into_owned())
+    }
+
+    /// Whether every row is as long as the header.
+    pub(crate) fn check_rows(&self) -> Result<(), ReportError> {
+        let expected = self.columns.len();
+        let wrong = self.rows.iter().position(|row| row.len() != expected);
+        wrong.map_or(Ok(()), |row| {
+            Err(ReportError::Row {
+                row,
+                found: self.rows[row].len(),
+                expected,
+            })
+        })
     }
 }
 
@@ -114,12 +132,27 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_named() {
+    fn a_nan_is_an_empty_field_and_infinity_is_named() {
         let table = Table {
-            columns: vec![Column::default(); 3],
-            rows: vec![vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY]],
+            columns: vec![Column::new("x", "m"); 4],
+            rows: vec![
+                vec![f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -f64::NAN],
+                vec![1.0, f64::NAN, 2.5, 0.0],
+            ],
         };
-        assert!(table.csv().unwrap().ends_with("NaN,inf,-inf\n"));
+        let text = table.csv().unwrap();
+        assert_eq!(text, "x [m],x [m],x [m],x [m]\n,inf,-inf,\n1.0,,2.5,0.0\n");
+    }
+
+    #[test]
+    fn an_absent_value_of_a_lone_column_still_is_a_row() {
+        let table = Table {
+            columns: vec![Column::new("x", "m")],
+            rows: vec![vec![1.0], vec![f64::NAN], vec![3.0]],
+        };
+        let text = table.csv().unwrap();
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        assert_eq!(reader.records().count(), 3, "{text}");
     }
 
     #[test]

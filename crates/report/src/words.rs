@@ -68,14 +68,14 @@ pub(crate) fn across(axis: &Axis, ticks: &Ticks, cell: &Rect) -> Words {
     Words::new(&label(axis, ticks), LABEL, false, cell.width() - BESIDE)
 }
 
-/// The label of a vertical axis.
-pub(crate) fn up(axis: &Axis, ticks: &Ticks, cell: &Rect) -> Words {
-    Words::new(
-        &label(axis, ticks),
-        LABEL,
-        false,
-        cell.height() - ABOVE_AND_BELOW,
-    )
+/// The label of a vertical axis, with so much room.
+pub(crate) fn up(axis: &Axis, ticks: &Ticks, room: f64) -> Words {
+    Words::new(&label(axis, ticks), LABEL, false, room)
+}
+
+/// Room for the label of a vertical axis in a cell of its own.
+pub(crate) fn room_up(cell: &Rect) -> f64 {
+    cell.height() - ABOVE_AND_BELOW
 }
 
 /// What an axis shows: its label, what has been subtracted, power of ten and unit.

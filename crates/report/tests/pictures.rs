@@ -1,6 +1,6 @@
 //! Figures as their readers get them: PNG files.
 
-use dwell_report::{Axis, Chart, Drawing, Figure, Paint, Pen, Series, Shape, png};
+use dwell_report::{Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Series, Shape, Stroke, png};
 use std::collections::BTreeMap;
 
 struct Picture {
@@ -158,6 +158,50 @@ fn a_drawing_keeps_proportions_and_lightens_ghosts() {
         "{filled} pixels in a square of {side}"
     );
     assert_eq!(picture.count(BLUE), 0);
+}
+
+#[test]
+fn a_filled_series_covers_the_area_down_to_zero() {
+    // A jump half way, to the other sign: two of four quarters are filled.
+    let points = vec![[0.0, 0.6], [0.5, 0.6], [0.5, -0.6], [1.0, -0.6]];
+    let chart = Chart {
+        y: Axis::default().within(-1.0, 1.0),
+        series: vec![Series::line("", points).stroke(Stroke::Filled)],
+        ..Chart::default()
+    };
+    let picture = Picture::of(&page(1, vec![chart]));
+    // Blue at an opacity of 0.22 on white.
+    let tint = [199, 224, 238];
+    let width = picture.width as usize;
+    let places = picture.pixels.iter().enumerate();
+    let rows = places.filter(|(_, p)| **p == tint).map(|(i, _)| i / width);
+    let (top, bottom) = (rows.clone().min().unwrap(), rows.max().unwrap());
+    let (left, right) = picture.columns(tint).unwrap();
+    let all = (bottom - top + 1) * (right - left + 1);
+    // As wide as the line, but for its ends.
+    let (first, last) = picture.columns(BLUE).unwrap();
+    assert!(left.abs_diff(first) < 6 && right.abs_diff(last) < 6);
+    // The line and the grid take some hundredths of it.
+    let share = picture.count(tint) as f64 / all as f64;
+    assert!((0.46..0.5).contains(&share), "{share} of {all} pixels");
+}
+
+#[test]
+fn a_stack_is_one_panel_and_shows_every_chart() {
+    let three = vec![wave(""), wave(""), wave("")];
+    let stack = Figure {
+        panels: vec![three.clone().into()],
+        ..page(1, vec![])
+    };
+    let (stacked, apart) = (Picture::of(&stack), Picture::of(&page(1, three)));
+    assert!(2 * stacked.height < apart.height);
+    // Three curves as long as the plot is wide, each four pixels thick.
+    assert!(stacked.count(BLUE) > 3 * 4 * 1000);
+    let none = Figure {
+        panels: vec![Panel::Stack(vec![])],
+        ..page(1, vec![])
+    };
+    assert_eq!(Picture::of(&none).count(BLUE), 0);
 }
 
 #[test]

@@ -237,45 +237,24 @@ impl Site {
     }
 }
 
-/// How far a row is opened to see what rounding does, in sizes.
-const PROBE: f64 = 1e-7;
-/// The part of the sum of all rows' roundings that is expected: they rarely all add up. Differences
-/// met beside a change point were a fifth of the sum and less.
-const EXPECTED: f64 = 0.2;
-
-/// What rounding does to the coefficients and to the pose. A row cannot be closed better than to
-/// a unit in the last place of its arms, and next to a dead point that is magnified without
-/// limit. So each row is opened a little by itself, and the sum of what that moves, scaled down
-/// to one rounding, bounds the noise to first order.
+/// What rounding does to the coefficients and to the pose.
 fn noise(
     dense: &Dense,
     closed: &Closed,
     exact: &Coefficients,
     unit_speeds: &[Vec<f64>],
 ) -> Result<(Coefficients, f64), DenseError> {
-    let none = vec![0.0; exact.a.len()];
-    let mut noise = Coefficients {
-        m: 0.0,
-        half_dm: 0.0,
-        a: none.clone(),
-        b: none,
+    let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
+    let (noise, pose) = dense.rounding(closed, unit_speeds, &flat(exact), |there| {
+        Ok(flat(&dense.coefficients(there, &dense.unit_speeds(there))))
+    })?;
+    let (a, b) = noise[2..].split_at(exact.a.len());
+    let noise = Coefficients {
+        m: noise[0],
+        half_dm: noise[1],
+        a: a.to_vec(),
+        b: b.to_vec(),
     };
-    let mut pose = 0.0;
-    let share = EXPECTED * f64::EPSILON / PROBE;
-    for (row, (direction, scale)) in unit_speeds.iter().zip(&dense.row_scale).enumerate() {
-        let opened = PROBE * dense.size() / scale;
-        let there = dense.step(closed, row, direction, closed.imposed[row] + opened)?;
-        let there = dense.coefficients(&there, &dense.unit_speeds(&there));
-        noise.m += share * (there.m - exact.m).abs();
-        noise.half_dm += share * (there.half_dm - exact.half_dm).abs();
-        for (k, noise) in noise.a.iter_mut().enumerate() {
-            *noise += share * (there.a[k] - exact.a[k]).abs();
-        }
-        for (k, noise) in noise.b.iter_mut().enumerate() {
-            *noise += share * (there.b[k] - exact.b[k]).abs();
-        }
-        pose += EXPECTED * f64::EPSILON * dense.reach(direction) * dense.size() / scale;
-    }
     Ok((noise, pose))
 }
 

@@ -33,9 +33,9 @@ const STRIDES: usize = 2000;
 pub struct Closed {
     /// Dense coordinates, three per moving body, in the moved frames.
     pub(crate) x: Vec<f64>,
-    /// The value each row was closed at: zero for a closed joint, q for the actuator.
+    /// The value each row was closed at: zero for a closed joint, q for an actuator.
     pub(crate) imposed: Vec<f64>,
-    lu: Lu,
+    pub(crate) lu: Lu,
 }
 
 impl Dense {
@@ -200,7 +200,7 @@ impl Dense {
         largest(scaled) / self.size
     }
 
-    fn column_scale(&self, column: usize) -> f64 {
+    pub(crate) fn column_scale(&self, column: usize) -> f64 {
         if column % 3 == 2 {
             1.0 / self.size
         } else {
@@ -208,14 +208,29 @@ impl Dense {
         }
     }
 
-    fn factor(&self, x: &[f64]) -> Result<Lu, DenseError> {
-        let n = self.rows.len();
-        let mut jacobian = vec![0.0; n * n];
+    /// R J C of eq. (1) at the coordinates `x`.
+    pub(crate) fn scaled_jacobian(&self, x: &[f64]) -> Mat<f64> {
+        let (rows, columns) = (self.rows.len(), self.rows.columns());
+        let mut jacobian = vec![0.0; rows * columns];
         self.rows.jacobian(x, &mut jacobian);
-        let scaled = Mat::from_fn(n, n, |i, j| {
-            jacobian[i * n + j] * self.row_scale[i] * self.column_scale(j)
-        });
-        Lu::new(scaled).map_err(|pivot| DenseError::Singular { pivot })
+        Mat::from_fn(rows, columns, |i, j| {
+            jacobian[i * columns + j] * self.row_scale[i] * self.column_scale(j)
+        })
+    }
+
+    fn factor(&self, x: &[f64]) -> Result<Lu, DenseError> {
+        Lu::new(self.scaled_jacobian(x)).map_err(|pivot| DenseError::Singular { pivot })
+    }
+
+    /// The multipliers of all rows under which the forces `q` of the coordinates are made up:
+    /// Jᵀ λ = q, by factors of the transposed matrix.
+    pub(crate) fn multipliers(&self, at: &Closed, q: &[f64]) -> Result<Vec<f64>, DenseError> {
+        let transposed = self.scaled_jacobian(&at.x).transpose().to_owned();
+        let lu = Lu::new(transposed).map_err(|pivot| DenseError::Singular { pivot })?;
+        let mut right = Mat::from_fn(q.len(), 1, |c, _| q[c] * self.column_scale(c));
+        lu.solve(&mut right);
+        let scales = self.row_scale.iter().enumerate();
+        Ok(scales.map(|(k, scale)| right[(k, 0)] * scale).collect())
     }
 
     fn solve(&self, lu: &Lu, right: &[f64]) -> Vec<f64> {

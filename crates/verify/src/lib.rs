@@ -13,7 +13,9 @@
 //!                └── truths::… → Finding
 //! ```
 //!
-//! [`verify_all`] does all of it. One degree of freedom for now.
+//! [`verify_all`] does all of it, for one degree of freedom. [`judge_states`] holds kinetostatic
+//! states of any number of actuators, under loads, against the equations of motion, and [`rank`]
+//! says what the rows of a mechanism leave free and what they say twice.
 //!
 //! Source: L. Jordi, E. Zayas, S. Cardona, *Reduced parameters for the dynamic study of a system
 //! of one degree of freedom*, TMT 2008; cited as (Jordi, Zayas & Cardona 2008, eq. n).
@@ -28,8 +30,12 @@ mod dense;
 mod differences;
 mod free_motion;
 mod judge;
+mod loads;
 mod motion;
+mod rank;
+mod rounding;
 mod solve;
+mod state;
 mod subject;
 pub mod truths;
 
@@ -42,4 +48,7 @@ pub use dense::{Dense, DenseError};
 pub use dwell_findings::Finding;
 pub use dwell_geometry::Range;
 pub use free_motion::{FreeMotion, FreeMotionCase, Rung, free_motion};
+pub use loads::load_acts;
+pub use rank::{Rank, Ranks, rank};
+pub use state::{BodyAct, State, judge_states};
 pub use subject::{Actions, Coefficients, Subject, SubjectError};

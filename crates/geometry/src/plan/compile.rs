@@ -424,8 +424,7 @@ impl ArmTable {
 
     fn carried(&mut self, frames: &Frames, tree: &Tree, carry: &crate::tree::Carry) -> Carried {
         let frame = frames.attitudes[carry.body].frame;
-        let fixed = carry.arm.local == Vec2::ZERO
-            || frames.frames[carry.arm.frame].turning == Turning::Ground;
+        let fixed = carry.arm.local == Vec2::ZERO || tree.place[carry.parent].is_none();
         Carried {
             body: carry.body,
             bond: carry.bond,

@@ -33,13 +33,13 @@ use std::fmt;
 
 pub use error::ExpressionError;
 use jet::{Jet, Scalar};
-use tape::Op;
+use tape::{Op, Tape};
 
 /// An expression of named variables, ready to be evaluated. Its language is told
 /// [here](crate::expression). `Display` writes a text that parses to the same expression again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
-    tape: Vec<Op>,
+    tape: Tape,
     /// The variables that occur, in order of first use, and which of the given ones they are.
     names: Vec<String>,
     places: Vec<usize>,
@@ -57,7 +57,7 @@ impl Expression {
         let tape = parse::parse(text, variables)?;
         let mut places = Vec::new();
         let mut seen = vec![false; variables.len()];
-        for op in &tape {
+        for op in &tape.ops {
             if let Op::Variable(index) = *op
                 && !std::mem::replace(&mut seen[index], true)
             {
@@ -80,13 +80,13 @@ impl Expression {
     /// The value for `values` of all variables given to [`parse`](Self::parse), in their order. A
     /// variable without a value is NaN.
     pub fn at(&self, values: &[f64]) -> f64 {
-        tape::run(&self.tape, |i| value(values, i))
+        self.tape.run(|i| value(values, i))
     }
 
     /// The value, and its first three derivatives with respect to the variable of that place in
     /// the list given to [`parse`](Self::parse), the others held.
     pub fn along(&self, values: &[f64], variable: usize) -> [f64; 4] {
-        let jet = tape::run(&self.tape, |i| {
+        let jet = self.tape.run(|i| {
             let value = value(values, i);
             if i == variable {
                 Jet::variable(value)
@@ -108,7 +108,7 @@ impl fmt::Display for Expression {
         for (&place, name) in self.places.iter().zip(&self.names) {
             table[place] = name;
         }
-        f.write_str(&tape::print(&self.tape, |i| table[i]))
+        f.write_str(&tape::print(&self.tape.ops, |i| table[i]))
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::error::{ExpressionError, nearest};
 use super::function::{Binary, Comparison, Constant, Function};
-use super::tape::{Op, PLACES, is_plain, run};
+use super::tape::{Op, PLACES, Tape, is_plain, run};
 use super::token::{self, Kind, Token};
 
 /// How deep parentheses, powers and signs may nest: each takes a few calls of the parser.
@@ -27,20 +27,20 @@ struct Parser<'a> {
     /// The token just consumed, and the one to come.
     before: Option<Token>,
     token: Token,
-    tape: Vec<Op>,
+    tape: Tape,
     /// How many results the tape keeps here.
     kept: usize,
     nesting: usize,
 }
 
 /// The tape of a text.
-pub(super) fn parse(text: &str, variables: &[&str]) -> Result<Vec<Op>, ExpressionError> {
+pub(super) fn parse(text: &str, variables: &[&str]) -> Result<Tape, ExpressionError> {
     let mut parser = Parser {
         text,
         variables,
         before: None,
         token: token::next(text, 0)?,
-        tape: Vec::new(),
+        tape: Tape::default(),
         kept: 0,
         nesting: 0,
     };
@@ -219,7 +219,8 @@ impl<'a> Parser<'a> {
         if self.kept > PLACES {
             return Err(self.too_deep(span));
         }
-        self.tape.push(op);
+        self.tape.depth = self.tape.depth.max(self.kept);
+        self.tape.ops.push(op);
         let constant = match op {
             Op::Variable(_) => None,
             _ => constant(op, operands),
@@ -358,12 +359,13 @@ fn no_opening(close: Token) -> ExpressionError {
 
 /// The value of an operation on constants.
 fn constant(op: Op, operands: &[Operand]) -> Option<f64> {
-    let mut tape = [op; 5];
-    for (place, operand) in tape.iter_mut().zip(operands) {
+    const MOST: usize = 4;
+    let mut ops = [op; MOST + 1];
+    for (place, operand) in ops.iter_mut().zip(operands) {
         *place = Op::Number(operand.constant?);
     }
-    tape.get(..=operands.len())
-        .map(|tape| run(tape, |_| f64::NAN))
+    ops.get(..=operands.len())
+        .map(|ops| run::<f64, MOST>(ops, |_| f64::NAN))
 }
 
 /// A scene can have hundreds of names; the first two dozen are told.

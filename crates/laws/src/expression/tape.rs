@@ -10,6 +10,16 @@ use super::jet::Scalar;
 /// more, so that evaluation has a fixed place for all of them.
 pub(super) const PLACES: usize = 32;
 
+/// As many do for most tapes: clearing all places would take longer than their evaluation.
+const FEW: usize = 5;
+
+/// The operations of an expression, and how many results they keep at once.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Tape {
+    pub(super) ops: Vec<Op>,
+    pub(super) depth: usize,
+}
+
 /// One step of an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Op {
@@ -39,11 +49,22 @@ impl Op {
     }
 }
 
-/// The result of a tape; `variable` gives the value of each variable.
-pub(super) fn run<S: Scalar>(tape: &[Op], variable: impl Fn(usize) -> S) -> S {
-    let mut places = [S::constant(0.0); PLACES];
+impl Tape {
+    /// The result; `variable` gives the value of each variable.
+    pub(super) fn run<S: Scalar>(&self, variable: impl Fn(usize) -> S) -> S {
+        if self.depth <= FEW {
+            run::<S, FEW>(&self.ops, variable)
+        } else {
+            run::<S, PLACES>(&self.ops, variable)
+        }
+    }
+}
+
+/// The result of operations that keep N results at once.
+pub(super) fn run<S: Scalar, const N: usize>(ops: &[Op], variable: impl Fn(usize) -> S) -> S {
+    let mut places = [S::constant(0.0); N];
     let mut used = 0;
-    for &op in tape {
+    for &op in ops {
         used -= op.takes();
         let at = &mut places[used..];
         at[0] = match op {
@@ -77,10 +98,10 @@ const NEGATION: u8 = 5;
 const POWER: u8 = 8;
 const ATOM: u8 = 9;
 
-/// A text that the parser reads as this tape again, with no more parentheses than it needs.
-pub(super) fn print<'a>(tape: &[Op], name: impl Fn(usize) -> &'a str) -> String {
+/// A text that the parser reads as these operations again, with no more parentheses than it needs.
+pub(super) fn print<'a>(ops: &[Op], name: impl Fn(usize) -> &'a str) -> String {
     let mut parts: Vec<(String, u8)> = Vec::new();
-    for &op in tape {
+    for &op in ops {
         let mut operands = parts.split_off(parts.len() - op.takes()).into_iter();
         let mut next = || operands.next().unwrap_or_default();
         parts.push(match op {

@@ -318,6 +318,8 @@ fn errors() {
             "the decimal sign is a point",
         ),
         ("2x", 1..2, "there is no operator before `x`", "`a*b`"),
+        ("2e", 1..2, "there is no operator before `e`", ""),
+        ("2e+", 1..2, "there is no operator before `e`", ""),
         ("x y", 2..3, "there is no operator before `y`", ""),
         ("2 (x)", 2..3, "there is no operator before `(`", ""),
         ("1.2.3", 3..5, "there is no operator before `.3`", ""),

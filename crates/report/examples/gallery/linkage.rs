@@ -1,6 +1,6 @@
 //! Drawings: a dwell mechanism in ghosted positions, a slider–crank with its guide and load.
 
-use dwell_report::{Axis, Drawing, Figure, Paint, Pen, Shape, Side};
+use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Pen, Shape, Side};
 use std::f64::consts::{PI, TAU};
 
 /// A Hoeken linkage whose point P drives a rocker with a dwell.
@@ -145,5 +145,47 @@ pub(crate) fn linkage() -> Figure {
             .to_owned(),
         columns: 2,
         panels: vec![drawing.into(), slide.into()],
+    }
+}
+
+/// The dwell mechanism over a turn.
+pub(crate) fn film() -> Animation {
+    const FRAMES: i32 = 60;
+    let path: Vec<[f64; 2]> = (0..=720)
+        .map(|i| pose(TAU * f64::from(i) / 720.0).p)
+        .collect();
+    let frame = |i: i32| {
+        let phi = TAU * f64::from(i) / f64::from(FRAMES);
+        let Pose { b, c, p, end } = pose(phi);
+        let bar = |points: Vec<[f64; 2]>, color: usize, name: &str| {
+            Shape::line(points, Pen::new(Paint::Palette(color), 9.0)).named(name)
+        };
+        let angle = (end[1] - Q[1]).atan2(end[0] - Q[0]);
+        let mut shapes = vec![
+            Shape::line(path.clone(), Pen::new(Paint::Grey, 3.0).dashed()).named("path of P"),
+            bar(vec![Q, end], 2, "rocker QP"),
+            bar(vec![O, c], 1, "rocker OC"),
+            bar(vec![b, p], 0, "coupler BCP"),
+            bar(vec![A, b], 3, "crank AB"),
+            Shape::area(
+                block(p, angle, [0.03, 0.015]),
+                Pen::new(Paint::Ink, 2.5),
+                0.15,
+            ),
+        ];
+        shapes.extend([b, c, p].map(|at| Shape::pin(at, Paint::Ink, 0.0)));
+        shapes.extend([A, O, Q].map(|at| Shape::GroundPin { at }));
+        Drawing {
+            title: format!("Crank angle φ = {:.0}°", phi.to_degrees()),
+            x: Axis::new("x", "m"),
+            y: Axis::new("y", "m"),
+            shapes,
+        }
+    };
+    Animation {
+        name: "film".to_owned(),
+        frames: (0..FRAMES).map(frame).collect(),
+        delay_ms: 50,
+        width_px: 480,
     }
 }

@@ -1,7 +1,8 @@
-//! Draws sample figures into a folder and says how long each took: `gallery FOLDER`.
+//! Draws sample figures and a film into a folder and says how long each took: `gallery FOLDER`.
 
 mod charts;
 mod corners;
+mod kinematics;
 mod linkage;
 
 use dwell_report::{Files, ReportError, png};
@@ -19,6 +20,11 @@ fn main() -> Result<(), ReportError> {
         charts::time(),
         charts::errors(),
         corners::corners(),
+        kinematics::ratios(),
+        kinematics::path(),
+        kinematics::motion(),
+        kinematics::cost(),
+        kinematics::profile(),
     ];
     let mut files = Files::new();
     for figure in &figures {
@@ -32,6 +38,16 @@ fn main() -> Result<(), ReportError> {
         );
         files.add(format!("{}.png", figure.name), bytes);
     }
+    let film = linkage::film();
+    let start = Instant::now();
+    let bytes = film.gif()?;
+    println!(
+        "{:<24} {:6.1} ms  {:4} kB",
+        film.name,
+        start.elapsed().as_secs_f64() * 1e3,
+        bytes.len() / 1000
+    );
+    files.add(format!("{}.gif", film.name), bytes);
     let start = Instant::now();
     std::thread::scope(|scope| {
         for half in figures.chunks(figures.len().div_ceil(2)) {

@@ -1,0 +1,9 @@
+//! Loads in inverse dynamics, against hand formulas, virtual work and balances.
+#![allow(clippy::expect_used, clippy::panic, reason = "tests")]
+
+mod balances;
+mod machines;
+mod scenes;
+mod sections;
+mod shapes;
+mod statics;

@@ -1,0 +1,200 @@
+//! What each kind of load does to the bodies.
+
+use crate::scenes::{Case, all, body, case, load};
+use crate::statics::SLIDER_CRANK;
+use dwell_geometry::measure::Measured;
+use dwell_geometry::{Mechanism, Vec2, vec2};
+use dwell_kinetostatics::{By, LoadKind, Magnitude};
+
+/// Over any motion a spring's power is −k (length − free) times the length's own speed, and a
+/// damper's −c times its square; the same with angles.
+#[test]
+fn springs_give_back_and_dampers_dissipate() {
+    for mut case in all() {
+        for (t, q, q_dot, q_ddot) in case.states() {
+            case.run(t, &q, &q_dot, &q_ddot);
+            let mut powers = vec![0.0; case.model.loads().len()];
+            case.model.load_powers(&case.work, &mut powers);
+            let states = case.work.states();
+            let acts_of = |i| {
+                let acts = case.work.loads().acts.iter();
+                acts.filter(move |a| a.by == By::Load(i))
+            };
+            for (i, load) in case.model.loads().iter().enumerate() {
+                let f = case.work.loads().magnitude[i];
+                let (measured, free) = match load.kind {
+                    LoadKind::Spring {
+                        bodies,
+                        points,
+                        free,
+                    } => (Measured::Length { bodies, points }, Some(free)),
+                    LoadKind::Damper { bodies, points } => {
+                        (Measured::Length { bodies, points }, None)
+                    }
+                    LoadKind::TorsionSpring { bodies, free } => {
+                        (Measured::Angle(bodies), Some(free))
+                    }
+                    LoadKind::TorsionDamper { bodies } => (Measured::Angle(bodies), None),
+                    _ => continue,
+                };
+                let [value, speed, _] = states.measure(measured);
+                let expected = match free {
+                    Some(free) => -f * (value - free) * speed,
+                    None => -f * speed * speed,
+                };
+                // Against the two parts of a stretch, each times the speed of both ends: the parts
+                // may nearly cancel, and so may the ends.
+                let size = f.abs() * (value.abs() + free.unwrap_or(speed).abs());
+                let own = acts_of(i).map(|act| {
+                    let body = states.body(act.body);
+                    size * (body.velocity_at(act.arm).norm() + body.spin.abs())
+                });
+                let scale: f64 = own.sum();
+                let off = (powers[i] - expected).abs();
+                assert!(
+                    off <= 1e-13 * scale.max(expected.abs()),
+                    "{} {}: {off}",
+                    case.name,
+                    load.name
+                );
+                assert!(free.is_some() || f < 0.0 || powers[i] <= 0.0);
+            }
+        }
+    }
+}
+
+/// τ of a loaded mechanism is that of its inertia less the loads' generalised forces.
+#[test]
+fn virtual_work_gives_what_the_actuators_feel() {
+    for mut case in all() {
+        let mut bare = (case.model.workspace(), case.model.actions());
+        for (t, q, q_dot, q_ddot) in case.states() {
+            case.run(t, &q, &q_dot, &q_ddot);
+            case.model
+                .act(&q, &q_dot, &q_ddot, &mut bare.0, &mut bare.1)
+                .expect("a pose");
+            let (n, loads) = (q.len(), case.model.loads().len());
+            let mut forces = vec![0.0; n * loads];
+            case.model.generalised_forces(&mut case.work, &mut forces);
+            for i in 0..n {
+                let of_loads = (0..loads).map(|l| forces[l * n + i]);
+                let scale: f64 = of_loads.clone().map(f64::abs).sum();
+                let expected = bare.1.tau[i] - of_loads.sum::<f64>();
+                let off = (case.actions.tau[i] - expected).abs();
+                let scale = scale + bare.1.tau[i].abs();
+                // Rounding of some 50 loads through groups of up to four unknowns.
+                assert!(off < 1e-12 * scale, "{} {i}: {off} of {scale}", case.name);
+            }
+        }
+    }
+}
+
+fn force(body: &'static str, direction: Vec2, follows: bool) -> impl Fn(&Mechanism) -> LoadKind {
+    move |mechanism| LoadKind::Force {
+        body: crate::scenes::body(mechanism, body),
+        point: vec2(0.2, 0.05),
+        direction,
+        follows,
+    }
+}
+
+/// A force that follows a body is the force with the body's angle added, in the ground's axes.
+#[test]
+fn a_force_follows_its_body() {
+    let direction = Vec2::from_angle(0.4);
+    let follower = force("rod", direction, true);
+    let mut following = Case::parse(SLIDER_CRANK, |m| vec![load("f", follower(m), 30.0)]);
+    let rod = following.body("rod");
+    for k in 0..5 {
+        let q = 0.4 + 0.5 * f64::from(k);
+        following.run(0.0, &[q], &[0.0], &[0.0]);
+        let turn = following.work.states().body(rod).turn;
+        let turned = force("rod", direction.turn(turn), false);
+        let mut fixed = Case::parse(SLIDER_CRANK, |m| vec![load("f", turned(m), 30.0)]);
+        fixed.run(0.0, &[q], &[0.0], &[0.0]);
+        assert_eq!(fixed.actions, following.actions);
+        let unturned = force("rod", direction, false);
+        let mut other = Case::parse(SLIDER_CRANK, |m| vec![load("f", unturned(m), 30.0)]);
+        other.run(0.0, &[q], &[0.0], &[0.0]);
+        assert!((other.actions.tau[0] - following.actions.tau[0]).abs() > 1e-3);
+    }
+}
+
+/// The block slides in the rocker and turns with it: a torque between the two is carried by the slide
+/// alone.
+#[test]
+fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
+    let scene = case("slotted-rocker");
+    let mut bare = Case::of(&scene, |_| Vec::new());
+    let mut case = Case::of(&scene, |mechanism| {
+        let bodies = ["rocker", "block"].map(|name| body(mechanism, name));
+        vec![load("torque", LoadKind::Torque { bodies }, 5.0)]
+    });
+    for (t, q, q_dot, q_ddot) in case.states() {
+        bare.run(t, &q, &q_dot, &q_ddot);
+        case.run(t, &q, &q_dot, &q_ddot);
+        let largest = bare
+            .actions
+            .reactions
+            .iter()
+            .fold(5.0, |m: f64, r| m.max(r.abs()));
+        // Five is added to and taken off the same frame: rounding of the largest.
+        let same = |a: f64, b: f64| (a - b).abs() < 1e-13 * largest;
+        assert!(same(case.actions.tau[0], bare.actions.tau[0]));
+        for (k, &reaction) in case.model.reactions().iter().enumerate() {
+            let name = case.mechanism.reaction_name(reaction);
+            let of_torque = if name == "slot.moment" { -5.0 } else { 0.0 };
+            let [with, without] = [&case, &bare].map(|c| c.actions.reactions[k]);
+            assert!(same(with - without, of_torque), "{name}: {with} {without}");
+        }
+        let mut power = [0.0];
+        case.model.load_powers(&case.work, &mut power);
+        assert_eq!(power, [0.0]);
+    }
+}
+
+/// A magnitude is what its law or formula says of the signals it names.
+#[test]
+fn magnitudes_follow_their_signals() {
+    for mut case in all() {
+        for (t, q, q_dot, q_ddot) in case.states() {
+            case.run(t, &q, &q_dot, &q_ddot);
+            let loads = case.model.loads().iter().zip(&case.work.loads().magnitude);
+            for (load, &f) in loads {
+                let LoadKind::Torque { bodies } = load.kind else {
+                    continue;
+                };
+                let [angle, speed, _] = case.work.states().angle(bodies);
+                let expected = match load.name.as_str() {
+                    "fan" => -0.1 * speed * speed.abs() * (2.0 + (t + angle).sin()),
+                    "torque" => 0.4 - 0.2 * speed,
+                    _ => 0.7,
+                };
+                // Another order of the same few operations.
+                assert!(
+                    (f - expected).abs() <= 1e-15 * f.abs().max(1.0),
+                    "{}",
+                    load.name
+                );
+            }
+        }
+    }
+}
+
+/// Rest is statics, whatever the loads.
+#[test]
+fn statics_is_kinetostatics_at_rest() {
+    for mut case in all() {
+        for (t, q, ..) in case.states() {
+            let rest = vec![0.0; q.len()];
+            case.run(t, &q, &rest, &rest);
+            let moving = case.actions.clone();
+            case.model
+                .statics(t, &q, &mut case.work, &mut case.actions)
+                .expect("a pose");
+            assert_eq!(case.actions, moving);
+        }
+        let constant = |m: &Magnitude| matches!(m, Magnitude::Constant(_));
+        assert!(case.model.loads().iter().any(|l| !constant(&l.magnitude)));
+    }
+}

@@ -1,0 +1,365 @@
+//! Drawings one after another as an animated GIF.
+
+use crate::canvas::Canvas;
+use crate::drawing::{self, Stage};
+use crate::error::ReportError;
+use crate::fonts;
+use crate::palette::Palette;
+use crate::raster::Vector;
+use crate::rect::Rect;
+use crate::shape::Drawing;
+use crate::theme::{Rgb, WHITE};
+use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+/// Width of the page that is drawn, whatever the picture's: letters keep their share of it, a thirtieth.
+const WIDTH: f64 = 800.0;
+/// Around the drawing.
+const MARGIN: f64 = 18.0;
+/// Pixels of all frames together: they are held at once, at three bytes each.
+const MOST: u64 = 1 << 27;
+/// Colours beside the one that means "as before".
+const COLORS: usize = 255;
+/// Least delay in hundredths of a second: browsers show anything shorter at a tenth.
+const LEAST_DELAY: u32 = 2;
+
+/// Drawings of the same things at successive times, such as a mechanism over a turn.
+///
+/// All frames are fitted to one extent, that of all their shapes and ranges together, and share one legend, so that
+/// nothing moves but the shapes. A frame's own title may say its time or angle. The film begins again at its end,
+/// for ever; over a whole turn leave the last position out, as it is the first.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Animation {
+    /// File stem, without folder and extension.
+    pub name: String,
+    /// The frames in their order.
+    pub frames: Vec<Drawing>,
+    /// How long each is shown, ms; a GIF has steps of 10 ms, and no less than 20 ms is shown by all readers.
+    pub delay_ms: u32,
+    /// Width of the picture in pixels; the height follows from the drawings.
+    pub width_px: u32,
+}
+
+impl Animation {
+    /// Draws the frames and returns them as a GIF: one palette of at most 255 colours, of each frame only what is new.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::NoFrames`]; [`ReportError::Film`] if the frames have no area, a side of more than 65 535 pixels or
+    /// more than 134 million pixels together; [`ReportError::Draw`], [`ReportError::Font`] and [`ReportError::Encode`] if
+    /// a library refuses, which no data should bring about.
+    pub fn gif(&self) -> Result<Vec<u8>, ReportError> {
+        let pictures = self.pictures()?;
+        let mut counts: HashMap<Rgb, u64> = HashMap::new();
+        for picture in &pictures.frames {
+            // Neighbours are mostly alike: one look-up for a run of them.
+            for run in picture.chunk_by(|a, b| a == b) {
+                *counts.entry(run[0]).or_default() += run.len() as u64;
+            }
+        }
+        let palette = Palette::of(&counts, COLORS);
+        encoded(&pictures, &palette, self.delay()).map_err(|e| ReportError::Encode {
+            figure: self.name.clone(),
+            reason: e.to_string(),
+        })
+    }
+
+    /// Hundredths of a second.
+    fn delay(&self) -> u16 {
+        let hundredths = self.delay_ms.saturating_add(5) / 10;
+        u16::try_from(hundredths.max(LEAST_DELAY)).unwrap_or(u16::MAX)
+    }
+
+    fn pictures(&self) -> Result<Pictures, ReportError> {
+        if self.frames.is_empty() {
+            return Err(ReportError::NoFrames {
+                animation: self.name.clone(),
+            });
+        }
+        fonts::ready()?;
+        let (cell, stage) = self.stage();
+        let page = [WIDTH, (cell.y1 + MARGIN).ceil()].map(|side| side as u32);
+        let size = self.size(page)?;
+        let picture = |drawing: &Drawing| {
+            let vector = Vector::drawn(&self.name, page, |canvas: &mut Canvas<'_>| {
+                let [width, height] = page.map(f64::from);
+                canvas.rect(&Rect::sized(0.0, 0.0, width, height), WHITE)?;
+                stage.draw(canvas, drawing, &cell)
+            })?;
+            let pixels = vector.pixels(&self.name, size.map(u32::from))?;
+            // The page is opaque.
+            let colors = pixels.data().chunks_exact(4).map(|p| [p[0], p[1], p[2]]);
+            Ok(colors.collect())
+        };
+        let frames = self
+            .frames
+            .iter()
+            .map(picture)
+            .collect::<Result<_, ReportError>>()?;
+        Ok(Pictures { size, frames })
+    }
+
+    /// The cell of all frames, and what they share.
+    fn stage(&self) -> (Rect, Stage) {
+        let inner = WIDTH - 2.0 * MARGIN;
+        let in_cell = |height: f64| {
+            let cell = Rect::sized(MARGIN, MARGIN, inner, height);
+            let insets = drawing::insets(&self.frames, &cell);
+            (cell, Stage::new(&self.frames, &cell, insets))
+        };
+        let height = drawing::height(&self.frames, inner);
+        let (cell, stage) = in_cell(height);
+        // Only here does the page grow with its legend: there are no neighbours to line up with.
+        match stage.legend_above() {
+            0.0 => (cell, stage),
+            more => in_cell(height + more),
+        }
+    }
+
+    /// Width and height of the picture of a page.
+    fn size(&self, [width, height]: [u32; 2]) -> Result<[u16; 2], ReportError> {
+        let high = u64::from(self.width_px) * u64::from(height) / u64::from(width.max(1));
+        let all = high
+            .saturating_mul(u64::from(self.width_px))
+            .saturating_mul(self.frames.len() as u64);
+        let sides = u16::try_from(self.width_px)
+            .ok()
+            .zip(u16::try_from(high).ok());
+        match sides {
+            Some((wide, high)) if wide > 0 && high > 0 && all <= MOST => Ok([wide, high]),
+            _ => Err(ReportError::Film {
+                animation: self.name.clone(),
+                frames: self.frames.len(),
+                width: self.width_px.into(),
+                height: high,
+            }),
+        }
+    }
+}
+
+/// Frames in full colour, row by row.
+struct Pictures {
+    size: [u16; 2],
+    frames: Vec<Vec<Rgb>>,
+}
+
+fn encoded(pictures: &Pictures, palette: &Palette, delay: u16) -> Result<Vec<u8>, EncodingError> {
+    let [width, height] = pictures.size;
+    // The place behind the last colour is never shown: it stands for a pixel that stays.
+    let stays = palette.colors.len() as u8;
+    let mut table = palette.colors.concat();
+    table.extend(WHITE);
+    let mut encoder = Encoder::new(Vec::new(), width, height, &table)?;
+    encoder.set_repeat(Repeat::Infinite)?;
+    let mut shown: Option<Vec<u8>> = None;
+    for picture in &pictures.frames {
+        let mut places = Vec::with_capacity(picture.len());
+        for run in picture.chunk_by(|a, b| a == b) {
+            places.resize(places.len() + run.len(), palette.place(run[0]));
+        }
+        let patch = Patch::of(shown.as_deref(), &places, usize::from(width), stays);
+        encoder.write_frame(&Frame {
+            delay,
+            dispose: DisposalMethod::Keep,
+            transparent: shown.is_some().then_some(stays),
+            left: patch.left as u16,
+            top: patch.top as u16,
+            width: patch.width as u16,
+            height: (patch.places.len() / patch.width) as u16,
+            buffer: Cow::Owned(patch.places),
+            ..Frame::default()
+        })?;
+        shown = Some(places);
+    }
+    encoder.into_inner()
+}
+
+/// The part of a frame that is new, in which old pixels stay.
+struct Patch {
+    left: usize,
+    top: usize,
+    width: usize,
+    places: Vec<u8>,
+}
+
+impl Patch {
+    fn of(before: Option<&[u8]>, now: &[u8], width: usize, stays: u8) -> Self {
+        let Some(before) = before else {
+            return Self {
+                left: 0,
+                top: 0,
+                width,
+                places: now.to_vec(),
+            };
+        };
+        // Columns and rows of the new pixels; a frame without any still takes its time, as one pixel.
+        let new = || (0..now.len()).filter(|&i| now[i] != before[i]);
+        let (left, right) =
+            new().fold((width, 0), |(l, r), i| (l.min(i % width), r.max(i % width)));
+        let (left, right) = if left > right { (0, 0) } else { (left, right) };
+        let top = new().next().unwrap_or(0) / width;
+        let bottom = new().next_back().unwrap_or(0) / width;
+        let row = |y: usize| {
+            (y * width + left..=y * width + right)
+                .map(|i| if now[i] == before[i] { stays } else { now[i] })
+        };
+        Self {
+            left,
+            top,
+            width: right - left + 1,
+            places: (top..=bottom).flat_map(row).collect(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::figure::{Axis, Paint};
+    use crate::shape::{Pen, Shape};
+    use gif::{ColorOutput, DecodeOptions};
+    use std::f64::consts::TAU;
+
+    fn crank(count: u32) -> Animation {
+        let frame = |i: u32| {
+            let (s, c) = (TAU * f64::from(i) / f64::from(count)).sin_cos();
+            let bar = Shape::line(vec![[0.0, 0.0], [c, s]], Pen::new(Paint::Palette(0), 9.0));
+            Drawing {
+                title: "Crank".to_owned(),
+                x: Axis::new("x", "m"),
+                y: Axis::new("y", "m"),
+                shapes: vec![
+                    bar.named("crank"),
+                    Shape::GroundPin { at: [0.0, 0.0] },
+                    Shape::pin([c, s], Paint::Ink, 0.0),
+                ],
+            }
+        };
+        Animation {
+            name: "crank".to_owned(),
+            frames: (0..count).map(frame).collect(),
+            delay_ms: 40,
+            width_px: 240,
+        }
+    }
+
+    /// A frame as it is stored, and the picture a reader then shows.
+    struct Shown {
+        frame: Frame<'static>,
+        picture: Vec<Rgb>,
+    }
+
+    fn decoded(bytes: &[u8]) -> ([u16; 2], Repeat, Vec<Shown>) {
+        let mut options = DecodeOptions::new();
+        options.set_color_output(ColorOutput::Indexed);
+        options.check_frame_consistency(true);
+        let mut decoder = options.read_info(bytes).unwrap();
+        let size = [decoder.width(), decoder.height()];
+        let table: Vec<Rgb> = decoder.global_palette().unwrap().as_chunks().0.to_vec();
+        let mut picture = vec![[0; 3]; usize::from(size[0]) * usize::from(size[1])];
+        let mut all = Vec::new();
+        while let Some(frame) = decoder.read_next_frame().unwrap() {
+            let wide = usize::from(frame.width);
+            for (i, place) in frame.buffer.iter().enumerate() {
+                let x = usize::from(frame.left) + i % wide;
+                let y = usize::from(frame.top) + i / wide;
+                if frame.transparent != Some(*place) {
+                    picture[y * usize::from(size[0]) + x] = table[usize::from(*place)];
+                }
+            }
+            all.push(Shown {
+                frame: frame.clone(),
+                picture: picture.clone(),
+            });
+        }
+        (size, decoder.repeat(), all)
+    }
+
+    #[test]
+    fn a_reader_gets_every_frame_for_ever_at_its_pace() {
+        let film = crank(12);
+        let drawn = film.pictures().unwrap();
+        let (size, repeat, shown) = decoded(&film.gif().unwrap());
+        assert_eq!((size, size[0], repeat), (drawn.size, 240, Repeat::Infinite));
+        assert_eq!(shown.len(), 12);
+        assert!(shown.iter().all(|s| s.frame.delay == 4));
+        assert!(shown[0].picture != shown[6].picture);
+        for (shown, drawn) in shown.iter().zip(&drawn.frames) {
+            let differ =
+                |(a, b): (&Rgb, &Rgb)| (0..3).map(|i| a[i].abs_diff(b[i])).fold(0, u8::max);
+            let worst = shown.picture.iter().zip(drawn).map(differ).fold(0, u8::max);
+            // One level was measured; two cannot be seen.
+            assert!(worst <= 2, "a colour is off by {worst}");
+        }
+    }
+
+    #[test]
+    fn nothing_moves_but_the_shapes() {
+        let film = crank(12);
+        let (_, stage) = film.stage();
+        let (size, _, shown) = decoded(&film.gif().unwrap());
+        let scale = f64::from(size[0]) / WIDTH;
+        let plot = stage.plot();
+        for Shown { frame, .. } in &shown[1..] {
+            let [x0, y0] = [frame.left, frame.top].map(|v| f64::from(v) / scale);
+            let [x1, y1] =
+                [frame.left + frame.width, frame.top + frame.height].map(|v| f64::from(v) / scale);
+            assert!(plot.grown(-20.0).holds(&Rect { x0, y0, x1, y1 }));
+        }
+    }
+
+    #[test]
+    fn a_film_that_stands_still_keeps_its_frames() {
+        let mut film = crank(1);
+        film.frames = vec![film.frames[0].clone(); 3];
+        film.delay_ms = 0;
+        let (_, _, shown) = decoded(&film.gif().unwrap());
+        assert_eq!(shown.len(), 3);
+        assert!(
+            shown
+                .iter()
+                .all(|s| s.picture == shown[0].picture && s.frame.delay == 2)
+        );
+    }
+
+    #[test]
+    fn drawings_without_shapes_are_frames_too() {
+        let film = Animation {
+            frames: vec![Drawing::default()],
+            width_px: 100,
+            ..Animation::default()
+        };
+        assert_eq!(decoded(&film.gif().unwrap()).2.len(), 1);
+    }
+
+    #[test]
+    fn what_cannot_be_a_film_says_so() {
+        let none = Animation::default().gif();
+        assert!(matches!(none, Err(ReportError::NoFrames { .. })));
+        for width_px in [0, 70_000, u32::MAX] {
+            let film = Animation {
+                width_px,
+                ..crank(2)
+            };
+            assert!(matches!(
+                film.gif(),
+                Err(ReportError::Film { frames: 2, .. })
+            ));
+        }
+        // Few large frames are fine, many are not.
+        let film = Animation {
+            width_px: 60_000,
+            ..crank(1)
+        };
+        assert!(matches!(
+            film.size([800, 600]),
+            Err(ReportError::Film { .. })
+        ));
+        let film = Animation {
+            width_px: 480,
+            ..crank(60)
+        };
+        assert_eq!(film.size([800, 600]).unwrap(), [480, 360]);
+    }
+}

@@ -1,0 +1,314 @@
+//! Tables of numbers as NumPy archives.
+
+use crate::error::ReportError;
+use crate::table::Table;
+use std::collections::BTreeSet;
+use std::io::{Cursor, Write as _};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, DateTime, System, ZipWriter};
+
+/// Keys of the two arrays that describe the others.
+const COLUMNS: &str = "columns";
+const UNITS: &str = "units";
+/// The data of an array begin at a multiple of this.
+const ALIGNMENT: usize = 64;
+
+impl Table {
+    /// The table as a NumPy archive (`.npz`, arrays of format 1.0): what `numpy.load` gives back bit for bit.
+    ///
+    /// Every column is an array of its own, `<f8` of shape (rows,), under its name. The array `columns` holds these
+    /// keys in the order of the table, and `units` their units: `dict(zip(z["columns"], z["units"]))`.
+    ///
+    /// A key is also a file name within the archive: characters that some system refuses in one (`/ \ : * ? " < > |`
+    /// and controls) become `_`, and a name that is taken already gets `_2`, `_3` … behind it. The same table makes
+    /// the same bytes on every machine.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Npz`] if the archive refuses, as for a
+    /// name of more than 65 000 bytes.
+    pub fn npz(&self) -> Result<Vec<u8>, ReportError> {
+        self.check_rows()?;
+        let keys = self.keys();
+        let units: Vec<&str> = self.columns.iter().map(|c| c.unit.as_str()).collect();
+        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+        let mut add = |key: &str, array: Vec<u8>| -> Result<(), ReportError> {
+            archive.start_file(format!("{key}.npy"), options())?;
+            archive
+                .write_all(&array)
+                .map_err(zip::result::ZipError::Io)?;
+            Ok(())
+        };
+        for (place, key) in keys.iter().enumerate() {
+            add(key, numbers(self.rows.iter().map(|row| row[place])))?;
+        }
+        add(COLUMNS, words(&keys))?;
+        add(UNITS, words(&units))?;
+        Ok(archive.finish()?.into_inner())
+    }
+
+    /// The columns' names as keys: file names, and each but once.
+    fn keys(&self) -> Vec<String> {
+        let mut taken: BTreeSet<String> = [COLUMNS, UNITS].map(str::to_owned).into();
+        let mut free = |name: &str| {
+            let numbered = (2_usize..).map(|n| format!("{name}_{n}"));
+            let mut all = std::iter::once(name.to_owned()).chain(numbered);
+            let key = all.find(|key| !taken.contains(key)).unwrap_or_default();
+            taken.insert(key.clone());
+            key
+        };
+        self.columns
+            .iter()
+            .map(|c| free(&file_name(&c.name)))
+            .collect()
+    }
+}
+
+/// The name with `_` for what a file name cannot hold.
+fn file_name(name: &str) -> String {
+    let safe = |c: char| {
+        if c.is_control() || r#"/\:*?"<>|"#.contains(c) {
+            '_'
+        } else {
+            c
+        }
+    };
+    let name: String = name.chars().map(safe).collect();
+    if name.is_empty() {
+        "_".to_owned()
+    } else {
+        name
+    }
+}
+
+/// Nothing that depends on the day or the machine. Stored: the digits of measured numbers hardly compress.
+fn options() -> SimpleFileOptions {
+    SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Stored)
+        .last_modified_time(DateTime::default())
+        .system(System::Unix)
+        .unix_permissions(0o644)
+}
+
+fn numbers(values: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
+    let mut array = header("<f8", values.len());
+    array.reserve_exact(8 * values.len());
+    values.for_each(|v| array.extend(v.to_le_bytes()));
+    array
+}
+
+/// Words as four bytes a character, padded with zeros to the longest.
+fn words(words: &[impl AsRef<str>]) -> Vec<u8> {
+    let width = words.iter().map(|w| w.as_ref().chars().count()).max();
+    let width = width.unwrap_or(0).max(1);
+    let mut array = header(&format!("<U{width}"), words.len());
+    for word in words {
+        let end = array.len() + 4 * width;
+        word.as_ref()
+            .chars()
+            .for_each(|c| array.extend(u32::from(c).to_le_bytes()));
+        array.resize(end, 0);
+    }
+    array
+}
+
+/// What stands before the data of an array of one dimension, padded with blanks.
+///
+/// Source: NumPy Enhancement Proposal 1, "A simple file format for NumPy arrays", format version 1.0.
+fn header(kind: &str, count: usize) -> Vec<u8> {
+    let mut words = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({count},), }}");
+    let before = b"\x93NUMPY\x01\x00".len() + 2;
+    let whole = (before + words.len() + 1).next_multiple_of(ALIGNMENT);
+    while before + words.len() + 1 < whole {
+        words.push(' ');
+    }
+    words.push('\n');
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    // At most two numbers of twenty digits stand in it.
+    header.extend((words.len() as u16).to_le_bytes());
+    header.extend(words.as_bytes());
+    header
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::Column;
+    use std::io::Read as _;
+    use zip::ZipArchive;
+
+    /// An array read back by the rules of its format: kind, length and data.
+    struct Array {
+        kind: String,
+        count: usize,
+        data: Vec<u8>,
+    }
+
+    impl Array {
+        fn read(bytes: &[u8]) -> Self {
+            assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
+            let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+            let start = 10 + length;
+            assert_eq!(start % 64, 0, "data begin at {start}");
+            let header = std::str::from_utf8(&bytes[10..start]).unwrap();
+            assert!(header.ends_with('\n') && header.contains("'fortran_order': False"));
+            let between = |from: &str, to: &str| {
+                let rest = header.split_once(from).unwrap().1;
+                rest.split_once(to).unwrap().0.to_owned()
+            };
+            Self {
+                kind: between("'descr': '", "'"),
+                count: between("'shape': (", ",)").parse().unwrap(),
+                data: bytes[start..].to_vec(),
+            }
+        }
+
+        fn bits(&self) -> Vec<u64> {
+            assert_eq!(
+                (self.kind.as_str(), self.data.len()),
+                ("<f8", 8 * self.count)
+            );
+            let eight = self.data.chunks_exact(8);
+            eight
+                .map(|b| u64::from_le_bytes(b.try_into().unwrap()))
+                .collect()
+        }
+
+        fn words(&self) -> Vec<String> {
+            let width: usize = self.kind.strip_prefix("<U").unwrap().parse().unwrap();
+            assert_eq!(self.data.len(), 4 * width * self.count);
+            let letter = |b: &[u8]| char::from_u32(u32::from_le_bytes(b.try_into().unwrap()));
+            let word = |w: &[u8]| {
+                w.chunks_exact(4)
+                    .map(|b| letter(b).unwrap())
+                    .collect::<String>()
+            };
+            let all = self.data.chunks_exact(4 * width);
+            all.map(|w| word(w).trim_end_matches('\0').to_owned())
+                .collect()
+        }
+    }
+
+    /// Entries in their order.
+    fn entries(bytes: &[u8]) -> Vec<(String, Array)> {
+        let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
+        let count = archive.len();
+        let entry = |place: usize| {
+            let mut file = archive.by_index(place).unwrap();
+            assert_eq!(file.compression(), CompressionMethod::Stored);
+            let name = file.name().unwrap().into_owned();
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes).unwrap();
+            (name, Array::read(&bytes))
+        };
+        (0..count).map(entry).collect()
+    }
+
+    fn named(names: &[&str]) -> Table {
+        Table {
+            columns: names.iter().map(|n| Column::new(*n, "")).collect(),
+            rows: vec![(0..names.len()).map(|i| i as f64).collect()],
+        }
+    }
+
+    #[test]
+    fn every_bit_of_every_column_comes_back_in_order() {
+        let signalling = f64::from_bits(0x7ff0_0000_0000_0001);
+        let rows = [
+            [0.1 + 0.2, -0.0, 1e-310],
+            [f64::MAX, signalling, -f64::NAN],
+            [f64::INFINITY, f64::MIN_POSITIVE, 1.0 / 3.0],
+            [-6.02e23, 5.419_662_677_064_27, f64::NEG_INFINITY],
+        ];
+        let table = Table {
+            columns: vec![
+                Column::new("φ", "rad"),
+                Column::new("slider.P.x", "m"),
+                Column::new("½ m′", "kg m²/rad"),
+            ],
+            rows: rows.map(|r| r.to_vec()).to_vec(),
+        };
+        let found = entries(&table.npz().unwrap());
+        let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(
+            names,
+            [
+                "φ.npy",
+                "slider.P.x.npy",
+                "½ m′.npy",
+                "columns.npy",
+                "units.npy"
+            ]
+        );
+        for (place, (name, array)) in found[..3].iter().enumerate() {
+            let expected = rows.map(|row| row[place].to_bits());
+            assert_eq!(array.bits(), expected, "{name}");
+        }
+        assert_eq!(found[3].1.words(), ["φ", "slider.P.x", "½ m′"]);
+        assert_eq!(found[4].1.words(), ["rad", "m", "kg m²/rad"]);
+    }
+
+    #[test]
+    fn the_same_table_makes_the_same_bytes_and_the_dates_are_fixed() {
+        let bytes = named(&["a", "b"]).npz().unwrap();
+        assert_eq!(bytes, named(&["a", "b"]).npz().unwrap());
+        let mut archive = ZipArchive::new(Cursor::new(bytes)).unwrap();
+        let date = archive.by_index(0).unwrap().last_modified().unwrap();
+        assert_eq!((date.year(), date.month(), date.day()), (1980, 1, 1));
+    }
+
+    #[test]
+    fn keys_are_file_names_and_differ() {
+        let table = named(&["a/b", "a:b", "x", "x", "x_2", "columns", "", "..", "R [1]"]);
+        let found = entries(&table.npz().unwrap());
+        let keys = [
+            "a_b",
+            "a_b_2",
+            "x",
+            "x_2",
+            "x_2_2",
+            "columns_2",
+            "_",
+            "..",
+            "R [1]",
+        ];
+        for (place, key) in keys.iter().enumerate() {
+            assert_eq!(found[place].0, format!("{key}.npy"));
+            assert_eq!(found[place].1.bits(), [(place as f64).to_bits()]);
+        }
+        assert_eq!(found[keys.len()].1.words(), keys);
+    }
+
+    #[test]
+    fn a_table_without_rows_or_columns_is_an_archive() {
+        let mut table = named(&["a"]);
+        table.rows.clear();
+        assert_eq!(entries(&table.npz().unwrap())[0].1.count, 0);
+        let nothing = entries(&Table::default().npz().unwrap());
+        assert_eq!(nothing.len(), 2);
+        assert!(nothing.iter().all(|(_, array)| array.count == 0));
+    }
+
+    #[test]
+    fn headers_of_any_length_are_aligned() {
+        for count in (0..25).map(|digits| 10_usize.saturating_pow(digits)) {
+            let header = header("<f8", count);
+            assert_eq!(header.len() % 64, 0);
+            assert_eq!(usize::from(header[8]), header.len() - 10);
+        }
+    }
+
+    #[test]
+    fn a_short_row_is_an_error_that_says_which() {
+        let mut table = named(&["a", "b"]);
+        table.rows.push(vec![1.0]);
+        assert!(matches!(
+            table.npz(),
+            Err(ReportError::Row {
+                row: 1,
+                found: 1,
+                expected: 2
+            })
+        ));
+    }
+}

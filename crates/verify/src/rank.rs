@@ -1,0 +1,203 @@
+//! The rank of the dense rows: what a mechanism can do, and what holds it twice.
+//!
+//! With the rows scaled to order one, A = U Σ Vᵀ, and r singular values above zero:
+//!
+//! ```text
+//! A v = 0     the last n − r columns of V: motions that every row allows     (1)
+//! uᵀ A = 0    the last m − r columns of U: rows that say the same            (2)
+//! ```
+//!
+//! A body that no motion of (1) moves is held; a row with no part in any of (2) has a determinate
+//! multiplier. Both are told from the whole null space, so that they do not hang on which vectors
+//! span it.
+
+use crate::dense::{Dense, DenseError};
+use dwell_geometry::{BodyId, Mechanism};
+use dwell_kinetostatics::Mass;
+use faer::MatRef;
+
+/// A singular value this small against the largest is zero. A configuration is given, or closed,
+/// to 1e-13 and better; a small angle of 1e-8 rad is a rank loss to every purpose.
+const ZERO: f64 = 1e-9;
+/// A body or row has a part in a null space of orthonormal vectors from here on.
+const PART: f64 = 1e-6;
+
+/// What the rows of one kind leave free, and what they say twice.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rank {
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of coordinates: three per moving body.
+    pub columns: usize,
+    /// Number of independent rows.
+    pub rank: usize,
+    /// The singular values of the dimensionless rows, falling.
+    pub singular_values: Vec<f64>,
+    /// Bodies that still move when every row is held.
+    pub free: Vec<BodyId>,
+    /// Rows that depend on others: indices into [`Mechanism::reactions`], followed by the actuators.
+    pub dependent: Vec<usize>,
+}
+
+impl Rank {
+    /// Independent motions left.
+    pub fn freedom(&self) -> usize {
+        self.columns - self.rank
+    }
+
+    /// Rows too many.
+    pub fn excess(&self) -> usize {
+        self.rows - self.rank
+    }
+}
+
+/// The ranks of the joints' rows alone, and of these with the actuators'.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranks {
+    /// The joints.
+    pub joints: Rank,
+    /// The joints and the actuators.
+    pub driven: Rank,
+}
+
+/// The ranks in the configuration with the frames `poses` of all bodies, in m and rad.
+///
+/// A rank is that of this configuration. One that is lost in a second, generic configuration too
+/// is lost everywhere, by how the mechanism is joined or by its dimensions.
+///
+/// # Errors
+/// [`DenseError`] when the mechanism refers to something that is not there, or the poses are
+/// incomplete or not finite. The poses are taken as they are: joints that do not close there are
+/// not an error.
+pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks, DenseError> {
+    let masses = vec![Mass::default(); mechanism.bodies.len()];
+    let dense = Dense::of_any_shape(mechanism, &masses)?;
+    let x = dense.start(poses)?;
+    let all = dense.scaled_jacobian(&x);
+    if !all.is_all_finite() {
+        // Two points in one place have no direction.
+        return Err(DenseError::Singular { pivot: f64::NAN });
+    }
+    let joints = all.subrows(0, dense.actuator_row());
+    Ok(Ranks {
+        joints: of(&dense, joints)?,
+        driven: of(&dense, all.as_ref())?,
+    })
+}
+
+fn of(dense: &Dense, matrix: MatRef<'_, f64>) -> Result<Rank, DenseError> {
+    let (rows, columns) = matrix.shape();
+    let svd = matrix
+        .svd()
+        .map_err(|_| DenseError::Singular { pivot: f64::NAN })?;
+    let values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
+    let largest = values.first().copied().unwrap_or(0.0);
+    let rank = values.iter().filter(|&&s| s > ZERO * largest).count();
+    let moves = |c: usize| (c..c + 3).map(|c| part(svd.V(), c, rank)).sum::<f64>();
+    let bodies = dense.bodies.iter().enumerate();
+    let free = bodies
+        .filter(|(_, body)| body.column.is_some_and(|c| moves(c) > PART * PART))
+        .map(|(b, _)| BodyId(b))
+        .collect();
+    Ok(Rank {
+        rows,
+        columns,
+        rank,
+        free,
+        dependent: (0..rows)
+            .filter(|&k| part(svd.U(), k, rank) > PART * PART)
+            .collect(),
+        singular_values: values,
+    })
+}
+
+/// The square of what row `i` has in the columns from `rank` on.
+fn part(vectors: MatRef<'_, f64>, i: usize, rank: usize) -> f64 {
+    (rank..vectors.ncols())
+        .map(|j| vectors[(i, j)] * vectors[(i, j)])
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_geometry::{Actuator, Body, Drive, Joint, JointKind, Vec2, vec2};
+
+    fn pin(bodies: [usize; 2], points: [Vec2; 2]) -> Joint {
+        Joint {
+            name: "pin".into(),
+            bodies: bodies.map(BodyId),
+            points,
+            kind: JointKind::Revolute,
+        }
+    }
+
+    fn bars(count: usize, joints: Vec<Joint>) -> Mechanism {
+        let body = |b: usize| Body {
+            name: format!("{b}"),
+        };
+        Mechanism {
+            bodies: (0..=count).map(body).collect(),
+            joints,
+            ..Mechanism::default()
+        }
+    }
+
+    /// A table on three parallel legs of equal length still moves, with one row too many; body 5
+    /// hangs on it by a pin and swings.
+    fn table() -> (Mechanism, Vec<[f64; 3]>) {
+        let mut joints = vec![];
+        for (leg, x) in [(1, 1.0), (2, 2.0), (3, 3.0)] {
+            joints.push(pin([0, leg], [vec2(x, 0.0), Vec2::ZERO]));
+            joints.push(pin([leg, 4], [vec2(0.0, 2.0), vec2(x, 0.0)]));
+        }
+        joints.push(pin([4, 5], [vec2(0.5, 0.5), vec2(0.1, -0.4)]));
+        let lean: f64 = -0.3;
+        let up = vec2(0.0, 2.0).turn(Vec2::from_angle(lean));
+        let mut poses = vec![[0.0; 3]];
+        poses.extend([1.0, 2.0, 3.0].map(|x| [x, 0.0, lean]));
+        poses.push([up.x, up.y, 0.0]);
+        poses.push([up.x + 0.4, up.y + 0.9, 0.0]);
+        (bars(5, joints), poses)
+    }
+
+    #[test]
+    fn a_third_leg_is_one_row_too_many() {
+        let (mechanism, poses) = table();
+        let Ranks { joints, driven } = rank(&mechanism, &poses).unwrap();
+        assert_eq!(joints, driven);
+        assert_eq!((joints.rows, joints.columns), (14, 15));
+        assert_eq!((joints.freedom(), joints.excess()), (2, 1));
+        assert_eq!(joints.free, [1, 2, 3, 4, 5].map(BodyId));
+        // All forces of the legs are in doubt, those of the hanging body (rows 12 and 13) are not.
+        assert_eq!(joints.dependent, (0..12).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_drive_holds_what_it_reaches() {
+        let (mut mechanism, poses) = table();
+        mechanism.actuators.push(Actuator {
+            name: "lean".into(),
+            bodies: [BodyId(0), BodyId(1)],
+            drive: Drive::Angle,
+        });
+        let Ranks { joints, driven } = rank(&mechanism, &poses).unwrap();
+        assert_eq!((joints.freedom(), driven.freedom()), (2, 1));
+        assert_eq!(driven.free, [BodyId(5)]);
+        // A drive between parallel legs drives nothing, and says what they say already.
+        mechanism.actuators[0].bodies[0] = BodyId(2);
+        let Ranks { driven, .. } = rank(&mechanism, &poses).unwrap();
+        assert_eq!((driven.freedom(), driven.excess()), (2, 2));
+        assert!(driven.dependent.contains(&14));
+    }
+
+    #[test]
+    fn what_has_no_rows_is_free() {
+        let Ranks { joints, .. } = rank(&bars(2, vec![]), &[[0.0; 3]; 3]).unwrap();
+        assert_eq!((joints.rank, joints.freedom()), (0, 6));
+        assert_eq!(joints.free, [BodyId(1), BodyId(2)]);
+        let Ranks { joints, .. } = rank(&bars(0, vec![]), &[[0.0; 3]]).unwrap();
+        assert_eq!((joints.rank, joints.freedom()), (0, 0));
+        assert!(rank(&bars(1, vec![]), &[[0.0; 3]]).is_err());
+    }
+}

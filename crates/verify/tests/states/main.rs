@@ -1,0 +1,263 @@
+//! Kinetostatic states with every joint, every drive and every load, judged; and faults found.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::panic,
+    reason = "a test, its producer of states too"
+)]
+
+mod mechanisms;
+mod plain;
+mod setup;
+
+use dwell_findings::{Finding, all_pass};
+use dwell_geometry::{BodyId, JointKind, vec2};
+use dwell_verify::{Case, Range, State, judge_states, rank, spread, verify_all};
+use mechanisms::all;
+use setup::Setup;
+
+fn told(findings: &[Finding]) -> String {
+    let line = |f: &Finding| {
+        format!(
+            "{} {} {:.1e} of {:.1e} at {}\n",
+            if f.pass { "pass" } else { "FAIL" },
+            f.key,
+            f.relative,
+            f.tolerance,
+            f.worst
+        )
+    };
+    findings.iter().map(line).collect()
+}
+
+fn judged(setup: &Setup, states: &[State]) -> Vec<Finding> {
+    judge_states(&setup.mechanism, &setup.masses, &setup.start, states)
+}
+
+#[test]
+fn val_plain_solutions_pass() {
+    for setup in all() {
+        let findings = judged(&setup, &setup.states());
+        println!("{}\n{}", setup.name, told(&findings));
+        assert_eq!(findings.len(), 9);
+        assert!(all_pass(&findings), "{}\n{}", setup.name, told(&findings));
+        // No truth is so blunt that its tolerance gave way.
+        for f in &findings {
+            assert!(f.tolerance < 1e-10, "{}: {}", setup.name, told(&findings));
+        }
+    }
+}
+
+/// Every joint kind and drive occurs in some mechanism of the tests.
+#[test]
+fn nothing_is_left_untried() {
+    let setups = all();
+    let kinds = setups.iter().flat_map(|s| &s.mechanism.joints);
+    let mut met: Vec<_> = kinds.map(|j| std::mem::discriminant(&j.kind)).collect();
+    met.sort_by_key(|d| format!("{d:?}"));
+    met.dedup();
+    assert_eq!(met.len(), 9);
+    let drives = setups.iter().flat_map(|s| &s.mechanism.actuators);
+    let mut met: Vec<_> = drives.map(|a| std::mem::discriminant(&a.drive)).collect();
+    met.sort_by_key(|d| format!("{d:?}"));
+    met.dedup();
+    assert_eq!(met.len(), 3);
+}
+
+fn failing(findings: &[Finding]) -> Vec<&str> {
+    let failed = findings.iter().filter(|f| !f.pass);
+    failed.map(|f| f.key.as_str()).collect()
+}
+
+/// Every single number of a state, made wrong by a millionth of what its kind has, is found.
+#[test]
+fn every_number_counts() {
+    for setup in all() {
+        let states = setup.states();
+        let count = |s: &State| {
+            [
+                s.q.len(),
+                s.q_dot.len(),
+                s.q_ddot.len(),
+                s.reactions.len(),
+                s.tau.len(),
+            ]
+        };
+        for (field, length) in count(&states[0]).into_iter().enumerate() {
+            for k in 0..length {
+                let mut wrong = states.clone();
+                let s = &mut wrong[1];
+                let values = [
+                    &mut s.q,
+                    &mut s.q_dot,
+                    &mut s.q_ddot,
+                    &mut s.reactions,
+                    &mut s.tau,
+                ];
+                let Some(values) = values.into_iter().nth(field) else {
+                    continue;
+                };
+                let largest = values.iter().fold(1e-2_f64, |m, v| m.max(v.abs()));
+                values[k] += 1e-6 * largest;
+                let findings = judged(&setup, &wrong);
+                assert!(
+                    !all_pass(&findings),
+                    "{}: field {field}, number {k}\n{}",
+                    setup.name,
+                    told(&findings)
+                );
+            }
+        }
+        for body in 1..setup.mechanism.bodies.len() {
+            for c in 0..3 {
+                for field in 0..3 {
+                    let mut wrong = states.clone();
+                    let s = &mut wrong[1];
+                    let values = [&mut s.bodies, &mut s.velocity, &mut s.acceleration];
+                    let Some(values) = values.into_iter().nth(field) else {
+                        continue;
+                    };
+                    values[body][c] += 1e-6;
+                    let findings = judged(&setup, &wrong);
+                    assert!(!all_pass(&findings), "{}: {body} {c} {field}", setup.name);
+                }
+            }
+        }
+    }
+}
+
+/// A load that was left out, and one that acts elsewhere.
+#[test]
+fn loads_count() {
+    for setup in all() {
+        let states = setup.states();
+        let findings = |change: &dyn Fn(&mut State)| {
+            let mut wrong = states.clone();
+            change(&mut wrong[2]);
+            judged(&setup, &wrong)
+        };
+        let without = findings(&|s| {
+            s.loads.remove(0);
+        });
+        let failed = failing(&without);
+        for key in [
+            "state-reactions",
+            "state-newton",
+            "state-differenced",
+            "state-balance",
+        ] {
+            assert!(failed.contains(&key), "{}\n{}", setup.name, told(&without));
+        }
+        let elsewhere = findings(&|s| s.loads[0].at += vec2(1e-3, 1e-3));
+        assert!(failing(&elsewhere).contains(&"state-reactions"));
+    }
+}
+
+/// What is missing or not finite is refused in words, not met with a panic.
+#[test]
+fn broken_states_are_refused() {
+    let setup = &all()[0];
+    let refused = |change: &dyn Fn(&mut State)| {
+        let mut states = setup.states();
+        change(&mut states[0]);
+        let findings = judged(setup, &states);
+        assert!(findings.iter().all(|f| !f.pass), "{}", told(&findings));
+        findings[0].worst.clone()
+    };
+    let message = refused(&|s| {
+        s.reactions.pop();
+    });
+    assert!(
+        message.ends_with("9 reactions where there are 10"),
+        "{message}"
+    );
+    let message = refused(&|s| s.loads[0].body = BodyId(40));
+    assert!(message.ends_with("a load acts on body 40, but there are 5 bodies"));
+    refused(&|s| s.bodies[1][0] = f64::NAN);
+    refused(&|s| s.velocity.clear());
+    assert!(judged(setup, &[]).iter().all(|f| !f.pass));
+}
+
+/// In a geared mechanism the arm a whole turn on is not where it was.
+#[test]
+fn a_turn_that_was_lost_is_found() {
+    use std::f64::consts::TAU;
+    let setup = all().into_iter().find(|s| s.name == "epicyclic").unwrap();
+    let mut states = setup.states();
+    assert!(all_pass(&judged(&setup, &states)));
+    states[0].q[0] += TAU;
+    let findings = judged(&setup, &states);
+    assert_eq!(findings[0].key, "state-poses");
+    assert!(!findings[0].pass);
+    // Elsewhere it is.
+    let setup = all().into_iter().find(|s| s.name == "five-bar").unwrap();
+    let mut states = setup.states();
+    states[0].q[0] += TAU;
+    assert!(all_pass(&judged(&setup, &states)));
+}
+
+/// Nothing hangs on where the mechanism stands: the producer's rounding at a kilometre, in plain
+/// coordinates, is 1e-13 m.
+#[test]
+fn val_mechanisms_far_away_pass() {
+    for setup in all() {
+        let far = setup.moved(vec2(800.0, -300.0));
+        let findings = judged(&far, &far.states());
+        assert!(all_pass(&findings), "{}\n{}", far.name, told(&findings));
+    }
+}
+
+/// The truths of the reduced model hold with every joint, and for a coordinate that is a length.
+#[test]
+fn val_reduced_truths_with_every_joint() {
+    for (name, range) in [
+        ("epicyclic", Range::Between(-1.0, 2.0)),
+        ("wedge", Range::Between(0.5, 0.7)),
+        ("cam", Range::Between(0.4, 1.2)),
+    ] {
+        let setup = all().into_iter().find(|s| s.name == name).unwrap();
+        let case = Case {
+            mechanism: &setup.mechanism,
+            masses: &setup.masses,
+            range,
+            positions: spread(range, 6),
+        };
+        let findings = verify_all(&case, &setup, &[]);
+        println!("{name}\n{}", told(&findings));
+        assert!(
+            findings.len() > 12 && all_pass(&findings),
+            "{name}\n{}",
+            told(&findings)
+        );
+    }
+}
+
+#[test]
+fn val_all_are_determinate_and_of_full_rank() {
+    for setup in all() {
+        let state = &setup.states()[0];
+        let ranks = rank(&setup.mechanism, &state.bodies).unwrap();
+        let drives = setup.mechanism.actuators.len();
+        assert_eq!(ranks.driven.freedom(), 0, "{}", setup.name);
+        assert_eq!(ranks.driven.excess(), 0, "{}", setup.name);
+        assert_eq!(ranks.joints.freedom(), drives, "{}", setup.name);
+        assert!(ranks.joints.dependent.is_empty() && ranks.driven.free.is_empty());
+    }
+    // One guide more than the slider needs: its moment is held twice.
+    let mut setup = all().into_iter().find(|s| s.name == "wedge").unwrap();
+    let again = setup.mechanism.joints[0].clone();
+    assert!(matches!(again.kind, JointKind::Prismatic { .. }));
+    setup.mechanism.joints.push(again);
+    let ranks = rank(&setup.mechanism, &setup.start).unwrap();
+    let last = setup.mechanism.reactions().len();
+    assert_eq!(ranks.joints.excess(), 2);
+    assert_eq!(ranks.joints.dependent, [0, 1, last - 2, last - 1]);
+    assert!(ranks.joints.singular_values.is_sorted_by(|a, b| a >= b));
+    let findings = judged(&setup, &[State::default()]);
+    assert_eq!(findings.len(), 1);
+    assert!(
+        findings[0].worst.contains("not determinate"),
+        "{}",
+        findings[0].worst
+    );
+}

@@ -1,0 +1,97 @@
+//! A mechanism ready to be judged, and the states and answers that a plain solution gives for it.
+
+use super::plain;
+use dwell_geometry::{BodyId, Coordinate, Drive, Mechanism, Vec2};
+use dwell_kinetostatics::{LoadKind, Mass};
+use dwell_verify::{Actions, Coefficients, State, Subject, SubjectError};
+
+/// A mechanism, where it starts, what loads it, and how it is moved.
+pub(crate) struct Setup {
+    pub(crate) name: &'static str,
+    pub(crate) mechanism: Mechanism,
+    pub(crate) masses: Vec<Mass>,
+    pub(crate) start: Vec<[f64; 3]>,
+    pub(crate) loads: Vec<(LoadKind, f64)>,
+    /// [q, q̇, q̈] of every actuator, state by state.
+    pub(crate) motions: Vec<[Vec<f64>; 3]>,
+}
+
+impl Setup {
+    pub(crate) fn states(&self) -> Vec<State> {
+        let motions = self.motions.iter().cloned();
+        motions
+            .map(|m| plain::state(&self.mechanism, &self.masses, &self.start, &self.loads, m))
+            .collect()
+    }
+
+    fn unloaded(&self, q: f64, q_dot: f64, q_ddot: f64) -> State {
+        let motion = [vec![q], vec![q_dot], vec![q_ddot]];
+        plain::state(&self.mechanism, &self.masses, &self.start, &[], motion)
+    }
+
+    /// The same standing elsewhere.
+    pub(crate) fn moved(mut self, by: Vec2) -> Self {
+        let ground = BodyId(self.mechanism.ground);
+        let shift = |bodies: [BodyId; 2], points: &mut [Vec2; 2]| {
+            for (body, point) in bodies.into_iter().zip(points) {
+                if body == ground {
+                    *point += by;
+                }
+            }
+        };
+        for joint in &mut self.mechanism.joints {
+            shift(joint.bodies, &mut joint.points);
+        }
+        for actuator in &mut self.mechanism.actuators {
+            if let Drive::Length(points) = &mut actuator.drive {
+                shift(actuator.bodies, points);
+            }
+        }
+        for relation in &mut self.mechanism.relations {
+            for coordinate in [&mut relation.of, &mut relation.by] {
+                if let Coordinate::Length { bodies, points } = coordinate {
+                    shift(*bodies, points);
+                }
+            }
+        }
+        for (load, _) in &mut self.loads {
+            if let LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } =
+                load
+            {
+                shift(*bodies, points);
+            }
+        }
+        for (body, pose) in self.start.iter_mut().enumerate() {
+            if body != ground.0 {
+                pose[0] += by.x;
+                pose[1] += by.y;
+            }
+        }
+        self
+    }
+}
+
+/// Without its loads, and with its first actuator's coordinate.
+impl Subject for Setup {
+    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+        Ok(self.unloaded(q, 0.0, 0.0).bodies)
+    }
+
+    fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
+        let (b, a) = (self.unloaded(q, 1.0, 0.0), self.unloaded(q, 0.0, 1.0));
+        Ok(Coefficients {
+            m: a.tau[0],
+            half_dm: b.tau[0],
+            a: a.reactions,
+            b: b.reactions,
+        })
+    }
+
+    fn actions(&self, q: f64, q_dot: f64, q_ddot: f64) -> Result<Actions, SubjectError> {
+        let state = self.unloaded(q, q_dot, q_ddot);
+        Ok(Actions {
+            tau: state.tau[0],
+            reactions: state.reactions,
+        })
+    }
+}
