@@ -36,6 +36,10 @@ fn main() -> ExitCode {
 /// Runs a command; whether all its checks passed.
 fn run(options: Options) -> Result<bool, Report> {
     let Options { command, out } = options;
+    if let Command::Schema = command {
+        print(&dwell_scene::schema())?;
+        return Ok(true);
+    }
     if out.exists() && !out.is_dir() {
         return Err(miette!(
             help = "name a folder with --out; it is made if it is missing",
@@ -64,6 +68,8 @@ fn run(options: Options) -> Result<bool, Report> {
             told(dwell_study::calibrate(&scene, set.as_deref(), *period))?
         }
         Command::Validate { cases, folder } => validate(cases, folder)?,
+        // Printed above: it is neither about a scene nor written into a folder.
+        Command::Schema => Outcome::default(),
     };
     print(&outcome.summary)?;
     if !outcome.files.is_empty() {
