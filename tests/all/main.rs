@@ -17,6 +17,7 @@ mod invariance;
 mod joints;
 mod limits;
 mod machines;
+mod mobility;
 mod motion;
 mod published;
 mod refusals;

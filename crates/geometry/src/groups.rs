@@ -88,6 +88,7 @@ pub(crate) fn order(parts: &Parts<'_>, repeated: bool) -> Result<Vec<Group>, Str
             dof: parts.lowered.drives.len() + free.len(),
             actuators: parts.lowered.drives.len(),
             bodies: parts.lowered.named(bodies),
+            twice: Vec::new(),
         });
     }
     let groups = components(&of_equation, &needs, &of_unknown);

@@ -8,7 +8,8 @@ use crate::error::{AssemblyError, StructureError};
 use crate::frames::Frames;
 use crate::groups::{self, Group, Unknown};
 use crate::lower::{Bond, Lowered, Measure, Owner};
-use crate::mechanism::{BodyId, Coordinate, Drive, JointId, JointKind, Mechanism};
+use crate::mechanism::{ActuatorId, BodyId, Coordinate, Drive, JointId, JointKind, Mechanism};
+use crate::mobility::{Mobility, mobility};
 use crate::plane::Vec2;
 use crate::range::Range;
 use crate::relation::Row;
@@ -58,6 +59,8 @@ pub struct Plan {
     pub(crate) range: Range,
     /// The pose at the start, once it is assembled.
     pub(crate) home: Option<Box<Pose<f64>>>,
+    /// By reaction of the mechanism: whether the loads determine it; empty where they determine all.
+    pub(crate) unique: Vec<bool>,
     /// By group: the ways in which it closes at the start, as the angles of its bodies.
     pub(crate) branches: Vec<Branches>,
 }
@@ -290,7 +293,111 @@ impl Plan {
     /// reach each other, or the branch is not told.
     pub fn compile(mechanism: &Mechanism, start: &Start) -> Result<Self, AssemblyError> {
         check(mechanism, start)?;
-        let mut plan = Self::structure(mechanism, false)?;
+        let error = match Self::assembled(mechanism, start, false) {
+            Ok(mut plan) => {
+                if !plan.frames.spare.is_empty() {
+                    plan.note_unique(mechanism, mobility(mechanism, start).as_ref());
+                }
+                return Ok(plan);
+            }
+            Err(error) => error,
+        };
+        let by_rank = matches!(
+            error,
+            AssemblyError::Structure(
+                StructureError::OverConstrained { .. } | StructureError::UnderDriven { .. }
+            ) | AssemblyError::SingularStart { .. }
+        );
+        match mobility(mechanism, start).filter(|_| by_rank) {
+            Some(found) => Self::despite(mechanism, start, &found, error),
+            None => Err(error),
+        }
+    }
+
+    /// What can be done where counting and matching found something wrong: joints that repeat each
+    /// other are solved together; what is wrong by rank too is told by rank.
+    fn despite(
+        mechanism: &Mechanism,
+        start: &Start,
+        found: &Mobility,
+        error: AssemblyError,
+    ) -> Result<Self, AssemblyError> {
+        let reactions = mechanism.reactions();
+        let mut twice: Vec<JointId> = reactions
+            .iter()
+            .zip(&found.unique)
+            .filter(|(_, unique)| !**unique)
+            .map(|(r, _)| r.joint)
+            .collect();
+        twice.dedup();
+        let actuators: Vec<_> = (0..mechanism.actuators.len())
+            .filter(|a| !found.unique[reactions.len() + a])
+            .map(ActuatorId)
+            .collect();
+        let over = matches!(
+            error,
+            AssemblyError::Structure(StructureError::OverConstrained { .. })
+        );
+        if let Some(gap) = found.gap {
+            // Several actuators for fewer freedoms are not joints that repeat each other.
+            if (1..found.actuators).contains(&found.freedom()) {
+                return Err(error);
+            }
+            return Err(match error {
+                AssemblyError::Structure(StructureError::OverConstrained {
+                    joints,
+                    excess,
+                    ..
+                }) if !joints.is_empty() && gap < NEARLY * found.size => {
+                    AssemblyError::Inconsistent {
+                        joints,
+                        excess,
+                        gap,
+                    }
+                }
+                other => other,
+            });
+        }
+        if !found.free.is_empty() {
+            return Err(StructureError::UnderDriven {
+                dof: found.freedom(),
+                actuators: found.actuators,
+                bodies: found.free.clone(),
+                twice,
+            }
+            .into());
+        }
+        if !actuators.is_empty() {
+            return Err(StructureError::OverConstrained {
+                excess: found.excess,
+                joints: Vec::new(),
+                actuators,
+            }
+            .into());
+        }
+        if !over || found.excess == 0 {
+            return Err(error);
+        }
+        let mut plan = Self::assembled(mechanism, start, true)?;
+        plan.note_unique(mechanism, Some(found));
+        Ok(plan)
+    }
+
+    fn note_unique(&mut self, mechanism: &Mechanism, found: Option<&Mobility>) {
+        let reactions = mechanism.reactions();
+        self.unique = match found {
+            Some(found) if found.gap.is_none() => found.unique[..reactions.len()].to_vec(),
+            // Too large to tell: no reaction is promised to be unique.
+            _ => vec![false; reactions.len()],
+        };
+    }
+
+    fn assembled(
+        mechanism: &Mechanism,
+        start: &Start,
+        repeated: bool,
+    ) -> Result<Self, AssemblyError> {
+        let mut plan = Self::structure(mechanism, repeated)?;
         plan.start.clone_from(&start.q);
         let pose = plan.assemble(&start.rough)?;
         plan.follow(&pose)?;
@@ -375,6 +482,12 @@ impl Plan {
     /// A joint's first bond and its relation.
     pub fn parts(&self, joint: JointId) -> (Option<usize>, Option<usize>) {
         self.lowered.of_joint[joint.0]
+    }
+
+    /// Whether the loads determine a reaction, by its index in [`Mechanism::reactions`]. Where joints
+    /// repeat each other they do not: of all forces that balance the loads, the smallest are given.
+    pub fn is_unique(&self, reaction: usize) -> bool {
+        self.unique.get(reaction).copied().unwrap_or(true)
     }
 
     /// Where a bond is in the plan.
@@ -486,6 +599,10 @@ impl Plan {
         self.lowered.named(bodies)
     }
 }
+
+/// Constraints too many that stay open by less than this part of the mechanism's size were meant to
+/// repeat each other; if they stay open by more, there are simply too many.
+const NEARLY: f64 = 0.01;
 
 /// Refuses a description whose parts refer to what is not there.
 fn check(mechanism: &Mechanism, start: &Start) -> Result<(), StructureError> {

@@ -61,6 +61,7 @@ impl Plan {
             range: Range::Full,
             home: None,
             branches: Vec::new(),
+            unique: Vec::new(),
             reach: 0.0,
             arms: Vec::new(),
             groups: Vec::new(),
