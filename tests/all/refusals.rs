@@ -107,7 +107,7 @@ fn no_degree_of_freedom_is_left_to_drive() {
     let want = StructureError::OverConstrained {
         excess: 1,
         joints: Vec::new(),
-        actuators: vec![ActuatorId(1)],
+        actuators: vec![ActuatorId(0), ActuatorId(1)],
     };
     assert_eq!(error, want.into());
 }
