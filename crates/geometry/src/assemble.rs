@@ -53,6 +53,7 @@ impl Plan {
                 Kind::Solved(solved) => (solved.branch, solved.side) = (way.branch, way.side),
             }
             self.set(g, &way.values, &mut pose);
+            self.lead(g, &mut pose);
         }
         self.place_from(&q, &mut pose, Guess::Pose)
             .map_err(|e| self.refusal(self.groups.len(), e))?;
@@ -78,6 +79,20 @@ impl Plan {
                 let open = self.relations[r].value(&pose.angle, &pose.slide);
                 self.relations[r].of.constant -= open;
                 self.relations[r].as_assembled = false;
+            }
+        }
+    }
+
+    /// Counts the turns of a line of centres beside its carrier from here on.
+    fn lead(&mut self, g: usize, pose: &mut Pose<f64>) {
+        for &unknown in &self.groups[g].group.unknowns {
+            let Unknown::Class(class) = unknown else {
+                continue;
+            };
+            let line = self.class_roots[class];
+            if let Some((carrier, lead)) = self.beside.get_mut(&line) {
+                *lead = pose.turn[line].turn_back(pose.turn[*carrier]).angle();
+                pose.angle[line] = pose.angle[*carrier] + *lead;
             }
         }
     }

@@ -139,7 +139,7 @@ impl Plan {
                         Kind::Aim(aim) => place_aim(aim, *g, pose)?,
                         Kind::Solved(solved) => self.place_solved(*g, solved, pose, guess)?,
                     }
-                    if self.groups[*g].remembers {
+                    if self.groups[*g].counts {
                         self.count(*g, pose, guess)?;
                     }
                 }
@@ -162,8 +162,10 @@ impl Plan {
             return Ok(());
         }
         let near = match guess {
-            Guess::Seed => Some(assur.seeds.nearest(pose.q[0].value(), self.range)?),
-            Guess::Pose => None,
+            Guess::Seed if assur.remembers => {
+                Some(assur.seeds.nearest(pose.q[0].value(), self.range)?)
+            }
+            _ => None,
         };
         for (i, &unknown) in assur.group.unknowns.iter().enumerate() {
             let Unknown::Class(class) = unknown else {
@@ -173,9 +175,10 @@ impl Plan {
             if !self.counted[root] {
                 continue;
             }
-            let expected = match near {
-                Some(near) => assur.seeds.predict(near, i),
-                None => pose.angle[root].value(),
+            let expected = match (self.beside.get(&root), near) {
+                (Some(&(carrier, lead)), _) => pose.angle[carrier].value() + lead,
+                (None, Some(near)) => assur.seeds.predict(near, i),
+                (None, None) => pose.angle[root].value(),
             };
             let angle = pose.turn[root].y.atan2(pose.turn[root].x);
             let turns = ((expected - angle.value()) / TAU).round();

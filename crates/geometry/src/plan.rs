@@ -16,6 +16,7 @@ use crate::relation::Row;
 use crate::scalar::Scalar;
 use crate::seeds::Seeds;
 use crate::tree::{Arm, Tree};
+use std::collections::HashMap;
 
 /// How and where the mechanism is put together.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,6 +50,9 @@ pub struct Plan {
     pub(crate) driven: Vec<Driven>,
     /// By frame: whether its whole turns are counted, because a relation needs its angle.
     pub(crate) counted: Vec<bool>,
+    /// By frame of a line of centres: the frame beside which its turns are counted, and how far it is
+    /// turned from it, rad.
+    pub(crate) beside: HashMap<usize, (usize, f64)>,
     /// By slide: the actuator that drives it.
     pub(crate) driven_slides: Vec<Option<usize>>,
     /// By actuator: whether it drives an angle rather than a length.
@@ -146,6 +150,8 @@ pub(crate) struct Assur {
     pub(crate) scale: f64,
     /// Where Newton's method starts, and where whole turns are counted from.
     pub(crate) seeds: Seeds,
+    /// Whether a closed form leaves turns to be counted.
+    pub(crate) counts: bool,
     /// Whether the seeds are needed.
     pub(crate) remembers: bool,
     /// Whether nothing that was asked for needs it.

@@ -43,7 +43,8 @@ impl Plan {
                 class_roots[frame.class] = f;
             }
         }
-        let counted = counted(&frames, &relations);
+        let beside = beside(&lowered, &frames);
+        let counted = counted(&frames, &relations, &beside);
         let all_driven = all_driven(&frames, &class_roots, &counted);
         let mut table = ArmTable::new(&frames, &class_roots, &groups, &all_driven);
         let closures: Vec<Closure> = loops.iter().map(|l| table.closure(l)).collect();
@@ -75,6 +76,7 @@ impl Plan {
             closures,
             relations,
             counted,
+            beside,
             driven_slides,
         };
         plan.arms.clone_from(&table.arms);
@@ -143,7 +145,14 @@ impl Plan {
             .collect();
         let size = self.size(&group);
         let counts = group.unknowns.iter().any(|u| match u {
-            Unknown::Class(c) => self.counted[self.class_roots[*c]],
+            Unknown::Class(c) => {
+                let root = self.class_roots[*c];
+                self.counted[root] && !self.beside.contains_key(&root)
+            }
+            Unknown::Slide(_) => false,
+        });
+        let counts_beside = group.unknowns.iter().any(|u| match u {
+            Unknown::Class(c) => self.beside.contains_key(&self.class_roots[*c]),
             Unknown::Slide(_) => false,
         });
         let remembers = match &kind {
@@ -164,6 +173,7 @@ impl Plan {
             size,
             scale: size.log2().round().exp2(),
             seeds: Seeds::default(),
+            counts: counts || counts_beside,
             remembers,
             skipped: false,
         }
@@ -340,13 +350,23 @@ fn driven_slides(lowered: &Lowered, tree: &Tree) -> Vec<Option<usize>> {
 }
 
 /// By frame: whether it belongs to a class that a relation names.
-fn counted(frames: &Frames, relations: &[Row]) -> Vec<bool> {
+fn counted(frames: &Frames, relations: &[Row], beside: &HashMap<usize, (usize, f64)>) -> Vec<bool> {
     let mut classes = vec![false; frames.classes];
-    for frame in relations.iter().flat_map(Row::frames) {
+    let named = relations.iter().flat_map(Row::frames);
+    for frame in named.chain(beside.values().map(|(carrier, _)| *carrier)) {
         classes[frames.frames[frame].class] = true;
     }
     let counted = |f: &Frame| classes[f.class];
     frames.frames.iter().map(counted).collect()
+}
+
+/// The lines of centres that turn with a carrier, with the carrier's frame.
+fn beside(lowered: &Lowered, frames: &Frames) -> HashMap<usize, (usize, f64)> {
+    let frame = |body: usize| frames.attitudes[body].frame;
+    let lines = lowered.ratios.iter().filter_map(|ratio| ratio.line);
+    let held = lines.map(|(line, carrier)| (frame(line), (frame(carrier), 0.0)));
+    held.filter(|(line, _)| frames.frames[*line].turning == Turning::Unknown)
+        .collect()
 }
 
 /// Every driven frame with its class, each after the one it is turned from.
