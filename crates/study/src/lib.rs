@@ -9,15 +9,19 @@
 
 mod calibrate;
 mod check;
+mod claims;
 mod dossier;
 mod error;
 mod figures;
 mod motion_error;
 mod outcome;
+mod page;
 mod prepare;
+mod quantity;
 mod reduce;
 mod reference;
 mod simulate;
+mod states;
 mod subject;
 mod validate;
 mod words;
