@@ -4,6 +4,7 @@ use super::{Reference, list, number, object, parse};
 use crate::claims::{Ask, Claims};
 use crate::error::StudyError;
 use crate::quantity::{Kind, Quantity};
+use crate::words::count;
 use dwell_findings::Finding;
 use dwell_scene::Scene;
 use dwell_verify::truths::{self, Values};
@@ -13,6 +14,8 @@ use serde_json::Value;
 #[derive(Debug, Clone)]
 pub(crate) struct Table {
     samples: Vec<Row>,
+    /// Where a published one comes from.
+    source: Option<String>,
     tolerance: f64,
     why: String,
 }
@@ -41,6 +44,7 @@ pub(super) fn table(value: &Value, scene: &Scene) -> Result<Option<Table>, Strin
     let rows = rows.map(|(k, s)| row(s, scene).map_err(|e| format!("samples[{k}]: {e}")));
     Ok(Some(Table {
         samples: rows.collect::<Result<_, _>>()?,
+        source: value["source"].as_str().map(str::to_owned),
         tolerance: number(tolerance, "relative").map_err(wrong)?,
         why: why.to_owned(),
     }))
@@ -192,10 +196,10 @@ impl Table {
             let of_unit = read.iter_mut().filter(|(_, value)| value.unit == unit);
             of_unit.for_each(|(_, value)| value.scale = scale);
         }
-        let over = match self.samples.len() {
-            1 => "1 sample".to_owned(),
-            n => format!("{n} samples"),
-        };
+        let mut over = count(self.samples.len(), "sample");
+        if let (true, Some(source)) = (published, &self.source) {
+            over += &format!(" of {source}");
+        }
         let mut findings = Vec::new();
         if !unknown.is_empty() {
             unknown.sort();
@@ -215,6 +219,7 @@ impl Table {
             };
             let words = Values {
                 key,
+                truth: truth(published),
                 compared,
                 over: over.clone(),
                 tolerance: self.tolerance,
@@ -223,6 +228,14 @@ impl Table {
             findings.push(truths::values(words, &values));
         }
         Ok(findings)
+    }
+}
+
+fn truth(published: bool) -> &'static str {
+    if published {
+        "9 published values"
+    } else {
+        "9 values computed elsewhere"
     }
 }
 
@@ -235,7 +248,7 @@ fn names(unknown: &[String], over: &str, published: bool) -> Finding {
     };
     Finding {
         key: key.to_owned(),
-        truth: "9 published values".to_owned(),
+        truth: truth(published).to_owned(),
         compared: "the names of the reference with the quantities of the scene".to_owned(),
         over: over.to_owned(),
         absolute: unknown.len() as f64,

@@ -23,6 +23,8 @@ pub struct Value {
 pub struct Values<'a> {
     /// Key of the finding.
     pub key: &'static str,
+    /// Which truth it rests on.
+    pub truth: &'static str,
     /// What is compared with what.
     pub compared: &'static str,
     /// Over which states.
@@ -47,7 +49,7 @@ pub fn values(words: Values<'_>, values: &[Value]) -> Finding {
     }
     let finding = Check {
         key: words.key,
-        truth: "9 published values",
+        truth: words.truth,
         compared: words.compared,
         over: words.over,
         scale: "the largest value of the same unit",
@@ -76,6 +78,7 @@ mod tests {
         let all: Vec<Value> = got.iter().map(value).collect();
         let words = Values {
             key: "k",
+            truth: "9",
             compared: "this with that",
             over: "1 sample".into(),
             tolerance: 1e-9,
