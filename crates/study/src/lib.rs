@@ -9,15 +9,20 @@
 
 mod calibrate;
 mod check;
+mod claims;
 mod dossier;
 mod error;
 mod figures;
+mod index;
 mod motion_error;
 mod outcome;
+mod page;
 mod prepare;
+mod quantity;
 mod reduce;
 mod reference;
 mod simulate;
+mod states;
 mod subject;
 mod validate;
 mod words;
@@ -25,6 +30,7 @@ mod words;
 pub use calibrate::{Calibrated, calibrate, find_value};
 pub use check::check;
 pub use error::StudyError;
+pub use index::{Verdict, index};
 pub use outcome::{Outcome, Progress, Step, silent};
 pub use prepare::Prepared;
 pub use reduce::reduce;

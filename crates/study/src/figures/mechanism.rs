@@ -7,7 +7,7 @@ use crate::prepare::Prepared;
 use dwell_geometry::{BodyId, JointKind, Plan, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape, Side};
-use dwell_scene::PathPoint;
+use dwell_scene::{PathPoint, Scene};
 use std::f64::consts::TAU;
 
 /// Positions of the paths.
@@ -29,10 +29,10 @@ pub(crate) struct Dwell {
 }
 
 /// The bodies over the range.
-struct Sweep {
-    q: Vec<f64>,
+pub(super) struct Sweep {
+    pub(super) q: Vec<f64>,
     /// By position and body: origin and orientation.
-    frames: Vec<Vec<(Vec2, Vec2)>>,
+    pub(super) frames: Vec<Vec<(Vec2, Vec2)>>,
 }
 
 impl Sweep {
@@ -54,7 +54,7 @@ impl Sweep {
         Ok(Self { q, frames })
     }
 
-    fn point(&self, position: usize, body: usize, at: Vec2) -> [f64; 2] {
+    pub(super) fn point(&self, position: usize, body: usize, at: Vec2) -> [f64; 2] {
         let (origin, turn) = self.frames[position][body];
         let place = origin + at.turn(turn);
         [place.x, place.y]
@@ -82,7 +82,7 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
         .dwell
         .as_ref()
         .map(|d| find_dwell(&sweep, d.body, d.band, full));
-    let mut shapes = paths(prepared, &sweep);
+    let mut shapes = paths(scene, &sweep);
     shapes.extend(ghosts(prepared, &sweep, full, dwell.as_ref()));
     let mut panels = vec![Panel::from(Drawing {
         title: String::new(),
@@ -140,25 +140,24 @@ fn ghosts(prepared: &Prepared<'_>, sweep: &Sweep, full: bool, dwell: Option<&Dwe
             shapes.extend(dwelling(prepared, sweep, dwell));
         }
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.04 * k as f64 };
-        linkage(prepared, sweep, position, lightness, &mut shapes);
+        linkage(prepared.scene, sweep, position, lightness, &mut shapes);
     }
     shapes
 }
 
 /// All bodies, then all pins, in one position.
-fn linkage(
-    prepared: &Prepared<'_>,
+pub(super) fn linkage(
+    scene: &Scene,
     sweep: &Sweep,
     position: usize,
     lightness: f64,
     shapes: &mut Vec<Shape>,
 ) {
-    let scene = prepared.scene;
     let mechanism = &scene.mechanism;
     let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
     for (color, body) in moving.enumerate() {
         let pen = Pen::new(Paint::Palette(color), 6.0).lightness(lightness);
-        let mut shape = match outline(prepared, body) {
+        let mut shape = match outline(scene, body) {
             Outline::Block(corners) => {
                 let at = corners.map(|c| sweep.point(position, body, c));
                 Shape::area(at.to_vec(), Pen { width: 3.0, ..pen }, 0.35)
@@ -194,7 +193,7 @@ fn linkage(
                 }
             }
             JointKind::Prismatic { axes } if on_ground && lightness == 0.0 => {
-                let size = size(prepared);
+                let size = size(scene);
                 let (_, turn) = sweep.frames[position][one];
                 let along = axes[0].turn(turn) * (0.5 * size);
                 let middle = vec2(at[0], at[1]);
@@ -216,12 +215,11 @@ enum Outline {
     Bar(Vec<Vec2>),
 }
 
-fn outline(prepared: &Prepared<'_>, body: usize) -> Outline {
-    let scene = prepared.scene;
+fn outline(scene: &Scene, body: usize) -> Outline {
     let mut points: Vec<Vec2> = scene.points[body].iter().map(|(_, p)| *p).collect();
     points.dedup();
-    if let ([at], Some(axis)) = (points.as_slice(), slide_axis(prepared, body)) {
-        let half = 0.045 * size(prepared);
+    if let ([at], Some(axis)) = (points.as_slice(), slide_axis(scene, body)) {
+        let half = 0.045 * size(scene);
         let (along, across) = (axis * (1.6 * half), axis.perp() * half);
         let at = *at;
         return Outline::Block([
@@ -249,8 +247,8 @@ fn outline(prepared: &Prepared<'_>, body: usize) -> Outline {
 }
 
 /// The axis of a body's prismatic joint, in its frame.
-fn slide_axis(prepared: &Prepared<'_>, body: usize) -> Option<Vec2> {
-    prepared.scene.mechanism.joints.iter().find_map(|joint| {
+fn slide_axis(scene: &Scene, body: usize) -> Option<Vec2> {
+    scene.mechanism.joints.iter().find_map(|joint| {
         let JointKind::Prismatic { axes } = joint.kind else {
             return None;
         };
@@ -260,15 +258,14 @@ fn slide_axis(prepared: &Prepared<'_>, body: usize) -> Option<Vec2> {
 }
 
 /// A length to measure symbols by: the mean length of the bodies that have one, m.
-fn size(prepared: &Prepared<'_>) -> f64 {
+fn size(scene: &Scene) -> f64 {
     let extent = |points: &Vec<(String, Vec2)>| {
         let all = points
             .iter()
             .flat_map(|(_, p)| points.iter().map(|(_, r)| (*p - *r).norm()));
         all.fold(0.0, f64::max)
     };
-    let lengths: Vec<f64> = prepared
-        .scene
+    let lengths: Vec<f64> = scene
         .points
         .iter()
         .map(extent)
@@ -278,8 +275,8 @@ fn size(prepared: &Prepared<'_>) -> f64 {
 }
 
 /// The paths that were asked for.
-fn paths(prepared: &Prepared<'_>, sweep: &Sweep) -> Vec<Shape> {
-    let wanted = prepared.scene.requests.paths.iter();
+pub(super) fn paths(scene: &Scene, sweep: &Sweep) -> Vec<Shape> {
+    let wanted = scene.requests.paths.iter();
     let path = |path: &PathPoint| {
         let points = (0..sweep.q.len()).map(|i| sweep.point(i, path.body.0, path.at));
         let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
