@@ -10,7 +10,7 @@ mod validate;
 use clap::Parser;
 use dwell_findings::all_pass;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Accuracy, StudyError};
+use dwell_study::{Accuracy, Outcome, StudyError};
 use miette::{Report, miette};
 use options::{Command, Options};
 use std::io::Write as _;
