@@ -100,6 +100,7 @@ impl Plan {
     pub(crate) fn same_branch<T: Scalar>(&self, pose: &Pose<T>) -> Result<(), PlaceError> {
         for (group, assur) in self.groups.iter().enumerate() {
             if let Kind::Solved(solved) = &assur.kind
+                && !assur.skipped
                 && !solved.tall()
                 && self.sign(solved, pose) * solved.branch <= 0.0
             {
