@@ -8,6 +8,7 @@
 
 mod branches;
 mod cases;
+mod cases_states;
 mod change_points;
 mod changes;
 mod derivatives;
