@@ -10,7 +10,7 @@ mod validate;
 use clap::Parser;
 use dwell_findings::all_pass;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Accuracy, StudyError};
+use dwell_study::{Accuracy, Outcome, StudyError};
 use miette::{Report, miette};
 use options::{Command, Options};
 use std::io::Write as _;
@@ -34,6 +34,10 @@ fn main() -> ExitCode {
 /// Runs a command; whether all its checks passed.
 fn run(options: Options) -> Result<bool, Report> {
     let Options { command, out } = options;
+    if let Command::Schema = command {
+        print(&dwell_scene::schema())?;
+        return Ok(true);
+    }
     if out.exists() && !out.is_dir() {
         return Err(miette!(
             help = "name a folder with --out; it is made if it is missing",
@@ -67,6 +71,8 @@ fn run(options: Options) -> Result<bool, Report> {
             unusable = others;
             outcome
         }
+        // Printed above: it is neither about a scene nor written into a folder.
+        Command::Schema => Outcome::default(),
     };
     print(&outcome.summary)?;
     if !outcome.files.is_empty() {

@@ -34,6 +34,7 @@ impl Plan {
     pub(crate) fn assemble(&mut self, rough: &[Option<f64>]) -> Result<Pose<f64>, AssemblyError> {
         let mut pose = self.pose();
         let q = self.start.clone();
+        pose.q.clone_from(&q);
         for g in 0..self.groups.len() {
             self.begin(g, rough, &mut pose);
             let ways = match &self.groups[g].kind {
@@ -52,6 +53,7 @@ impl Plan {
                 Kind::Solved(solved) => (solved.branch, solved.side) = (way.branch, way.side),
             }
             self.set(g, &way.values, &mut pose);
+            self.lead(g, &mut pose);
         }
         self.place_from(&q, &mut pose, Guess::Pose)
             .map_err(|e| self.refusal(self.groups.len(), e))?;
@@ -81,9 +83,18 @@ impl Plan {
         }
     }
 
-    /// Places the groups before the next one, and that one.
-    fn try_up_to(&self, group: usize, pose: &mut Pose<f64>) -> Result<(), PlaceError> {
-        self.place_groups(&self.start, pose, Guess::Pose, group + 1)
+    /// Counts the turns of a line of centres beside its carrier from here on.
+    fn lead(&mut self, g: usize, pose: &mut Pose<f64>) {
+        for &unknown in &self.groups[g].group.unknowns {
+            let Unknown::Class(class) = unknown else {
+                continue;
+            };
+            let line = self.class_roots[class];
+            if let Some((carrier, lead)) = self.beside.get_mut(&line) {
+                *lead = pose.turn[line].turn_back(pose.turn[*carrier]).angle();
+                pose.angle[line] = pose.angle[*carrier] + *lead;
+            }
+        }
     }
 
     /// The way in which a closed form closes its group with one of the signs of its root.
@@ -93,7 +104,7 @@ impl Plan {
             Kind::Aim(aim) => aim.branch = side,
             Kind::Solved(solved) => solved.side = side,
         }
-        self.try_up_to(g, pose).map_err(|e| self.refusal(g, e))?;
+        self.place_group(g, pose).map_err(|e| self.refusal(g, e))?;
         let branch = match &self.groups[g].kind {
             Kind::Solved(solved) => self.sign(solved, pose),
             _ => side,
@@ -165,7 +176,7 @@ impl Plan {
                 })
                 .collect();
             self.set(g, &guess, pose);
-            match self.try_up_to(g, pose) {
+            match self.place_group(g, pose) {
                 Ok(()) => {
                     let values = self.values(g, pose);
                     let Kind::Solved(solved) = &self.groups[g].kind else {

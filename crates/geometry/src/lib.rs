@@ -8,6 +8,7 @@ mod locate;
 pub mod lower;
 pub mod measure;
 pub mod mechanism;
+pub mod mobility;
 pub mod motion;
 mod place;
 pub mod plan;

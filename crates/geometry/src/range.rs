@@ -135,6 +135,7 @@ impl Plan {
     /// Walks some turns on from the last pose, noting each pose on the way; where the branch ends, if
     /// it does. It ends at a limit position, and at a change point, where two branches meet.
     fn walk(&self, noted: &mut Vec<Pose<f64>>, direction: f64, turns: u32) -> Option<f64> {
+        let remembers = self.groups.iter().any(|g| g.remembers);
         let mut pose = noted.last()?.clone();
         let q0 = pose.q[0];
         let Some(mut margins) = self.margins(&pose) else {
@@ -169,6 +170,10 @@ impl Plan {
                         for (most, margin) in largest.iter_mut().zip(&left) {
                             let [value, product] = size(margin);
                             *most = [most[0].max(value), most[1].max(product)];
+                        }
+                        if !remembers && noted.len() > 1 {
+                            // Only the ends are wanted.
+                            noted.pop();
                         }
                         noted.push(reached.clone());
                         pose = reached;

@@ -294,3 +294,14 @@ fn odd_motions_are_told_as_they_are() {
     let out = told(massless, &["reduce", "scene.toml"]);
     assert!(out.contains("no body with mass moves"), "{out}");
 }
+
+/// The schema needs no folder, and is the one of the documentation.
+#[test]
+fn the_schema_is_that_of_the_documentation() {
+    let bench = Bench::new();
+    let run = bench.run(&["schema"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(bench.contents().is_empty());
+    let written = fs::read_to_string(home().join("docs/scene-schema.json")).unwrap();
+    assert_eq!(run.out, written);
+}
