@@ -35,5 +35,6 @@ pub use outcome::{Outcome, Progress, Step, silent};
 pub use prepare::Prepared;
 pub use reduce::reduce;
 pub use simulate::{Accuracy, simulate};
+pub use states::{Judged, judge_case};
 pub use subject::PlanSubject;
 pub use validate::{Validation, validate};

@@ -176,6 +176,7 @@ pub(super) fn linkage(
         }
         shapes.push(shape);
     }
+    let mut named = Vec::new();
     for joint in &mechanism.joints {
         let [one, _] = joint.bodies.map(|b| b.0);
         let on_ground = joint.bodies.iter().any(|b| b.0 == mechanism.ground);
@@ -183,13 +184,13 @@ pub(super) fn linkage(
         match joint.kind {
             JointKind::Revolute if on_ground && lightness == 0.0 => {
                 shapes.push(Shape::GroundPin { at });
-                shapes.push(Shape::text(at, joint.name.clone(), Side::AboveLeft));
+                named.push((at, joint.name.as_str(), Side::AboveLeft));
             }
             JointKind::Revolute if on_ground => {}
             JointKind::Revolute => {
                 shapes.push(Shape::pin(at, Paint::Ink, lightness));
                 if lightness == 0.0 {
-                    shapes.push(Shape::text(at, joint.name.clone(), Side::AboveRight));
+                    named.push((at, joint.name.as_str(), Side::AboveRight));
                 }
             }
             JointKind::Prismatic { axes } if on_ground && lightness == 0.0 => {
@@ -203,6 +204,39 @@ pub(super) fn linkage(
             _ => {}
         }
     }
+    shapes.extend(labels(scene, &named));
+}
+
+/// The names of pins: those in one place, such as `E-k3` and `E-k4`, by what they share.
+fn labels(scene: &Scene, named: &[([f64; 2], &str, Side)]) -> Vec<Shape> {
+    let near = 1e-6 * size(scene);
+    let together = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]) <= near;
+    let mut shapes = Vec::new();
+    for (k, &(at, name, side)) in named.iter().enumerate() {
+        if named[..k].iter().any(|(other, ..)| together(*other, at)) {
+            continue;
+        }
+        let mut names: Vec<&str> = named
+            .iter()
+            .filter(|(other, ..)| together(*other, at))
+            .map(|(_, name, _)| *name)
+            .collect();
+        let stem = |name: &&str| name.rsplit_once('-').map(|(stem, _)| stem.to_owned());
+        let first = stem(&name);
+        let text = match first {
+            Some(shared)
+                if names.len() > 1 && names.iter().all(|n| stem(n).as_ref() == Some(&shared)) =>
+            {
+                shared
+            }
+            _ => {
+                names.dedup();
+                names.join(", ")
+            }
+        };
+        shapes.push(Shape::text(at, text, side));
+    }
+    shapes
 }
 
 /// How a body is drawn.
@@ -278,7 +312,7 @@ fn size(scene: &Scene) -> f64 {
 pub(super) fn paths(scene: &Scene, sweep: &Sweep) -> Vec<Shape> {
     let wanted = scene.requests.paths.iter();
     let path = |path: &PathPoint| {
-        let points = (0..sweep.q.len()).map(|i| sweep.point(i, path.body.0, path.at));
+        let points = (0..sweep.frames.len()).map(|i| sweep.point(i, path.body.0, path.at));
         let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
         Shape::line(points.collect(), pen).named("paths")
     };

@@ -92,10 +92,16 @@ fn rounds(scene: &Scene, sweep: &Sweep, position: usize, lightness: f64, shapes:
         }
     }
     for actuator in &scene.mechanism.actuators {
-        if let Drive::Length(points) = actuator.drive {
-            let ends = [0, 1].map(|i| at(actuator.bodies[i].0, points[i]));
-            found.push(Shape::line(ends.to_vec(), pen.dashed()));
-        }
+        let points = match actuator.drive {
+            Drive::Angle => continue,
+            Drive::Length(points) => [0, 1].map(|i| (actuator.bodies[i].0, points[i])),
+            Drive::Travel(joint) => {
+                let joint = &scene.mechanism.joints[joint.0];
+                [0, 1].map(|i| (joint.bodies[i].0, joint.points[i]))
+            }
+        };
+        let ends = points.map(|(body, point)| at(body, point));
+        found.push(Shape::line(ends.to_vec(), pen.dashed()));
     }
     shapes.extend(found);
 }
