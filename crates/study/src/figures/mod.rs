@@ -1,19 +1,24 @@
 //! The pictures of a study.
 
+mod along;
 mod cost;
 mod curves;
 mod mechanism;
 mod motion;
+mod skeleton;
 mod steps;
 
+pub(crate) use along::{film, run};
 pub(crate) use cost::{cost, drift};
 pub(crate) use curves::{coefficients, reduced};
 pub(crate) use mechanism::{Dwell, mechanism};
 pub(crate) use motion::history;
+pub(crate) use skeleton::Frame;
 pub(crate) use steps::steps;
 
 use crate::prepare::Prepared;
 use dwell_kinetostatics::Reduced;
+use dwell_scene::Scene;
 
 /// The foot of a figure over the range, which says why curves may leave it.
 pub(crate) fn range_caption(prepared: &Prepared<'_>, words: &str) -> String {
@@ -26,12 +31,16 @@ pub(crate) fn range_caption(prepared: &Prepared<'_>, words: &str) -> String {
 
 /// The foot of a figure: the scene, the words, and what drew it.
 pub(crate) fn caption(prepared: &Prepared<'_>, words: &str) -> String {
-    let source = prepared.scene.source.name().rsplit(['/', '\\']);
+    foot(prepared.scene, words)
+}
+
+fn foot(scene: &Scene, words: &str) -> String {
+    let source = scene.source.name().rsplit(['/', '\\']);
     let file: Vec<_> = source.take(2).collect();
     let file: Vec<_> = file.into_iter().rev().collect();
     format!(
         "{} ({}). {words} Dwell {}.",
-        prepared.scene.title,
+        scene.title,
         file.join("/"),
         env!("CARGO_PKG_VERSION")
     )
