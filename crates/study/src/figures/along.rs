@@ -3,10 +3,10 @@
 use super::skeleton::{Frame, Skeleton, place};
 use super::{foot, symbol};
 use crate::run::{Column, Command, Link, Quantity, Record, Way, stands_for};
-use crate::words::number;
+use crate::words::digits;
 use dwell_geometry::{BodyId, JointId};
 use dwell_report::{
-    Animation, Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape, Stroke,
+    Animation, Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Scale, Series, Shape, Stroke,
 };
 use dwell_scene::Scene;
 
@@ -38,7 +38,7 @@ struct Sheet<'a> {
 /// The pictures of a run but for the film.
 pub(crate) fn run(scene: &Scene, record: &Record, way: &Way<'_>, command: Command) -> Vec<Figure> {
     let sheet = Sheet::new(scene, record, way, command);
-    let mut figures = vec![sheet.mechanism()];
+    let mut figures = vec![sheet.mechanism(last_drawn(record, way.period))];
     figures.extend(sheet.angles());
     figures.extend(sheet.paths());
     figures.extend(sheet.lengths());
@@ -55,10 +55,10 @@ pub(crate) fn run(scene: &Scene, record: &Record, way: &Way<'_>, command: Comman
 pub(crate) fn film(scene: &Scene, record: &Record, way: &Way<'_>) -> Animation {
     let sheet = Sheet::new(scene, record, way, Command::Kinematics);
     let skeleton = Skeleton::new(scene, &record.frames);
-    let last = record.frames.len().saturating_sub(1);
-    let count = FRAMES.min(record.frames.len());
+    let last = last_drawn(record, way.period);
+    let count = FRAMES.min(last + 1);
     // Over a whole turn the last position is the first again.
-    let closed = closes(&record.frames);
+    let closed = closes(&record.frames[..=last]);
     let steps = if closed {
         count
     } else {
@@ -71,12 +71,7 @@ pub(crate) fn film(scene: &Scene, record: &Record, way: &Way<'_>) -> Animation {
         // Names would dance.
         shapes.retain(|s| !matches!(s, Shape::Text { .. }));
         Drawing {
-            title: format!(
-                "{} = {} {}",
-                sheet.x.label,
-                number(sheet.at[k]),
-                sheet.x.unit
-            ),
+            title: sheet.told(k),
             x: Axis::new("x", "m"),
             y: Axis::new("y", "m"),
             shapes,
@@ -88,6 +83,22 @@ pub(crate) fn film(scene: &Scene, record: &Record, way: &Way<'_>) -> Animation {
         delay_ms: DELAY_MS,
         width_px: WIDTH_PX,
     }
+}
+
+/// The last position that is drawn: the end of the way, or of the first whole turn of the only actuator.
+fn last_drawn(record: &Record, period: Option<f64>) -> usize {
+    let last = record.frames.len().saturating_sub(1);
+    let Some(period) = period else { return last };
+    let drive = |c: &Column| c.quantity == Quantity::Drive(0, 0);
+    let Some(k) = record.columns.iter().position(drive) else {
+        return last;
+    };
+    let rows = record.rows.iter();
+    let mut turned = rows.map(|row| (row[k] - record.rows[0][k]).abs());
+    // Some rounding short of it is a whole turn too.
+    turned
+        .position(|q| q >= period * (1.0 - 1e-9))
+        .unwrap_or(last)
 }
 
 /// Whether the last position is the first again.
@@ -137,6 +148,16 @@ impl<'a> Sheet<'a> {
         foot(self.scene, words)
     }
 
+    /// Where the `k`th position is: `time = 0.25 s`, `φ = −12.5°`.
+    fn told(&self, k: usize) -> String {
+        let (label, at) = (&self.x.label, self.at.get(k).copied().unwrap_or(0.0));
+        let text = match self.x.scale {
+            Scale::Degrees => format!("{label} = {at:.1}°"),
+            _ => format!("{label} = {} {}", digits(at, 4), self.x.unit),
+        };
+        text.replace('-', "−")
+    }
+
     fn figure(&self, name: String, title: String, words: &str, panels: Vec<Panel>) -> Figure {
         let limits = if self.limits[0] || self.limits[1] {
             " Towards a limit position everything may grow without bound."
@@ -184,8 +205,12 @@ impl<'a> Sheet<'a> {
             "rad" => Axis::degrees(label),
             unit => Axis::new(label, pretty(unit)),
         };
+        let title = match curves {
+            [(name, _)] if !title.is_empty() => format!("{title}: {name}"),
+            _ => title.to_owned(),
+        };
         Chart {
-            title: title.to_owned(),
+            title,
             x: self.x.clone(),
             y: Axis {
                 range: self.extent(&series),
@@ -253,23 +278,17 @@ impl<'a> Sheet<'a> {
         self.scene.requests.paths.iter().map(path).collect()
     }
 
-    fn mechanism(&self) -> Figure {
-        let frames = &self.record.frames;
-        let skeleton = Skeleton::new(self.scene, frames);
+    /// The mechanism in several positions up to the `last`th.
+    fn mechanism(&self, last: usize) -> Figure {
+        let skeleton = Skeleton::new(self.scene, &self.record.frames);
+        let frames = &self.record.frames[..=last];
         let mut shapes = self.path_lines();
-        let last = frames.len().saturating_sub(1);
         let drawn = if closes(frames) { DRAWN } else { DRAWN - 1 };
         for k in (0..DRAWN.min(frames.len())).rev() {
             let lightness = if k == 0 { 0.0 } else { 0.62 + 0.04 * k as f64 };
             skeleton.draw(&frames[k * last / drawn], lightness, &mut shapes);
         }
-        let first = self.at.first().copied().unwrap_or(0.0);
-        let words = format!(
-            "Drawn in full at {} = {} {}, lighter further on.",
-            self.x.label,
-            number(first),
-            self.x.unit
-        );
+        let words = format!("Drawn in full at {}, lighter further on.", self.told(0));
         Figure {
             name: "a-mechanism".to_owned(),
             title: self.scene.title.clone(),
@@ -310,6 +329,7 @@ impl<'a> Sheet<'a> {
                 .into_iter()
                 .any(|k| self.is_wanted(&self.record.columns[k]))
         };
+        let all = self.apart(&all, angle);
         let asked: Vec<BodyId> = all.iter().copied().filter(wanted).collect();
         let few = if asked.is_empty() {
             &all[..all.len().min(BODIES)]
@@ -332,12 +352,32 @@ impl<'a> Sheet<'a> {
         let words = match left_out {
             0 => "Angles of the bodies from the ground, with their speeds and accelerations."
                 .to_owned(),
-            n => format!("Angles of the bodies from the ground; {n} others are in the table."),
+            n => format!("Angles of the bodies from the ground; {n} more are in the table."),
         };
         (!charts.is_empty()).then(|| {
             let title = "Angles".to_owned();
             self.figure("b-angles".to_owned(), title, &words, vec![charts.into()])
         })
+    }
+
+    /// Some bodies without those that turn as another one before them does.
+    fn apart(
+        &self,
+        bodies: &[BodyId],
+        angle: impl Fn(BodyId, usize) -> Option<usize>,
+    ) -> Vec<BodyId> {
+        let mut apart: Vec<BodyId> = Vec::new();
+        for &body in bodies {
+            let same = |other: &BodyId| {
+                let both = angle(body, 0).zip(angle(*other, 0));
+                let mut rows = self.record.rows.iter();
+                both.is_some_and(|(a, b)| rows.all(|row| (row[a] - row[b]).abs() < 1e-9))
+            };
+            if !apart.iter().any(same) {
+                apart.push(body);
+            }
+        }
+        apart
     }
 
     fn paths(&self) -> Vec<Figure> {
@@ -599,10 +639,8 @@ impl<'a> Sheet<'a> {
             chart(2, "bending moment", "N m"),
         ];
         let words = format!(
-            "At {} = {} {}, where the bending moment is largest; dashed: the smallest and largest values of the whole way.",
-            self.x.label,
-            number(self.at[*row]),
-            self.x.unit,
+            "At {}, where the bending moment is largest; dashed: the smallest and largest values of the whole way.",
+            self.told(*row),
         );
         Some(Figure {
             name: format!("j-section-{}", link.name(body)),

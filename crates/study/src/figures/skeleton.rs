@@ -1,6 +1,6 @@
 //! How a mechanism is drawn in one position: bodies as bars, plates and blocks, and what joins them.
 
-use dwell_geometry::{BodyId, Drive, Joint, JointKind, Vec2, vec2};
+use dwell_geometry::{BodyId, Drive, Joint, JointId, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
 use dwell_report::{Paint, Pen, Shape, Side};
 use dwell_scene::Scene;
@@ -86,7 +86,7 @@ impl<'a> Skeleton<'a> {
     /// What lies under the bodies: pitch circles, tracks, slots and cylinders.
     fn behind(&self, frames: &[Frame], lightness: f64, shapes: &mut Vec<Shape>) {
         let mechanism = &self.scene.mechanism;
-        for (joint, travel) in mechanism.joints.iter().zip(&self.travels) {
+        for (j, (joint, travel)) in mechanism.joints.iter().zip(&self.travels).enumerate() {
             let [one, two] = joint.bodies;
             let pen = |body, width| Pen::new(self.color(body), width).lightness(lightness);
             let at = [0, 1].map(|i| place(frames, joint.bodies[i].0, joint.points[i]));
@@ -111,9 +111,17 @@ impl<'a> Skeleton<'a> {
                 }
                 JointKind::Prismatic { axes } => {
                     let on_ground = joint.bodies.iter().any(|b| b.0 == mechanism.ground);
-                    if !on_ground {
-                        // The part of the rod that is out.
-                        shapes.push(Shape::line(at.to_vec(), pen(one, 3.0)));
+                    if self.is_cylinder(j) {
+                        let a = vector(at[0]);
+                        let least = travel.map_or(0.0, |[low, _]| 0.85 * low);
+                        let end = a + axes[0].turn(frames[one.0].1) * least;
+                        shapes.push(Shape::line(at.to_vec(), pen(two, 5.0)));
+                        shapes.push(Shape::line(
+                            vec![[a.x, a.y], [end.x, end.y]],
+                            pen(one, 12.0),
+                        ));
+                    } else if !on_ground {
+                        self.track(frames, joint, axes[0], travel.as_ref(), lightness, shapes);
                     } else if lightness == 0.0 {
                         self.track(frames, joint, axes[0], travel.as_ref(), lightness, shapes);
                     }
@@ -134,6 +142,15 @@ impl<'a> Skeleton<'a> {
                 shapes.push(Shape::line(vec![a, middle], pen(11.0)));
             }
         }
+    }
+
+    /// Whether a joint is a driven prismatic one between two moving bodies.
+    fn is_cylinder(&self, joint: usize) -> bool {
+        let mechanism = &self.scene.mechanism;
+        let drives = Drive::Travel(JointId(joint));
+        let bodies = mechanism.joints[joint].bodies;
+        let moving = bodies.iter().all(|b| b.0 != mechanism.ground);
+        moving && mechanism.actuators.iter().any(|a| a.drive == drives)
     }
 
     /// A line on a disc that shows how it turns.
@@ -224,13 +241,24 @@ impl<'a> Skeleton<'a> {
     fn joints(&self, frames: &[Frame], lightness: f64, shapes: &mut Vec<Shape>) {
         let mechanism = &self.scene.mechanism;
         let named = lightness == 0.0;
+        // Joints at one place share a label.
+        let mut labels: Vec<([f64; 2], String, Side)> = Vec::new();
+        let mut label = |at: [f64; 2], name: &str, side: Side| {
+            let near = |l: &&mut ([f64; 2], String, Side)| {
+                (vector(l.0) - vector(at)).norm() < 0.02 * self.size
+            };
+            match labels.iter_mut().find(near) {
+                Some((_, names, _)) => *names += &format!(", {name}"),
+                None => labels.push((at, name.to_owned(), side)),
+            }
+        };
         for joint in &mechanism.joints {
             let on_ground = joint.bodies.iter().any(|b| b.0 == mechanism.ground);
             let ends = [0, 1].map(|i| place(frames, joint.bodies[i].0, joint.points[i]));
             match joint.kind {
                 JointKind::Revolute if on_ground && named => {
                     shapes.push(Shape::GroundPin { at: ends[0] });
-                    shapes.push(Shape::text(ends[0], joint.name.clone(), Side::AboveLeft));
+                    label(ends[0], &joint.name, Side::AboveLeft);
                 }
                 JointKind::Revolute if on_ground => {}
                 JointKind::Revolute => {
@@ -253,6 +281,8 @@ impl<'a> Skeleton<'a> {
                 _ => {}
             }
         }
+        let words = labels.into_iter();
+        shapes.extend(words.map(|(at, names, side)| Shape::text(at, names, side)));
     }
 
     /// Springs and dampers between points, in full only.
@@ -318,10 +348,14 @@ impl<'a> Skeleton<'a> {
 
     /// The axis of a body's prismatic joint, in its frame.
     fn slide_axis(&self, body: usize) -> Option<Vec2> {
-        self.scene.mechanism.joints.iter().find_map(|joint| {
+        let joints = self.scene.mechanism.joints.iter().enumerate();
+        joints.into_iter().find_map(|(j, joint)| {
             let JointKind::Prismatic { axes } = joint.kind else {
                 return None;
             };
+            if self.is_cylinder(j) {
+                return None;
+            }
             let end = joint.bodies.iter().position(|b| b.0 == body)?;
             Some(axes[end])
         })

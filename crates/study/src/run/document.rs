@@ -13,6 +13,8 @@ use std::fmt::Write as _;
 
 /// Peaks of a unit that are told in the summary.
 const TOLD: usize = 3;
+/// Two peaks that differ by less are told once.
+const SAME: f64 = 1e-9;
 /// Largest residual of the power balance that is not remarked on.
 const BALANCED: f64 = 1e-9;
 
@@ -90,18 +92,23 @@ impl<'a> Document<'a> {
             Command::Kinematics => matches!(unit, "rad/s" | "m/s" | "rad/s2" | "m/s2"),
             _ => matches!(unit, "N" | "N m" | "W"),
         };
-        let mut told: Vec<&str> = Vec::new();
+        let mut told: Vec<(&str, f64)> = Vec::new();
         let (over, over_unit) = self.over();
         for peak in self.peaks.iter().filter(|p| interesting(p.unit)) {
-            if told.iter().filter(|u| **u == peak.unit).count() == TOLD || peak.size() == 0.0 {
-                continue;
-            }
-            told.push(peak.unit);
             let (value, row) = if peak.low.0.abs() > peak.high.0.abs() {
                 peak.low
             } else {
                 peak.high
             };
+            let enough = told.iter().filter(|t| t.0 == peak.unit).count() == TOLD;
+            // The same under another name: a pin belongs to two bodies.
+            let again = told
+                .iter()
+                .any(|t| t.0 == peak.unit && (t.1.abs() - value.abs()).abs() <= SAME * value.abs());
+            if enough || again || value == 0.0 || peak.name.contains('@') {
+                continue;
+            }
+            told.push((peak.unit, value));
             // Writing to a string cannot fail.
             let _ = writeln!(
                 text,

@@ -38,32 +38,46 @@ impl Dyad {
     }
 }
 
-/// The dyads of a mechanism, each with its inner pin, in the order of solution.
+/// The dyads of a mechanism, each with its inner pin, in the order of the joints.
 pub(crate) fn dyads(mechanism: &Mechanism, plan: &Plan) -> Vec<(JointId, Dyad)> {
-    let groups: Vec<_> = (0..plan.group_kinds().len())
-        .map(|g| plan.group_bodies(g))
-        .collect();
-    let mut later = vec![false; mechanism.bodies.len()];
-    groups.iter().flatten().for_each(|b| later[b.0] = true);
-    let mut found = Vec::new();
-    for bodies in &groups {
-        found.extend(dyad(mechanism, bodies, &later));
-        bodies.iter().for_each(|b| later[b.0] = false);
-    }
-    found
+    let levels = levels(mechanism, plan);
+    let joints = 0..mechanism.joints.len();
+    let found = joints.filter_map(|j| Some((JointId(j), dyad(mechanism, &levels, JointId(j))?)));
+    found.collect()
 }
 
-/// The dyad of a group; `later` says which bodies are placed with it or after it.
-fn dyad(mechanism: &Mechanism, bodies: &[BodyId], later: &[bool]) -> Option<(JointId, Dyad)> {
-    let &[one, two] = bodies else { return None };
+/// By body, the group with which its place becomes known; none for those that the actuators place.
+fn levels(mechanism: &Mechanism, plan: &Plan) -> Vec<Option<usize>> {
+    let mut own = vec![None; mechanism.bodies.len()];
+    for g in 0..plan.group_kinds().len() {
+        let bodies = plan.group_bodies(g);
+        bodies.iter().for_each(|b| own[b.0] = own[b.0].max(Some(g)));
+    }
+    let mut carried: Vec<Option<usize>> = Vec::with_capacity(plan.carried().len());
+    let mut levels = vec![None; mechanism.bodies.len()];
+    for body in plan.carried() {
+        let parent = body.parent.and_then(|p| carried[p]);
+        let level = parent.max(own.get(body.body).copied().flatten());
+        carried.push(level);
+        if let Some(known) = levels.get_mut(body.body) {
+            *known = level;
+        }
+    }
+    levels
+}
+
+/// The dyad around a pin.
+fn dyad(mechanism: &Mechanism, levels: &[Option<usize>], pin: JointId) -> Option<Dyad> {
+    let pin = &mechanism.joints[pin.0];
+    let [one, two] = pin.bodies;
+    let level = levels[one.0];
+    if pin.kind != JointKind::Revolute || level.is_none() || levels[two.0] != level {
+        return None;
+    }
     let has = |joint: &Joint, body: BodyId| joint.bodies.contains(&body);
-    let pin = mechanism
-        .joints
-        .iter()
-        .position(|j| j.kind == JointKind::Revolute && has(j, one) && has(j, two))?;
     let outer = |body: BodyId| {
         let to_placed =
-            |j: &&Joint| has(j, body) && j.bodies.iter().all(|&b| b == body || !later[b.0]);
+            |j: &&Joint| has(j, body) && j.bodies.iter().all(|&b| b == body || levels[b.0] < level);
         let mut joints = mechanism.joints.iter().filter(to_placed);
         joints.next().filter(|_| joints.next().is_none())
     };
@@ -72,7 +86,7 @@ fn dyad(mechanism: &Mechanism, bodies: &[BodyId], later: &[bool]) -> Option<(Joi
         let joint = outer(body)?;
         match joint.kind {
             JointKind::Revolute => {
-                let along = at(joint) - at(&mechanism.joints[pin]);
+                let along = at(joint) - at(pin);
                 (along != Vec2::ZERO).then_some(Line::Bar(body, along))
             }
             JointKind::Prismatic { axes } => {
@@ -84,5 +98,5 @@ fn dyad(mechanism: &Mechanism, bodies: &[BodyId], later: &[bool]) -> Option<(Joi
     };
     let lines = [line(one)?, line(two)?];
     let two_slides = lines.iter().all(|l| matches!(l, Line::Normal(..)));
-    (!two_slides).then_some((JointId(pin), Dyad { lines }))
+    (!two_slides).then_some(Dyad { lines })
 }

@@ -4,7 +4,7 @@ use crate::error::{StudyError, joint_labels, names};
 use crate::run::way::{Sample, Way};
 use crate::words::{digits, number};
 use dwell_geometry::measure::BodyStates;
-use dwell_geometry::{PlaceError, Plan};
+use dwell_geometry::{PlaceError, Plan, Range};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
@@ -103,6 +103,20 @@ impl Stop {
         place: &str,
         error: &PlaceError,
     ) -> StudyError {
+        let in_the_middle = matches!(plan.range(), Range::Followed(..))
+            && matches!(error, PlaceError::OutOfRange { .. });
+        if in_the_middle {
+            return scene
+                .error(
+                    format!(
+                        "the mechanism is followed only so far from its start, to {place}: it did not \
+                         come back before, and no position is known beyond"
+                    ),
+                    Some("the results end there; start nearer, or end the motion before".into()),
+                    &[(way.place, "goes on beyond it".to_owned())],
+                )
+                .into();
+        }
         let group = error.group().or_else(|| racing(plan, &self.last.q));
         let bodies = group.map(|g| plan.group_bodies(g)).unwrap_or_default();
         let joints = group.map(|g| plan.group_joints(g)).unwrap_or_default();

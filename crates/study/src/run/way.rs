@@ -38,6 +38,8 @@ pub(crate) struct Way<'a> {
     pub(crate) place: Place,
     /// Whether it begins and ends next to a limit position.
     pub(crate) at_limits: [bool; 2],
+    /// What can be added to the coordinate of the only actuator without a change of the pose, rad.
+    pub(crate) period: Option<f64>,
 }
 
 #[derive(Debug, Clone)]
@@ -81,6 +83,7 @@ impl<'a> Way<'a> {
                 kind: Kind::Prescribed(prescribed),
                 place: Place::Prescribed,
                 at_limits: [false; 2],
+                period: plan.range().period(),
             });
         }
         let (actuator, range, held, wanted, speed, place) = match &scene.sweep {
@@ -132,6 +135,7 @@ impl<'a> Way<'a> {
             points: points.or(wanted).unwrap_or(POINTS).max(2),
             place,
             at_limits: ends.at_limits,
+            period: plan.range().period(),
         })
     }
 
