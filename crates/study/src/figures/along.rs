@@ -282,11 +282,19 @@ impl<'a> Sheet<'a> {
     fn mechanism(&self, last: usize) -> Figure {
         let skeleton = Skeleton::new(self.scene, &self.record.frames);
         let frames = &self.record.frames[..=last];
-        let mut shapes = self.path_lines();
+        let mut shapes = Vec::new();
         let drawn = if closes(frames) { DRAWN } else { DRAWN - 1 };
-        for k in (0..DRAWN.min(frames.len())).rev() {
-            let lightness = if k == 0 { 0.0 } else { 0.62 + 0.04 * k as f64 };
-            skeleton.draw(&frames[k * last / drawn], lightness, &mut shapes);
+        for k in (1..DRAWN.min(frames.len())).rev() {
+            skeleton.draw(
+                &frames[k * last / drawn],
+                0.62 + 0.04 * k as f64,
+                &mut shapes,
+            );
+        }
+        // Slots would hide what is under them.
+        shapes.extend(self.path_lines());
+        if let Some(first) = frames.first() {
+            skeleton.draw(first, 0.0, &mut shapes);
         }
         let words = format!("Drawn in full at {}, lighter further on.", self.told(0));
         Figure {
@@ -626,7 +634,7 @@ impl<'a> Sheet<'a> {
                 x: Axis::new(format!("distance from {from}"), "mm"),
                 y: Axis::new(label, unit),
                 series: vec![
-                    Series::line("now", worst.collect()).stroke(Stroke::Filled),
+                    Series::line("largest", worst.collect()).stroke(Stroke::Filled),
                     bound("envelope", 0),
                     bound("", 1),
                 ],

@@ -74,12 +74,15 @@ impl<'a> Skeleton<'a> {
         self.joints(frames, lightness, shapes);
     }
 
+    /// Grey for the ground; of more than six bodies one is drawn in ink before colours come again.
     fn color(&self, body: BodyId) -> Paint {
         let ground = self.scene.mechanism.ground;
-        match body.0.cmp(&ground) {
-            std::cmp::Ordering::Equal => Paint::Grey,
-            std::cmp::Ordering::Less => Paint::Palette(body.0),
-            std::cmp::Ordering::Greater => Paint::Palette(body.0 - 1),
+        if body.0 == ground {
+            return Paint::Grey;
+        }
+        match (body.0 - usize::from(body.0 > ground)) % 7 {
+            6 => Paint::Ink,
+            k => Paint::Palette(k),
         }
     }
 
@@ -264,7 +267,7 @@ impl<'a> Skeleton<'a> {
                 JointKind::Revolute => {
                     shapes.push(Shape::pin(ends[0], Paint::Ink, lightness));
                     if named {
-                        shapes.push(Shape::text(ends[0], joint.name.clone(), Side::AboveRight));
+                        label(ends[0], &joint.name, Side::AboveRight);
                     }
                 }
                 JointKind::Slot { .. } => shapes.push(Shape::pin(ends[1], Paint::Ink, lightness)),
