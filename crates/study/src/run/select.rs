@@ -9,7 +9,7 @@ use dwell_scene::{Place, Scene, choices};
 pub(crate) fn stands_for(name: &str, column: &str) -> bool {
     column
         .strip_prefix(name)
-        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.') || rest.starts_with('@'))
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
 }
 
 /// Refuses names of columns that no command computes.
