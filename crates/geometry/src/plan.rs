@@ -50,6 +50,8 @@ pub struct Plan {
     pub(crate) driven: Vec<Driven>,
     /// By frame: whether its whole turns are counted, because a relation needs its angle.
     pub(crate) counted: Vec<bool>,
+    /// By body: the whole turns that it is ahead of its frame, rad.
+    pub(crate) turns: Vec<f64>,
     /// By frame of a line of centres: the frame beside which its turns are counted, and how far it is
     /// turned from it, rad.
     pub(crate) beside: HashMap<usize, (usize, f64)>,

@@ -77,6 +77,7 @@ impl Plan {
             closures,
             relations,
             counted,
+            turns: Vec::new(),
             beside,
             driven_slides,
         };
