@@ -11,9 +11,6 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
-/// Cases that cannot be put together or moved so far. When one can, it is taken out of here.
-const NOT_YET: [&str; 1] = ["planetary"];
-
 /// The case whose joints repeat each other.
 const REPEATED: &str = "parallelogram-three-cranks";
 
@@ -24,7 +21,7 @@ fn folder(case: &str) -> PathBuf {
     home().join("validation").join(case)
 }
 
-/// The names of all cases that run.
+/// The names of all cases.
 fn cases() -> Vec<String> {
     let entries = std::fs::read_dir(home().join("validation")).expect("a folder");
     let name = |e: std::io::Result<std::fs::DirEntry>| {
@@ -32,9 +29,8 @@ fn cases() -> Vec<String> {
         name.into_string().expect("a name")
     };
     let mut cases: Vec<String> = entries.map(name).collect();
-    cases.retain(|case| !NOT_YET.contains(&case.as_str()));
     cases.sort();
-    assert!(cases.len() >= 24, "{cases:?}");
+    assert!(cases.len() >= 25, "{cases:?}");
     cases
 }
 
@@ -93,14 +89,6 @@ fn val_every_case_in_states_and_by_its_reference() {
                 assert!(relative <= PROMISED, "{case}, {key}: {relative:e}");
             }
         }
-    }
-}
-
-#[test]
-fn what_does_not_run_yet_is_still_refused() {
-    for case in NOT_YET {
-        let refused = judge_case(&scene(case), &folder(case));
-        assert!(refused.is_err(), "{case} runs: take it out of NOT_YET");
     }
 }
 
