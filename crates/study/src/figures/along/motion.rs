@@ -108,15 +108,25 @@ impl Sheet<'_> {
 
     /// Lengths and travels: of actuators, named coordinates and joints.
     pub(super) fn lengths(&self) -> Option<Figure> {
-        let unit = |k: &usize, unit: &str| self.record.columns[*k].unit == unit;
-        let of_order = |order: usize, unit_of: &str| {
-            let mut places = self.places(|c| {
-                matches!(c.quantity, Quantity::Drive(_, o) | Quantity::Measured(_, o) if o == order)
-            });
-            places.retain(|k| unit(k, unit_of));
-            places.truncate(BODIES);
-            places
+        let of_order = |order: usize, unit: &str| {
+            self.places(|c| {
+                let (Quantity::Drive(_, o) | Quantity::Measured(_, o)) = c.quantity else {
+                    return false;
+                };
+                o == order && c.unit == unit
+            })
         };
+        // A travel that has a name of its own is drawn once.
+        let mut kept: Vec<(String, usize)> = Vec::new();
+        for (name, k) in self.named(&of_order(0, "m"), "") {
+            let rows = &self.record.rows;
+            let known = kept
+                .iter()
+                .any(|(_, other)| rows.iter().all(|row| row[k] == row[*other]));
+            if !known && kept.len() < BODIES {
+                kept.push((name, k));
+            }
+        }
         let charts: Vec<Chart> = [
             (0, "m", "travel", ""),
             (1, "m/s", "speed", ".speed"),
@@ -124,8 +134,9 @@ impl Sheet<'_> {
         ]
         .into_iter()
         .filter_map(|(order, unit, label, cut)| {
-            let places = of_order(order, unit);
-            (!places.is_empty()).then(|| self.chart("", label, &self.named(&places, cut)))
+            let mut curves = self.named(&of_order(order, unit), cut);
+            curves.retain(|(name, _)| kept.iter().any(|(k, _)| k == name));
+            (!curves.is_empty()).then(|| self.chart("", label, &curves))
         })
         .collect();
         (!charts.is_empty()).then(|| {
