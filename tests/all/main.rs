@@ -8,6 +8,8 @@
 
 mod branches;
 mod cases;
+mod cases_states;
+mod chain;
 mod change_points;
 mod changes;
 mod derivatives;
@@ -16,6 +18,7 @@ mod invariance;
 mod joints;
 mod limits;
 mod machines;
+mod mobility;
 mod motion;
 mod published;
 mod refusals;

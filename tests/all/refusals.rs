@@ -46,11 +46,13 @@ fn two_degrees_of_freedom_need_two_actuators() {
         dof,
         actuators,
         bodies,
+        twice,
     }) = error
     else {
         panic!("{error:?}");
     };
     assert_eq!((dof, actuators), (2, 1));
+    assert_eq!(twice, vec![]);
     assert!(!bodies.is_empty() && bodies.iter().all(|b| [two, three, four].contains(b)));
 
     let mut bars = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
@@ -61,6 +63,7 @@ fn two_degrees_of_freedom_need_two_actuators() {
         dof: 2,
         actuators: 1,
         bodies: vec![pendulum],
+        twice: Vec::new(),
     };
     assert_eq!(refusal(&bars.setup(1.0, 0.6)), want.into());
 }
@@ -104,7 +107,7 @@ fn no_degree_of_freedom_is_left_to_drive() {
     let want = StructureError::OverConstrained {
         excess: 1,
         joints: Vec::new(),
-        actuators: vec![ActuatorId(1)],
+        actuators: vec![ActuatorId(0), ActuatorId(1)],
     };
     assert_eq!(error, want.into());
 }

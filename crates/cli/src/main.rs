@@ -5,16 +5,15 @@
 
 mod cases;
 mod options;
+mod validate;
 
 use clap::Parser;
 use dwell_findings::all_pass;
-use dwell_report::Files;
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{Accuracy, Command as Run, Outcome, Step, StudyError};
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{Report, miette};
 use options::{Along, Command, Options};
-use rayon::prelude::*;
 use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -36,6 +35,10 @@ fn main() -> ExitCode {
 /// Runs a command; whether all its checks passed.
 fn run(options: Options) -> Result<bool, Report> {
     let Options { command, out } = options;
+    if let Command::Schema = command {
+        print(&dwell_scene::schema())?;
+        return Ok(true);
+    }
     if out.exists() && !out.is_dir() {
         return Err(miette!(
             help = "name a folder with --out; it is made if it is missing",
@@ -43,6 +46,7 @@ fn run(options: Options) -> Result<bool, Report> {
             out.display()
         ));
     }
+    let mut unusable = None;
     let mut stopped = None;
     let outcome = match &command {
         Command::Check { scene } => told(dwell_study::check(&read(scene)?))?,
@@ -67,7 +71,13 @@ fn run(options: Options) -> Result<bool, Report> {
             let scene = read(scene)?;
             told(dwell_study::calibrate(&scene, set.as_deref(), *period))?
         }
-        Command::Validate { cases, folder } => validate(cases, folder)?,
+        Command::Validate { cases, folder } => {
+            let (outcome, others) = validate::validate(cases, folder)?;
+            unusable = others;
+            outcome
+        }
+        // Printed above: it is neither about a scene nor written into a folder.
+        Command::Schema => Outcome::default(),
     };
     print(&outcome.summary)?;
     if !outcome.files.is_empty() {
@@ -90,7 +100,11 @@ fn run(options: Options) -> Result<bool, Report> {
         // A closed standard error is no reason to panic.
         let _ = writeln!(std::io::stderr(), "{reason:?}");
     }
-    Ok(stopped.is_none() && all_pass(&outcome.findings))
+    match unusable {
+        // Told last: it is what has to be seen to.
+        Some(report) => Err(report),
+        None => Ok(stopped.is_none() && all_pass(&outcome.findings)),
+    }
 }
 
 /// Follows a scene along its way; if that ends early, `stopped` says why.
@@ -118,48 +132,6 @@ fn progress_bar() -> ProgressBar {
     bar
 }
 
-/// Every case, in parallel; the files are those of all of them, or none if one cannot be read.
-fn validate(names: &[String], folder: &Path) -> Result<Outcome, Report> {
-    let cases = cases::find(names, folder)?;
-    let scenes = cases.iter().map(|c| Scene::read(c.join("scene.toml")));
-    let scenes = all_or_errors(scenes)?;
-    for (k, scene) in scenes.iter().enumerate() {
-        if let Some(other) = scenes[..k].iter().position(|s| s.name == scene.name) {
-            return Err(miette!(
-                help = "validate them one after the other, each with an --out of its own",
-                "`{}` and `{}` are both named `{}`: their reports would be the same files",
-                cases[other].display(),
-                cases[k].display(),
-                scene.name
-            ));
-        }
-    }
-    let bar = progress_bar();
-    let results: Vec<_> = scenes
-        .par_iter()
-        .zip(&cases)
-        .map(|(scene, case)| {
-            let heard = |step: Step<'_>| {
-                bar.set_length((step.total * cases.len()) as u64);
-                bar.set_message(format!("{}: {}", scene.name, step.done));
-                bar.inc(1);
-            };
-            dwell_study::validate(scene, case, &heard)
-        })
-        .collect();
-    bar.finish_and_clear();
-    let mut all = Outcome::default();
-    let mut files = Files::new();
-    for one in all_or_errors(results.into_iter().map(|r| r.map_err(as_scene_error)))? {
-        let one = one.outcome;
-        all.summary += &one.summary;
-        all.findings.extend(one.findings);
-        files.extend("", one.files);
-    }
-    all.files = files;
-    Ok(all)
-}
-
 fn read(path: &Path) -> Result<Scene, Report> {
     Scene::read(path).map_err(Report::new)
 }
@@ -184,27 +156,6 @@ fn plain(message: String) -> SceneError {
         labels: Vec::new(),
         text: None,
         others: Vec::new(),
-    }
-}
-
-/// All the results, or all the errors in one report.
-fn all_or_errors<T>(
-    results: impl Iterator<Item = Result<T, SceneError>>,
-) -> Result<Vec<T>, Report> {
-    let (mut good, mut bad) = (Vec::new(), Vec::new());
-    for result in results {
-        match result {
-            Ok(value) => good.push(value),
-            Err(error) => bad.push(error),
-        }
-    }
-    match bad.len() {
-        0 => Ok(good),
-        1 => Err(Report::new(bad.remove(0))),
-        n => Err(Report::new(SceneError {
-            others: bad,
-            ..plain(format!("{n} cases cannot be validated"))
-        })),
     }
 }
 

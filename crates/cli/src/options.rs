@@ -66,6 +66,8 @@ pub(crate) enum Command {
         #[arg(long, default_value = "validation", value_name = "FOLDER")]
         folder: PathBuf,
     },
+    /// The JSON schema of scenes, for editors that complete TOML
+    Schema,
 }
 
 #[derive(Debug, Args)]

@@ -34,13 +34,14 @@ impl Plan {
     pub(crate) fn assemble(&mut self, rough: &[Option<f64>]) -> Result<Pose<f64>, AssemblyError> {
         let mut pose = self.pose();
         let q = self.start.clone();
+        pose.q.clone_from(&q);
         for g in 0..self.groups.len() {
             self.begin(g, rough, &mut pose);
             let ways = match &self.groups[g].kind {
                 Kind::Solved(solved) if solved.how == How::Newton => {
                     self.ways_by_newton(g, rough, &mut pose)?
                 }
-                Kind::Solved(solved) if solved.how == How::Linear => {
+                Kind::Solved(solved) if matches!(solved.how, How::Linear | How::Geared) => {
                     vec![self.way(g, 1.0, &mut pose)?]
                 }
                 _ => vec![self.way(g, 1.0, &mut pose)?, self.way(g, -1.0, &mut pose)?],
@@ -52,6 +53,8 @@ impl Plan {
                 Kind::Solved(solved) => (solved.branch, solved.side) = (way.branch, way.side),
             }
             self.set(g, &way.values, &mut pose);
+            self.place_group(g, &mut pose)
+                .map_err(|e| self.refusal(g, e))?;
         }
         self.place_from(&q, &mut pose, Guess::Pose)
             .map_err(|e| self.refusal(self.groups.len(), e))?;
@@ -81,11 +84,6 @@ impl Plan {
         }
     }
 
-    /// Places the groups before the next one, and that one.
-    fn try_up_to(&self, group: usize, pose: &mut Pose<f64>) -> Result<(), PlaceError> {
-        self.place_groups(&self.start, pose, Guess::Pose, group + 1)
-    }
-
     /// The way in which a closed form closes its group with one of the signs of its root.
     fn way(&mut self, g: usize, side: f64, pose: &mut Pose<f64>) -> Result<Way, AssemblyError> {
         match &mut self.groups[g].kind {
@@ -93,7 +91,7 @@ impl Plan {
             Kind::Aim(aim) => aim.branch = side,
             Kind::Solved(solved) => solved.side = side,
         }
-        self.try_up_to(g, pose).map_err(|e| self.refusal(g, e))?;
+        self.place_group(g, pose).map_err(|e| self.refusal(g, e))?;
         let branch = match &self.groups[g].kind {
             Kind::Solved(solved) => self.sign(solved, pose),
             _ => side,
@@ -165,7 +163,7 @@ impl Plan {
                 })
                 .collect();
             self.set(g, &guess, pose);
-            match self.try_up_to(g, pose) {
+            match self.place_group(g, pose) {
                 Ok(()) => {
                     let values = self.values(g, pose);
                     let Kind::Solved(solved) = &self.groups[g].kind else {

@@ -22,6 +22,8 @@ pub enum StructureError {
         actuators: usize,
         /// Bodies whose motion nothing determines.
         bodies: Vec<BodyId>,
+        /// Joints that hold each other twice, so that counting alone would not tell.
+        twice: Vec<JointId>,
     },
     /// More constraints or actuators than ways to move.
     #[error("{} constraints more than the bodies can follow", excess)]
@@ -65,6 +67,16 @@ pub enum AssemblyError {
         bodies: Vec<BodyId>,
         /// For each way, the angle (rad) of each of `bodies`.
         choices: Vec<Vec<f64>>,
+    },
+    /// Joints hold bodies twice, and not in the same way.
+    #[error("joints that hold the same bodies twice contradict each other: {gap:.3e} m stay open")]
+    Inconsistent {
+        /// Those joints.
+        joints: Vec<JointId>,
+        /// How many constraints are too many.
+        excess: usize,
+        /// What stays open, m.
+        gap: f64,
     },
     /// The start is a position where the driven system is singular.
     #[error("the start is a singular position: the actuator does not determine the motion there")]

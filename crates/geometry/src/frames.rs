@@ -78,6 +78,8 @@ pub struct Frames {
     pub spare: Vec<usize>,
     /// Number of classes, the ground's included.
     pub classes: usize,
+    /// The bodies of each class.
+    pub members: Vec<Vec<usize>>,
 }
 
 /// Two ways to one angle agree to the rounding of the axes they come from, rad.
@@ -120,6 +122,7 @@ impl Frames {
             holds: Vec::new(),
             spare: Vec::new(),
             classes: 1,
+            members: Vec::new(),
         };
         let mut seen = vec![false; n];
         let mut met = Met::new(lowered);
@@ -160,6 +163,10 @@ impl Frames {
             }
         }
         met.finish()?;
+        found.members = vec![Vec::new(); found.classes];
+        for (body, attitude) in found.attitudes.iter().enumerate() {
+            found.members[found.frames[attitude.frame].class].push(body);
+        }
         Ok(found)
     }
 

@@ -88,6 +88,7 @@ pub(crate) fn order(parts: &Parts<'_>, repeated: bool) -> Result<Vec<Group>, Str
             dof: parts.lowered.drives.len() + free.len(),
             actuators: parts.lowered.drives.len(),
             bodies: parts.lowered.named(bodies),
+            twice: Vec::new(),
         });
     }
     let groups = components(&of_equation, &needs, &of_unknown);
@@ -193,19 +194,11 @@ impl Parts<'_> {
     fn bodies_of(&self, u: usize) -> Vec<usize> {
         let classes = self.frames.classes - 1;
         if u < classes {
-            bodies_of_class(self.frames, u + 1)
+            self.frames.members[u + 1].clone()
         } else {
             bodies_of_slide(self.tree, u - classes)
         }
     }
-}
-
-/// The bodies of a class.
-pub(crate) fn bodies_of_class(frames: &Frames, class: usize) -> Vec<usize> {
-    let all = frames.attitudes.iter().enumerate();
-    all.filter(|(_, a)| frames.frames[a.frame].class == class)
-        .map(|(b, _)| b)
-        .collect()
 }
 
 /// The bodies that a slide carries itself.

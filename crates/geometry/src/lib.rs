@@ -8,7 +8,9 @@ mod locate;
 pub mod lower;
 pub mod measure;
 pub mod mechanism;
+pub mod mobility;
 pub mod motion;
+mod need;
 mod place;
 pub mod plan;
 pub mod plane;
@@ -30,5 +32,5 @@ pub use mechanism::{
 pub use motion::{Balance, Motion};
 pub use plan::{Plan, Pose, Start};
 pub use plane::{Vec2, vec2};
-pub use range::Range;
+pub use range::{End, Range};
 pub use scalar::{Dual, Scalar};

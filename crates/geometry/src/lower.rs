@@ -71,6 +71,8 @@ pub(crate) struct Ratio {
     pub(crate) as_assembled: bool,
     /// Whether the relation is between angles, in rad, rather than between lengths, in m.
     pub(crate) angular: bool,
+    /// A line of centres it names, the body that holds both centres, and the line's angle in it, rad.
+    pub(crate) line: Option<(usize, usize, f64)>,
 }
 
 /// What an actuator drives.
@@ -171,6 +173,10 @@ impl Lowered {
                     (Measure::Angle(line), -(one + radii[1])),
                 ];
                 self.ratio(owner, of, true);
+                let carrier = carrier(mechanism, id, radii[0] + radii[1]);
+                if let Some(ratio) = self.ratios.last_mut() {
+                    ratio.line = carrier.map(|(carrier, lead)| (line, carrier, lead));
+                }
             }
             JointKind::Rack { axis, radius } => {
                 // The pinion's centre slides along the rack on a block, and across it on another.
@@ -218,6 +224,7 @@ impl Lowered {
             law: Some((relation.law.clone(), by)),
             as_assembled: false,
             angular: relation.of.is_angle(),
+            line: None,
         });
         self.ratios.len() - 1
     }
@@ -288,6 +295,7 @@ impl Lowered {
             law: None,
             as_assembled,
             angular: false,
+            line: None,
         });
     }
 
@@ -347,6 +355,44 @@ impl Lowered {
         (joints, actuators)
     }
 }
+
+/// The body that holds the centres of both gears, in pins and welds, and the angle of the line from
+/// the first to the second in it, rad.
+fn carrier(mechanism: &Mechanism, gears: JointId, radii: f64) -> Option<(usize, f64)> {
+    let near = SAME_CENTRE * radii;
+    let joint = &mechanism.joints[gears.0];
+    let holders = |end: usize| {
+        let mut found = vec![(joint.bodies[end].0, joint.points[end])];
+        let mut next = 0;
+        while let Some(&(body, point)) = found.get(next) {
+            next += 1;
+            for other in &mechanism.joints {
+                if !matches!(other.kind, JointKind::Revolute | JointKind::Weld { .. }) {
+                    continue;
+                }
+                for (one, two) in [(0, 1), (1, 0)] {
+                    let there = other.bodies[two].0;
+                    if other.bodies[one].0 == body
+                        && (other.points[one] - point).norm() <= near
+                        && found.iter().all(|(b, _)| *b != there)
+                    {
+                        found.push((there, other.points[two]));
+                    }
+                }
+            }
+        }
+        found
+    };
+    let seconds = holders(1);
+    holders(0).into_iter().find_map(|(body, first)| {
+        let (_, second) = seconds.iter().find(|(b, _)| *b == body)?;
+        Some((body, (*second - first).angle()))
+    })
+}
+
+/// Two points of a body are one centre within this part of the radii: only the count of turns
+/// hangs on it.
+const SAME_CENTRE: f64 = 1e-6;
 
 fn slide(axes: [Vec2; 2]) -> Tie {
     Tie::Slide {

@@ -101,38 +101,45 @@ impl Plan {
         pose: &mut Pose<T>,
         guess: Guess,
     ) -> Result<(), PlaceError> {
-        self.place_groups(q, pose, guess, self.groups.len())
-    }
-
-    /// Places the first `count` groups only (while a branch is still to be picked).
-    pub(crate) fn place_groups<T: Scalar>(
-        &self,
-        q: &[T],
-        pose: &mut Pose<T>,
-        guess: Guess,
-        count: usize,
-    ) -> Result<(), PlaceError> {
         for (own, &value) in pose.q.iter_mut().zip(q) {
             if !value.value().is_finite() {
                 return Err(PlaceError::NotFinite { q: value.value() });
             }
             *own = value;
         }
-        for step in &self.steps {
+        self.place_from_here(&self.steps, pose, guess)
+    }
+
+    /// Places one group at the start, with what follows the one before it: while a branch is still
+    /// to be picked, and all groups before it are placed.
+    pub(crate) fn place_group(&self, group: usize, pose: &mut Pose<f64>) -> Result<(), PlaceError> {
+        let from = group
+            .checked_sub(1)
+            .map_or(0, |before| self.solve_steps[before] + 1);
+        let steps = &self.steps[from..=self.solve_steps[group]];
+        self.place_from_here(steps, pose, Guess::Pose)
+    }
+
+    fn place_from_here<T: Scalar>(
+        &self,
+        steps: &[Step],
+        pose: &mut Pose<T>,
+        guess: Guess,
+    ) -> Result<(), PlaceError> {
+        for step in steps {
             match step {
                 Step::Slide(slide, actuator) => pose.slide[*slide] = pose.q[*actuator],
                 Step::Turn(driven) => turn(driven, pose),
                 Step::Rotate(arm, Arm { frame, local }) => {
                     pose.arm[*arm] = local.lift::<T>().turn(pose.turn[*frame]);
                 }
-                Step::Solve(g) if *g >= count => return Ok(()),
                 Step::Solve(g) => {
                     match &self.groups[*g].kind {
                         Kind::Pin(pin) => place_pin(pin, *g, pose)?,
                         Kind::Aim(aim) => place_aim(aim, *g, pose)?,
                         Kind::Solved(solved) => self.place_solved(*g, solved, pose, guess)?,
                     }
-                    if self.groups[*g].remembers {
+                    if self.groups[*g].counts {
                         self.count(*g, pose, guess)?;
                     }
                 }
@@ -151,12 +158,14 @@ impl Plan {
         guess: Guess,
     ) -> Result<(), PlaceError> {
         let assur = &self.groups[group];
-        if matches!(&assur.kind, Kind::Solved(s) if s.how == How::Newton) {
+        if matches!(&assur.kind, Kind::Solved(s) if matches!(s.how, How::Newton | How::Geared)) {
             return Ok(());
         }
         let near = match guess {
-            Guess::Seed => Some(assur.seeds.nearest(pose.q[0].value(), self.range)?),
-            Guess::Pose => None,
+            Guess::Seed if assur.remembers => {
+                Some(assur.seeds.nearest(pose.q[0].value(), self.range)?)
+            }
+            _ => None,
         };
         for (i, &unknown) in assur.group.unknowns.iter().enumerate() {
             let Unknown::Class(class) = unknown else {
@@ -166,9 +175,10 @@ impl Plan {
             if !self.counted[root] {
                 continue;
             }
-            let expected = match near {
-                Some(near) => assur.seeds.predict(near, i),
-                None => pose.angle[root].value(),
+            let expected = match (self.beside.get(&root), near) {
+                (Some(&(carrier, lead)), _) => pose.angle[carrier].value() + lead,
+                (None, Some(near)) => assur.seeds.predict(near, i),
+                (None, None) => pose.angle[root].value(),
             };
             let angle = pose.turn[root].y.atan2(pose.turn[root].x);
             let turns = ((expected - angle.value()) / TAU).round();

@@ -8,13 +8,15 @@ use crate::error::{AssemblyError, StructureError};
 use crate::frames::Frames;
 use crate::groups::{self, Group, Unknown};
 use crate::lower::{Bond, Lowered, Measure, Owner};
-use crate::mechanism::{BodyId, Coordinate, Drive, JointId, JointKind, Mechanism};
+use crate::mechanism::{ActuatorId, BodyId, Coordinate, Drive, JointId, JointKind, Mechanism};
+use crate::mobility::{Mobility, mobility};
 use crate::plane::Vec2;
-use crate::range::Range;
+use crate::range::{End, Range};
 use crate::relation::Row;
 use crate::scalar::Scalar;
 use crate::seeds::Seeds;
 use crate::tree::{Arm, Tree};
+use std::collections::HashMap;
 
 /// How and where the mechanism is put together.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +39,10 @@ pub struct Plan {
     pub(crate) relations: Vec<Row>,
     pub(crate) groups: Vec<Assur>,
     pub(crate) steps: Vec<Step>,
+    /// By bond: its place in the tree or among the closures.
+    pub(crate) bond_places: Vec<BondPlace>,
+    /// By group: the step that solves it.
+    pub(crate) solve_steps: Vec<usize>,
     /// By class: the frame whose angle is the unknown (the ground's for class 0).
     pub(crate) class_roots: Vec<usize>,
     /// The frames that turn with the ground but for the actuators, each after the one it is
@@ -44,6 +50,9 @@ pub struct Plan {
     pub(crate) driven: Vec<Driven>,
     /// By frame: whether its whole turns are counted, because a relation needs its angle.
     pub(crate) counted: Vec<bool>,
+    /// By frame of a line of centres: the frame beside which its turns are counted, and how far it is
+    /// turned from it, rad.
+    pub(crate) beside: HashMap<usize, (usize, f64)>,
     /// By slide: the actuator that drives it.
     pub(crate) driven_slides: Vec<Option<usize>>,
     /// By actuator: whether it drives an angle rather than a length.
@@ -52,8 +61,12 @@ pub struct Plan {
     pub(crate) reach: f64,
     pub(crate) start: Vec<f64>,
     pub(crate) range: Range,
+    /// Where the range ends, downwards and upwards, if it does.
+    pub(crate) ends: [Option<End>; 2],
     /// The pose at the start, once it is assembled.
     pub(crate) home: Option<Box<Pose<f64>>>,
+    /// By reaction of the mechanism: whether the loads determine it; empty where they determine all.
+    pub(crate) unique: Vec<bool>,
     /// By group: the ways in which it closes at the start, as the angles of its bodies.
     pub(crate) branches: Vec<Branches>,
 }
@@ -65,6 +78,15 @@ pub struct Branches {
     pub bodies: Vec<BodyId>,
     /// For each way, the angle of each of `bodies`, rad; the one that was picked comes first.
     pub ways: Vec<Vec<f64>>,
+}
+
+/// Where a bond is in the plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BondPlace {
+    /// It carries a body: index in [`Plan::carried`].
+    Carries(usize),
+    /// It closes a loop: index in [`Plan::closures`].
+    Closes(usize),
 }
 
 /// A moving body, in the order in which bodies carry each other.
@@ -130,6 +152,8 @@ pub(crate) struct Assur {
     pub(crate) scale: f64,
     /// Where Newton's method starts, and where whole turns are counted from.
     pub(crate) seeds: Seeds,
+    /// Whether a closed form leaves turns to be counted.
+    pub(crate) counts: bool,
     /// Whether the seeds are needed.
     pub(crate) remembers: bool,
     /// Whether nothing that was asked for needs it.
@@ -224,6 +248,8 @@ pub(crate) enum How {
     Newton,
     /// Its equations are linear in its unknowns.
     Linear,
+    /// Gears whose lines of centres turn with their carriers: linear in the angles.
+    Geared,
     /// Two classes turn until a loop closes: a triangle with sides that may change.
     Triangle(usize, usize),
     /// A class turns and a slide travels until a loop closes.
@@ -277,7 +303,111 @@ impl Plan {
     /// reach each other, or the branch is not told.
     pub fn compile(mechanism: &Mechanism, start: &Start) -> Result<Self, AssemblyError> {
         check(mechanism, start)?;
-        let mut plan = Self::structure(mechanism, false)?;
+        let error = match Self::assembled(mechanism, start, false) {
+            Ok(mut plan) => {
+                if !plan.frames.spare.is_empty() {
+                    plan.note_unique(mechanism, mobility(mechanism, start).as_ref());
+                }
+                return Ok(plan);
+            }
+            Err(error) => error,
+        };
+        let by_rank = matches!(
+            error,
+            AssemblyError::Structure(
+                StructureError::OverConstrained { .. } | StructureError::UnderDriven { .. }
+            ) | AssemblyError::SingularStart { .. }
+        );
+        match mobility(mechanism, start).filter(|_| by_rank) {
+            Some(found) => Self::despite(mechanism, start, &found, error),
+            None => Err(error),
+        }
+    }
+
+    /// What can be done where counting and matching found something wrong: joints that repeat each
+    /// other are solved together; what is wrong by rank too is told by rank.
+    fn despite(
+        mechanism: &Mechanism,
+        start: &Start,
+        found: &Mobility,
+        error: AssemblyError,
+    ) -> Result<Self, AssemblyError> {
+        let reactions = mechanism.reactions();
+        let mut twice: Vec<JointId> = reactions
+            .iter()
+            .zip(&found.unique)
+            .filter(|(_, unique)| !**unique)
+            .map(|(r, _)| r.joint)
+            .collect();
+        twice.dedup();
+        let actuators: Vec<_> = (0..mechanism.actuators.len())
+            .filter(|a| !found.unique[reactions.len() + a])
+            .map(ActuatorId)
+            .collect();
+        let over = matches!(
+            error,
+            AssemblyError::Structure(StructureError::OverConstrained { .. })
+        );
+        if let Some(gap) = found.gap {
+            // Several actuators for fewer freedoms are not joints that repeat each other.
+            if (1..found.actuators).contains(&found.freedom()) {
+                return Err(error);
+            }
+            return Err(match error {
+                AssemblyError::Structure(StructureError::OverConstrained {
+                    joints,
+                    excess,
+                    ..
+                }) if !joints.is_empty() && gap < NEARLY * found.size => {
+                    AssemblyError::Inconsistent {
+                        joints,
+                        excess,
+                        gap,
+                    }
+                }
+                other => other,
+            });
+        }
+        if !found.free.is_empty() {
+            return Err(StructureError::UnderDriven {
+                dof: found.freedom(),
+                actuators: found.actuators,
+                bodies: found.free.clone(),
+                twice,
+            }
+            .into());
+        }
+        if !actuators.is_empty() {
+            return Err(StructureError::OverConstrained {
+                excess: found.excess,
+                joints: Vec::new(),
+                actuators,
+            }
+            .into());
+        }
+        if !over || found.excess == 0 {
+            return Err(error);
+        }
+        let mut plan = Self::assembled(mechanism, start, true)?;
+        plan.note_unique(mechanism, Some(found));
+        Ok(plan)
+    }
+
+    fn note_unique(&mut self, mechanism: &Mechanism, found: Option<&Mobility>) {
+        let reactions = mechanism.reactions();
+        self.unique = match found {
+            Some(found) if found.gap.is_none() => found.unique[..reactions.len()].to_vec(),
+            // Too large to tell: no reaction is promised to be unique.
+            _ => vec![false; reactions.len()],
+        };
+    }
+
+    fn assembled(
+        mechanism: &Mechanism,
+        start: &Start,
+        repeated: bool,
+    ) -> Result<Self, AssemblyError> {
+        let mut plan = Self::structure(mechanism, repeated)?;
         plan.start.clone_from(&start.q);
         let pose = plan.assemble(&start.rough)?;
         plan.follow(&pose)?;
@@ -329,6 +459,11 @@ impl Plan {
         self.range
     }
 
+    /// Where and why the range ends, downwards and upwards.
+    pub fn ends(&self) -> [Option<End>; 2] {
+        self.ends
+    }
+
     /// The moving bodies, each after the one that carries it.
     pub fn carried(&self) -> &[Carried] {
         &self.carried
@@ -362,6 +497,17 @@ impl Plan {
     /// A joint's first bond and its relation.
     pub fn parts(&self, joint: JointId) -> (Option<usize>, Option<usize>) {
         self.lowered.of_joint[joint.0]
+    }
+
+    /// Whether the loads determine a reaction, by its index in [`Mechanism::reactions`]. Where joints
+    /// repeat each other they do not: of all forces that balance the loads, the smallest are given.
+    pub fn is_unique(&self, reaction: usize) -> bool {
+        self.unique.get(reaction).copied().unwrap_or(true)
+    }
+
+    /// Where a bond is in the plan.
+    pub fn bond_place(&self, bond: usize) -> BondPlace {
+        self.bond_places[bond]
     }
 
     /// By an actuator that drives a length: its slide.
@@ -421,6 +567,7 @@ impl Plan {
                 How::Newton => "Newton along the way from the start",
                 How::Linear if g.group.loops.is_empty() => "relation",
                 How::Linear => "slides, closed form",
+                How::Geared => "gears, closed form",
                 How::Triangle(..) => "pinned dyad of changing length, closed form",
                 How::Reach(..) => "turn and slide, closed form",
                 How::Guide(_) => "guided point, closed form",
@@ -461,13 +608,17 @@ impl Plan {
         let mut bodies = Vec::new();
         for &unknown in &group.unknowns {
             match unknown {
-                Unknown::Class(c) => bodies.extend(groups::bodies_of_class(&self.frames, c)),
+                Unknown::Class(c) => bodies.extend(&self.frames.members[c]),
                 Unknown::Slide(s) => bodies.extend(groups::bodies_of_slide(&self.tree, s)),
             }
         }
         self.lowered.named(bodies)
     }
 }
+
+/// Constraints too many that stay open by less than this part of the mechanism's size were meant to
+/// repeat each other; if they stay open by more, there are simply too many.
+const NEARLY: f64 = 0.01;
 
 /// Refuses a description whose parts refer to what is not there.
 fn check(mechanism: &Mechanism, start: &Start) -> Result<(), StructureError> {

@@ -5,6 +5,7 @@ use crate::model::Model;
 use crate::runs::Runs;
 use dwell_geometry::frames::{Coupler, Turning};
 use dwell_geometry::lower::Tie;
+use dwell_geometry::plan::BondPlace;
 use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Scalar, Vec2, vec2};
 use std::array;
 
@@ -137,27 +138,30 @@ impl Sources {
             (Component::Axial, _) => in_frame(described.bodies[1], Vec2::IDENTITY),
             _ => Along::X(1.0),
         };
-        if let Some(carried) = plan.carried().iter().position(|c| c.bond == bond) {
-            let sign = if self.carried_is_second[carried] {
-                1.0
-            } else {
-                -1.0
-            };
-            let signed = match along {
-                Along::X(_) => Along::X(sign),
-                Along::Y(_) => Along::Y(sign),
-                Along::Frame(frame, local) => Along::Frame(frame, local * sign),
-            };
-            return Source::Carry(carried, signed);
-        }
-        // A bond is in the tree or it is a chord.
-        let closure = plan.closures().iter().position(|c| c.bond == bond);
-        let closure = closure.unwrap_or(0);
+        let closure = match plan.bond_place(bond) {
+            BondPlace::Closes(closure) => closure,
+            BondPlace::Carries(carried) => return self.carry(carried, along),
+        };
         if plan.closures()[closure].axis.is_some() {
             Source::Normal(closure)
         } else {
             Source::Chord(closure, along)
         }
+    }
+
+    /// A component of the force on a carried body, as the action of its bond's first body.
+    fn carry(&self, carried: usize, along: Along) -> Source {
+        let sign = if self.carried_is_second[carried] {
+            1.0
+        } else {
+            -1.0
+        };
+        let signed = match along {
+            Along::X(_) => Along::X(sign),
+            Along::Y(_) => Along::Y(sign),
+            Along::Frame(frame, local) => Along::Frame(frame, local * sign),
+        };
+        Source::Carry(carried, signed)
     }
 }
 

@@ -252,7 +252,7 @@ fn driven(
     let fields = Fields::open(entry, what, problems)?;
     let what = &fields.what;
     fields.allow(&keys::ACTUATOR, problems);
-    let Some(measure) = fields.one_of(keys::ACTUATOR.names(), problems).ok()? else {
+    let Some(measure) = fields.one_of(|n| keys::ACTUATOR.knows(n), problems).ok()? else {
         if fields.has_others_than(&keys::ACTUATOR) {
             return None;
         }
@@ -291,7 +291,10 @@ fn measured(
     let fields = Fields::open(entry, what, problems)?;
     let what = &fields.what;
     fields.allow(&keys::COORDINATE, problems);
-    let Some(measure) = fields.one_of(keys::COORDINATE.names(), problems).ok()? else {
+    let Some(measure) = fields
+        .one_of(|n| keys::COORDINATE.knows(n), problems)
+        .ok()?
+    else {
         if fields.has_others_than(&keys::COORDINATE) {
             return None;
         }

@@ -82,25 +82,35 @@ impl<'a> Fields<'a> {
     /// Says which keys are none of the table's.
     pub(crate) fn allow(&self, table: &Table, problems: &mut Problems) {
         for entry in self.entries.iter().filter(|e| !table.knows(e.name)) {
-            let help = problems.choices(entry.name, "keys here", table.names());
-            let name = shorten(entry.name);
-            problems.push(
-                Problem::new(format!("unknown key `{name}` in {}", self.what))
-                    .at(entry.key.clone(), "unknown key")
-                    .help(help),
-            );
+            self.unknown(entry, "keys here", table.names(), problems);
         }
+    }
+
+    /// Says that a key is none of those that can stand here.
+    pub(crate) fn unknown<'n>(
+        &self,
+        entry: &Entry<'_>,
+        kind: &str,
+        names: impl Iterator<Item = &'n str> + Clone,
+        problems: &mut Problems,
+    ) {
+        let help = problems.choices(entry.name, kind, names);
+        let name = shorten(entry.name);
+        problems.push(
+            Problem::new(format!("unknown key `{name}` in {}", self.what))
+                .at(entry.key.clone(), "unknown key")
+                .help(help),
+        );
     }
 
     /// The one of several keys that exclude each other; nothing if none is there, and a problem if
     /// there are two.
-    pub(crate) fn one_of<'n>(
+    pub(crate) fn one_of(
         &self,
-        names: impl Iterator<Item = &'n str> + Clone,
+        among: impl Fn(&str) -> bool,
         problems: &mut Problems,
     ) -> Result<Option<&Entry<'a>>, ()> {
-        let among = |e: &&Entry<'a>| names.clone().any(|n| n == e.name);
-        let mut found = self.entries.iter().filter(among);
+        let mut found = self.entries.iter().filter(|e| among(e.name));
         match (found.next(), found.next()) {
             (first, None) => Ok(first),
             (None, Some(_)) => Ok(None),

@@ -1,4 +1,4 @@
-//! Scene files: TOML text to mechanism, masses, assembly, requests and motion, with every message pointing into the file.
+//! Scene files: TOML text to mechanism, masses, loads, assembly, motions and requests, with every message pointing into the file.
 //!
 //! [`Scene::read`] turns a file into plain data, in SI. There is no mechanics here: whether the
 //! mechanism closes, moves or balances is for the crates above to find out, and
@@ -23,7 +23,9 @@
 //!
 //! # The language
 //!
-//! What is optional, and what stands in for it when absent:
+//! `docs/scene-format.md` tells all of it, table by table. That page, [`schema`] and the lists of
+//! keys in messages are made from one description, `keys`. What is optional, and what stands in
+//! for it when absent:
 //!
 //! - `title`: the scene's name. `note`: none.
 //! - `[units]`: SI. A length unit other than m, or a mass unit other than kg, asks for an inertia
@@ -32,14 +34,25 @@
 //!   read and checked, then dropped: the ground does not move, so they have no effect.
 //! - `fixed`: the body named `ground` is the ground. Another can be, with `fixed = true`; a body
 //!   named `ground` then has to say `fixed = false`.
-//! - an actuator's coordinate in `[assembly]`: where the motion starts, or else 0; a body's rough
-//!   angle: unknown.
-//! - `[requests]`, or its `reactions`: every reaction. `reactions = []` asks for none.
+//! - an actuator's coordinate in `[assembly]`: where the motion starts, or else 0; the distance of
+//!   two points has to be given. A body's rough angle: unknown.
+//! - `[coordinates]`, `[loads]`: none. `[prescribed]`: none; its `points`: 361.
+//! - `[sweep]`: none, and the range is the study's choice. With one, an actuator that it does not
+//!   name is held as in `[assembly]`; the only one is swept over its range. Its `points`: 361; its
+//!   `speed`: 1 rad/s or 1 m/s.
+//! - `[requests]`, or its `reactions`: every reaction. `reactions = []` asks for none. Its
+//!   `variables`: every column; `sections`: none.
 //! - `[motion]`: none; its `start`: the coordinates at assembly.
 //!
 //! Names are made of letters and digits of any script, `_`, `-`, primes and inner spaces. They
-//! hold no dot, so that `body.point` and `joint.component` can be read in one way only. A body
-//! and an actuator may not share a name: both are keys of `[assembly]`.
+//! hold no dot, so that `body.point` and `joint.component` can be read in one way only. Bodies,
+//! actuators and coordinates do not share names: the first two are keys of `[assembly]`, the last
+//! two are names in expressions, where `t` is the time. A pin of three bodies or more makes a joint
+//! of the first with each of the others, named `pin-body`; `pin` in `[requests]` means them all.
+//!
+//! Lengths, angles, masses and inertias are in the scene's units, in tables of laws too. Forces,
+//! couples, stiffness, damping, gravity and time are in SI, and so is all that an expression sees
+//! and gives.
 //!
 //! A number, once in SI, is at most 1e60 in magnitude: squares and products of what a scene holds
 //! then stay finite.
@@ -53,6 +66,7 @@ mod expression;
 mod fields;
 mod joints;
 mod keys;
+mod kind;
 mod law;
 mod loads;
 mod motion;
@@ -63,6 +77,7 @@ mod problem;
 mod read;
 mod requests;
 mod scene;
+mod schema;
 mod units;
 mod value;
 
@@ -76,3 +91,4 @@ pub use scene::{
     Assembly, Calibration, DwellRequest, Length, Motion, NamedCoordinate, PathPoint, Prescribed,
     Requests, Scene, Section, Sweep,
 };
+pub use schema::schema;

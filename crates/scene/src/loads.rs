@@ -7,8 +7,8 @@ use crate::fields::{
     Entry, Fields, POINT, Sign, angle, pair, quantity, rows, signed, string, two_strings,
     unit_vector,
 };
-use crate::joints::kind;
 use crate::keys::{self, LOADS};
+use crate::kind::kind;
 use crate::law::spline;
 use crate::names::{check, shorten};
 use crate::problem::{Problem, Problems, Span};

@@ -148,7 +148,7 @@ fn law_of(
     let what = format!("`{}` in [prescribed]", shorten(entry.name));
     let fields = Fields::open(entry, what, problems)?;
     fields.allow(&keys::LAW, problems);
-    let Some(chosen) = fields.one_of(keys::LAW.names(), problems).ok()? else {
+    let Some(chosen) = fields.one_of(|n| keys::LAW.knows(n), problems).ok()? else {
         if fields.has_others_than(&keys::LAW) {
             return None;
         }

@@ -190,13 +190,29 @@ fn rounded(value: f64) -> String {
     }
 }
 
-pub(crate) fn summary(scene: &Scene, evidence: &Evidence) -> String {
-    let failed: Vec<&Finding> = evidence.findings.iter().filter(|f| !f.pass).collect();
+/// To seven digits after the first of the largest there is, without a sign on zero.
+pub(crate) fn rounded_to(value: f64, largest: f64) -> String {
+    let decimals = if largest > 0.0 && largest.is_finite() {
+        7.0 - largest.log10().floor()
+    } else {
+        7.0
+    };
+    let decimals = decimals.clamp(0.0, 30.0) as usize;
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.trim_matches(['0', '.']).is_empty() => digits.to_owned(),
+        _ => text,
+    }
+}
+
+/// How many findings pass, and those that do not.
+pub(crate) fn verdicts(scene: &Scene, findings: &[Finding]) -> String {
+    let failed: Vec<&Finding> = findings.iter().filter(|f| !f.pass).collect();
     let mut text = format!(
         "{}: {} of {} findings pass\n",
         scene.name,
-        evidence.findings.len() - failed.len(),
-        evidence.findings.len()
+        findings.len() - failed.len(),
+        findings.len()
     );
     for f in failed {
         text += &format!(
@@ -204,6 +220,11 @@ pub(crate) fn summary(scene: &Scene, evidence: &Evidence) -> String {
             f.key, f.truth, f.compared, f.relative, f.tolerance, f.worst
         );
     }
+    text
+}
+
+pub(crate) fn summary(scene: &Scene, evidence: &Evidence) -> String {
+    let mut text = verdicts(scene, &evidence.findings);
     if let Some(motion) = &evidence.motion {
         text += &format!("  period {:.12} s by quadrature\n", motion.turn.period);
     }

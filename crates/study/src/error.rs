@@ -141,6 +141,23 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
                 &body_labels(bodies, "its angle is open"),
             )
         }
+        AssemblyError::Inconsistent {
+            joints,
+            excess,
+            gap,
+        } => scene.error(
+            format!(
+                "there are {} more than the bodies can follow, and the lengths do not allow it: \
+                 {gap:.2e} m stay open",
+                count(*excess, "constraint")
+            ),
+            Some(
+                "joints that repeat others must agree with them to the last digits: correct a \
+                 length or a point, or take a joint away"
+                    .to_owned(),
+            ),
+            &joint_labels(joints, "among the constraints that are too many"),
+        ),
         AssemblyError::SingularStart { bodies, joints } => {
             let mut labels = joint_labels(joints, "in line with the others");
             labels.push((Place::Assembly, "at this start".to_owned()));
@@ -176,8 +193,10 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> SceneError {
             dof,
             actuators: given,
             bodies,
+            twice,
         } => {
             let mut labels = body_labels(bodies, "nothing determines its motion");
+            labels.extend(joint_labels(twice, "holds what others hold already"));
             labels.extend(actuators());
             scene.error(
                 format!(
@@ -185,10 +204,14 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> SceneError {
                     count(*dof, "degree of freedom"),
                     count(*given, "actuator")
                 ),
-                Some(
+                Some(if twice.is_empty() {
                     "each degree of freedom needs an actuator: add one, or a joint that is missing"
-                        .to_owned(),
-                ),
+                        .to_owned()
+                } else {
+                    "counting does not show it, because some joints hold the same thing twice: \
+                     take one of those away and put a joint or an actuator where something is free"
+                        .to_owned()
+                }),
                 &labels,
             )
         }

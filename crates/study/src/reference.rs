@@ -1,32 +1,44 @@
 //! The reference numbers of a case: `reference.json` beside its scene.
 
+mod table;
+
 use crate::error::StudyError;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_scene::Scene;
 use dwell_verify::truths::{Point, Sample};
 use serde_json::{Map, Value};
 use std::path::Path;
+use table::{Table, table};
 
 /// Published or independently computed values of a case.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Reference {
     /// Where they come from.
     pub(crate) source: String,
+    /// How the values of states were computed, if they were.
+    pub(crate) computed: Option<String>,
     /// Coefficients at sampled positions.
     pub(crate) samples: Vec<Sample>,
     /// Period of the free motion, s.
     pub(crate) period: Option<f64>,
+    /// Values of states of motion, computed and published.
+    pub(crate) states: Option<Table>,
+    pub(crate) published: Option<Table>,
 }
 
 /// What a reference file holds. The words are for people, and so are numbers of other quantities.
-const KEYS: [&str; 7] = [
+const KEYS: [&str; 11] = [
     "title",
     "source",
+    "computed",
     "definition",
     "convention",
+    "tolerance",
     "samples",
     "free_motion",
     "others_measured",
+    "published",
+    "truths",
 ];
 /// What a sample holds beside points, such as `P_m`, and angles, such as `theta_guide_rad`.
 const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
@@ -60,14 +72,26 @@ impl Reference {
                 KEYS.join(", ")
             ));
         }
-        let samples = match &value["samples"] {
-            Value::Null => Vec::new(),
-            Value::Array(samples) => samples
-                .iter()
-                .enumerate()
-                .map(|(k, s)| sample(s, scene).map_err(|e| format!("samples[{k}]: {e}")))
-                .collect::<Result<_, _>>()?,
-            _ => return Err("`samples` is not a list".to_owned()),
+        let of_states = |s: &Value| s.get("values").is_some();
+        let all = list(value, "samples")?;
+        let (states, samples) = if all.iter().any(of_states) {
+            (table(value, scene)?, Vec::new())
+        } else {
+            let read = |(k, s)| sample(s, scene).map_err(|e| format!("samples[{k}]: {e}"));
+            (
+                None,
+                all.iter().enumerate().map(read).collect::<Result<_, _>>()?,
+            )
+        };
+        let published = match &value["published"] {
+            Value::Null => None,
+            // The tolerance is that of the file.
+            given => {
+                let mut given = object(given, "`published`")?.clone();
+                given.insert("tolerance".to_owned(), value["tolerance"].clone());
+                let read = table(&Value::Object(given), scene);
+                read.map_err(|e| format!("published: {e}"))?
+            }
         };
         let period = match &value["free_motion"] {
             Value::Null => None,
@@ -85,9 +109,21 @@ impl Reference {
                 .as_str()
                 .unwrap_or("no source given")
                 .to_owned(),
+            computed: value["computed"].as_str().map(str::to_owned),
             samples,
             period,
+            states,
+            published,
         })
+    }
+}
+
+/// The entries of a key that may be absent.
+fn list<'a>(object: &'a Value, key: &str) -> Result<&'a [Value], String> {
+    match &object[key] {
+        Value::Null => Ok(&[]),
+        Value::Array(entries) => Ok(entries),
+        _ => Err(format!("`{key}` is not a list")),
     }
 }
 

@@ -6,10 +6,12 @@ use crate::error::StudyError;
 use crate::figures::{self, Dwell};
 use crate::motion_error::explain_motion;
 use crate::outcome::{Outcome, Progress, Step};
+use crate::page;
 use crate::prepare::Prepared;
 use crate::reduce::Sweep;
 use crate::reference::Reference;
 use crate::simulate::{Accuracy, History};
+use crate::states;
 use crate::subject::PlanSubject;
 use dwell_findings::Finding;
 use dwell_kinetostatics::Reduced;
@@ -28,7 +30,7 @@ const POSITIONS: usize = 24;
 /// take minutes and show no more.
 const MOST_TURNS: usize = 20;
 /// Steps of the progress bar for one case.
-const STEPS: usize = 4;
+pub(crate) const STEPS: usize = 5;
 
 /// A validated case.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -60,8 +62,12 @@ pub fn validate(
     folder: &Path,
     progress: Progress<'_>,
 ) -> Result<Validation, StudyError> {
-    let prepared = Prepared::new(scene)?;
     let reference = Reference::read(folder, scene)?;
+    // The reduced model knows nothing of loads.
+    if scene.mechanism.actuators.len() != 1 || !scene.loads.is_empty() {
+        return page::of_states(scene, &reference, progress);
+    }
+    let prepared = Prepared::new(scene)?;
     let done = |what: &str| {
         progress(Step {
             total: STEPS,
@@ -76,6 +82,9 @@ pub fn validate(
     if let Some(motion) = &motion {
         findings.extend(motion.findings.clone());
     }
+    let judged = states::judge(scene, &reference)?;
+    findings.extend(judged.findings);
+    done("states");
     let (drawing, dwell) = figures::mechanism(&prepared)?;
     let evidence = Evidence {
         findings,
@@ -207,5 +216,6 @@ fn pages(prepared: &Prepared<'_>, drawing: Figure, evidence: &Evidence) -> Vec<F
     if let Some(motion) = &evidence.motion {
         pages.push(figures::cost(prepared, motion));
     }
+    pages.push(figures::digits(prepared.scene, &evidence.findings));
     pages
 }

@@ -175,7 +175,7 @@ const POWER: Words = Words {
     key: "state-power",
     truth: "4 power",
     compared: "the power of actuators and loads with the rate of the kinetic energy",
-    scale: "the largest sum of absolute powers",
+    scale: "the sum of |force| |velocity| of the state",
     tolerance: 1e-12,
     why: NEWTON.why,
 };
@@ -183,16 +183,19 @@ const BALANCE: Words = Words {
     key: "state-balance",
     truth: "7 balance of the whole mechanism",
     compared: "what the ground and the loads do with the rate of the momentum",
-    scale: "the largest sum of absolute terms, moments over the size",
+    scale: "the sum of absolute terms of the state",
     tolerance: 1e-12,
     why: NEWTON.why,
 };
 
-/// Comparisons whose scale is only known when all are there.
+/// Comparisons, most of whose scales are only known when all are there.
 struct Tally {
     unit: &'static str,
     scale: f64,
-    read: Vec<(f64, f64, String)>,
+    /// The difference, the truth's own error, the scale of this one, the place.
+    read: Vec<(f64, f64, f64, String)>,
+    /// Whether each is judged by its own scale.
+    each: bool,
 }
 
 impl Tally {
@@ -201,6 +204,15 @@ impl Tally {
             unit,
             scale: 0.0,
             read: Vec::new(),
+            each: false,
+        }
+    }
+
+    /// A balance must hold in every state, however small its terms are there.
+    fn of_each(unit: &'static str) -> Self {
+        Self {
+            each: true,
+            ..Self::new(unit)
         }
     }
 
@@ -208,15 +220,15 @@ impl Tally {
     fn read(&mut self, difference: f64, own: f64, scale: f64, place: String) {
         // A maximum drops what is not a number, but then the difference is not one either.
         self.scale = self.scale.max(scale);
-        self.read.push((difference, own, place));
+        self.read.push((difference, own, scale, place));
     }
 
     fn judge(self, words: &Words, judge: &Judge<'_>) -> Finding {
         let mut worst = Worst::default();
-        for (difference, own, place) in self.read {
+        for (difference, own, scale, place) in self.read {
             let reading = Reading {
                 difference,
-                scale: self.scale,
+                scale: if self.each { scale } else { self.scale },
                 own,
                 unit: self.unit,
             };
@@ -389,7 +401,7 @@ impl<'a> Judge<'a> {
     }
 
     fn power(&self) -> Finding {
-        let mut tally = Tally::new("W");
+        let mut tally = Tally::of_each("W");
         for m in &self.measured {
             let (difference, terms) = m.power();
             tally.read(difference, m.relative_noise() * terms, terms, place(m));
@@ -398,7 +410,7 @@ impl<'a> Judge<'a> {
     }
 
     fn balance(&self) -> Finding {
-        let mut tally = Tally::new("N");
+        let mut tally = Tally::of_each("N");
         for m in &self.measured {
             for (difference, terms, what) in m.balance() {
                 let own = m.relative_noise() * terms;

@@ -1,6 +1,8 @@
 //! From a mechanism to its plan: which group is solved how, and which arms are rotated when.
 
-use super::{Aim, Assur, Behind, Carried, Closure, Driven, How, Kind, Pin, Plan, Solved, Step};
+use super::{
+    Aim, Assur, Behind, BondPlace, Carried, Closure, Driven, How, Kind, Pin, Plan, Solved, Step,
+};
 use crate::error::StructureError;
 use crate::frames::{Frame, Frames, Turning};
 use crate::groups::{self, Group, Parts, Unknown};
@@ -41,8 +43,10 @@ impl Plan {
                 class_roots[frame.class] = f;
             }
         }
-        let counted = counted(&frames, &relations);
-        let mut table = ArmTable::new(&frames, &class_roots, &groups, &counted);
+        let beside = beside(&lowered, &frames);
+        let counted = counted(&frames, &relations, &beside);
+        let all_driven = all_driven(&frames, &class_roots, &counted);
+        let mut table = ArmTable::new(&frames, &class_roots, &groups, &all_driven);
         let closures: Vec<Closure> = loops.iter().map(|l| table.closure(l)).collect();
         let carried = tree
             .carries
@@ -51,17 +55,21 @@ impl Plan {
             .collect();
         let angular = mechanism.actuators.iter().map(|a| a.drive == Drive::Angle);
         let mut plan = Self {
-            driven: driven(&frames, &class_roots, &counted, |class| class == 0),
+            driven: driven(&all_driven, |class| class == 0),
             class_roots,
             angular: angular.collect(),
             start: vec![0.0; mechanism.actuators.len()],
             range: Range::Full,
+            ends: [None; 2],
             home: None,
             branches: Vec::new(),
+            unique: Vec::new(),
             reach: 0.0,
             arms: Vec::new(),
             groups: Vec::new(),
             steps: Vec::new(),
+            solve_steps: Vec::new(),
+            bond_places: bond_places(&lowered, &tree),
             lowered,
             frames,
             tree,
@@ -69,13 +77,14 @@ impl Plan {
             closures,
             relations,
             counted,
+            beside,
             driven_slides,
         };
         plan.arms.clone_from(&table.arms);
         plan.reach = plan.largest_length();
         let (mut lu, mut pivots) = (0, 0);
         for group in groups {
-            let assur = plan.prepare(group, lu, pivots);
+            let assur = plan.prepare(group, &all_driven, lu, pivots);
             if let Kind::Solved(solved) = &assur.kind {
                 lu += solved.room();
                 pivots += solved.columns;
@@ -83,6 +92,11 @@ impl Plan {
             plan.groups.push(assur);
         }
         plan.steps = table.steps(&plan.groups, &plan.driven_slides);
+        let steps = plan.steps.iter().enumerate();
+        plan.solve_steps = steps
+            .filter(|(_, step)| matches!(step, Step::Solve(_)))
+            .map(|(i, _)| i)
+            .collect();
         Ok(plan)
     }
 
@@ -94,7 +108,13 @@ impl Plan {
     }
 
     /// Chooses how a group is solved.
-    fn prepare(&self, group: Group, lu: usize, pivots: usize) -> Assur {
+    fn prepare(
+        &self,
+        group: Group,
+        all_driven: &[(usize, Driven)],
+        lu: usize,
+        pivots: usize,
+    ) -> Assur {
         let in_group = |frame: usize| {
             let class = self.frames.frames[frame].class;
             class > 0 && group.unknowns.contains(&Unknown::Class(class))
@@ -126,19 +146,26 @@ impl Plan {
             .collect();
         let size = self.size(&group);
         let counts = group.unknowns.iter().any(|u| match u {
-            Unknown::Class(c) => self.counted[self.class_roots[*c]],
+            Unknown::Class(c) => {
+                let root = self.class_roots[*c];
+                self.counted[root] && !self.beside.contains_key(&root)
+            }
+            Unknown::Slide(_) => false,
+        });
+        let counts_beside = group.unknowns.iter().any(|u| match u {
+            Unknown::Class(c) => self.beside.contains_key(&self.class_roots[*c]),
             Unknown::Slide(_) => false,
         });
         let remembers = match &kind {
             Kind::Solved(solved) => match solved.how {
                 How::Newton => true,
-                How::Linear => false,
+                How::Linear | How::Geared => false,
                 _ => counts,
             },
             _ => counts,
         };
         Assur {
-            driven: driven(&self.frames, &self.class_roots, &self.counted, |class| {
+            driven: driven(all_driven, |class| {
                 group.unknowns.contains(&Unknown::Class(class))
             }),
             group,
@@ -147,6 +174,7 @@ impl Plan {
             size,
             scale: size.log2().round().exp2(),
             seeds: Seeds::default(),
+            counts: counts || counts_beside,
             remembers,
             skipped: false,
         }
@@ -227,6 +255,18 @@ impl Plan {
         if (!turns || group.loops.is_empty()) && group.relations.iter().all(linear) {
             return How::Linear;
         }
+        // Loops that only follow lines of centres: the carrier tells where these are.
+        let follows = |&l: &usize| {
+            let axis = self.closures[l].axis;
+            axis.is_some_and(|(_, frame)| self.beside.contains_key(&frame))
+        };
+        let turn = |u: &Unknown| matches!(u, Unknown::Class(_));
+        if group.unknowns.iter().all(turn)
+            && group.loops.iter().all(follows)
+            && group.relations.iter().all(linear)
+        {
+            return How::Geared;
+        }
         let &[l] = group.loops.as_slice() else {
             return How::Newton;
         };
@@ -297,6 +337,18 @@ impl Plan {
     }
 }
 
+/// By bond: where it is in the plan.
+fn bond_places(lowered: &Lowered, tree: &Tree) -> Vec<BondPlace> {
+    let mut places = vec![BondPlace::Closes(0); lowered.bonds.len()];
+    for (c, &chord) in tree.chords.iter().enumerate() {
+        places[chord] = BondPlace::Closes(c);
+    }
+    for (i, carry) in tree.carries.iter().enumerate() {
+        places[carry.bond] = BondPlace::Carries(i);
+    }
+    places
+}
+
 /// By slide: the actuator that drives it.
 fn driven_slides(lowered: &Lowered, tree: &Tree) -> Vec<Option<usize>> {
     let mut driven = vec![None; tree.slides.len()];
@@ -311,39 +363,56 @@ fn driven_slides(lowered: &Lowered, tree: &Tree) -> Vec<Option<usize>> {
 }
 
 /// By frame: whether it belongs to a class that a relation names.
-fn counted(frames: &Frames, relations: &[Row]) -> Vec<bool> {
+fn counted(frames: &Frames, relations: &[Row], beside: &HashMap<usize, (usize, f64)>) -> Vec<bool> {
     let mut classes = vec![false; frames.classes];
-    for frame in relations.iter().flat_map(Row::frames) {
+    let named = relations.iter().flat_map(Row::frames);
+    for frame in named.chain(beside.values().map(|(carrier, _)| *carrier)) {
         classes[frames.frames[frame].class] = true;
     }
     let counted = |f: &Frame| classes[f.class];
     frames.frames.iter().map(counted).collect()
 }
 
-/// The driven frames of some classes, each after the one it is turned from.
-fn driven(
-    frames: &Frames,
-    roots: &[usize],
-    counted: &[bool],
-    of: impl Fn(usize) -> bool,
-) -> Vec<Driven> {
+/// The lines of centres that turn with a carrier, with the carrier's frame.
+fn beside(lowered: &Lowered, frames: &Frames) -> HashMap<usize, (usize, f64)> {
+    let of = |body: usize| frames.attitudes[body];
+    let lines = lowered.ratios.iter().filter_map(|ratio| ratio.line);
+    let held = lines.map(|(line, carrier, lead)| {
+        let lead = lead + of(carrier).offset.angle() - of(line).offset.angle();
+        (of(line).frame, (of(carrier).frame, lead))
+    });
+    held.filter(|(line, _)| frames.frames[*line].turning == Turning::Unknown)
+        .collect()
+}
+
+/// Every driven frame with its class, each after the one it is turned from.
+fn all_driven(frames: &Frames, roots: &[usize], counted: &[bool]) -> Vec<(usize, Driven)> {
     let all = frames.frames.iter().enumerate();
     all.filter_map(|(frame, &Frame { turning, class })| match turning {
         Turning::Driven {
             parent,
             actuator,
             sign,
-        } if of(class) => Some(Driven {
-            frame,
-            parent,
-            actuator,
-            sign,
-            root: roots[class],
-            counted: counted[frame],
-        }),
+        } => Some((
+            class,
+            Driven {
+                frame,
+                parent,
+                actuator,
+                sign,
+                root: roots[class],
+                counted: counted[frame],
+            },
+        )),
         _ => None,
     })
     .collect()
+}
+
+/// Those of some classes.
+fn driven(all: &[(usize, Driven)], of: impl Fn(usize) -> bool) -> Vec<Driven> {
+    let picked = all.iter().filter(|(class, _)| of(*class));
+    picked.map(|(_, driven)| *driven).collect()
 }
 
 impl Solved {
@@ -370,20 +439,25 @@ struct ArmTable {
 }
 
 impl ArmTable {
-    fn new(frames: &Frames, roots: &[usize], groups: &[Group], counted: &[bool]) -> Self {
+    fn new(
+        frames: &Frames,
+        roots: &[usize],
+        groups: &[Group],
+        all_driven: &[(usize, Driven)],
+    ) -> Self {
         let mut table = Self {
             arms: Vec::new(),
             seen: HashMap::new(),
             known_at: vec![0; frames.frames.len()],
             steps: Vec::new(),
         };
-        table.turn(driven(frames, roots, counted, |class| class == 0));
+        table.turn(driven(all_driven, |class| class == 0));
         for (g, group) in groups.iter().enumerate() {
             table.steps.push(Step::Solve(g));
             for &unknown in &group.unknowns {
                 if let Unknown::Class(class) = unknown {
                     table.known_at[roots[class]] = table.steps.len();
-                    table.turn(driven(frames, roots, counted, |c| c == class));
+                    table.turn(driven(all_driven, |c| c == class));
                 }
             }
         }

@@ -6,7 +6,8 @@ mod relation;
 
 use crate::bodies::Bodies;
 use crate::fields::{Entry, Fields, array, string, two_strings};
-use crate::keys::{JOINTS, Table};
+use crate::keys::JOINTS;
+use crate::kind::kind;
 use crate::names::{check, shorten};
 use crate::problem::{Problem, Problems, Span};
 use crate::units::Units;
@@ -198,10 +199,8 @@ impl<'a> Joints<'a> {
         };
         if let Some(ends) = ends {
             text.ends = ends.clone().map(|(_, _, at)| at);
-            text.joint = kind.and_then(|kind| {
-                let [a, b] = &ends;
-                Some(between(&text.name, a, b, kind, bodies))
-            });
+            let [a, b] = &ends;
+            text.joint = kind.map(|kind| between(&text.name, a, b, kind, bodies));
         }
         self.list.push(text);
     }
@@ -268,70 +267,6 @@ fn word(kind: JointKind) -> &'static str {
         JointKind::Distance { .. } => "distance",
         JointKind::Relation(_) => "relation",
     }
-}
-
-/// The kind of a joint or a load, told by the one key that names it, with that key. Its keys are
-/// those of this kind.
-pub(crate) fn kind<'f, 'a>(
-    fields: &'f Fields<'a>,
-    at: &Span,
-    thing: &str,
-    kinds: &[&'static Table],
-    problems: &mut Problems,
-) -> Option<(&'static str, &'f Entry<'a>)> {
-    let what = &fields.what;
-    let words = kinds.iter().map(|t| t.kind());
-    let Some(entry) = fields.one_of(words.clone(), problems).ok()? else {
-        let strange = |e: &&Entry<'_>| !kinds.iter().any(|t| t.knows(e.name));
-        for entry in fields.entries.iter().filter(strange) {
-            let help = problems.choices(entry.name, &format!("kinds of a {thing}"), words.clone());
-            let name = shorten(entry.name);
-            problems.push(
-                Problem::new(format!("unknown key `{name}` in {what}"))
-                    .at(entry.key.clone(), "unknown key")
-                    .help(help),
-            );
-        }
-        // A misspelt kind is one slip, not two.
-        if fields.entries.iter().any(|e| strange(&e)) {
-            return None;
-        }
-        let example = kinds.first().and_then(|t| t.keys.first());
-        let example = example.map_or_else(String::new, |k| format!("{} = {}", k.name, k.example));
-        let list = crate::problem::list(words).unwrap_or_default();
-        problems.push(
-            Problem::new(format!("{what} has no kind"))
-                .at(at.clone(), "of which kind?")
-                .help(format!(
-                    "write it as `{{ {example} }}`; the kinds are {list}"
-                )),
-        );
-        return None;
-    };
-    let table = kinds.iter().find(|t| t.kind() == entry.name)?;
-    for other in &fields.entries {
-        let mut owners = kinds.iter().filter(|t| t.knows(other.name));
-        if table.knows(other.name) || owners.next().is_none() {
-            continue;
-        }
-        problems.push(
-            Problem::new(format!(
-                "{what} is of kind `{}` and has no `{}`",
-                table.kind(),
-                other.name
-            ))
-            .at(other.key.clone(), format!("not for this kind of {thing}"))
-            .help("leave it out"),
-        );
-    }
-    let strange = |e: &&Entry<'_>| !kinds.iter().any(|t| t.knows(e.name));
-    let known = Fields {
-        what: what.clone(),
-        span: fields.span.clone(),
-        entries: fields.entries.iter().filter(strange).cloned().collect(),
-    };
-    known.allow(table, problems);
-    Some((table.kind(), entry))
 }
 
 /// The two points that the joint's first key names.

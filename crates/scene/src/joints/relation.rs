@@ -56,7 +56,7 @@ impl Joints<'_> {
             Some((first, second))
         });
         let chosen = fields
-            .one_of(LAWS_OF_RELATIONS.into_iter(), problems)
+            .one_of(|n| LAWS_OF_RELATIONS.contains(&n), problems)
             .ok()?;
         let Some(chosen) = chosen else {
             // Its other keys have been looked at: a misspelt law is one slip, not two.

@@ -243,8 +243,3 @@ fn numbers_however_written() {
         assert_eq!(scene.masses[1].mass, value);
     }
 }
-
-#[test]
-fn a_machine_of_every_kind() {
-    parse(MACHINE).unwrap();
-}

@@ -3,6 +3,8 @@
 mod content;
 mod errors;
 mod files;
+mod format;
+mod machine;
 mod mutations;
 mod values;
 

@@ -2,6 +2,7 @@
 //! replaced by something else, is either read or told what is wrong within the text.
 
 use super::*;
+use dwell_geometry::JointKind;
 
 fn survive(text: &str) -> bool {
     match parse(text) {
@@ -9,7 +10,22 @@ fn survive(text: &str) -> bool {
             // What was accepted is whole: one mass and one list of points for each body.
             assert_eq!(scene.masses.len(), scene.mechanism.bodies.len());
             assert_eq!(scene.points.len(), scene.mechanism.bodies.len());
-            assert_eq!(scene.assembly.start.len(), scene.mechanism.actuators.len());
+            let actuators = scene.mechanism.actuators.len();
+            assert_eq!(scene.assembly.start.len(), actuators);
+            // So is what the new sections say: a law for each actuator, numbers that are finite.
+            if let Some(prescribed) = &scene.prescribed {
+                assert_eq!(prescribed.laws.len(), actuators);
+                assert!(prescribed.duration > 0.0 && prescribed.points >= 2);
+            }
+            if let Some(sweep) = &scene.sweep {
+                assert!(sweep.actuator.0 < actuators && sweep.held.len() == actuators);
+                assert!(sweep.held.iter().all(|q| q.is_finite()) && sweep.speed > 0.0);
+            }
+            for joint in &scene.mechanism.joints {
+                if let JointKind::Relation(k) = joint.kind {
+                    assert!(k < scene.mechanism.relations.len());
+                }
+            }
             true
         }
         Err(error) => {
@@ -37,9 +53,11 @@ fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
 #[test]
 fn cut_short_anywhere() {
     let text = with("For tests.", "φ ünd ½");
-    for end in 0..=text.len() {
-        survive(&String::from_utf8_lossy(&text.as_bytes()[..end]));
-        survive(&String::from_utf8_lossy(&text.as_bytes()[end..]));
+    for text in [&text, MACHINE] {
+        for end in 0..=text.len() {
+            survive(&String::from_utf8_lossy(&text.as_bytes()[..end]));
+            survive(&String::from_utf8_lossy(&text.as_bytes()[end..]));
+        }
     }
 }
 
@@ -49,31 +67,41 @@ fn any_piece_replaced() {
         "", "[", "]", "{", "}", "\"", "=", ".", "\n", "nan", "-1e999", "\"\"", "a.b", "ground",
         "φ", "\u{0}", "0",
     ];
-    let pieces = pieces(WHOLE);
-    let mut read = 0;
-    for piece in &pieces {
-        for new in strange {
-            let text = format!("{}{new}{}", &WHOLE[..piece.start], &WHOLE[piece.end..]);
-            read += usize::from(survive(&text));
+    // The second scene is long; its own sections are what is new in it.
+    let laws = ["", "[", "\"", "nan", "phi", "0", "lift.speed"];
+    for (scene, from, strange) in [
+        (WHOLE, 0, &strange[..]),
+        (MACHINE, MACHINE.find("[joints]").unwrap(), &laws[..]),
+    ] {
+        let pieces: Vec<_> = pieces(scene);
+        let pieces = pieces.iter().filter(|p| p.start >= from);
+        let (mut read, mut all) = (0, 0);
+        for piece in pieces {
+            for new in strange {
+                let text = format!("{}{new}{}", &scene[..piece.start], &scene[piece.end..]);
+                read += usize::from(survive(&text));
+                all += 1;
+            }
         }
+        // Most changes are mistakes, but a changed title is not.
+        assert!(read > all / 100 && read < all / 2, "{read} of {all} read");
     }
-    // Most changes are mistakes, but a changed title is not.
-    let all = pieces.len() * strange.len();
-    assert!(read > all / 100 && read < all / 2, "{read} of {all} read");
 }
 
 #[test]
 fn any_piece_twice_or_swapped_with_the_next_but_one() {
-    let pieces = pieces(WHOLE);
-    for (k, piece) in pieces.iter().enumerate() {
-        let (before, this) = (&WHOLE[..piece.start], &WHOLE[piece.clone()]);
-        survive(&format!("{before}{this}{this}{}", &WHOLE[piece.end..]));
-        if let Some(other) = pieces.get(k + 2) {
-            let (between, that) = (&WHOLE[piece.end..other.start], &WHOLE[other.clone()]);
-            survive(&format!(
-                "{before}{that}{between}{this}{}",
-                &WHOLE[other.end..]
-            ));
+    for scene in [WHOLE, MACHINE] {
+        let pieces = pieces(scene);
+        for (k, piece) in pieces.iter().enumerate() {
+            let (before, this) = (&scene[..piece.start], &scene[piece.clone()]);
+            survive(&format!("{before}{this}{this}{}", &scene[piece.end..]));
+            if let Some(other) = pieces.get(k + 2) {
+                let (between, that) = (&scene[piece.end..other.start], &scene[other.clone()]);
+                survive(&format!(
+                    "{before}{that}{between}{this}{}",
+                    &scene[other.end..]
+                ));
+            }
         }
     }
 }

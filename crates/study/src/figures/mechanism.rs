@@ -8,7 +8,7 @@ use crate::prepare::Prepared;
 use dwell_geometry::{BodyId, Plan, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape};
-use dwell_scene::PathPoint;
+use dwell_scene::{PathPoint, Scene};
 use std::f64::consts::TAU;
 
 /// Positions of the paths.
@@ -30,10 +30,10 @@ pub(crate) struct Dwell {
 }
 
 /// The bodies over the range.
-struct Sweep {
-    q: Vec<f64>,
+pub(super) struct Sweep {
+    pub(super) q: Vec<f64>,
     /// By position and body: origin and orientation.
-    frames: Vec<Vec<Frame>>,
+    pub(super) frames: Vec<Vec<Frame>>,
 }
 
 impl Sweep {
@@ -55,7 +55,7 @@ impl Sweep {
         Ok(Self { q, frames })
     }
 
-    fn point(&self, position: usize, body: usize, at: Vec2) -> [f64; 2] {
+    pub(super) fn point(&self, position: usize, body: usize, at: Vec2) -> [f64; 2] {
         place(&self.frames[position], body, at)
     }
 }
@@ -81,7 +81,7 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
         .dwell
         .as_ref()
         .map(|d| find_dwell(&sweep, d.body, d.band, full));
-    let mut shapes = paths(prepared, &sweep);
+    let mut shapes = paths(scene, &sweep);
     shapes.extend(ghosts(prepared, &sweep, full, dwell.as_ref()));
     let mut panels = vec![Panel::from(Drawing {
         title: String::new(),
@@ -146,10 +146,10 @@ fn ghosts(prepared: &Prepared<'_>, sweep: &Sweep, full: bool, dwell: Option<&Dwe
 }
 
 /// The paths that were asked for.
-fn paths(prepared: &Prepared<'_>, sweep: &Sweep) -> Vec<Shape> {
-    let wanted = prepared.scene.requests.paths.iter();
+pub(super) fn paths(scene: &Scene, sweep: &Sweep) -> Vec<Shape> {
+    let wanted = scene.requests.paths.iter();
     let path = |path: &PathPoint| {
-        let points = (0..sweep.q.len()).map(|i| sweep.point(i, path.body.0, path.at));
+        let points = (0..sweep.frames.len()).map(|i| sweep.point(i, path.body.0, path.at));
         let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
         Shape::line(points.collect(), pen).named("paths")
     };

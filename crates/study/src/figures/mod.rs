@@ -3,17 +3,21 @@
 mod along;
 mod cost;
 mod curves;
+mod digits;
 mod mechanism;
 mod motion;
 mod skeleton;
+mod states;
 mod steps;
 
 pub(crate) use along::{film, run};
 pub(crate) use cost::{cost, drift};
 pub(crate) use curves::{coefficients, reduced};
+pub(crate) use digits::digits;
 pub(crate) use mechanism::{Dwell, mechanism};
 pub(crate) use motion::history;
 pub(crate) use skeleton::Frame;
+pub(crate) use states::{actions, drawing};
 pub(crate) use steps::steps;
 
 use crate::prepare::Prepared;
@@ -34,7 +38,8 @@ pub(crate) fn caption(prepared: &Prepared<'_>, words: &str) -> String {
     foot(prepared.scene, words)
 }
 
-fn foot(scene: &Scene, words: &str) -> String {
+/// The same for any scene.
+pub(crate) fn foot(scene: &Scene, words: &str) -> String {
     let source = scene.source.name().rsplit(['/', '\\']);
     let file: Vec<_> = source.take(2).collect();
     let file: Vec<_> = file.into_iter().rev().collect();

@@ -240,34 +240,35 @@ impl<'a> Measured<'a> {
         if step.is_finite() { step } else { 1.0 }
     }
 
-    /// Power of actuators and loads less the rate of the kinetic energy, and the sum of its
-    /// absolute terms, W.
+    /// Power of actuators and loads less the rate of the kinetic energy, and the sum of what its
+    /// terms could be, |F| |v|, W: a force across its velocity is rounded as if it were along it.
     pub(super) fn power(&self) -> (f64, f64) {
         let (mut sum, mut terms) = (0.0, 0.0);
-        let mut add = |power: f64| {
+        let mut add = |power: f64, most: f64| {
             sum += power;
-            terms += power.abs();
+            terms += most;
         };
         for (tau, rate) in self.state.tau.iter().zip(&self.state.q_dot) {
-            add(tau * rate);
+            add(tau * rate, (tau * rate).abs());
         }
         let (at, u, a) = (&self.closed, &self.x_dot, &self.x_ddot);
         for load in &self.loads {
             if let Some(c) = self.dense.bodies[load.body].column {
                 let arm = load.at - vec2(at.x[c], at.x[c + 1]);
-                add(load.force.x * u[c]);
-                add(load.force.y * u[c + 1]);
-                add(u[c + 2] * arm.cross(load.force));
-                add(u[c + 2] * load.couple);
+                let v = vec2(u[c], u[c + 1]);
+                add(load.force.dot(v), load.force.norm() * v.norm());
+                let turning = u[c + 2] * arm.cross(load.force);
+                add(turning, (u[c + 2] * arm.norm() * load.force.norm()).abs());
+                add(u[c + 2] * load.couple, (u[c + 2] * load.couple).abs());
             }
         }
         for body in &self.dense.bodies {
             if let Some(c) = body.column {
                 let v = self.dense.center_velocity(body, at, u);
                 let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;
-                add(-v.x * force.x);
-                add(-v.y * force.y);
-                add(-body.mass.inertia * u[c + 2] * a[c + 2]);
+                let turning = body.mass.inertia * u[c + 2] * a[c + 2];
+                add(-v.dot(force), v.norm() * force.norm());
+                add(-turning, turning.abs());
             }
         }
         (sum, terms)

@@ -9,6 +9,7 @@ mod published;
 mod released;
 mod slope;
 mod spectral;
+mod values;
 
 pub use balance::balance;
 pub use bodies::bodies;
@@ -19,6 +20,7 @@ pub use published::{Point, Sample, published};
 pub use released::released;
 pub use slope::slope;
 pub use spectral::spectral;
+pub use values::{Value, Values, values};
 
 use crate::bench::{Bench, Site};
 use crate::closing::Closed;

@@ -1,0 +1,387 @@
+//! The description of the keys, and what is made of it: the schema, the documentation. What they
+//! say is held against what the reader does.
+
+use super::*;
+use crate::keys::{Key, Need, SCENE, Shape, Table};
+use crate::schema::{as_json, schema};
+use serde_json::Value;
+use std::fmt::Write as _;
+
+const PAGE: &str = include_str!("../../../../docs/scene-format.md");
+
+/// Every table that the scene's keys lead to, each once.
+fn tables() -> Vec<&'static Table> {
+    fn follow(shape: Shape, found: &mut Vec<&'static Table>) {
+        match shape {
+            Shape::Table(table) | Shape::Tables(table) => visit(table, found),
+            Shape::Kinds(kinds) => kinds.iter().for_each(|table| visit(table, found)),
+            Shape::Either(shapes) => shapes.iter().for_each(|shape| follow(*shape, found)),
+            _ => {}
+        }
+    }
+    fn visit(table: &'static Table, found: &mut Vec<&'static Table>) {
+        if found.iter().any(|t| std::ptr::eq(*t, table)) {
+            return;
+        }
+        found.push(table);
+        for key in table.keys.iter().chain(&table.named) {
+            follow(key.shape, found);
+        }
+    }
+    let mut found = Vec::new();
+    visit(&SCENE, &mut found);
+    found
+}
+
+/// How the value of a key is written, for a reader.
+fn value(shape: Shape) -> String {
+    match shape {
+        Shape::Text => "text".to_owned(),
+        Shape::Number => "number".to_owned(),
+        Shape::Boolean => "`true` or `false`".to_owned(),
+        Shape::Count => "whole number from 2".to_owned(),
+        Shape::Word(words) => {
+            let words: Vec<_> = words.iter().map(|w| format!("`\"{w}\"`")).collect();
+            words.join(", ")
+        }
+        Shape::Expression => "expression".to_owned(),
+        Shape::Pair => "two numbers".to_owned(),
+        Shape::TwoPairs => "two pairs of numbers".to_owned(),
+        Shape::Rows => "two or more pairs of numbers".to_owned(),
+        Shape::Name(what) => what.to_owned(),
+        Shape::TwoNames(what) => format!("two of {what}"),
+        Shape::Names(what, 0) => format!("list of {what}"),
+        Shape::Names(what, least) => format!("{least} or more of {what}"),
+        Shape::Table(_) => "table".to_owned(),
+        Shape::Tables(_) => "list of tables".to_owned(),
+        Shape::Kinds(kinds) => {
+            let kinds: Vec<_> = kinds.iter().map(|t| format!("`{}`", t.name)).collect();
+            format!("table of a kind: {}", kinds.join(", "))
+        }
+        Shape::Either(shapes) => {
+            let shapes: Vec<_> = shapes.iter().map(|s| value(*s)).collect();
+            shapes.join(", or ")
+        }
+    }
+}
+
+/// The keys of a table as Markdown.
+fn markdown(table: &Table) -> String {
+    let mut text = format!("**`{}`** {}\n\n", table.name, table.doc);
+    text.push_str(
+        "| key | value | unit | if absent | meaning | example |\n|---|---|---|---|---|---|\n",
+    );
+    for key in table.keys.iter().chain(&table.named) {
+        let absent = match key.need {
+            Need::Required if key.name.starts_with('<') => "",
+            Need::Required => "needed",
+            Need::OneOf(_) => "one of these is needed",
+            Need::Default(default) => default,
+        };
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | {absent} | {} | `{}` |",
+            key.name,
+            value(key.shape),
+            key.unit,
+            key.doc,
+            key.example
+        );
+    }
+    text
+}
+
+#[test]
+fn the_page_shows_every_table_as_the_reader_knows_it() {
+    let tables = tables();
+    let mut page = String::new();
+    let mut shown = Vec::new();
+    let mut rest = PAGE;
+    while let Some((before, after)) = rest.split_once("<!-- keys: ") {
+        let (name, after) = after.split_once(" -->").unwrap();
+        let (_, after) = after.split_once("<!-- /keys -->").unwrap();
+        let table = tables.iter().find(|t| t.name == name);
+        let table = table.unwrap_or_else(|| panic!("there is no table `{name}`"));
+        let _ = write!(
+            page,
+            "{before}<!-- keys: {name} -->\n{}<!-- /keys -->",
+            markdown(table)
+        );
+        shown.push(name);
+        rest = after;
+    }
+    page.push_str(rest);
+    for table in &tables {
+        let times = shown.iter().filter(|name| **name == table.name).count();
+        assert_eq!(times, 1, "`{}` on the page", table.name);
+    }
+    same_as_written("../../docs/scene-format.md", &page);
+}
+
+#[test]
+fn the_schema_is_written_down() {
+    same_as_written("../../docs/scene-schema.json", &schema());
+}
+
+/// The examples of the page: the first is a scene, the others are fragments of it.
+fn examples() -> Vec<String> {
+    let blocks = PAGE.split("```toml\n").skip(1);
+    let blocks: Vec<_> = blocks.map(|b| b.split_once("```").unwrap().0).collect();
+    let whole = blocks[0];
+    let mut scenes = vec![whole.to_owned()];
+    scenes.extend(blocks[1..].iter().map(|fragment| merged(whole, fragment)));
+    scenes
+}
+
+/// The scene with what the fragment says: a body gets what is said of it, another entry of a
+/// section is replaced, and so is the whole of a motion. A fragment that has actuators of its own has no more use for the sections
+/// that speak of the others.
+fn merged(scene: &str, fragment: &str) -> String {
+    let mut scene: toml::Table = scene.parse().unwrap();
+    let fragment: toml::Table = fragment
+        .parse()
+        .unwrap_or_else(|e| panic!("{fragment}\n{e}"));
+    if fragment.contains_key("actuators") {
+        for section in ["actuators", "assembly", "motion", "loads"] {
+            scene.remove(section);
+        }
+    }
+    for (section, value) in fragment {
+        let toml::Value::Table(entries) = value else {
+            scene.insert(section, value);
+            continue;
+        };
+        if section == "motion" {
+            scene.insert(section, entries.into());
+            continue;
+        }
+        let is_bodies = section == "bodies";
+        let old = scene.entry(&section).or_insert(toml::Table::new().into());
+        let old = old.as_table_mut().unwrap();
+        for (name, entry) in entries {
+            match (old.get_mut(&name), entry) {
+                (Some(toml::Value::Table(body)), toml::Value::Table(new)) if is_bodies => {
+                    body.extend(new);
+                }
+                (_, entry) => {
+                    old.insert(name, entry);
+                }
+            }
+        }
+    }
+    scene.to_string()
+}
+
+#[test]
+fn every_example_of_the_page_is_read() {
+    let examples = examples();
+    assert!(examples.len() >= 8);
+    for text in examples {
+        if let Err(error) = parse(&text) {
+            panic!("{text}\n{}", render(&error));
+        }
+    }
+}
+
+/// Tables with the example of each key, in turn, and what else it needs, as inline tables.
+fn tables_of_examples(table: &Table) -> Vec<(String, String)> {
+    let written = |key: &Key| format!("{} = {}", key.name, key.example);
+    let one = |wanted: &Key| {
+        let mut parts: Vec<_> = table
+            .keys
+            .iter()
+            .filter(|k| k.need == Need::Required && k.name != wanted.name)
+            .map(written)
+            .collect();
+        let alternative = table.keys.iter().find(|k| matches!(k.need, Need::OneOf(_)));
+        match (wanted.need, alternative) {
+            (Need::OneOf(_), _) | (_, None) => {}
+            // A start is that of a sine or a rise.
+            _ if wanted.name == "start" && table.name == "relation" => {
+                let rise = table.keys.iter().find(|k| k.name == "cycloidal");
+                parts.extend(rise.map(written));
+            }
+            (_, Some(key)) => parts.push(written(key)),
+        }
+        parts.push(written(wanted));
+        (
+            wanted.name.to_owned(),
+            format!("{{ {} }}", parts.join(", ")),
+        )
+    };
+    let keys = table.keys.iter().filter(|k| !k.name.starts_with('<'));
+    keys.map(one).collect()
+}
+
+#[test]
+fn every_example_of_a_key_is_read() {
+    let scene = &examples()[0];
+    let around = |table: &Table, inner: &str| -> Option<String> {
+        let law = "cycloidal = { rise = 1.0, duration = 0.5 }";
+        Some(match table.name {
+            "[bodies.<body>]" => format!("bodies.crank = {inner}"),
+            "[actuators.<actuator>]" => format!("actuators.other = {inner}\nassembly.other = 10"),
+            "[coordinates.<coordinate>]" => format!("coordinates.other = {inner}"),
+            "[prescribed]" => {
+                let inner = inner.trim_end_matches('}');
+                format!("prescribed = {inner}, phi = {{ {law} }} }}")
+            }
+            "[prescribed.<actuator>]" => {
+                format!("prescribed = {{ duration = 2.0, phi = {inner} }}")
+            }
+            "sinusoid" => format!("prescribed = {{ duration = 2.0, phi.sinusoid = {inner} }}"),
+            "polynomial345, polynomial4567, cycloidal" => {
+                format!("prescribed = {{ duration = 2.0, phi.cycloidal = {inner} }}")
+            }
+            "trapezoidal" => {
+                format!("prescribed = {{ duration = 2.0, phi.trapezoidal = {inner} }}")
+            }
+            "magnitude, stiffness, constant" => {
+                format!("loads.other = {{ torque = \"crank\", magnitude = {inner} }}")
+            }
+            "dwell" => format!("requests.dwell = {inner}"),
+            "sections" => format!("requests.sections = [{inner}]"),
+            name if name.starts_with('[') => format!("{} = {inner}", name.trim_matches(['[', ']'])),
+            name if crate::keys::JOINTS.iter().any(|t| t.name == name) => {
+                format!("joints.other = {inner}")
+            }
+            name if crate::keys::LOADS.iter().any(|t| t.name == name) => {
+                let replaced = if name == "gravity" { "weight" } else { "other" };
+                format!("loads.{replaced} = {inner}")
+            }
+            _ => return None,
+        })
+    };
+    let mut read = 0;
+    for table in tables() {
+        let texts = if std::ptr::eq(table, &raw const SCENE) {
+            let each = table.keys.iter().filter(|k| k.name != "actuators");
+            each.map(|k| format!("{} = {}", k.name, k.example))
+                .collect()
+        } else {
+            let inner = tables_of_examples(table);
+            let texts: Vec<_> = inner
+                .iter()
+                .map(|(_, inner)| around(table, inner))
+                .map(|text| text.unwrap_or_else(|| panic!("where does `{}` go?", table.name)))
+                .collect();
+            texts
+        };
+        for fragment in texts {
+            let text = merged(scene, &fragment);
+            if let Err(error) = parse(&text) {
+                panic!("{fragment}\n{}", render(&error));
+            }
+            read += 1;
+        }
+    }
+    assert!(read > 80, "{read}");
+}
+
+/// What a schema finds wrong with a value: the part of JSON schema that ours uses.
+fn wrong(schema: &Value, value: &Value) -> Option<String> {
+    if let Some(each) = schema["oneOf"].as_array() {
+        let fitting = each.iter().filter(|s| wrong(s, value).is_none()).count();
+        if fitting != 1 {
+            return Some(format!("{value} fits {fitting} of {} kinds", each.len()));
+        }
+    }
+    if let Some(each) = schema["anyOf"].as_array()
+        && each.iter().all(|s| wrong(s, value).is_some())
+    {
+        return Some(format!("{value} fits nothing"));
+    }
+    if let Some(words) = schema["enum"].as_array()
+        && !words.contains(value)
+    {
+        return Some(format!("{value} is none of {words:?}"));
+    }
+    for name in schema["required"].as_array().into_iter().flatten() {
+        if value.get(name.as_str()?).is_none() {
+            return Some(format!("{name} is missing"));
+        }
+    }
+    let is = match schema["type"].as_str() {
+        Some("object") => value.is_object(),
+        Some("array") => value.is_array(),
+        Some("string") => value.is_string(),
+        Some("boolean") => value.is_boolean(),
+        Some("number") => value.is_number(),
+        Some("integer") => value.is_i64(),
+        Some(other) => panic!("unknown type {other}"),
+        None => true,
+    };
+    if !is {
+        return Some(format!("{value} is no {}", schema["type"]));
+    }
+    if let Some(items) = value.as_array() {
+        let limit = |key: &str| schema[key].as_u64().map(|n| n as usize);
+        let (least, most) = (limit("minItems"), limit("maxItems"));
+        if least.is_some_and(|n| items.len() < n) || most.is_some_and(|n| items.len() > n) {
+            return Some(format!("{value} has {} items", items.len()));
+        }
+        return items.iter().find_map(|item| wrong(&schema["items"], item));
+    }
+    let properties = schema["properties"].as_object()?;
+    value.as_object()?.iter().find_map(|(name, value)| {
+        let inner = properties
+            .get(name)
+            .unwrap_or(&schema["additionalProperties"]);
+        match inner {
+            Value::Bool(false) => Some(format!("{name} is unknown")),
+            inner => wrong(inner, value),
+        }
+    })
+}
+
+/// What the schema finds wrong with a scene.
+fn refused(text: &str) -> Option<String> {
+    let schema: Value = serde_json::from_str(&schema()).unwrap();
+    let table = toml::de::DeTable::parse(text).unwrap();
+    wrong(
+        &schema,
+        &as_json(&toml::de::DeValue::Table(table.into_inner())),
+    )
+}
+
+#[test]
+fn the_schema_takes_what_the_reader_takes() {
+    let mut texts = examples();
+    texts.extend([WHOLE.to_owned(), MACHINE.to_owned()]);
+    let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
+    for case in std::fs::read_dir(cases).unwrap() {
+        let path = case.unwrap().path().join("scene.toml");
+        texts.extend(std::fs::read_to_string(path).ok());
+    }
+    assert!(texts.len() > 12);
+    for text in texts {
+        assert_eq!(refused(&text), None, "{text}");
+    }
+}
+
+/// Of the careless scenes, the schema sees those with a key unknown or missing, and those with a
+/// value of another kind.
+#[test]
+fn the_schema_refuses_what_has_the_wrong_shape() {
+    let mut seen = 0;
+    for (text, scene) in [
+        (include_str!("errors.txt"), WHOLE),
+        (include_str!("machine.txt"), MACHINE),
+    ] {
+        for case in text.split("\n\n") {
+            let lines = |sign: char| {
+                let lines: Vec<_> = case.lines().filter_map(|l| l.strip_prefix(sign)).collect();
+                lines.join("\n")
+            };
+            let said = lines('=');
+            let shape = ["unknown key", "is missing", ": expected a number, found"];
+            if said.contains("not valid TOML") || !shape.iter().any(|s| said.contains(s)) {
+                continue;
+            }
+            let text = changed(scene, &lines('-'), &lines('+'));
+            assert!(refused(&text).is_some(), "{case}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 40, "{seen}");
+}
