@@ -200,6 +200,17 @@ impl Model {
         self
     }
 
+    /// The same mechanism for its inertia alone: no reaction, no load, and only the groups that
+    /// place something with inertia.
+    pub fn inertia_alone(&self) -> Self {
+        let mut bare = self.without_reactions();
+        bare.loads = Loads::default();
+        let massive: Vec<usize> = bare.massive.iter().map(|m| m.body).collect();
+        let needed = bare.plan.needed_for(massive);
+        bare.plan = bare.plan.only(&needed);
+        bare
+    }
+
     /// The same mechanism with no reaction asked for.
     pub fn without_reactions(&self) -> Self {
         let mut bare = self.clone();

@@ -94,7 +94,7 @@ pub struct Exact {
 impl Exact {
     /// The reduced model of a mechanism; none unless it has exactly one actuator.
     pub fn new(model: Model) -> Option<Self> {
-        let bare = model.without_reactions();
+        let bare = model.inertia_alone();
         (model.plan().actuators() == 1).then_some(Self { model, bare })
     }
 

@@ -157,6 +157,7 @@ fn below(t: f64) -> Option<String> {
 pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> StudyError {
     let phi = coordinate(scene);
     let joints = error.group().map(|g| plan.group_joints(g));
+    let unit = if plan.is_angle(0) { "rad" } else { "m" };
     let who = error.group().map_or_else(String::new, |g| {
         names(&scene.mechanism, &plan.group_bodies(g))
     });
@@ -164,7 +165,7 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
     let (message, help) = match *error {
         PlaceError::Unreachable { q, gap, .. } => (
             format!(
-                "{who} cannot reach each other at {phi} = {} rad: {} m are missing",
+                "{who} cannot reach each other at {phi} = {} {unit}: {} m are missing",
                 number(q),
                 digits(gap, 3)
             ),
@@ -172,7 +173,7 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
         ),
         PlaceError::Singular { q, .. } => (
             format!(
-                "{who} are in line at {phi} = {} rad: {phi} does not determine their motion there",
+                "{who} are in line at {phi} = {} {unit}: {phi} does not determine their motion there",
                 number(q)
             ),
             match plan.range().limits() {
@@ -182,14 +183,14 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
         ),
         PlaceError::OtherBranch { q, .. } => (
             format!(
-                "{who} can be placed on another assembly branch only at {phi} = {} rad",
+                "{who} can be placed on another assembly branch only at {phi} = {} {unit}",
                 number(q)
             ),
             "two branches come close to each other there",
         ),
         PlaceError::NotClosed { q, residual, .. } => (
             format!(
-                "{who} could not be placed at {phi} = {} rad: {} m stay open",
+                "{who} could not be placed at {phi} = {} {unit}: {} m stay open",
                 number(q),
                 digits(residual, 3)
             ),
@@ -197,7 +198,7 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
         ),
         PlaceError::OutOfRange { q, from, to } => (
             format!(
-                "{phi} = {} rad is outside its range, {} to {} rad",
+                "{phi} = {} {unit} is outside its range, {} to {} {unit}",
                 number(q),
                 number(from),
                 number(to)
@@ -205,7 +206,7 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
             "start within the range; `dwell check` shows it",
         ),
         PlaceError::NotFinite { q } => (
-            format!("{phi} = {q} rad is not a finite number"),
+            format!("{phi} = {q} {unit} is not a finite number"),
             "check the numbers of the motion",
         ),
     };

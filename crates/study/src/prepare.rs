@@ -2,9 +2,9 @@
 
 use crate::error::{StudyError, explain_model, not_one_actuator};
 use dwell_dynamics::State;
-use dwell_geometry::{Reaction, Start};
+use dwell_geometry::{ActuatorId, Reaction, Start};
 use dwell_kinetostatics::{Exact, Model, Reduced};
-use dwell_scene::Scene;
+use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
 
 /// A scene and the reduced model of what it requests.
@@ -36,6 +36,37 @@ impl<'a> Prepared<'a> {
     pub fn new(scene: &'a Scene) -> Result<Self, StudyError> {
         let model = model(scene, &scene.requests.reactions)?;
         Ok(Self { scene, model })
+    }
+
+    /// Compiles what a scene requests, for those who show an angle and know no loads.
+    ///
+    /// # Errors
+    /// As [`Prepared::new`]; where a length is driven, or (for a motion, which they would change)
+    /// where there are loads.
+    pub(crate) fn for_angle(scene: &'a Scene, motion: bool) -> Result<Self, StudyError> {
+        let prepared = Self::new(scene)?;
+        let label = |place, word: &str| [(place, word.to_owned())];
+        if !prepared.model.model().plan().is_angle(0) {
+            return Err(scene
+                .error(
+                    "the reduced model of a driven length cannot be shown yet".to_owned(),
+                    Some(
+                        "`dwell kinetostatics` knows driven lengths; or drive an angle".to_owned(),
+                    ),
+                    &label(Place::Actuator(ActuatorId(0)), "drives a length"),
+                )
+                .into());
+        }
+        if motion && !scene.loads.is_empty() {
+            return Err(scene
+                .error(
+                    "loads do not act in a free motion yet".to_owned(),
+                    Some("`dwell kinetostatics` knows loads, along a prescribed motion".to_owned()),
+                    &label(Place::Load(0), "this load would be left out"),
+                )
+                .into());
+        }
+        Ok(prepared)
     }
 
     /// The name of the coordinate.

@@ -74,7 +74,7 @@ pub(crate) fn coefficient_unit(unit: &str) -> &'static str {
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be put together or a figure cannot be drawn.
 pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
-    let prepared = Prepared::new(scene)?;
+    let prepared = Prepared::for_angle(scene, false)?;
     let sweep = Sweep::new(&prepared)?;
     let mut figures: Vec<Figure> = vec![figures::reduced(&prepared, &sweep)];
     figures.extend(figures::coefficients(&prepared, &sweep));

@@ -137,7 +137,7 @@ impl History {
 /// # Errors
 /// [`StudyError`] when the scene has no motion, or it cannot be followed to its end.
 pub fn simulate(scene: &Scene, accuracy: &Accuracy) -> Result<Outcome, StudyError> {
-    let prepared = Prepared::new(scene)?;
+    let prepared = Prepared::for_angle(scene, true)?;
     let (Some(start), Some(motion)) = (prepared.start(), &scene.motion) else {
         return Err(scene
             .error(

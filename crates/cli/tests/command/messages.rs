@@ -144,7 +144,7 @@ fn mechanisms() {
     group.scene("two degrees of freedom", "check", with(&FIVE_BAR));
     group.scene("two actuators on one", "check", with(&TWO_ACTUATORS));
     let both = [FIVE_BAR, TWO_ACTUATORS].concat();
-    group.scene("two actuators on two", "check", with(&both));
+    group.scene("two actuators on two", "reduce", with(&both));
     let none = [
         ("[actuators.phi]\nangle = [\"ground\", \"crank\"]\n", ""),
         ("phi = 1.0\n", ""),
