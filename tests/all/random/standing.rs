@@ -58,7 +58,7 @@ pub(super) struct View {
     swapped: Vec<bool>,
     turned_round: Vec<bool>,
     /// By body and by joint: its place in the description.
-    bodies: Vec<usize>,
+    pub(super) bodies: Vec<usize>,
     pub(super) joints: Vec<usize>,
     names: u64,
 }
@@ -236,6 +236,9 @@ impl Standing {
             frames: vec![[0.0; 3]; n],
             down: vec2(0.0, -1.0).turn(whole),
         };
+        // Gears mesh as the rough angles have them, which are then no rough ones.
+        let geared = |held: &Held| matches!(held.kind, Kind::Gear { .. });
+        let rough = if self.joints.iter().any(geared) { 0.0 } else { ROUGH };
         let mut rng = Rng(view.names);
         for (b, mass) in self.bodies.iter().enumerate() {
             let to = view.bodies[b];
@@ -247,7 +250,7 @@ impl Standing {
             };
             described.frames[to] = frame(b);
             described.start.rough[to] =
-                (b > 0).then(|| frame(b)[2] + rng.between(-ROUGH, ROUGH));
+                (b > 0).then(|| frame(b)[2] + rough * rng.between(-1.0, 1.0));
         }
         described
     }
