@@ -8,6 +8,7 @@
 
 mod branches;
 mod cases;
+mod cases_states;
 mod chain;
 mod change_points;
 mod changes;

@@ -183,3 +183,46 @@ fn two_actuators_for_one_freedom_are_named() {
         "{error:?}"
     );
 }
+
+/// A crank-rocker that carries a massless six-bar extension: without a request for it, it is left
+/// out, and every number that remains is the same to the last bit.
+#[test]
+fn what_nothing_needs_is_left_out() {
+    let mut bars = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let s = &mut bars.sketch;
+    let arm = s.body("arm");
+    let tip = s.body("tip");
+    s.revolute("E", (bars.coupler, [1.5, 0.7]), (arm, [0.0, 0.0]));
+    s.revolute("F", (arm, [4.0, 0.0]), (tip, [0.0, 0.0]));
+    s.revolute("G", (GROUND, [5.0, 3.0]), (tip, [3.5, 0.0]));
+    let mut setup = bars.setup(1.0, 0.6);
+    setup.start.rough[arm.0] = Some(0.5);
+    let bar = Mass {
+        mass: 2.0,
+        center: vec2(0.5, 0.1),
+        inertia: 0.2,
+    };
+    for body in [bars.crank, bars.coupler, bars.rocker] {
+        setup.masses[body.0] = bar;
+    }
+    let reactions = setup.mechanism.reactions();
+    let full = Model::new(&setup.mechanism, &setup.masses, &setup.start, &reactions).unwrap();
+    let lean = full.clone().only_for(&setup.mechanism, &[]);
+    assert_eq!(lean.plan().skipped(), [false, true]);
+    let asked = full.clone().only_for(&setup.mechanism, &[tip]);
+    assert_eq!(asked.plan().skipped(), [false, false]);
+    let (mut one, mut two) = (full.workspace::<f64>(), lean.workspace::<f64>());
+    let (mut with, mut without) = (full.actions(), lean.actions());
+    for q in [1.0, 2.0, 3.0, 4.4, 6.0] {
+        full.act(&[q], &[1.2], &[-0.3], &mut one, &mut with)
+            .unwrap();
+        lean.act(&[q], &[1.2], &[-0.3], &mut two, &mut without)
+            .unwrap();
+        let bits = |a: &dwell_kinetostatics::Actions<f64>| -> Vec<u64> {
+            // A zero may have either sign.
+            let all = a.tau.iter().chain(&a.reactions);
+            all.map(|v| (v + 0.0).to_bits()).collect()
+        };
+        assert_eq!(bits(&with), bits(&without));
+    }
+}

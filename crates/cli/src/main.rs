@@ -10,9 +10,10 @@ mod validate;
 use clap::Parser;
 use dwell_findings::all_pass;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Accuracy, Outcome, StudyError};
+use dwell_study::{Accuracy, Command as Run, Outcome, Step, StudyError};
+use indicatif::{ProgressBar, ProgressStyle};
 use miette::{Report, miette};
-use options::{Command, Options};
+use options::{Along, Command, Options};
 use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
@@ -46,6 +47,7 @@ fn run(options: Options) -> Result<bool, Report> {
         ));
     }
     let mut unusable = None;
+    let mut stopped = None;
     let outcome = match &command {
         Command::Check { scene } => told(dwell_study::check(&read(scene)?))?,
         Command::Reduce { scene } => told(dwell_study::reduce(&read(scene)?))?,
@@ -62,6 +64,9 @@ fn run(options: Options) -> Result<bool, Report> {
             };
             told(dwell_study::simulate(&read(scene)?, &accuracy))?
         }
+        Command::Kinematics(along) => follow(along, Run::Kinematics, &mut stopped)?,
+        Command::Statics(along) => follow(along, Run::Statics, &mut stopped)?,
+        Command::Kinetostatics(along) => follow(along, Run::Kinetostatics, &mut stopped)?,
         Command::Calibrate { scene, set, period } => {
             let scene = read(scene)?;
             told(dwell_study::calibrate(&scene, set.as_deref(), *period))?
@@ -91,11 +96,40 @@ fn run(options: Options) -> Result<bool, Report> {
             print(&format!("  and {more} more below {}\n", out.display()))?;
         }
     }
+    if let Some(reason) = &stopped {
+        // A closed standard error is no reason to panic.
+        let _ = writeln!(std::io::stderr(), "{reason:?}");
+    }
     match unusable {
         // Told last: it is what has to be seen to.
         Some(report) => Err(report),
-        None => Ok(all_pass(&outcome.findings)),
+        None => Ok(stopped.is_none() && all_pass(&outcome.findings)),
     }
+}
+
+/// Follows a scene along its way; if that ends early, `stopped` says why.
+fn follow(along: &Along, run: Run, stopped: &mut Option<Report>) -> Result<Outcome, Report> {
+    let scene = read(&along.scene)?;
+    let points = along.points.map(|n| n as usize);
+    let bar = progress_bar();
+    let heard = |step: Step<'_>| {
+        bar.set_length(step.total as u64);
+        bar.set_message(step.done.to_owned());
+        bar.inc(1);
+    };
+    let followed = dwell_study::run(&scene, run, points, &heard);
+    bar.finish_and_clear();
+    let followed = told(followed)?;
+    *stopped = followed.stopped.map(|e| Report::new(as_scene_error(e)));
+    Ok(followed.outcome)
+}
+
+fn progress_bar() -> ProgressBar {
+    let bar = ProgressBar::new(0);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
+        bar.set_style(style);
+    }
+    bar
 }
 
 fn read(path: &Path) -> Result<Scene, Report> {

@@ -1,6 +1,6 @@
 //! The arguments.
 
-use clap::{Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use dwell_dynamics::Method;
 use std::path::PathBuf;
 
@@ -41,6 +41,12 @@ pub(crate) enum Command {
         #[arg(long, value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
         atol: Option<f64>,
     },
+    /// Positions, speeds and accelerations along the prescribed motion, the sweep or the range
+    Kinematics(Along),
+    /// Actions and reactions under the loads, at rest in each position
+    Statics(Along),
+    /// Actions and reactions under loads and inertia, along the prescribed motion or the sweep
+    Kinetostatics(Along),
     /// The scene value that gives a wanted period of the free motion
     Calibrate {
         /// The scene file
@@ -62,6 +68,15 @@ pub(crate) enum Command {
     },
     /// The JSON schema of scenes, for editors that complete TOML
     Schema,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Along {
+    /// The scene file
+    pub(crate) scene: PathBuf,
+    /// Positions, the ends among them (as the scene says, if absent)
+    #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
+    pub(crate) points: Option<u32>,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

@@ -41,7 +41,7 @@ impl Plan {
                 Kind::Solved(solved) if solved.how == How::Newton => {
                     self.ways_by_newton(g, rough, &mut pose)?
                 }
-                Kind::Solved(solved) if solved.how == How::Linear => {
+                Kind::Solved(solved) if matches!(solved.how, How::Linear | How::Geared) => {
                     vec![self.way(g, 1.0, &mut pose)?]
                 }
                 _ => vec![self.way(g, 1.0, &mut pose)?, self.way(g, -1.0, &mut pose)?],
@@ -53,7 +53,8 @@ impl Plan {
                 Kind::Solved(solved) => (solved.branch, solved.side) = (way.branch, way.side),
             }
             self.set(g, &way.values, &mut pose);
-            self.lead(g, &mut pose);
+            self.place_group(g, &mut pose)
+                .map_err(|e| self.refusal(g, e))?;
         }
         self.place_from(&q, &mut pose, Guess::Pose)
             .map_err(|e| self.refusal(self.groups.len(), e))?;
@@ -79,20 +80,6 @@ impl Plan {
                 let open = self.relations[r].value(&pose.angle, &pose.slide);
                 self.relations[r].of.constant -= open;
                 self.relations[r].as_assembled = false;
-            }
-        }
-    }
-
-    /// Counts the turns of a line of centres beside its carrier from here on.
-    fn lead(&mut self, g: usize, pose: &mut Pose<f64>) {
-        for &unknown in &self.groups[g].group.unknowns {
-            let Unknown::Class(class) = unknown else {
-                continue;
-            };
-            let line = self.class_roots[class];
-            if let Some((carrier, lead)) = self.beside.get_mut(&line) {
-                *lead = pose.turn[line].turn_back(pose.turn[*carrier]).angle();
-                pose.angle[line] = pose.angle[*carrier] + *lead;
             }
         }
     }

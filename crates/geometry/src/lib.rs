@@ -10,6 +10,7 @@ pub mod measure;
 pub mod mechanism;
 pub mod mobility;
 pub mod motion;
+mod need;
 mod place;
 pub mod plan;
 pub mod plane;

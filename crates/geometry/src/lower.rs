@@ -71,9 +71,8 @@ pub(crate) struct Ratio {
     pub(crate) as_assembled: bool,
     /// Whether the relation is between angles, in rad, rather than between lengths, in m.
     pub(crate) angular: bool,
-    /// A line of centres it names and the body that holds both centres, beside which the line's turns
-    /// are counted.
-    pub(crate) line: Option<(usize, usize)>,
+    /// A line of centres it names, the body that holds both centres, and the line's angle in it, rad.
+    pub(crate) line: Option<(usize, usize, f64)>,
 }
 
 /// What an actuator drives.
@@ -176,7 +175,7 @@ impl Lowered {
                 self.ratio(owner, of, true);
                 let carrier = carrier(mechanism, id, radii[0] + radii[1]);
                 if let Some(ratio) = self.ratios.last_mut() {
-                    ratio.line = carrier.map(|carrier| (line, carrier));
+                    ratio.line = carrier.map(|(carrier, lead)| (line, carrier, lead));
                 }
             }
             JointKind::Rack { axis, radius } => {
@@ -357,8 +356,9 @@ impl Lowered {
     }
 }
 
-/// The body that holds the centres of both gears, in pins and welds.
-fn carrier(mechanism: &Mechanism, gears: JointId, radii: f64) -> Option<usize> {
+/// The body that holds the centres of both gears, in pins and welds, and the angle of the line from
+/// the first to the second in it, rad.
+fn carrier(mechanism: &Mechanism, gears: JointId, radii: f64) -> Option<(usize, f64)> {
     let near = SAME_CENTRE * radii;
     let joint = &mechanism.joints[gears.0];
     let holders = |end: usize| {
@@ -384,10 +384,10 @@ fn carrier(mechanism: &Mechanism, gears: JointId, radii: f64) -> Option<usize> {
         found
     };
     let seconds = holders(1);
-    let firsts = holders(0).into_iter().map(|(body, _)| body);
-    firsts
-        .into_iter()
-        .find(|b| seconds.iter().any(|(s, _)| s == b))
+    holders(0).into_iter().find_map(|(body, first)| {
+        let (_, second) = seconds.iter().find(|(b, _)| *b == body)?;
+        Some((body, (*second - first).angle()))
+    })
 }
 
 /// Two points of a body are one centre within this part of the radii: only the count of turns

@@ -158,7 +158,7 @@ impl Plan {
         guess: Guess,
     ) -> Result<(), PlaceError> {
         let assur = &self.groups[group];
-        if matches!(&assur.kind, Kind::Solved(s) if s.how == How::Newton) {
+        if matches!(&assur.kind, Kind::Solved(s) if matches!(s.how, How::Newton | How::Geared)) {
             return Ok(());
         }
         let near = match guess {

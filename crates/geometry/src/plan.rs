@@ -246,6 +246,8 @@ pub(crate) enum How {
     Newton,
     /// Its equations are linear in its unknowns.
     Linear,
+    /// Gears whose lines of centres turn with their carriers: linear in the angles.
+    Geared,
     /// Two classes turn until a loop closes: a triangle with sides that may change.
     Triangle(usize, usize),
     /// A class turns and a slide travels until a loop closes.
@@ -558,6 +560,7 @@ impl Plan {
                 How::Newton => "Newton along the way from the start",
                 How::Linear if g.group.loops.is_empty() => "relation",
                 How::Linear => "slides, closed form",
+                How::Geared => "gears, closed form",
                 How::Triangle(..) => "pinned dyad of changing length, closed form",
                 How::Reach(..) => "turn and slide, closed form",
                 How::Guide(_) => "guided point, closed form",

@@ -75,6 +75,7 @@ impl Plan {
                 self.close(group, solved, pose)?
             }
             How::Linear => self.step_once(group, solved, pose)?,
+            How::Geared => self.mesh(group, solved, pose)?,
             How::Triangle(..) | How::Reach(..) | How::Guide(_) => {
                 self.construct(group, solved, pose)?;
                 self.turn_group(group, pose);
@@ -99,6 +100,7 @@ impl Plan {
     pub(crate) fn same_branch<T: Scalar>(&self, pose: &Pose<T>) -> Result<(), PlaceError> {
         for (group, assur) in self.groups.iter().enumerate() {
             if let Kind::Solved(solved) = &assur.kind
+                && !assur.skipped
                 && !solved.tall()
                 && self.sign(solved, pose) * solved.branch <= 0.0
             {
@@ -479,9 +481,62 @@ impl Plan {
                     turned(own, normal * kappa - along * reach)
                 };
             }
-            How::Newton | How::Linear => {}
+            How::Newton | How::Linear | How::Geared => {}
         }
         Ok(())
+    }
+
+    /// Places gears by equations in which each line of centres turns with its carrier, and leaves
+    /// the factors of the real Jacobian.
+    fn mesh<T: Scalar>(
+        &self,
+        group: usize,
+        solved: &Solved,
+        pose: &mut Pose<T>,
+    ) -> Result<Factored, PlaceError> {
+        let Group {
+            unknowns, loops, ..
+        } = &self.groups[group].group;
+        for &unknown in unknowns {
+            if let Unknown::Class(class) = unknown {
+                self.set_angle(class, T::lift(0.0), pose);
+            }
+        }
+        self.turn_group(group, pose);
+        self.residual(group, pose);
+        self.assemble_jacobian(group, solved, pose);
+        let n = solved.columns;
+        for (row, &l) in loops.iter().enumerate() {
+            let Some((_, line)) = self.closures[l].axis else {
+                continue;
+            };
+            let Some(&(carrier, lead)) = self.beside.get(&line) else {
+                continue;
+            };
+            pose.work[row] = pose.angle[line] - pose.angle[carrier] - T::lift(lead);
+            for (column, &unknown) in unknowns.iter().enumerate() {
+                let of = |frame: usize| {
+                    let class = self.frames.frames[frame].class;
+                    f64::from(u8::from(unknown == Unknown::Class(class)))
+                };
+                let entry = &mut pose.lu[solved.lu + row * n + column];
+                *entry = T::lift(of(line) - of(carrier));
+            }
+        }
+        let factored = small::factor(
+            &mut pose.lu[solved.lu..solved.lu + n * n],
+            &mut pose.pivots[solved.pivots..solved.pivots + n],
+        );
+        if factored.measure <= SINGULAR {
+            return Err(PlaceError::Singular {
+                group,
+                q: pose.q.first().map_or(0.0, |q| q.value()),
+                measure: factored.measure,
+            });
+        }
+        self.correct(group, solved, pose);
+        self.turn_group(group, pose);
+        self.factor(group, solved, pose)
     }
 }
 

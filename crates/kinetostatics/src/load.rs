@@ -1,7 +1,7 @@
 //! What acts on a mechanism from outside: each load is a shape that the configuration fixes, times a
 //! magnitude that may depend on time and on what moves.
 
-use dwell_geometry::{BodyId, Coordinate, Vec2};
+use dwell_geometry::{BodyId, Coordinate, Mechanism, Vec2};
 use dwell_laws::{Expression, Law};
 
 /// A named load.
@@ -90,4 +90,35 @@ pub enum Signal {
     Value(Coordinate),
     /// Its speed, rad/s or m/s.
     Speed(Coordinate),
+}
+
+impl Load {
+    /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those
+    /// with mass, which are needed anyway.
+    pub fn bodies(&self, mechanism: &Mechanism) -> Vec<BodyId> {
+        let mut bodies = match self.kind {
+            LoadKind::Gravity { .. } => Vec::new(),
+            LoadKind::Force { body, .. } => vec![body],
+            LoadKind::Torque { bodies }
+            | LoadKind::Spring { bodies, .. }
+            | LoadKind::TorsionSpring { bodies, .. }
+            | LoadKind::Damper { bodies, .. }
+            | LoadKind::TorsionDamper { bodies } => bodies.to_vec(),
+        };
+        let signals = match &self.magnitude {
+            Magnitude::Constant(_) => &[][..],
+            Magnitude::Law(signal, _) => std::slice::from_ref(signal),
+            Magnitude::Expression(_, signals) => signals,
+        };
+        for signal in signals {
+            let (Signal::Value(coordinate) | Signal::Speed(coordinate)) = *signal else {
+                continue;
+            };
+            bodies.extend(match coordinate {
+                Coordinate::Angle(pair) | Coordinate::Length { bodies: pair, .. } => pair,
+                Coordinate::Travel(joint) => mechanism.joints[joint.0].bodies,
+            });
+        }
+        bodies
+    }
 }

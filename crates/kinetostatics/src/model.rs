@@ -182,6 +182,24 @@ impl Model {
         })
     }
 
+    /// By group of the plan: whether inertia, a load or one of the bodies `wanted` needs it.
+    pub fn needed(&self, mechanism: &Mechanism, wanted: &[BodyId]) -> Vec<bool> {
+        let massive = self.massive.iter().map(|m| m.body);
+        let loads = self.loads().iter().flat_map(|load| load.bodies(mechanism));
+        let asked = loads.chain(wanted.iter().copied()).map(|b| b.0);
+        self.plan.needed_for(massive.chain(asked))
+    }
+
+    /// The same model without the groups that no inertia, no load and none of the bodies `wanted`
+    /// needs. What remains is the same to the last bit: nothing acts on the groups left out, so
+    /// their reactions are zero.
+    #[must_use]
+    pub fn only_for(mut self, mechanism: &Mechanism, wanted: &[BodyId]) -> Self {
+        let needed = self.needed(mechanism, wanted);
+        self.plan = self.plan.only(&needed);
+        self
+    }
+
     /// The same mechanism with no reaction asked for.
     pub fn without_reactions(&self) -> Self {
         let mut bare = self.clone();

@@ -153,14 +153,21 @@ impl LinkForces {
     pub fn sections(&self, intervals: usize) -> Vec<Section> {
         let n = intervals.max(1);
         #[allow(clippy::cast_precision_loss, reason = "a number of stations")]
-        let even = (0..=n).map(|i| self.at(self.length * (i as f64 / n as f64)));
-        let mut all: Vec<Section> = even.collect();
-        for &(station, ..) in &self.points {
-            if self.inside(station) {
-                all.extend([self.before(station), self.at(station)]);
+        let even = (0..=n).map(|i| self.length * (i as f64 / n as f64));
+        let acted = || {
+            let stations = self.points.iter().map(|&(station, ..)| station);
+            stations.filter(|&station| self.inside(station))
+        };
+        let mut stations: Vec<f64> = acted().chain(even).collect();
+        stations.sort_by(f64::total_cmp);
+        stations.dedup_by(|b, a| *b - *a <= self.slack());
+        let mut all = Vec::with_capacity(stations.len() + self.points.len());
+        for station in stations {
+            if acted().any(|at| (at - station).abs() <= self.slack()) {
+                all.push(self.before(station));
             }
+            all.push(self.at(station));
         }
-        all.sort_by(|a, b| a.station.total_cmp(&b.station));
         all
     }
 

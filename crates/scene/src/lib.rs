@@ -86,6 +86,7 @@ mod tests;
 
 pub use error::SceneError;
 pub use place::Place;
+pub use problem::choices;
 pub use scene::{
     Assembly, Calibration, DwellRequest, Length, Motion, NamedCoordinate, PathPoint, Prescribed,
     Requests, Scene, Section, Sweep,

@@ -142,8 +142,9 @@ impl Problems {
     }
 }
 
-/// See [`Problems::choices`].
-pub(crate) fn choices<'n>(
+/// What to try instead of the name `wrong`: the nearest of `names`, or else their list. `kind` is
+/// what they are, in the plural.
+pub fn choices<'n>(
     wrong: &str,
     kind: &str,
     names: impl Iterator<Item = &'n str> + Clone,

@@ -8,6 +8,7 @@ use dwell_findings::Finding;
 use dwell_scene::{Prescribed, Scene};
 use dwell_verify::{State, judge_states};
 use std::f64::consts::{PI, TAU};
+use std::path::Path;
 
 /// States along each motion, and positions in which it is drawn.
 const STATES: usize = 121;
@@ -16,15 +17,29 @@ const FINE: usize = 721;
 const MARGIN: f64 = 0.02;
 
 /// The states of a case, and what was found about them.
-#[derive(Debug)]
-pub(crate) struct Judged {
-    pub(crate) states: Vec<State>,
-    /// How many of them, from the first, are of the motion that is drawn, and what that is.
-    pub(crate) drawn: usize,
-    pub(crate) motion: &'static str,
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// The frames of all bodies as assembled: x, y (m) and angle (rad).
+    pub start: Vec<[f64; 3]>,
+    /// Along the prescribed motion, over the sweep, and those of the reference.
+    pub states: Vec<State>,
+    /// How many of them, from the first, are of the motion that is drawn.
+    pub drawn: usize,
+    /// What that motion is, in words.
+    pub motion: &'static str,
     /// The frames of all bodies along it, close to each other.
-    pub(crate) frames: Vec<Vec<[f64; 3]>>,
-    pub(crate) findings: Vec<Finding>,
+    pub frames: Vec<Vec<[f64; 3]>>,
+    /// The truths of states, then the reference.
+    pub findings: Vec<Finding>,
+}
+
+/// Judges the case whose scene is `scene` and whose reference, if any, is in `folder`, in states
+/// of motion alone.
+///
+/// # Errors
+/// [`StudyError`] when the scene or the reference cannot be used, or a state cannot be reached.
+pub fn judge_case(scene: &Scene, folder: &Path) -> Result<Judged, StudyError> {
+    judge(scene, &Reference::read(folder, scene)?)
 }
 
 /// Judges the states of a case, then its reference.
@@ -61,6 +76,7 @@ pub(crate) fn judge(scene: &Scene, reference: &Reference) -> Result<Judged, Stud
     let mut findings = judge_states(&scene.mechanism, &scene.masses, &start, &states);
     findings.extend(reference.findings(scene, &mut claims)?);
     Ok(Judged {
+        start,
         states,
         drawn,
         motion,

@@ -271,8 +271,8 @@ fn validations() {
     );
     group.bench.put("cases/d/scene.toml", "title = 3");
     group.refused(
-        "two that cannot be read",
-        &["validate", "--folder", "cases"],
+        "three that cannot be validated",
+        &["validate", "b", "c", "d", "--folder", "cases"],
     );
     group.bench.put("other/a/scene.toml", with(&[]));
     group.refused("two of one name", &["validate", "cases/a", "other/a"]);

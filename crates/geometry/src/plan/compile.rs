@@ -158,7 +158,7 @@ impl Plan {
         let remembers = match &kind {
             Kind::Solved(solved) => match solved.how {
                 How::Newton => true,
-                How::Linear => false,
+                How::Linear | How::Geared => false,
                 _ => counts,
             },
             _ => counts,
@@ -253,6 +253,18 @@ impl Plan {
         let linear = |&r: &usize| self.relations[r].linear_in(&self.frames, class, slide);
         if (!turns || group.loops.is_empty()) && group.relations.iter().all(linear) {
             return How::Linear;
+        }
+        // Loops that only follow lines of centres: the carrier tells where these are.
+        let follows = |&l: &usize| {
+            let axis = self.closures[l].axis;
+            axis.is_some_and(|(_, frame)| self.beside.contains_key(&frame))
+        };
+        let turn = |u: &Unknown| matches!(u, Unknown::Class(_));
+        if group.unknowns.iter().all(turn)
+            && group.loops.iter().all(follows)
+            && group.relations.iter().all(linear)
+        {
+            return How::Geared;
         }
         let &[l] = group.loops.as_slice() else {
             return How::Newton;
@@ -362,9 +374,12 @@ fn counted(frames: &Frames, relations: &[Row], beside: &HashMap<usize, (usize, f
 
 /// The lines of centres that turn with a carrier, with the carrier's frame.
 fn beside(lowered: &Lowered, frames: &Frames) -> HashMap<usize, (usize, f64)> {
-    let frame = |body: usize| frames.attitudes[body].frame;
+    let of = |body: usize| frames.attitudes[body];
     let lines = lowered.ratios.iter().filter_map(|ratio| ratio.line);
-    let held = lines.map(|(line, carrier)| (frame(line), (frame(carrier), 0.0)));
+    let held = lines.map(|(line, carrier, lead)| {
+        let lead = lead + of(carrier).offset.angle() - of(line).offset.angle();
+        (of(line).frame, (of(carrier).frame, lead))
+    });
     held.filter(|(line, _)| frames.frames[*line].turning == Turning::Unknown)
         .collect()
 }

@@ -1,12 +1,13 @@
 //! The mechanism in several positions, the paths of its points, and a body's dwell.
 
+use super::skeleton::{Frame, Skeleton, place};
 use super::{caption, coordinate_label};
 use crate::error::StudyError;
 use crate::motion_error::explain_place;
 use crate::prepare::Prepared;
-use dwell_geometry::{BodyId, JointKind, Plan, Pose, Range, Vec2, vec2};
+use dwell_geometry::{BodyId, Plan, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::Reduced;
-use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape, Side};
+use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape};
 use dwell_scene::{PathPoint, Scene};
 use std::f64::consts::TAU;
 
@@ -32,7 +33,7 @@ pub(crate) struct Dwell {
 pub(super) struct Sweep {
     pub(super) q: Vec<f64>,
     /// By position and body: origin and orientation.
-    pub(super) frames: Vec<Vec<(Vec2, Vec2)>>,
+    pub(super) frames: Vec<Vec<Frame>>,
 }
 
 impl Sweep {
@@ -55,9 +56,7 @@ impl Sweep {
     }
 
     pub(super) fn point(&self, position: usize, body: usize, at: Vec2) -> [f64; 2] {
-        let (origin, turn) = self.frames[position][body];
-        let place = origin + at.turn(turn);
-        [place.x, place.y]
+        place(&self.frames[position], body, at)
     }
 }
 
@@ -117,6 +116,7 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
 /// The bodies in several positions, the lightest at the back.
 fn ghosts(prepared: &Prepared<'_>, sweep: &Sweep, full: bool, dwell: Option<&Dwell>) -> Vec<Shape> {
     let mut shapes = Vec::new();
+    let skeleton = Skeleton::new(prepared.scene, &sweep.frames);
     let start = prepared.model.model().plan().start()[0];
     let last = sweep.q.len() - 1;
     let nearest = |q: f64| {
@@ -140,145 +140,16 @@ fn ghosts(prepared: &Prepared<'_>, sweep: &Sweep, full: bool, dwell: Option<&Dwe
             shapes.extend(dwelling(prepared, sweep, dwell));
         }
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.04 * k as f64 };
-        linkage(prepared.scene, sweep, position, lightness, &mut shapes);
+        skeleton.draw(&sweep.frames[position], lightness, &mut shapes);
     }
     shapes
-}
-
-/// All bodies, then all pins, in one position.
-pub(super) fn linkage(
-    scene: &Scene,
-    sweep: &Sweep,
-    position: usize,
-    lightness: f64,
-    shapes: &mut Vec<Shape>,
-) {
-    let mechanism = &scene.mechanism;
-    let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
-    for (color, body) in moving.enumerate() {
-        let pen = Pen::new(Paint::Palette(color), 6.0).lightness(lightness);
-        let mut shape = match outline(scene, body) {
-            Outline::Block(corners) => {
-                let at = corners.map(|c| sweep.point(position, body, c));
-                Shape::area(at.to_vec(), Pen { width: 3.0, ..pen }, 0.35)
-            }
-            Outline::Plate(corners) => {
-                let at = corners.iter().map(|c| sweep.point(position, body, *c));
-                Shape::area(at.collect(), Pen { width: 4.0, ..pen }, 0.15)
-            }
-            Outline::Bar(ends) => {
-                let at = ends.iter().map(|c| sweep.point(position, body, *c));
-                Shape::line(at.collect(), pen)
-            }
-        };
-        if lightness == 0.0 {
-            shape = shape.named(mechanism.bodies[body].name.clone());
-        }
-        shapes.push(shape);
-    }
-    for joint in &mechanism.joints {
-        let [one, _] = joint.bodies.map(|b| b.0);
-        let on_ground = joint.bodies.iter().any(|b| b.0 == mechanism.ground);
-        let at = sweep.point(position, one, joint.points[0]);
-        match joint.kind {
-            JointKind::Revolute if on_ground && lightness == 0.0 => {
-                shapes.push(Shape::GroundPin { at });
-                shapes.push(Shape::text(at, joint.name.clone(), Side::AboveLeft));
-            }
-            JointKind::Revolute if on_ground => {}
-            JointKind::Revolute => {
-                shapes.push(Shape::pin(at, Paint::Ink, lightness));
-                if lightness == 0.0 {
-                    shapes.push(Shape::text(at, joint.name.clone(), Side::AboveRight));
-                }
-            }
-            JointKind::Prismatic { axes } if on_ground && lightness == 0.0 => {
-                let size = size(scene);
-                let (_, turn) = sweep.frames[position][one];
-                let along = axes[0].turn(turn) * (0.5 * size);
-                let middle = vec2(at[0], at[1]);
-                let [from, to] = [middle - along, middle + along].map(|p| [p.x, p.y]);
-                shapes.push(Shape::GroundLine { from, to });
-            }
-            _ => {}
-        }
-    }
-}
-
-/// How a body is drawn.
-enum Outline {
-    /// A small block that slides.
-    Block([Vec2; 4]),
-    /// A plate through three or more points.
-    Plate(Vec<Vec2>),
-    /// A bar through points of one line.
-    Bar(Vec<Vec2>),
-}
-
-fn outline(scene: &Scene, body: usize) -> Outline {
-    let mut points: Vec<Vec2> = scene.points[body].iter().map(|(_, p)| *p).collect();
-    points.dedup();
-    if let ([at], Some(axis)) = (points.as_slice(), slide_axis(scene, body)) {
-        let half = 0.045 * size(scene);
-        let (along, across) = (axis * (1.6 * half), axis.perp() * half);
-        let at = *at;
-        return Outline::Block([
-            at - along - across,
-            at + along - across,
-            at + along + across,
-            at - along + across,
-        ]);
-    }
-    let middle =
-        points.iter().fold(Vec2::ZERO, |sum, p| sum + *p) * (1.0 / points.len().max(1) as f64);
-    let farthest = points
-        .iter()
-        .map(|p| *p - middle)
-        .max_by(|a, b| a.norm().total_cmp(&b.norm()))
-        .unwrap_or(Vec2::ZERO);
-    let off_line = |p: &Vec2| farthest.cross(*p - middle).abs() > 1e-6 * farthest.norm().powi(2);
-    if points.len() > 2 && points.iter().any(off_line) {
-        points.sort_by(|a, b| (*a - middle).angle().total_cmp(&(*b - middle).angle()));
-        Outline::Plate(points)
-    } else {
-        points.sort_by(|a, b| farthest.dot(*a).total_cmp(&farthest.dot(*b)));
-        Outline::Bar(points)
-    }
-}
-
-/// The axis of a body's prismatic joint, in its frame.
-fn slide_axis(scene: &Scene, body: usize) -> Option<Vec2> {
-    scene.mechanism.joints.iter().find_map(|joint| {
-        let JointKind::Prismatic { axes } = joint.kind else {
-            return None;
-        };
-        let end = joint.bodies.iter().position(|b| b.0 == body)?;
-        Some(axes[end])
-    })
-}
-
-/// A length to measure symbols by: the mean length of the bodies that have one, m.
-fn size(scene: &Scene) -> f64 {
-    let extent = |points: &Vec<(String, Vec2)>| {
-        let all = points
-            .iter()
-            .flat_map(|(_, p)| points.iter().map(|(_, r)| (*p - *r).norm()));
-        all.fold(0.0, f64::max)
-    };
-    let lengths: Vec<f64> = scene
-        .points
-        .iter()
-        .map(extent)
-        .filter(|l| *l > 0.0)
-        .collect();
-    lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
 }
 
 /// The paths that were asked for.
 pub(super) fn paths(scene: &Scene, sweep: &Sweep) -> Vec<Shape> {
     let wanted = scene.requests.paths.iter();
     let path = |path: &PathPoint| {
-        let points = (0..sweep.q.len()).map(|i| sweep.point(i, path.body.0, path.at));
+        let points = (0..sweep.frames.len()).map(|i| sweep.point(i, path.body.0, path.at));
         let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
         Shape::line(points.collect(), pen).named("paths")
     };

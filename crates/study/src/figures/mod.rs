@@ -1,18 +1,22 @@
 //! The pictures of a study.
 
+mod along;
 mod cost;
 mod curves;
 mod digits;
 mod mechanism;
 mod motion;
+mod skeleton;
 mod states;
 mod steps;
 
+pub(crate) use along::{film, run};
 pub(crate) use cost::{cost, drift};
 pub(crate) use curves::{coefficients, reduced};
 pub(crate) use digits::digits;
 pub(crate) use mechanism::{Dwell, mechanism};
 pub(crate) use motion::history;
+pub(crate) use skeleton::Frame;
 pub(crate) use states::{actions, drawing};
 pub(crate) use steps::steps;
 

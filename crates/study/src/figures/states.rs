@@ -1,18 +1,15 @@
 //! A mechanism along the states in which it was judged, and what its actuators do there.
 
 use super::foot;
-use super::mechanism::{Sweep, linkage, paths};
+use super::mechanism::{Sweep, paths};
+use super::skeleton::Skeleton;
 use crate::states::Judged;
-use dwell_geometry::{Drive, JointKind, Vec2, vec2};
-use dwell_report::{Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Series, Shape};
+use dwell_geometry::{Vec2, vec2};
+use dwell_report::{Axis, Chart, Drawing, Figure, Panel, Series};
 use dwell_scene::Scene;
-use std::f64::consts::TAU;
 
 /// Positions in which the mechanism is drawn, the first in full.
 const DRAWN: usize = 5;
-/// Corners of a circle.
-const CORNERS: usize = 72;
-
 /// The mechanism in several states, with the paths of its points.
 pub(crate) fn drawing(scene: &Scene, judged: &Judged) -> Figure {
     let frames = judged.frames.iter().map(|bodies| {
@@ -24,12 +21,12 @@ pub(crate) fn drawing(scene: &Scene, judged: &Judged) -> Figure {
         frames: frames.collect(),
     };
     let last = sweep.frames.len().saturating_sub(1);
+    let skeleton = Skeleton::new(scene, &sweep.frames);
     let mut shapes = paths(scene, &sweep);
     for k in (0..DRAWN).rev() {
         let position = k * last / DRAWN;
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.05 * k as f64 };
-        rounds(scene, &sweep, position, lightness, &mut shapes);
-        linkage(scene, &sweep, position, lightness, &mut shapes);
+        skeleton.draw(&sweep.frames[position], lightness, &mut shapes);
     }
     Figure {
         name: "a-mechanism".to_owned(),
@@ -49,55 +46,6 @@ pub(crate) fn drawing(scene: &Scene, judged: &Judged) -> Figure {
             shapes,
         })],
     }
-}
-
-/// What is neither a body nor a pin: wheels, slots, racks, massless links and rams.
-fn rounds(scene: &Scene, sweep: &Sweep, position: usize, lightness: f64, shapes: &mut Vec<Shape>) {
-    let pen = Pen::new(Paint::Ink, 2.0).lightness(lightness.max(0.35));
-    let at = |body: usize, point: Vec2| sweep.point(position, body, point);
-    let circle = |body: usize, center: Vec2, radius: f64| {
-        let corner = |k: usize| Vec2::from_angle(TAU * k as f64 / CORNERS as f64) * radius;
-        let around = (0..=CORNERS).map(|k| at(body, center + corner(k)));
-        Shape::line(around.collect(), pen)
-    };
-    let mut found = Vec::new();
-    for joint in &scene.mechanism.joints {
-        let [one, two] = joint.bodies.map(|b| b.0);
-        let [first, second] = joint.points;
-        // Along an axis of the first body, as far as the second's point comes.
-        let along = |axis: Vec2| {
-            let reach = (0..sweep.frames.len()).map(|k| {
-                let (origin, turn) = sweep.frames[k][one];
-                let [x, y] = sweep.point(k, two, second);
-                axis.dot((vec2(x, y) - origin).turn_back(turn) - first)
-            });
-            let (low, high) = reach.fold((0.0_f64, 0.0_f64), |(a, b), s| (a.min(s), b.max(s)));
-            let ends = [low, high].map(|s| at(one, first + axis * s));
-            Shape::line(ends.to_vec(), pen)
-        };
-        match joint.kind {
-            JointKind::Gear { radii, .. } => {
-                found.push(circle(one, first, radii[0]));
-                found.push(circle(two, second, radii[1]));
-            }
-            JointKind::Rack { axis, radius } | JointKind::Rolling { axis, radius } => {
-                found.push(circle(two, second, radius));
-                found.push(along(axis));
-            }
-            JointKind::Slot { axis } => found.push(along(axis)),
-            JointKind::Distance { .. } => {
-                found.push(Shape::line(vec![at(one, first), at(two, second)], pen));
-            }
-            _ => {}
-        }
-    }
-    for actuator in &scene.mechanism.actuators {
-        if let Drive::Length(points) = actuator.drive {
-            let ends = [0, 1].map(|i| at(actuator.bodies[i].0, points[i]));
-            found.push(Shape::line(ends.to_vec(), pen.dashed()));
-        }
-    }
-    shapes.extend(found);
 }
 
 /// What the actuators do along those states.

@@ -1,0 +1,153 @@
+//! `dwell kinematics`, `dwell statics`, `dwell kinetostatics`: a mechanism followed along a prescribed
+//! motion or a sweep, as tables, peaks and pictures.
+
+mod columns;
+mod document;
+mod dyads;
+mod link;
+mod peaks;
+mod record;
+mod select;
+mod stop;
+mod way;
+
+pub(crate) use columns::{Column, Quantity};
+pub(crate) use link::Link;
+pub(crate) use record::Record;
+pub(crate) use select::stands_for;
+pub(crate) use way::Way;
+
+use crate::error::StudyError;
+use crate::figures;
+use crate::outcome::{Outcome, Progress, Step};
+use dwell_report::{Figure, ReportError, Table, png};
+use dwell_scene::Scene;
+use rayon::prelude::*;
+
+/// Which of the three.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Command {
+    /// Positions, speeds and accelerations.
+    Kinematics,
+    /// Actions and reactions under the loads, at rest in every position.
+    Statics,
+    /// Actions and reactions under the loads and the inertia of the motion.
+    Kinetostatics,
+}
+
+impl Command {
+    /// As the command is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Kinematics => "kinematics",
+            Self::Statics => "statics",
+            Self::Kinetostatics => "kinetostatics",
+        }
+    }
+}
+
+/// What a run along a way yields.
+#[derive(Debug)]
+pub struct Followed {
+    /// What was found, up to where it ended.
+    pub outcome: Outcome,
+    /// Why it ended before the end of the way, if it did.
+    pub stopped: Option<StudyError>,
+}
+
+/// Positions in a unit of progress.
+const PART: usize = 500;
+
+/// Follows a scene along its prescribed motion, its sweep, or the range of its only actuator, at
+/// `points` positions (two or more) if these are given.
+///
+/// # Errors
+/// [`StudyError`] when the mechanism cannot be put together, the scene does not say where its
+/// actuators are, a requested column does not exist, or the first position cannot be reached.
+pub fn run(
+    scene: &Scene,
+    command: Command,
+    points: Option<usize>,
+    progress: Progress<'_>,
+) -> Result<Followed, StudyError> {
+    let model = record::model(scene)?;
+    select::check(scene, &model)?;
+    let way = Way::new(scene, model.plan(), command, points)?;
+    let parts = way.points.div_ceil(PART);
+    let heard = |k: usize| {
+        if k.is_multiple_of(PART) {
+            progress(Step {
+                total: parts + 1,
+                done: "positions",
+            });
+        }
+    };
+    let record = record::follow(scene, &model, &way, command, &heard)?;
+    let stopped = record.stop.as_ref();
+    let stopped = stopped.map(|stop| stop.explain(scene, model.plan(), &way));
+    let chosen = select::chosen(scene, &record.columns);
+    let mut outcome = Outcome::default();
+    let name = |rest: &str| format!("{}-{}{rest}", scene.name, command.name());
+    let table = table(&record, &chosen);
+    outcome.files.add(name(".csv"), table.csv()?);
+    outcome.files.add(name(".npz"), table.npz()?);
+    let document = document::Document::new(scene, &record, &way, command, &chosen);
+    outcome.files.add(name("-peaks.csv"), document.peaks_csv());
+    for link in &record.links {
+        let of = link.name(scene.mechanism.body_name(link.request.body));
+        let file = |rest: &str| name(&format!("-section-{of}{rest}.csv"));
+        outcome.files.add(file(""), link.table().csv()?);
+        outcome
+            .files
+            .add(file("-envelope"), link.envelope_table().csv()?);
+    }
+    let pictures = figures::run(scene, &record, &way, command);
+    let total = parts + pictures.len() + 1;
+    let drawn = draw(&pictures, total, progress)?;
+    for (figure, bytes) in pictures.iter().zip(drawn) {
+        outcome
+            .files
+            .add(name(&format!("-{}.png", figure.name)), bytes);
+    }
+    let film = figures::film(scene, &record, &way);
+    outcome.files.add(name("-mechanism.gif"), film.gif()?);
+    progress(Step {
+        total,
+        done: "animation",
+    });
+    let file = |figure: &Figure| name(&format!("-{}.png", figure.name));
+    outcome
+        .files
+        .add(name(".md"), document.markdown(&pictures, &file));
+    outcome.summary = document.summary();
+    Ok(Followed { outcome, stopped })
+}
+
+fn draw(
+    pictures: &[Figure],
+    total: usize,
+    progress: Progress<'_>,
+) -> Result<Vec<Vec<u8>>, ReportError> {
+    let one = |figure: &Figure| {
+        let bytes = png(figure)?;
+        progress(Step {
+            total,
+            done: &figure.name,
+        });
+        Ok(bytes)
+    };
+    pictures.par_iter().map(one).collect()
+}
+
+/// The chosen columns as a table.
+fn table(record: &Record, chosen: &[usize]) -> Table {
+    let column = |&k: &usize| {
+        let column = &record.columns[k];
+        dwell_report::Column::new(column.name.clone(), column.unit)
+    };
+    let row = |row: &Vec<f64>| chosen.iter().map(|&k| row[k]).collect();
+    Table {
+        columns: chosen.iter().map(column).collect(),
+        rows: record.rows.iter().map(row).collect(),
+    }
+}

@@ -1,0 +1,317 @@
+//! A mechanism followed along its way: the table, and what sections and drawings need of each position.
+
+use crate::error::{StudyError, explain_model};
+use crate::figures::Frame;
+use crate::run::Command;
+use crate::run::columns::{Column, Columns, Quantity, Term};
+use crate::run::link::Link;
+use crate::run::stop::{Stop, is_cut_off};
+use crate::run::way::{Sample, Way};
+use dwell_geometry::measure::{BodyStates, Measured};
+use dwell_geometry::{BodyId, Motion, Plan, Start, Vec2};
+use dwell_kinetostatics::{
+    Act, Actions, By, KinetostaticsError, Ledger, LoadKind, Model, PowerBalance, Workspace, Wrench,
+};
+use dwell_scene::{Place, Scene};
+use std::f64::consts::TAU;
+
+/// What a command found along the way.
+pub(crate) struct Record {
+    /// All columns of the command.
+    pub(crate) columns: Vec<Column>,
+    /// By position: a value for each column.
+    pub(crate) rows: Vec<Vec<f64>>,
+    /// By position and body.
+    pub(crate) frames: Vec<Vec<Frame>>,
+    /// The links whose inner forces were asked for.
+    pub(crate) links: Vec<Link>,
+    /// The largest residual of the power balance, as a part of its absolute terms.
+    pub(crate) residual: f64,
+    /// Where and why the way ended early.
+    pub(crate) stop: Option<Stop>,
+}
+
+/// The model of a scene under its loads, with every reaction.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be put together or a load does not fit it.
+pub(crate) fn model(scene: &Scene) -> Result<Model, StudyError> {
+    let start = Start {
+        q: scene.assembly.start.clone(),
+        rough: scene.assembly.rough.clone(),
+    };
+    let reactions = scene.mechanism.reactions();
+    let model = Model::new(&scene.mechanism, &scene.masses, &start, &reactions)
+        .map_err(|e| explain_model(scene, &e))?;
+    let loads = scene.loads.clone();
+    model.with_loads(&scene.mechanism, loads).map_err(|e| {
+        let labels = [(Place::Load(e.load), "this load".to_owned())];
+        scene.error(e.to_string(), None, &labels).into()
+    })
+}
+
+/// One evaluation after another.
+struct Probe<'a> {
+    scene: &'a Scene,
+    model: &'a Model,
+    ledger: Ledger,
+    command: Command,
+    work: Workspace<f64>,
+    actions: Actions<f64>,
+    acts: Vec<Act>,
+    motion: Motion<f64>,
+    /// The bodies at the speeds of the way, whatever the command.
+    moving: BodyStates,
+    /// The bodies at unit speed of a single actuator.
+    unit: BodyStates,
+    powers: Vec<f64>,
+    /// By joint: the force on its second body, N.
+    forces: Vec<Vec2>,
+    shaking: Wrench,
+    power: PowerBalance,
+}
+
+impl<'a> Probe<'a> {
+    fn new(scene: &'a Scene, model: &'a Model, command: Command) -> Result<Self, StudyError> {
+        let ledger = Ledger::new(&scene.mechanism, model).map_err(|e| explain_model(scene, &e))?;
+        Ok(Self {
+            ledger,
+            scene,
+            model,
+            command,
+            work: model.workspace(),
+            actions: model.actions(),
+            acts: Vec::new(),
+            motion: model.plan().motion(),
+            moving: BodyStates::new(model.plan()),
+            unit: BodyStates::new(model.plan()),
+            powers: vec![0.0; scene.loads.len()],
+            forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
+            shaking: Wrench::default(),
+            power: PowerBalance::default(),
+        })
+    }
+
+    fn evaluate(&mut self, sample: &Sample, timed: bool) -> Result<(), KinetostaticsError> {
+        let plan = self.model.plan();
+        let Sample {
+            t,
+            q,
+            q_dot,
+            q_ddot,
+        } = sample;
+        let (work, actions) = (&mut self.work, &mut self.actions);
+        match self.command {
+            Command::Kinematics => plan.place(q, &mut work.pose)?,
+            // Without a time loads stand at their beginning.
+            Command::Statics => {
+                let t = if timed { *t } else { 0.0 };
+                self.model.statics(t, q, work, actions)?;
+            }
+            Command::Kinetostatics => {
+                self.model
+                    .kinetostatics(*t, q, q_dot, q_ddot, work, actions)?;
+            }
+        }
+        if plan.actuators() == 1 {
+            plan.speeds(&work.pose, &[1.0], &mut self.motion);
+            self.unit.fill(plan, &work.pose, &self.motion);
+        }
+        plan.speeds(&work.pose, q_dot, &mut self.motion);
+        plan.accelerations(&work.pose, q_ddot, &mut self.motion);
+        self.moving.fill(plan, &work.pose, &self.motion);
+        if self.command != Command::Kinematics {
+            self.account();
+        }
+        Ok(())
+    }
+
+    /// Forces of the joints, on the frame, and the power balance.
+    fn account(&mut self) {
+        let (model, work, actions) = (self.model, &self.work, &self.actions);
+        self.ledger.acts(model, work, actions, &mut self.acts);
+        self.forces.fill(Vec2::ZERO);
+        for act in &self.acts {
+            if let By::Joint(j) = act.by
+                && act.body == self.scene.mechanism.joints[j.0].bodies[1]
+            {
+                self.forces[j.0] += act.force;
+            }
+        }
+        let shaking = self.ledger.shaking(model, work, &self.acts);
+        let [by_reactions, by_loads] = [shaking.by_reactions, shaking.loads_on_ground];
+        self.shaking = Wrench {
+            force: by_reactions.force + by_loads.force,
+            moment: by_reactions.moment + by_loads.moment,
+        };
+        self.power = model.power(work, actions);
+        model.load_powers(work, &mut self.powers);
+    }
+
+    fn value(&self, quantity: Quantity, sample: &Sample) -> f64 {
+        let states = &self.moving;
+        match quantity {
+            Quantity::Time => sample.t,
+            Quantity::Drive(i, order) => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
+            Quantity::Action(i) => self.actions.tau[i],
+            Quantity::Measured(measured, order) => states.measure(measured)[order],
+            Quantity::Angle(body, 0) => states.body(body).turn.angle(),
+            Quantity::Angle(body, 1) => states.body(body).spin,
+            Quantity::Angle(body, _) => states.body(body).spin_rate,
+            Quantity::Ratio(body) => self.unit.body(body).spin,
+            Quantity::Point(body, at, k) => {
+                let point = states.point(body, at);
+                let vector = [point.position, point.velocity, point.acceleration][k / 2];
+                if k % 2 == 0 { vector.x } else { vector.y }
+            }
+            Quantity::Transmission(dyad) => dyad.angle(states),
+            Quantity::Reaction(k) => self.actions.reactions[k],
+            Quantity::ForceIn(joint, body, axis) => {
+                let local = self.forces[joint.0].turn_back(states.body(body).turn);
+                if axis == 0 { local.x } else { local.y }
+            }
+            Quantity::Magnitude(joint) => self.forces[joint.0].norm(),
+            Quantity::Direction(joint) => self.forces[joint.0].angle(),
+            Quantity::Frame(0) => self.shaking.force.x,
+            Quantity::Frame(1) => self.shaking.force.y,
+            Quantity::Frame(_) => self.shaking.moment,
+            Quantity::Balance(Term::Actuators) => self.power.actuators,
+            Quantity::Balance(Term::Loads) => self.power.loads,
+            Quantity::Balance(Term::Kinetic) => self.power.kinetic,
+            Quantity::Balance(Term::Residual) => self.power.residual(),
+            Quantity::Balance(Term::Energy) => self.power.energy,
+            Quantity::Load(k) => self.load(k),
+            Quantity::LoadPower(k) => self.powers[k],
+        }
+    }
+
+    /// What a load does: its force along its direction or line, or its couple on its second body.
+    fn load(&self, k: usize) -> f64 {
+        let by_it = || self.acts.iter().filter(|act| act.by == By::Load(k));
+        match self.scene.loads[k].kind {
+            LoadKind::Gravity { .. } | LoadKind::Force { .. } | LoadKind::Torque { .. } => {
+                self.work.loads().magnitude[k]
+            }
+            LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
+                let line = self.work.states().separation(bodies, points).direction;
+                let on_second = by_it().find(|act| act.body == bodies[1]);
+                match (line, on_second) {
+                    (Some(line), Some(act)) => act.force.dot(line),
+                    _ => 0.0,
+                }
+            }
+            LoadKind::TorsionSpring { bodies, .. } | LoadKind::TorsionDamper { bodies } => by_it()
+                .find(|act| act.body == bodies[1])
+                .map_or(0.0, |act| act.couple),
+        }
+    }
+
+    fn frames(&self) -> Vec<Frame> {
+        let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
+        let frame = |b| {
+            let origin = self.moving.point(b, Vec2::ZERO).position;
+            (origin, self.moving.body(b).turn)
+        };
+        bodies.map(frame).collect()
+    }
+}
+
+/// Angles counted over whole turns: nearest to what the last value and the speeds foretell.
+struct Turns {
+    last: Vec<Option<(f64, f64, f64)>>,
+}
+
+impl Turns {
+    fn follow(&mut self, k: usize, value: f64, speed: f64, t: f64) -> f64 {
+        let counted = self.last[k].map_or(value, |(before, was, then)| {
+            let expected = before + 0.5 * (was + speed) * (t - then);
+            value + TAU * ((expected - value) / TAU).round()
+        });
+        self.last[k] = Some((counted, speed, t));
+        counted
+    }
+}
+
+/// Follows a scene along a way.
+///
+/// # Errors
+/// [`StudyError::Scene`] when not even the first position can be reached.
+pub(crate) fn follow(
+    scene: &Scene,
+    model: &Model,
+    way: &Way<'_>,
+    command: Command,
+    heard: &dyn Fn(usize),
+) -> Result<Record, StudyError> {
+    let plan: &Plan = model.plan();
+    // A sweep of statics has no time.
+    let timed = way.swept().is_none() || command != Command::Statics;
+    let columns: Vec<Column> = Columns::all(scene, model, timed)
+        .into_iter()
+        .filter(|c| c.is_of(command))
+        .collect();
+    let mut probe = Probe::new(scene, model, command)?;
+    let mut turns = Turns {
+        last: vec![None; columns.len()],
+    };
+    let sections = match command {
+        Command::Kinematics => &[],
+        _ => scene.requests.sections.as_slice(),
+    };
+    let mut record = Record {
+        columns,
+        rows: Vec::with_capacity(way.points),
+        frames: Vec::with_capacity(way.points),
+        links: sections.iter().map(Link::new).collect(),
+        residual: 0.0,
+        stop: None,
+    };
+    let mut before: Option<f64> = None;
+    for k in 0..way.points {
+        let part = way.part(k);
+        let sample = way.at(part);
+        let cut = before
+            .filter(|_| plan.actuators() == 1)
+            .and_then(|q| is_cut_off(plan, q, sample.q[0]));
+        let done = match cut {
+            Some(error) => Err(error.into()),
+            None => probe.evaluate(&sample, timed),
+        };
+        if let Err(error) = done {
+            let reached = if k > 0 { way.part(k - 1) } else { part };
+            let stop = Stop::find(plan, way, [reached, part], error);
+            if k == 0 {
+                return Err(stop.explain(scene, plan, way));
+            }
+            record.stop = Some(stop);
+            break;
+        }
+        before = sample.q.first().copied();
+        let value = |(i, column): (usize, &Column)| {
+            let value = probe.value(column.quantity, &sample);
+            if !column.unwraps() {
+                return value;
+            }
+            let speed = match column.quantity {
+                Quantity::Measured(measured @ Measured::Angle(_), _) => {
+                    probe.moving.measure(measured)[1]
+                }
+                Quantity::Angle(body, _) => probe.moving.body(body).spin,
+                _ => 0.0,
+            };
+            turns.follow(i, value, speed, sample.t)
+        };
+        let row = record.columns.iter().enumerate().map(value).collect();
+        record.rows.push(row);
+        record.frames.push(probe.frames());
+        for link in &mut record.links {
+            link.take(k, &probe.ledger, model, &probe.work, &probe.acts);
+        }
+        if command == Command::Kinetostatics && probe.power.scale > 0.0 {
+            let residual = probe.power.residual().abs() / probe.power.scale;
+            record.residual = record.residual.max(residual);
+        }
+        heard(k);
+    }
+    Ok(record)
+}

@@ -1,0 +1,74 @@
+//! Which columns of a table were asked for.
+
+use crate::error::StudyError;
+use crate::run::columns::{Column, Columns, Quantity};
+use dwell_kinetostatics::Model;
+use dwell_scene::{Place, Scene, choices};
+
+/// Whether a name stands for a column: its own, or the first part of it.
+pub(crate) fn stands_for(name: &str, column: &str) -> bool {
+    column
+        .strip_prefix(name)
+        .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// Refuses names of columns that no command computes.
+///
+/// # Errors
+/// [`StudyError::Scene`] at the first of them.
+pub(crate) fn check(scene: &Scene, model: &Model) -> Result<(), StudyError> {
+    let Some(variables) = &scene.requests.variables else {
+        return Ok(());
+    };
+    let columns = Columns::all(scene, model, true);
+    for (k, name) in variables.iter().enumerate() {
+        if columns.iter().any(|c| stands_for(name, &c.name)) {
+            continue;
+        }
+        let labels = [(Place::Variable(k), "unknown column".to_owned())];
+        return Err(scene
+            .error(
+                format!("there is no column `{name}`"),
+                Some(near(name, &columns)),
+                &labels,
+            )
+            .into());
+    }
+    Ok(())
+}
+
+/// What may have been meant: a column, or a word before one of its dots; else what there is under the
+/// same first word, or the first words.
+fn near(name: &str, columns: &[Column]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for column in columns {
+        let ends = column.name.match_indices('.').map(|(at, _)| at);
+        for end in ends.chain([column.name.len()]) {
+            let part = &column.name[..end];
+            if !names.contains(&part) {
+                names.push(part);
+            }
+        }
+    }
+    let first = name.split('.').next().unwrap_or(name);
+    let mut below: Vec<&str> = names.clone();
+    below.retain(|n| *n != first && stands_for(first, n));
+    if below.is_empty() {
+        names.sort_by_key(|n| n.contains('.'));
+        choices(name, "columns", names.into_iter())
+    } else {
+        choices(name, &format!("columns of `{first}`"), below.into_iter())
+    }
+}
+
+/// The places of the columns that go into the tables: those asked for, behind the time and the
+/// actuators' coordinates.
+pub(crate) fn chosen(scene: &Scene, columns: &[Column]) -> Vec<usize> {
+    let wanted = |column: &Column| match (&scene.requests.variables, column.quantity) {
+        (None, _) | (_, Quantity::Time | Quantity::Drive(_, 0)) => true,
+        (Some(names), _) => names.iter().any(|n| stands_for(n, &column.name)),
+    };
+    (0..columns.len())
+        .filter(|&k| wanted(&columns[k]))
+        .collect()
+}

@@ -1,0 +1,308 @@
+//! Every case of `validation/`: judged in states of motion, by its reference, and by deliberate
+//! faults that must be found.
+
+use crate::world::{home, scene};
+use dwell_findings::Finding;
+use dwell_scene::Scene;
+use dwell_study::{Judged, judge_case, silent, validate};
+use dwell_verify::judge_states;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
+
+/// Cases that cannot be put together or moved so far. When one can, it is taken out of here.
+const NOT_YET: [&str; 2] = ["parallelogram-three-cranks", "planetary"];
+
+/// Relative difference that every reference must be met to.
+const PROMISED: f64 = 1e-12;
+
+fn folder(case: &str) -> PathBuf {
+    home().join("validation").join(case)
+}
+
+/// The names of all cases that run.
+fn cases() -> Vec<String> {
+    let entries = std::fs::read_dir(home().join("validation")).expect("a folder");
+    let name = |e: std::io::Result<std::fs::DirEntry>| {
+        let name = e.expect("an entry").file_name();
+        name.into_string().expect("a name")
+    };
+    let mut cases: Vec<String> = entries.map(name).collect();
+    cases.retain(|case| !NOT_YET.contains(&case.as_str()));
+    cases.sort();
+    assert!(cases.len() >= 23, "{cases:?}");
+    cases
+}
+
+fn judged(scene: &Scene, folder: &Path) -> Judged {
+    judge_case(scene, folder).unwrap_or_else(|e| panic!("{}: {e}", scene.name))
+}
+
+fn failed(findings: &[Finding]) -> Vec<&str> {
+    let failed = findings.iter().filter(|f| !f.pass);
+    failed.map(|f| f.key.as_str()).collect()
+}
+
+const TRUTHS: [&str; 9] = [
+    "state-poses",
+    "state-branch",
+    "state-velocities",
+    "state-accelerations",
+    "state-reactions",
+    "state-newton",
+    "state-differenced",
+    "state-power",
+    "state-balance",
+];
+
+#[test]
+fn val_every_case_in_states_and_by_its_reference() {
+    for case in cases() {
+        let scene = scene(&case);
+        let judged = judged(&scene, &folder(&case));
+        assert!(judged.states.len() >= 100, "{case}");
+        for finding in &judged.findings {
+            assert!(finding.pass, "{case}: {finding:?}");
+        }
+        let keys: Vec<&str> = judged.findings.iter().map(|f| f.key.as_str()).collect();
+        assert_eq!(keys[..9], TRUTHS, "{case}");
+        for key in ["state-power", "state-balance"] {
+            let finding = judged.findings.iter().find(|f| f.key == key).expect("it");
+            assert!(finding.relative <= PROMISED, "{case}: {finding:?}");
+        }
+        // The first two cases have references of the reduced model alone.
+        if !["crank-rocker", "single-dwell"].contains(&case.as_str()) {
+            for kind in [
+                "positions",
+                "velocities",
+                "accelerations",
+                "reactions",
+                "actions",
+            ] {
+                let key = format!("reference-{kind}");
+                let finding = judged.findings.iter().find(|f| f.key == key);
+                let relative = finding.unwrap_or_else(|| panic!("{case}: {key}")).relative;
+                assert!(relative <= PROMISED, "{case}, {key}: {relative:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_does_not_run_yet_is_still_refused() {
+    for case in NOT_YET {
+        let refused = judge_case(&scene(case), &folder(case));
+        assert!(refused.is_err(), "{case} runs: take it out of NOT_YET");
+    }
+}
+
+#[test]
+fn val_andrews_published_start() {
+    let judged = judged(&scene("andrews"), &folder("andrews"));
+    for kind in ["positions", "accelerations", "reactions"] {
+        let key = format!("published-{kind}");
+        let finding = judged.findings.iter().find(|f| f.key == key);
+        let finding = finding.unwrap_or_else(|| panic!("{key}"));
+        assert!(finding.relative <= PROMISED, "{finding:?}");
+        assert!(finding.over.contains("andrews.f"), "{finding:?}");
+    }
+}
+
+/// The rounded text of every case is the committed one.
+#[test]
+fn regress_reports() {
+    for case in cases() {
+        let done = validate(&scene(&case), &folder(&case), &silent);
+        let text = done.unwrap_or_else(|e| panic!("{case}: {e}")).snapshot;
+        let path = home().join("reports").join(format!("{case}.txt"));
+        let committed = std::fs::read_to_string(&path);
+        let committed = committed.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        assert!(
+            text == committed,
+            "{case} is no longer {}:\n{text}",
+            path.display()
+        );
+    }
+}
+
+/// Reactions for another inertia do not balance, in whatever body that is.
+#[test]
+fn an_inertia_off_by_a_millionth_is_found_in_every_case() {
+    for case in cases() {
+        let scene = scene(&case);
+        let Judged { start, states, .. } = judged(&scene, &folder(&case));
+        let largest = |of: &dyn Fn(usize, usize) -> f64, bodies: usize| {
+            let all = (0..states.len()).flat_map(|s| (0..bodies).map(move |b| (s, b)));
+            all.map(|(s, b)| of(s, b).abs()).fold(0.0, f64::max)
+        };
+        let couple = |b: usize| {
+            let alpha = |s: usize, _: usize| states[s].acceleration[b][2];
+            scene.masses[b].inertia * largest(&alpha, 1)
+        };
+        let bodies: Vec<usize> = (0..scene.masses.len())
+            .filter(|&b| couple(b) > 0.0)
+            .collect();
+        let strongest = bodies.iter().map(|&b| couple(b)).fold(0.0, f64::max);
+        for b in bodies {
+            let mut masses = scene.masses.clone();
+            masses[b].inertia *= 1.0 + 1e-6;
+            let findings = judge_states(&scene.mechanism, &masses, &start, &states);
+            let failed = failed(&findings);
+            // A body that hardly turns shows it where all forces are small, or not at all.
+            let shows = couple(b) > 1e-2 * strongest;
+            assert!(
+                !shows || failed.contains(&"state-newton"),
+                "{case}, body {b}"
+            );
+            // The motion is right, and so is what does not know of inertia.
+            for right in &TRUTHS[..4] {
+                assert!(!failed.contains(right), "{case}, body {b}: {failed:?}");
+            }
+        }
+    }
+}
+
+/// The same in the scene, whose reactions then are those of another machine: only the reference
+/// knows better.
+#[test]
+fn a_wrong_scene_is_found_by_its_reference_alone() {
+    for (case, path) in [
+        ("andrews", "k3.inertia"),
+        ("jansen", "foot.inertia"),
+        ("five-bar", "left-rod.inertia"),
+    ] {
+        let scene = scene(case);
+        let value = scene.value(path).expect("a number");
+        let other = scene
+            .with_value(path, value * (1.0 + 1e-6))
+            .expect("a scene");
+        let findings = judged(&other, &folder(case)).findings;
+        let failed = failed(&findings);
+        assert!(
+            failed.contains(&"reference-reactions"),
+            "{case}: {failed:?}"
+        );
+        assert!(failed.contains(&"reference-actions"), "{case}: {failed:?}");
+        let known = |key: &&str| key.starts_with("reference-") || key.starts_with("published-");
+        assert!(failed.iter().all(known), "{case}: {failed:?}");
+    }
+}
+
+/// A folder with a changed reference.
+struct Changed(PathBuf);
+
+impl Changed {
+    fn new(case: &str, change: impl FnOnce(&mut Value)) -> Self {
+        let text = std::fs::read_to_string(folder(case).join("reference.json")).expect("a file");
+        let mut reference: Value = serde_json::from_str(&text).expect("JSON");
+        change(&mut reference);
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let name = format!("dwell-changed-{}-{number}", std::process::id());
+        let folder = std::env::temp_dir().join(name);
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let text = reference.to_string();
+        std::fs::write(folder.join("reference.json"), text).expect("a file");
+        Self(folder)
+    }
+}
+
+impl Drop for Changed {
+    fn drop(&mut self) {
+        // What is left in the temporary folder does no harm.
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn number(value: &Value) -> f64 {
+    let text = value.as_str().expect("the text of a number");
+    text.parse().expect("a number")
+}
+
+/// One of the larger values of a kind is put off, and no other finding minds.
+#[test]
+fn a_reference_value_off_by_a_billionth_is_found() {
+    for (case, sample, name, key) in [
+        ("andrews", 2, "k7.H.ay", "reference-accelerations"),
+        ("andrews", 2, "E-k4.y", "reference-reactions"),
+        ("boom", 0, "dig.action", "reference-actions"),
+        ("cam", 1, "rise.speed", "reference-velocities"),
+        (
+            "ellipse-trammel",
+            0,
+            "x-guide.travel",
+            "reference-positions",
+        ),
+        ("whitworth", 2, "slot.travel", "reference-positions"),
+        ("jansen", 1, "foot.angle", "reference-positions"),
+        ("rolling-wheel", 1, "track.tangent", "reference-reactions"),
+        ("massless-coupler", 1, "joint.moment", "reference-reactions"),
+    ] {
+        let changed = Changed::new(case, |reference| {
+            let values = &mut reference["samples"][sample]["values"];
+            let off = number(&values[name]) * (1.0 + 1e-9);
+            values[name] = Value::from(format!("{off:e}"));
+        });
+        let findings = judged(&scene(case), &changed.0).findings;
+        assert_eq!(failed(&findings), [key], "{case}, {name}");
+        let finding = findings.iter().find(|f| f.key == key).expect("it");
+        assert!(finding.worst.starts_with(name), "{finding:?}");
+    }
+}
+
+#[test]
+fn a_name_that_is_nothing_fails_and_is_told() {
+    for name in [
+        "k3.angel",
+        "k9.angle",
+        "E-k3.z",
+        "k3.Q.x",
+        "alpha.action",
+        "O.travel",
+        "k3",
+    ] {
+        let changed = Changed::new("andrews", |reference| {
+            reference["samples"][0]["values"][name] = Value::from("1.0");
+        });
+        let findings = judged(&scene("andrews"), &changed.0).findings;
+        assert_eq!(failed(&findings), ["reference-names"], "{name}");
+        let finding = findings.iter().find(|f| !f.pass).expect("it");
+        assert!(finding.worst.contains(&format!("`{name}`")), "{finding:?}");
+    }
+}
+
+#[test]
+fn a_reference_that_cannot_be_read_says_why() {
+    type Change = fn(&mut Value);
+    let changes: [(Change, &str); 6] = [
+        (
+            |r| r["samples"][0]["q"]["phi"] = Value::from("1"),
+            "no actuator `phi`",
+        ),
+        (
+            |r| r["samples"][1]["q_dot"] = Value::Null,
+            "samples[1]: q_dot",
+        ),
+        (
+            |r| r["samples"][1]["values"]["O.x"] = Value::from("x"),
+            "`O.x` is not a number",
+        ),
+        (
+            |r| r["samples"][1]["speed"] = Value::from("1"),
+            "unknown key `speed`",
+        ),
+        (
+            |r| r["tolerance"]["relative"] = Value::Null,
+            "tolerance: `relative` is missing",
+        ),
+        (
+            |r| r["published"]["samples"][0]["q"] = Value::Null,
+            "published: samples[0]: q",
+        ),
+    ];
+    for (change, words) in changes {
+        let changed = Changed::new("andrews", change);
+        let error = judge_case(&scene("andrews"), &changed.0).expect_err(words);
+        assert!(error.to_string().contains(words), "{error} for {words}");
+    }
+}
