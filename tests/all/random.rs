@@ -68,11 +68,16 @@ impl Seed {
     }
 }
 
+/// Faults a run may show while defects of the assembly are open: angles counted from rough ones
+/// under a rolling disc, and slides that are solved before the class they turn with.
+const OPEN: usize = 60;
+
 /// What a run has met.
 #[derive(Debug, Default)]
 struct Tally {
     solved: u32,
     refused: u32,
+    faults: Vec<String>,
     bodies: usize,
     worst: BTreeMap<String, f64>,
 }
@@ -124,7 +129,12 @@ impl Made {
     }
 
     /// The states at these steps from the start, each in the same memory.
-    fn say(&self, standing: &Standing, view: &View, steps: &[Vec<f64>]) -> Result<Vec<Said>, String> {
+    fn say(
+        &self,
+        standing: &Standing,
+        view: &View,
+        steps: &[Vec<f64>],
+    ) -> Result<Vec<Said>, String> {
         let Described {
             mechanism,
             masses,
@@ -134,7 +144,9 @@ impl Made {
         } = &self.described;
         let mut work = self.model.workspace::<f64>();
         let mut actions = self.model.actions();
-        let senses: Vec<f64> = (0..start.q.len()).map(|i| view.sense(standing, i)).collect();
+        let senses: Vec<f64> = (0..start.q.len())
+            .map(|i| view.sense(standing, i))
+            .collect();
         let mut all = Vec::new();
         for step in steps {
             let rated = |rate: &dyn Fn(usize) -> f64| -> Vec<f64> {
@@ -254,24 +266,27 @@ fn judge(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
         tally.refused += 1;
         return Ok(());
     };
-    tally.solved += 1;
     let condition = largest / smallest;
+    tally.solved += 1;
     if smallest < SINGULAR * largest {
         return Ok(());
     }
     let steps = steps(one, &standing, &views[0], 1.0 / condition);
     let said = one.say(&standing, &views[0], &steps)?;
-    for (made, said) in [(one, &said), (two, &two.say(&standing, &views[1], &steps)?)] {
+    let other = two.say(&standing, &views[1], &steps)?;
+    for (made, said) in [(one, &said), (two, &other)] {
         let apart = apart(&said[0].state.bodies, &made.described.frames);
         tally.worst("branch", apart / condition, 1e-14)?;
     }
-    repeated(one, &standing, &views[0], &steps, &said)?;
     dense(one, &said, condition, tally)?;
-    let other = two.say(&standing, &views[1], &steps)?;
-    let [mine, others] = [(one, &said, &views[0]), (two, &other, &views[1])].map(|(made, said, view)| {
-        let acts = said.iter().flat_map(|said| made.actions(&standing, view, said));
-        acts.collect::<Vec<f64>>()
-    });
+    repeated(one, &standing, &views[0], &steps, &said)?;
+    let [mine, others] =
+        [(one, &said, &views[0]), (two, &other, &views[1])].map(|(made, said, view)| {
+            let acts = said
+                .iter()
+                .flat_map(|said| made.actions(&standing, view, said));
+            acts.collect::<Vec<f64>>()
+        });
     let scale = mine.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
     let gaps = mine.iter().zip(&others).map(|(a, b)| (a - b).abs());
     let gap = gaps.fold(0.0_f64, f64::max);
@@ -337,7 +352,9 @@ fn dense(made: &Made, said: &[Said], condition: f64, tally: &mut Tally) -> Resul
         if finding.relative.is_nan() {
             return Err(format!("{}: {}", finding.key, finding.worst));
         }
-        tally.worst(&finding.key, finding.relative / condition, 1e-12)?;
+        if !finding.pass {
+            tally.worst(&finding.key, finding.relative / condition, 1e-13)?;
+        }
     }
     Ok(())
 }
@@ -348,36 +365,28 @@ fn a_thousand_random_mechanisms() {
     let mut runner = TestRunner::new(ProptestConfig {
         cases: COUNT,
         failure_persistence: Some(Box::new(failures)),
+        // A removed step moves what hangs on later ones; shrinking numbers tells nothing.
+        max_shrink_iters: 300,
         ..ProptestConfig::default()
     });
     let tally = RefCell::new(Tally::default());
     let result = runner.run(&seed(), |seed| {
-        if let Err(e) = judge(&seed, &mut tally.borrow_mut()) {
-            println!("FAIL {e}");
-            let mut less = seed.clone();
-            less.flat = None;
-            'n: for n in 0..=seed.steps.len() {
-                less.steps = seed.steps[..n].to_vec();
-                for k in 0..100 {
-                    if k > 0 { less.views = [seed.views[0] ^ k, seed.views[1] ^ k]; }
-                    let mut tally = Tally::default();
-                    if let Err(e) = judge(&less, &mut tally) {
-                        println!("  LESS {n} view {k} {e}");
-                        let st = less.grown();
-                        let k = less.steps.last().map(|s| s.kind % 20);
-                        println!("  kind {k:?} drives {:?}", less.drives.iter().map(|d| d.kind % 5).collect::<Vec<_>>());
-                        for (j, h) in st.joints.iter().enumerate() { println!("    {j} {:?} {:?} {:?}", h.bodies, h.points, h.kind); }
-                        let v = View::of(&st, less.views[0]);
-                        println!("    body places {:?} joint places {:?}", v.bodies, v.joints);
-                        break 'n;
-                    }
-                }
-            }
+        let tally = &mut *tally.borrow_mut();
+        let Err(fault) = judge(&seed, tally) else {
+            return Ok(());
+        };
+        tally.faults.push(fault.clone());
+        if tally.faults.len() <= OPEN {
+            return Ok(());
         }
-        Ok(())
+        Err(TestCaseError::fail(format!("{fault}\n{:?}", seed.grown())))
     });
-    println!("{:?}", tally.borrow());
+    let tally = tally.into_inner();
+    println!("{tally:#?}");
     if let Err(error) = result {
         panic!("{error}");
     }
+    assert!(tally.solved * 100 >= COUNT * 95, "{}", tally.solved);
+    // Now and then two bars are in one line on purpose: that a refusal is met is met too.
+    assert!(tally.refused > 0);
 }

@@ -13,7 +13,7 @@ use proptest::sample::Index;
 /// One thing to add, by numbers.
 #[derive(Debug, Clone)]
 pub(super) struct Step {
-    pub(super) kind: u8,
+    kind: u8,
     on: [Index; 3],
     numbers: [f64; 20],
 }
@@ -176,7 +176,7 @@ impl Standing {
             7..=11 => self.single(step.kind % 20, [on[0], on[1]], draw),
             12 => self.weld(on[0], draw),
             13 | 14 => self.gear(on[0], draw),
-            15 | 16 if std::env::var("NOROLL").is_err() => self.roll(step.kind.is_multiple_of(2), [on[0], on[1]], draw),
+            15 | 16 => self.roll(step.kind.is_multiple_of(2), [on[0], on[1]], draw),
             17 => self.three_rows(on, draw),
             _ => self.ternary(on, draw),
         }
@@ -302,7 +302,11 @@ impl Standing {
         let radius = draw.apart(0.2, 0.6);
         let center = contact + axis.perp() * radius;
         let disc = self.body(center, draw);
-        self.hold([track, disc], [contact, center], Kind::Roll { axis, radius });
+        self.hold(
+            [track, disc],
+            [contact, center],
+            Kind::Roll { axis, radius },
+        );
         // A point of the disc moves across its line to the contact.
         let along = draw.angle();
         let c = contact + Vec2::from_angle(along) * draw.length();

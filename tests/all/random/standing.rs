@@ -52,13 +52,13 @@ pub(super) struct View {
     /// By body: where its frame is in the plane.
     frames: Vec<[f64; 3]>,
     /// The whole mechanism is turned by this angle, then moved.
-    pub(super) turn: f64,
+    turn: f64,
     shift: Vec2,
     /// By joint and by drive: whether its bodies are named the other way round.
     swapped: Vec<bool>,
     turned_round: Vec<bool>,
     /// By body and by joint: its place in the description.
-    pub(super) bodies: Vec<usize>,
+    bodies: Vec<usize>,
     pub(super) joints: Vec<usize>,
     names: u64,
 }
@@ -68,9 +68,8 @@ impl View {
     pub(super) fn of(standing: &Standing, seed: u64) -> Self {
         let mut rng = Rng(seed);
         let (bodies, joints) = (standing.bodies.len(), standing.joints.len());
-        let mut coins = |n: usize| -> Vec<bool> {
-            (0..n).map(|_| rng.between(0.0, 1.0) < 0.5).collect()
-        };
+        let mut coins =
+            |n: usize| -> Vec<bool> { (0..n).map(|_| rng.between(0.0, 1.0) < 0.5).collect() };
         let (swapped, turned_round) = (coins(joints), coins(standing.drives.len()));
         let frame = |mass: &Mass| {
             let [x, y] = [mass.center.x, mass.center.y].map(|c| c + rng.between(-1.0, 1.0));
@@ -163,9 +162,14 @@ impl Standing {
         let frame = |b: usize| {
             let [x, y, angle] = view.frames[b];
             let at = moved(vec2(x, y));
-            if b == 0 { [0.0; 3] } else { [at.x, at.y, angle] }
+            if b == 0 {
+                [0.0; 3]
+            } else {
+                [at.x, at.y, angle]
+            }
         };
-        let axis_in = |b: usize, axis: Vec2| axis.turn(whole).turn_back(Vec2::from_angle(frame(b)[2]));
+        let axis_in =
+            |b: usize, axis: Vec2| axis.turn(whole).turn_back(Vec2::from_angle(frame(b)[2]));
         let point_in = |b: usize, point: Vec2| {
             let [x, y, angle] = frame(b);
             (moved(point) - vec2(x, y)).turn_back(Vec2::from_angle(angle))
@@ -211,7 +215,10 @@ impl Standing {
                 },
             };
             joints[view.joints[j]] = Some(Joint {
-                name: format!("j{:x}", (view.names ^ 0x5a5a).wrapping_mul(j as u64 * 2 + 1)),
+                name: format!(
+                    "j{:x}",
+                    (view.names ^ 0x5a5a).wrapping_mul(j as u64 * 2 + 1)
+                ),
                 bodies: ids(bodies),
                 points: [point_in(one, points[0]), point_in(two, points[1])],
                 kind,
@@ -222,7 +229,12 @@ impl Standing {
         let n = self.bodies.len();
         let mut described = Described {
             mechanism: Mechanism {
-                bodies: vec![Body { name: String::new() }; n],
+                bodies: vec![
+                    Body {
+                        name: String::new()
+                    };
+                    n
+                ],
                 ground: view.bodies[0],
                 joints: joints.into_iter().flatten().collect(),
                 actuators,
@@ -238,12 +250,18 @@ impl Standing {
         };
         // Gears mesh as the rough angles have them, which are then no rough ones.
         let geared = |held: &Held| matches!(held.kind, Kind::Gear { .. });
-        let rough = if self.joints.iter().any(geared) { 0.0 } else { ROUGH };
+        let rough = if self.joints.iter().any(geared) {
+            0.0
+        } else {
+            ROUGH
+        };
         let mut rng = Rng(view.names);
         for (b, mass) in self.bodies.iter().enumerate() {
             let to = view.bodies[b];
-            described.mechanism.bodies[to].name =
-                format!("b{:x}", (view.names ^ 0xa5a5).wrapping_mul(b as u64 * 2 + 1));
+            described.mechanism.bodies[to].name = format!(
+                "b{:x}",
+                (view.names ^ 0xa5a5).wrapping_mul(b as u64 * 2 + 1)
+            );
             described.masses[to] = Mass {
                 center: point_in(b, mass.center),
                 ..*mass
@@ -272,7 +290,11 @@ impl Standing {
                     (bodies, Drive::Angle, two - one)
                 }
                 Driven::Travel(joint) => {
-                    let Held { mut bodies, points, kind } = self.joints[joint];
+                    let Held {
+                        mut bodies,
+                        points,
+                        kind,
+                    } = self.joints[joint];
                     let (Kind::Slide(axis) | Kind::Slot(axis)) = kind else {
                         panic!("no travel");
                     };
