@@ -3,7 +3,7 @@
 use crate::error::{AssemblyError, PlaceError};
 use crate::frames::{Attitude, Turning};
 use crate::groups::Unknown;
-use crate::lower::Tie;
+use crate::lower::{Measure, Tie};
 use crate::place::{Guess, turn};
 use crate::plan::{Branches, How, Kind, Plan, Pose};
 use crate::plane::Vec2;
@@ -35,6 +35,7 @@ impl Plan {
         let mut pose = self.pose();
         let q = self.start.clone();
         pose.q.clone_from(&q);
+        self.count_bodies(rough);
         for g in 0..self.groups.len() {
             self.begin(g, rough, &mut pose);
             let ways = match &self.groups[g].kind {
@@ -59,6 +60,45 @@ impl Plan {
         self.place_from(&q, &mut pose, Guess::Pose)
             .map_err(|e| self.refusal(self.groups.len(), e))?;
         Ok(pose)
+    }
+
+    /// Bodies that turn together may be whole turns apart: each is counted from its own rough angle.
+    fn count_bodies(&mut self, rough: &[Option<f64>]) {
+        let mut turns = vec![0.0; self.lowered.bodies];
+        for class in 0..self.frames.classes {
+            if !self.counted[self.class_roots[class]] {
+                continue;
+            }
+            let apart = |b: usize| {
+                let attitude = self.frames.attitudes[b];
+                let angle = rough.get(b).copied().flatten()?;
+                Some(angle - attitude.offset.angle() - self.driven_angle(attitude.frame))
+            };
+            let members = &self.frames.members[class];
+            let first = match class {
+                0 => Some(0.0),
+                _ => members.iter().find_map(|&b| apart(b)),
+            };
+            for &b in members {
+                if let (Some(first), Some(own)) = (first, apart(b)) {
+                    turns[b] = TAU * ((own - first) / TAU).round();
+                }
+            }
+        }
+        for (row, ratio) in self.relations.iter_mut().zip(&self.lowered.ratios) {
+            let whole = |sum: &[(Measure, f64)]| -> f64 {
+                let each = sum.iter().map(|&(measure, factor)| match measure {
+                    Measure::Angle(b) => factor * turns[b],
+                    Measure::Travel(_) => 0.0,
+                });
+                each.sum()
+            };
+            row.of.constant += whole(&ratio.of);
+            if let (Some((_, by)), Some((_, sum))) = (&mut row.law, &ratio.law) {
+                by.constant += whole(sum);
+            }
+        }
+        self.turns = turns;
     }
 
     /// Before a group is placed for the first time: turns are counted from the rough angles, and
@@ -181,6 +221,7 @@ impl Plan {
                             Unknown::Slide(_) => (x - y).abs() > SAME * (size + x.abs()),
                         })
                     };
+                    // Of one pose with other counts of turns, the first comes from the hints.
                     if ways.iter().all(far) {
                         ways.push(Way {
                             values,
@@ -214,14 +255,14 @@ impl Plan {
         let Unknown::Class(class) = unknown else {
             return Vec::new();
         };
-        let of_body = |(attitude, angle): (&Attitude, &Option<f64>)| {
+        let of_body = |(b, (attitude, angle)): (usize, (&Attitude, &Option<f64>))| {
             let frame = &self.frames.frames[attitude.frame];
-            let angle = (*angle)?;
+            let angle = (*angle)? - self.turns.get(b).copied().unwrap_or(0.0);
             (frame.class == class)
                 .then(|| angle - attitude.offset.angle() - self.driven_angle(attitude.frame))
         };
         let bodies = self.frames.attitudes.iter().zip(rough);
-        bodies.filter_map(of_body).collect()
+        bodies.enumerate().filter_map(of_body).collect()
     }
 
     /// The angle of a frame from the first frame of its class, at the start.
@@ -255,10 +296,19 @@ impl Plan {
             unknowns
                 .iter()
                 .zip(&way.values)
-                .flat_map(|(&u, (value, _))| {
-                    let apart = |hint| *value - Vec2::from_angle(hint);
+                .flat_map(|(&u, &(value, angle))| {
+                    let counted = matches!(u, Unknown::Class(c) if self.counted[self.root_of(c)]);
                     let hints = self.hints(u, rough).into_iter();
-                    hints.map(move |hint| apart(hint).dot(apart(hint)))
+                    hints.map(move |hint| {
+                        // Where turns count, the rough angle says which one is meant.
+                        let apart = value - Vec2::from_angle(hint);
+                        let turned = angle - hint;
+                        if counted {
+                            turned * turned
+                        } else {
+                            apart.dot(apart)
+                        }
+                    })
                 })
                 .sum()
         };

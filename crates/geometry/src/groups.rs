@@ -59,7 +59,7 @@ pub(crate) struct Parts<'a> {
 /// [`StructureError::UnderDriven`] and [`StructureError::OverConstrained`] when unknowns and
 /// equations do not match one to one.
 pub(crate) fn order(parts: &Parts<'_>, repeated: bool) -> Result<Vec<Group>, StructureError> {
-    let (equations, needs) = parts.equations();
+    let (equations, needs, also) = parts.equations();
     let classes = parts.frames.classes - 1;
     let unknowns = classes + parts.tree.slides.len();
     let (of_equation, of_unknown) = match_up(&needs, unknowns);
@@ -91,7 +91,12 @@ pub(crate) fn order(parts: &Parts<'_>, repeated: bool) -> Result<Vec<Group>, Str
             twice: Vec::new(),
         });
     }
-    let groups = components(&of_equation, &needs, &of_unknown);
+    // What an equation is evaluated with comes before it, even if it does not depend on it.
+    let mut before = needs.clone();
+    for (before, also) in before.iter_mut().zip(also) {
+        before.extend(also);
+    }
+    let groups = components(&of_equation, &before, &of_unknown);
     let groups = absorb(groups, &surplus, &needs, &of_unknown);
     let as_unknown = |u: usize| {
         if u < classes {
@@ -129,37 +134,37 @@ pub(crate) fn order(parts: &Parts<'_>, repeated: bool) -> Result<Vec<Group>, Str
 }
 
 impl Parts<'_> {
-    /// Every equation, and the unknowns it depends on: classes first (class c is number c − 1),
-    /// then slides.
-    fn equations(&self) -> (Vec<Equation>, Vec<Vec<usize>>) {
-        let (mut equations, mut needs) = (Vec::new(), Vec::new());
+    /// Every equation; the unknowns it depends on: classes first (class c is number c − 1), then
+    /// slides; and the classes with which it is evaluated, though their angle cancels.
+    fn equations(&self) -> (Vec<Equation>, Vec<Vec<usize>>, Vec<Vec<usize>>) {
+        let (mut equations, mut needs, mut also) = (Vec::new(), Vec::new(), Vec::new());
         for (l, one) in self.loops.iter().enumerate() {
-            let unknowns = self.unknowns_of(one);
+            let (unknowns, cancelled) = self.unknowns_of(one);
             // Two equations for a loop, one where it closes along a normal only.
             if one.axis.is_none() {
                 equations.push(Equation::Loop(l));
                 needs.push(unknowns.clone());
+                also.push(Vec::new());
             }
             equations.push(Equation::Loop(l));
             needs.push(unknowns);
+            also.push(cancelled);
         }
         for (r, row) in self.relations.iter().enumerate() {
             equations.push(Equation::Relation(r));
-            let classes = row.classes(self.frames).into_iter().map(|c| c - 1);
-            let slides = row
-                .slides()
-                .into_iter()
-                .filter(|&s| self.driven[s].is_none());
-            needs.push(
-                classes
-                    .chain(slides.map(|s| self.frames.classes - 1 + s))
-                    .collect(),
-            );
+            let classes: Vec<usize> = row.classes(self.frames).iter().map(|c| c - 1).collect();
+            let named = row.frames().map(|f| self.frames.frames[f].class);
+            let named = named.filter(|&c| c > 0).map(|c| c - 1);
+            also.push(named.filter(|c| !classes.contains(c)).collect());
+            let slides = row.slides().into_iter();
+            let slides = slides.filter(|&s| self.driven[s].is_none());
+            let slides = slides.map(|s| self.frames.classes - 1 + s);
+            needs.push(classes.into_iter().chain(slides).collect());
         }
-        (equations, needs)
+        (equations, needs, also)
     }
 
-    fn unknowns_of(&self, one: &Loop) -> Vec<usize> {
+    fn unknowns_of(&self, one: &Loop) -> (Vec<usize>, Vec<usize>) {
         let class = |frame: usize| self.frames.frames[frame].class;
         let turned = one.arms.iter().map(|a| a.frame);
         let slid = one.slides.iter().map(|(_, a)| a.frame);
@@ -178,8 +183,9 @@ impl Parts<'_> {
             let same = |frame: usize| class(frame) == class(axis.frame);
             one.arms.iter().all(|a| same(a.frame)) && one.slides.iter().all(|(_, a)| same(a.frame))
         });
+        let mut cancelled = Vec::new();
         if all_one_class {
-            found.clear();
+            std::mem::swap(&mut found, &mut cancelled);
         }
         let slides = one.slides.iter().map(|&(s, _)| s);
         found.extend(
@@ -187,7 +193,7 @@ impl Parts<'_> {
                 .filter(|&s| self.driven[s].is_none())
                 .map(|s| self.frames.classes - 1 + s),
         );
-        found
+        (found, cancelled)
     }
 
     /// The bodies that an unknown moves.

@@ -32,5 +32,5 @@ pub use mechanism::{
 pub use motion::{Balance, Motion};
 pub use plan::{Plan, Pose, Start};
 pub use plane::{Vec2, vec2};
-pub use range::Range;
+pub use range::{End, Range};
 pub use scalar::{Dual, Scalar};

@@ -18,7 +18,8 @@ impl Plan {
         let attitude = self.frames.attitudes[body.0];
         match self.driven_turn(attitude.frame, pose) {
             _ if self.counted[attitude.frame] => {
-                pose.angle[attitude.frame] + attitude.offset.angle()
+                let whole = self.turns.get(body.0).copied().unwrap_or(0.0);
+                pose.angle[attitude.frame] + attitude.offset.angle() + whole
             }
             Some(angle) => angle + attitude.offset.angle(),
             None => self.body_turn(body, pose).angle(),

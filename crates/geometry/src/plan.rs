@@ -11,7 +11,7 @@ use crate::lower::{Bond, Lowered, Measure, Owner};
 use crate::mechanism::{ActuatorId, BodyId, Coordinate, Drive, JointId, JointKind, Mechanism};
 use crate::mobility::{Mobility, mobility};
 use crate::plane::Vec2;
-use crate::range::Range;
+use crate::range::{End, Range};
 use crate::relation::Row;
 use crate::scalar::Scalar;
 use crate::seeds::Seeds;
@@ -50,6 +50,8 @@ pub struct Plan {
     pub(crate) driven: Vec<Driven>,
     /// By frame: whether its whole turns are counted, because a relation needs its angle.
     pub(crate) counted: Vec<bool>,
+    /// By body: the whole turns that it is ahead of its frame, rad.
+    pub(crate) turns: Vec<f64>,
     /// By frame of a line of centres: the frame beside which its turns are counted, and how far it is
     /// turned from it, rad.
     pub(crate) beside: HashMap<usize, (usize, f64)>,
@@ -61,6 +63,8 @@ pub struct Plan {
     pub(crate) reach: f64,
     pub(crate) start: Vec<f64>,
     pub(crate) range: Range,
+    /// Where the range ends, downwards and upwards, if it does.
+    pub(crate) ends: [Option<End>; 2],
     /// The pose at the start, once it is assembled.
     pub(crate) home: Option<Box<Pose<f64>>>,
     /// By reaction of the mechanism: whether the loads determine it; empty where they determine all.
@@ -455,6 +459,11 @@ impl Plan {
     /// How far the single actuator can go on this branch.
     pub fn range(&self) -> Range {
         self.range
+    }
+
+    /// Where and why the range ends, downwards and upwards.
+    pub fn ends(&self) -> [Option<End>; 2] {
+        self.ends
     }
 
     /// The moving bodies, each after the one that carries it.

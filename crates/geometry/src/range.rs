@@ -28,6 +28,18 @@ pub enum Range {
     Followed(f64, f64),
 }
 
+/// Where a branch ends, and why.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End {
+    /// The coordinate, rad or m.
+    pub q: f64,
+    /// The group that cannot be followed any further.
+    pub group: usize,
+    /// Whether another branch meets this one there and could be followed: a change point; else it is
+    /// a limit position, where the coordinate turns back.
+    pub change_point: bool,
+}
+
 impl Range {
     /// The ends, where there are any.
     pub fn limits(self) -> Option<(f64, f64)> {
@@ -119,6 +131,8 @@ impl Plan {
         back.pop();
         back.extend(ahead);
         self.store(&back);
+        self.ends = [down, up];
+        let [down, up] = [down, up].map(|end| end.map(|end| end.q));
         let far = |pose: Option<&Pose<f64>>| pose.map_or(start.q[0], |p| p.q[0]);
         let (first, last) = (far(back.first()), far(back.last()));
         self.range = match (down, up) {
@@ -134,12 +148,16 @@ impl Plan {
 
     /// Walks some turns on from the last pose, noting each pose on the way; where the branch ends, if
     /// it does. It ends at a limit position, and at a change point, where two branches meet.
-    fn walk(&self, noted: &mut Vec<Pose<f64>>, direction: f64, turns: u32) -> Option<f64> {
+    fn walk(&self, noted: &mut Vec<Pose<f64>>, direction: f64, turns: u32) -> Option<End> {
         let remembers = self.groups.iter().any(|g| g.remembers);
         let mut pose = noted.last()?.clone();
         let q0 = pose.q[0];
         let Some(mut margins) = self.margins(&pose) else {
-            return Some(q0);
+            return Some(End {
+                q: q0,
+                group: 0,
+                change_point: false,
+            });
         };
         let size = |m: &Dual| [m.v, (m.v * m.d).abs()];
         let mut largest: Vec<[f64; 2]> = margins.iter().map(size).collect();
@@ -165,7 +183,8 @@ impl Plan {
                     })
                 };
                 let advanced = self.advance(&pose, &margins, next);
-                match advanced.filter(|(_, left)| !ended(left)) {
+                let met = advanced.as_ref().is_some_and(|(_, left)| ended(left));
+                match advanced.filter(|_| !met) {
                     Some((reached, left)) => {
                         for (most, margin) in largest.iter_mut().zip(&left) {
                             let [value, product] = size(margin);
@@ -184,7 +203,16 @@ impl Plan {
                         fine = (next - pose.q[0]) * 0.5;
                         let unit = if self.angular[0] { 1.0 } else { self.reach };
                         if fine.abs() < SMALLEST_STEP * (unit + pose.q[0].abs()) {
-                            return Some(pose.q[0]);
+                            let part = |g: &usize| margins[*g].v / largest[*g][0];
+                            let group = (0..margins.len())
+                                .min_by(|a, b| part(a).total_cmp(&part(b)))
+                                .unwrap_or(0);
+                            let [_, product] = size(&margins[group]);
+                            return Some(End {
+                                q: pose.q[0],
+                                group,
+                                change_point: met || product < FALLEN * largest[group][1],
+                            });
                         }
                     }
                 }

@@ -2,94 +2,266 @@
 
 use crate::error::StudyError;
 use crate::outcome::Outcome;
-use crate::prepare::Prepared;
 use crate::words::{count, number};
-use dwell_geometry::BodyId;
+use dwell_geometry::mobility::mobility;
+use dwell_geometry::{BodyId, End, Mechanism, Plan, Range, Start};
+use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::fmt::Write as _;
 
-/// Describes a scene: degrees of freedom, groups, branch, range and requests. It writes no file.
+/// Describes a scene: degrees of freedom, groups, branches, range, what is left out and why, and
+/// the requests. It writes no file.
 ///
 /// # Errors
 /// [`StudyError::Scene`] when the mechanism cannot be put together.
 pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
-    let prepared = Prepared::new(scene)?;
-    let plan = prepared.model.model().plan();
     let mechanism = &scene.mechanism;
-    let coordinate = prepared.coordinate();
-    let mut text = String::new();
+    let start = Start {
+        q: scene.assembly.start.clone(),
+        rough: scene.assembly.rough.clone(),
+    };
+    let model = crate::run::model(scene)?;
+    let plan = model.plan();
+    let mut text = format!("{}\n", scene.title);
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{}", scene.title);
     let _ = writeln!(
         text,
-        "  {}, {}, 1 degree of freedom, driven by {coordinate}",
+        "  {}, {}, {}, driven by {}",
         count(mechanism.bodies.len() - 1, "moving body"),
         count(mechanism.joints.len(), "joint"),
+        count(plan.actuators(), "degree of freedom"),
+        list(mechanism.actuators.iter().map(|a| a.name.as_str())),
     );
-    let _ = match plan.range().limits() {
-        None => writeln!(text, "  {coordinate} turns fully"),
-        Some((from, to)) => writeln!(
+    freedom(mechanism, &start, plan, &mut text);
+    range(mechanism, plan, &mut text);
+    groups(mechanism, plan, &mut text);
+    branch(mechanism, plan, &mut text);
+    left_out(scene, &model, &mut text);
+    requests(scene, &mut text);
+    if let Some(note) = &scene.note {
+        let _ = writeln!(text, "  note: {note}");
+    }
+    Ok(Outcome {
+        summary: text,
+        ..Outcome::default()
+    })
+}
+
+/// Words in a row.
+fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+    words.into_iter().collect::<Vec<_>>().join(", ")
+}
+
+fn bodies(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
+    list(bodies.iter().map(|&b| mechanism.body_name(b)))
+}
+
+/// Where counting is not enough: constraints that repeat others.
+fn freedom(mechanism: &Mechanism, start: &Start, plan: &Plan, text: &mut String) {
+    let reactions = mechanism.reactions();
+    let shared: Vec<String> = (0..reactions.len())
+        .filter(|&k| !plan.is_unique(k))
+        .map(|k| mechanism.reaction_name(reactions[k]))
+        .collect();
+    if shared.is_empty() {
+        return;
+    }
+    if let Some(found) = mobility(mechanism, start) {
+        let _ = writeln!(
             text,
-            "  {coordinate} turns from {from:.6} to {to:.6} rad ({:.2}° to {:.2}°), limit positions or change points",
-            from.to_degrees(),
-            to.to_degrees()
-        ),
+            "  by counting {} degrees of freedom, by rank {}: {} others, consistently",
+            found.counted(),
+            found.freedom(),
+            if found.excess == 1 {
+                "one constraint repeats".to_owned()
+            } else {
+                format!("{} constraints repeat", found.excess)
+            },
+        );
+    }
+    let _ = writeln!(
+        text,
+        "  not unique, because repeated constraints share them: {}",
+        shared.join(", ")
+    );
+}
+
+/// How far the actuators go.
+fn range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
+    let [actuator] = mechanism.actuators.as_slice() else {
+        let _ = writeln!(
+            text,
+            "  several actuators: limit positions are found along a motion or a sweep"
+        );
+        return;
     };
+    let name = &actuator.name;
+    let angle = plan.is_angle(0);
+    let verb = if angle { "turns" } else { "goes" };
+    let both = |from: f64, to: f64| {
+        if angle {
+            format!(
+                "from {from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
+                from.to_degrees(),
+                to.to_degrees()
+            )
+        } else {
+            format!("from {from:.6} to {to:.6} m")
+        }
+    };
+    let _ = match plan.range() {
+        Range::Full => writeln!(text, "  {name} turns fully"),
+        Range::Turns(turns) => writeln!(
+            text,
+            "  {name} turns fully; the mechanism comes back after {turns} turns"
+        ),
+        Range::Endless if angle => writeln!(
+            text,
+            "  {name} turns on and on; the mechanism does not come back after a few turns"
+        ),
+        Range::Endless => writeln!(text, "  no end of {name} was found"),
+        Range::Followed(from, to) => writeln!(
+            text,
+            "  {name} {verb} {}; no end was met, it is followed no farther",
+            both(from, to)
+        ),
+        Range::Between(from, to) | Range::Stroke(from, to) => {
+            writeln!(text, "  {name} {verb} {}", both(from, to))
+        }
+    };
+    for end in plan.ends().into_iter().flatten() {
+        let _ = writeln!(text, "    {}", why(mechanism, plan, end));
+    }
+}
+
+/// Why a range ends.
+fn why(mechanism: &Mechanism, plan: &Plan, end: End) -> String {
+    let unit = if plan.is_angle(0) { "rad" } else { "m" };
+    let who = if plan.group_kinds().is_empty() {
+        String::new()
+    } else {
+        format!(" of {}", bodies(mechanism, &plan.group_bodies(end.group)))
+    };
+    let what = if end.change_point {
+        "a change point, where another branch begins,"
+    } else {
+        "a limit position"
+    };
+    format!("{:.12} {unit}: {what}{who}", end.q)
+}
+
+fn groups(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
     let groups = plan.group_kinds();
     if !groups.is_empty() {
         let _ = writeln!(text, "  groups, in the order of solution:");
     }
     for (g, (size, kind)) in groups.into_iter().enumerate() {
-        let bodies = plan.group_bodies(g);
         let joints = plan.group_joints(g);
-        let bodies: Vec<_> = bodies.iter().map(|&b| mechanism.body_name(b)).collect();
-        let joints: Vec<_> = joints
-            .iter()
-            .map(|j| mechanism.joints[j.0].name.as_str())
-            .collect();
+        let joints = joints.iter().map(|j| mechanism.joints[j.0].name.as_str());
+        let placed = bodies(mechanism, &plan.group_bodies(g));
+        let placed = if placed.is_empty() {
+            "a line".to_owned()
+        } else {
+            placed
+        };
+        let joints = list(joints);
+        let closed = if joints.is_empty() {
+            "its actuator".to_owned()
+        } else {
+            joints
+        };
         let _ = writeln!(
             text,
-            "    {}. {} closed by {}: {}, {kind}",
+            "    {}. {placed} closed by {closed}: {}, {kind}",
             g + 1,
-            bodies.join(", "),
-            joints.join(", "),
             count(size, "unknown"),
         );
+        let branches = &plan.branches()[g];
+        if branches.ways.len() > 1 && !branches.bodies.is_empty() {
+            for (k, way) in branches.ways.iter().enumerate() {
+                let angles = branches.bodies.iter().zip(way);
+                let angles: Vec<_> = angles
+                    .map(|(b, angle)| format!("{} = {:.4}", mechanism.body_name(*b), angle + 0.0))
+                    .collect();
+                let _ = writeln!(
+                    text,
+                    "       {} {} rad",
+                    if k == 0 {
+                        "on the branch"
+                    } else {
+                        "it could close at"
+                    },
+                    angles.join(", ")
+                );
+            }
+        }
     }
+}
+
+/// The angles of all bodies at the start.
+fn branch(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
     let mut pose = plan.pose();
-    if plan.place(plan.start(), &mut pose).is_ok() {
+    if plan.place(plan.start(), &mut pose).is_err() {
+        return;
+    }
+    let at: Vec<_> = mechanism
+        .actuators
+        .iter()
+        .enumerate()
+        .map(|(i, a)| {
+            let unit = if plan.is_angle(i) { "rad" } else { "m" };
+            format!("{} = {} {unit}", a.name, number(plan.start()[i]))
+        })
+        .collect();
+    let _ = writeln!(text, "  branch, as body angles at {}:", at.join(", "));
+    let named = || {
+        let carried = plan.carried().iter().map(|c| c.body);
+        carried.filter(|&b| b < mechanism.bodies.len()).map(BodyId)
+    };
+    let widths = named().map(|b| mechanism.body_name(b).chars().count());
+    let width = widths.max().unwrap_or(0);
+    for body in named() {
+        let angle = plan.body_turn(body, &pose).angle();
+        // Rounded first, so that no zero keeps a minus sign.
+        let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
+            .map(|(value, parts)| (value * parts).round() / parts + 0.0);
         let _ = writeln!(
             text,
-            "  branch, as body angles at {coordinate} = {} rad:",
-            number(plan.start()[0])
+            "    {:<width$}  {radians:9.6} rad  {degrees:8.3}°",
+            mechanism.body_name(body),
         );
-        let named = || {
-            let carried = plan.carried().iter();
-            carried.filter(|c| c.body < mechanism.bodies.len())
-        };
-        let names = named().map(|c| mechanism.body_name(BodyId(c.body)));
-        let width = names.map(|n| n.chars().count()).max().unwrap_or(0);
-        for carried in named() {
-            let angle = plan.body_turn(BodyId(carried.body), &pose).angle();
-            // Rounded first, so that no zero keeps a minus sign.
-            let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
-                .map(|(value, parts)| (value * parts).round() / parts + 0.0);
-            let _ = writeln!(
-                text,
-                "    {:<width$}  {radians:9.6} rad  {degrees:8.3}°",
-                mechanism.body_name(BodyId(carried.body)),
-            );
-        }
+    }
+}
+
+/// What a study of forces leaves out: groups that no inertia, load or request needs.
+fn left_out(scene: &Scene, model: &Model, text: &mut String) {
+    let mechanism = &scene.mechanism;
+    let plan = model.plan();
+    let mut wanted: Vec<BodyId> = scene.requests.paths.iter().map(|p| p.body).collect();
+    wanted.extend(scene.requests.dwell.iter().map(|d| d.body));
+    wanted.extend(scene.requests.sections.iter().map(|s| s.body));
+    for variable in scene.requests.variables.iter().flatten() {
+        let name = variable.split('.').next();
+        let body = mechanism
+            .bodies
+            .iter()
+            .position(|b| Some(b.name.as_str()) == name);
+        wanted.extend(body.map(BodyId));
+    }
+    let needed = model.needed(mechanism, &wanted);
+    for (g, _) in needed.iter().enumerate().filter(|(_, needed)| !**needed) {
+        let _ = writeln!(
+            text,
+            "  left out: {}, which have no inertia, bear no load and are not requested",
+            bodies(mechanism, &plan.group_bodies(g))
+        );
     }
     let massless: Vec<_> = plan
         .carried()
         .iter()
-        .filter(|c| c.body < mechanism.bodies.len())
-        .filter(|c| {
-            let mass = &scene.masses[c.body];
-            mass.mass == 0.0 && mass.inertia == 0.0
-        })
-        .map(|c| mechanism.body_name(BodyId(c.body)))
+        .filter_map(|c| scene.masses.get(c.body).map(|mass| (c.body, mass)))
+        .filter(|(_, mass)| mass.mass == 0.0 && mass.inertia == 0.0)
+        .map(|(b, _)| mechanism.body_name(BodyId(b)))
         .collect();
     if !massless.is_empty() {
         let _ = writeln!(
@@ -98,7 +270,12 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
             massless.join(", ")
         );
     }
-    let names: Vec<_> = prepared.reactions().into_iter().map(|(n, _)| n).collect();
+}
+
+fn requests(scene: &Scene, text: &mut String) {
+    let mechanism = &scene.mechanism;
+    let asked = &scene.requests.reactions;
+    let names: Vec<_> = asked.iter().map(|&r| mechanism.reaction_name(r)).collect();
     let others = mechanism.reactions().len() - names.len();
     let _ = writeln!(
         text,
@@ -114,11 +291,8 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
             String::new()
         }
     );
-    if let Some(note) = &scene.note {
-        let _ = writeln!(text, "  note: {note}");
+    if !scene.loads.is_empty() {
+        let loads = list(scene.loads.iter().map(|l| l.name.as_str()));
+        let _ = writeln!(text, "  loads: {loads}");
     }
-    Ok(Outcome {
-        summary: text,
-        ..Outcome::default()
-    })
 }

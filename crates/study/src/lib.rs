@@ -5,7 +5,11 @@
 //!       └─ Prepared (the model of what the scene requests) ───────────┼─ check, reduce, simulate,
 //!                                                                     │  calibrate, validate
 //!                                                                     └→ Outcome: words, files, findings
+//! Scene ── Model under its loads ── Way (prescribed, swept or the range) ── Record ── run
 //! ```
+//!
+//! [`run()`] is all of `kinematics`, `statics` and `kinetostatics`: they follow the same way through a scene
+//! and differ in the columns that they compute.
 
 mod calibrate;
 mod check;

@@ -170,17 +170,20 @@ impl Dense {
     }
 
     /// The unit speeds of every row.
+    ///
+    /// A row that is not solved cannot be opened: nothing moves.
     pub fn unit_speeds(&self, at: &Closed) -> Vec<Vec<f64>> {
-        let n = self.rows.len();
-        let mut right = Mat::from_fn(n, n, |i, j| if i == j { self.row_scale[i] } else { 0.0 });
+        let n = self.kept.len();
+        let scale = |i: usize| self.row_scale[self.kept[i]];
+        let mut right = Mat::from_fn(n, n, |i, j| if i == j { scale(i) } else { 0.0 });
         at.lu.solve(&mut right);
-        (0..n)
-            .map(|k| {
-                (0..n)
-                    .map(|c| right[(c, k)] * self.column_scale(c))
-                    .collect()
-            })
-            .collect()
+        let mut speeds = vec![vec![0.0; n]; self.rows.len()];
+        for (k, &row) in self.kept.iter().enumerate() {
+            for (c, speed) in speeds[row].iter_mut().enumerate() {
+                *speed = right[(c, k)] * self.column_scale(c);
+            }
+        }
+        speeds
     }
 
     /// The accelerations of all coordinates when they move at `x_dot` and row values accelerate
@@ -194,10 +197,26 @@ impl Dense {
         self.solve(&at.lu, &right)
     }
 
-    /// The largest residual of any row, in sizes or rad.
+    /// The largest residual of any row that is solved, in sizes or rad.
     fn openness(&self, residual: &[f64]) -> f64 {
-        let scaled = residual.iter().zip(&self.row_scale).map(|(r, s)| r * s);
+        let scaled = self.kept.iter().map(|&k| residual[k] * self.row_scale[k]);
         largest(scaled) / self.size
+    }
+
+    /// Whether the rows that are not solved close too.
+    ///
+    /// # Errors
+    /// [`DenseError::Open`] with the largest residual.
+    pub(crate) fn check_repeated(&self, at: &Closed) -> Result<(), DenseError> {
+        let mut residual = vec![0.0; self.rows.len()];
+        self.rows.residual(&at.x, &at.imposed, &mut residual);
+        let scaled = residual.iter().zip(&self.row_scale).map(|(r, s)| r * s);
+        let open = largest(scaled) / self.size;
+        if open <= OPEN {
+            Ok(())
+        } else {
+            Err(DenseError::Open { open })
+        }
     }
 
     pub(crate) fn column_scale(&self, column: usize) -> f64 {
@@ -219,23 +238,37 @@ impl Dense {
     }
 
     fn factor(&self, x: &[f64]) -> Result<Lu, DenseError> {
-        Lu::new(self.scaled_jacobian(x)).map_err(|pivot| DenseError::Singular { pivot })
+        Lu::new(self.solved(&self.scaled_jacobian(x)))
+            .map_err(|pivot| DenseError::Singular { pivot })
+    }
+
+    /// The rows that are solved.
+    fn solved(&self, matrix: &Mat<f64>) -> Mat<f64> {
+        Mat::from_fn(self.kept.len(), matrix.ncols(), |i, j| {
+            matrix[(self.kept[i], j)]
+        })
     }
 
     /// The multipliers of all rows under which the forces `q` of the coordinates are made up:
-    /// Jᵀ λ = q, by factors of the transposed matrix.
+    /// Jᵀ λ = q, by factors of the transposed matrix. Those of rows that are not solved are zero.
     pub(crate) fn multipliers(&self, at: &Closed, q: &[f64]) -> Result<Vec<f64>, DenseError> {
-        let transposed = self.scaled_jacobian(&at.x).transpose().to_owned();
+        let solved = self.solved(&self.scaled_jacobian(&at.x));
+        let transposed = solved.transpose().to_owned();
         let lu = Lu::new(transposed).map_err(|pivot| DenseError::Singular { pivot })?;
         let mut right = Mat::from_fn(q.len(), 1, |c, _| q[c] * self.column_scale(c));
         lu.solve(&mut right);
-        let scales = self.row_scale.iter().enumerate();
-        Ok(scales.map(|(k, scale)| right[(k, 0)] * scale).collect())
+        let mut multipliers = vec![0.0; self.rows.len()];
+        for (k, &row) in self.kept.iter().enumerate() {
+            multipliers[row] = right[(k, 0)] * self.row_scale[row];
+        }
+        Ok(multipliers)
     }
 
     fn solve(&self, lu: &Lu, right: &[f64]) -> Vec<f64> {
-        let n = right.len();
-        let mut scaled = Mat::from_fn(n, 1, |i, _| right[i] * self.row_scale[i]);
+        let n = self.kept.len();
+        let mut scaled = Mat::from_fn(n, 1, |i, _| {
+            right[self.kept[i]] * self.row_scale[self.kept[i]]
+        });
         lu.solve(&mut scaled);
         (0..n)
             .map(|c| scaled[(c, 0)] * self.column_scale(c))

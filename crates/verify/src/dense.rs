@@ -7,9 +7,13 @@
 //! differences of rounded large numbers.
 
 use crate::closing::Closed;
+use crate::rank::rank;
 use dwell_geometry::rows::{Rows, RowsError};
 use dwell_geometry::{BodyId, Coordinate, Drive, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
+
+/// A row with less than this beside the others depends on them: as for singular values.
+const DEPENDENT: f64 = 1e-9;
 
 /// Why the dense side cannot answer.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -62,6 +66,12 @@ pub enum DenseError {
         /// Size of the last one, relative to the mechanism's size.
         moved: f64,
     },
+    /// Rows that repeat others are not met where these are.
+    #[error("rows that repeat others stay open by {open:.1e} of the size")]
+    Open {
+        /// The largest residual, relative to the mechanism's size.
+        open: f64,
+    },
     /// They were met on the other side of a dead point.
     #[error("the rows close on another assembly branch")]
     OtherBranch,
@@ -95,6 +105,10 @@ pub struct Dense {
     pub(crate) bodies: Vec<DenseBody>,
     pub(crate) row_scale: Vec<f64>,
     pub(crate) size: f64,
+    /// The rows that are solved: as many as coordinates. What the others say follows from them.
+    pub(crate) kept: Vec<usize>,
+    /// By row: whether only one multiplier of it balances the forces.
+    pub(crate) unique: Vec<bool>,
 }
 
 impl Dense {
@@ -107,6 +121,65 @@ impl Dense {
         } else {
             Err(DenseError::NotSquare { rows, columns })
         }
+    }
+
+    /// The same where joints repeat each other: a largest set of independent rows is solved, found
+    /// in the configuration with the frames `poses` of all bodies.
+    pub(crate) fn repeated(
+        mechanism: &Mechanism,
+        masses: &[Mass],
+        poses: &[[f64; 3]],
+    ) -> Result<Self, DenseError> {
+        let mut dense = Self::of_any_shape(mechanism, masses)?;
+        let (rows, columns) = (dense.rows.len(), dense.rows.columns());
+        if rows == columns {
+            return Ok(dense);
+        }
+        let kept = dense.independent(poses)?;
+        if kept.len() != columns {
+            return Err(DenseError::NotSquare { rows, columns });
+        }
+        dense.kept = kept;
+        for row in rank(mechanism, poses)?.driven.dependent {
+            dense.unique[row] = false;
+        }
+        Ok(dense)
+    }
+
+    /// Rows of which none is made up of the others, the actuators' among them; by Gram and Schmidt,
+    /// always with the one that is farthest from those before.
+    fn independent(&self, poses: &[[f64; 3]]) -> Result<Vec<usize>, DenseError> {
+        let matrix = self.scaled_jacobian(&self.start(poses)?);
+        let rows = 0..matrix.nrows();
+        let mut left: Vec<Vec<f64>> = rows
+            .map(|i| (0..matrix.ncols()).map(|j| matrix[(i, j)]).collect())
+            .collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let mut kept: Vec<usize> = Vec::new();
+        while kept.len() < matrix.ncols() {
+            let driven = (self.actuator_row()..left.len()).find(|row| !kept.contains(row));
+            let farthest = || {
+                let size = |row: &usize| dot(&left[*row], &left[*row]);
+                let others = (0..left.len()).filter(|row| !kept.contains(row));
+                others.max_by(|a, b| size(a).total_cmp(&size(b)))
+            };
+            let Some(next) = driven.or_else(farthest) else {
+                break;
+            };
+            let length = dot(&left[next], &left[next]).sqrt();
+            // What is left of a row of order one is rounding.
+            if length.is_nan() || length < DEPENDENT {
+                break;
+            }
+            let unit: Vec<f64> = left[next].iter().map(|v| v / length).collect();
+            for row in &mut left {
+                let part = dot(row, &unit);
+                row.iter_mut().zip(&unit).for_each(|(v, u)| *v -= part * u);
+            }
+            kept.push(next);
+        }
+        kept.sort_unstable();
+        Ok(kept)
     }
 
     /// The same whatever the number of rows: it can be measured, but not closed.
@@ -143,6 +216,7 @@ impl Dense {
             .collect();
         let size = size(&mut mechanism, &bodies);
         let rows = Rows::new(&mechanism)?;
+        let (kept, unique) = ((0..rows.len()).collect(), vec![true; rows.len()]);
         let row_scale = rows
             .angular()
             .iter()
@@ -154,6 +228,8 @@ impl Dense {
             bodies,
             row_scale,
             size,
+            kept,
+            unique,
         })
     }
 

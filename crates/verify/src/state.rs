@@ -69,15 +69,15 @@ pub struct State {
 /// Judges claimed states of one mechanism, each by itself, with scales from all of them. Gears
 /// mesh as they stand in `start`, the frames of all bodies in the assembled configuration.
 ///
-/// The findings come in a fixed order. If the mechanism cannot be written in square dense rows
-/// there is one failed finding that says why; a state that cannot be closed fails all of them.
+/// Where joints repeat each other, all rows must close, and reactions that are not determined must
+/// balance, whatever they are. The findings come in a fixed order. If the mechanism is not determinate there is one failed finding that says why; a state that cannot be closed fails all of them.
 pub fn judge_states(
     mechanism: &Mechanism,
     masses: &[Mass],
     start: &[[f64; 3]],
     states: &[State],
 ) -> Vec<Finding> {
-    let dense = Dense::new(mechanism, masses).and_then(|mut dense| {
+    let dense = Dense::repeated(mechanism, masses, start).and_then(|mut dense| {
         dense.mesh(start)?;
         Ok(dense)
     });
@@ -350,6 +350,10 @@ impl<'a> Judge<'a> {
             let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let brought = m.largest_force();
             for (k, (claimed, (moment, name))) in claimed.zip(&rows).enumerate() {
+                // Of a reaction that is not determined, (4) judges what it does with the others.
+                if !self.dense.unique[k] {
+                    continue;
+                }
                 let arm = if *moment { 1.0 / size } else { 1.0 };
                 let (dense, own) = (m.multipliers[k] * arm, m.noise_multipliers[k] * arm);
                 let at = format!("{}, {name}", place(m));

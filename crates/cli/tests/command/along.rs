@@ -259,6 +259,9 @@ fn what_cannot_be_followed_is_refused() {
     refused(
         with(&LIMITED) + away,
         &["statics", "scene.toml"],
-        &["a limit position"],
+        &[
+            "the first position cannot be reached: phi = 3 rad",
+            "of -1.37156 to",
+        ],
     );
 }

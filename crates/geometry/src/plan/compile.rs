@@ -60,6 +60,7 @@ impl Plan {
             angular: angular.collect(),
             start: vec![0.0; mechanism.actuators.len()],
             range: Range::Full,
+            ends: [None; 2],
             home: None,
             branches: Vec::new(),
             unique: Vec::new(),
@@ -76,6 +77,7 @@ impl Plan {
             closures,
             relations,
             counted,
+            turns: Vec::new(),
             beside,
             driven_slides,
         };

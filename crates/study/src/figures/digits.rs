@@ -8,7 +8,7 @@ use dwell_scene::Scene;
 /// Where an exact agreement is drawn.
 const EXACT: f64 = 1e-18;
 /// Most findings in a panel.
-const TOGETHER: usize = 16;
+const TOGETHER: usize = 7;
 
 /// The relative difference of every finding beside its tolerance, in the order of the table.
 pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {

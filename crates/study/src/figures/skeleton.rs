@@ -123,9 +123,7 @@ impl<'a> Skeleton<'a> {
                             vec![[a.x, a.y], [end.x, end.y]],
                             pen(one, 12.0),
                         ));
-                    } else if !on_ground {
-                        self.track(frames, joint, axes[0], travel.as_ref(), lightness, shapes);
-                    } else if lightness == 0.0 {
+                    } else if !on_ground || lightness == 0.0 {
                         self.track(frames, joint, axes[0], travel.as_ref(), lightness, shapes);
                     }
                 }

@@ -105,7 +105,9 @@ impl<'a> Document<'a> {
             let again = told
                 .iter()
                 .any(|t| t.0 == peak.unit && (t.1.abs() - value.abs()).abs() <= SAME * value.abs());
-            if enough || again || value == 0.0 || peak.name.contains('@') {
+            let most = told.iter().find(|t| t.0 == peak.unit);
+            let nothing = value.abs() <= SAME * most.map_or(0.0, |t| t.1.abs());
+            if enough || again || nothing || peak.name.contains('@') {
                 continue;
             }
             told.push((peak.unit, value));

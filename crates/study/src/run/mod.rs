@@ -7,6 +7,7 @@ mod dyads;
 mod link;
 mod peaks;
 mod record;
+pub(crate) use record::model;
 mod select;
 mod stop;
 mod way;

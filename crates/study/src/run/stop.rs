@@ -28,8 +28,9 @@ pub(crate) fn is_cut_off(plan: &Plan, before: f64, q: f64) -> Option<PlaceError>
 pub(crate) struct Stop {
     /// Why.
     pub(crate) error: KinetostaticsError,
-    /// The last position that can be reached.
+    /// The last position that can be reached; the first of the way if not even that can be.
     pub(crate) last: Sample,
+    begun: bool,
 }
 
 impl Stop {
@@ -58,6 +59,7 @@ impl Stop {
         Self {
             error,
             last: way.at(low),
+            begun: beyond > reached,
         }
     }
 
@@ -103,6 +105,9 @@ impl Stop {
         place: &str,
         error: &PlaceError,
     ) -> StudyError {
+        if !self.begun {
+            return self.unreached(scene, plan, way, place, error);
+        }
         let in_the_middle = matches!(plan.range(), Range::Followed(..))
             && matches!(error, PlaceError::OutOfRange { .. });
         if in_the_middle {
@@ -149,6 +154,40 @@ impl Stop {
             .error(
                 format!("a limit position is reached at {place}: {why}"),
                 Some(help.to_owned()),
+                &labels,
+            )
+            .into()
+    }
+}
+
+impl Stop {
+    /// The error where not even the first position can be reached.
+    fn unreached(
+        &self,
+        scene: &Scene,
+        plan: &Plan,
+        way: &Way<'_>,
+        place: &str,
+        error: &PlaceError,
+    ) -> StudyError {
+        let joints = error.group().map(|g| plan.group_joints(g));
+        let mut labels = joint_labels(&joints.unwrap_or_default(), "cannot be joined there");
+        labels.push((way.place, "begins there".to_owned()));
+        let range = match plan.range().limits() {
+            Some((from, to)) => {
+                let unit = if plan.is_angle(0) { "rad" } else { "m" };
+                format!(
+                    ", outside the range of {} to {} {unit}",
+                    number(from),
+                    number(to)
+                )
+            }
+            None => String::new(),
+        };
+        scene
+            .error(
+                format!("the first position cannot be reached: {place}{range}"),
+                Some("begin where the mechanism can be; `dwell check` shows its range".to_owned()),
                 &labels,
             )
             .into()

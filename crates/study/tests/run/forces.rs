@@ -120,6 +120,18 @@ fn the_frame_gets_what_the_momentum_does_not() {
     }
 }
 
+/// The actuator and the load of the planetary gear both turn a body from the ground: at rest, the
+/// ground feels nothing of what it does itself.
+#[test]
+fn loads_from_the_ground_act_on_the_frame_too() {
+    let followed = follow(&case("planetary"), Command::Statics, 361);
+    let table = Table::parse(&file(&followed, "-statics.csv"));
+    let m = table.column("frame.m");
+    // Couples of 12 N m.
+    assert!(m.len() > 200 && largest(&m) < 1e-13, "{}", largest(&m));
+    assert_eq!(largest(&table.column("load.load")), 12.0);
+}
+
 #[test]
 fn a_force_is_one_in_all_axes() {
     let table = table(&scene(WEIGHTS), Command::Kinetostatics, 60);

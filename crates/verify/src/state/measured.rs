@@ -120,6 +120,7 @@ impl<'a> Measured<'a> {
         let mut imposed = vec![0.0; dense.rows.len()];
         imposed[dense.actuator_row()..].copy_from_slice(&state.q);
         let closed = dense.close(&start, &imposed)?;
+        dense.check_repeated(&closed)?;
         let moved: Vec<_> = start.iter().zip(&closed.x).map(|(s, x)| s - x).collect();
         let reached = state.bodies.iter().map(|p| p[0].hypot(p[1]));
         let largest = reached.fold(dense.size(), f64::max);

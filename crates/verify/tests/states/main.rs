@@ -253,7 +253,22 @@ fn val_all_are_determinate_and_of_full_rank() {
     assert_eq!(ranks.joints.excess(), 2);
     assert_eq!(ranks.joints.dependent, [0, 1, last - 2, last - 1]);
     assert!(ranks.joints.singular_values.is_sorted_by(|a, b| a >= b));
-    let findings = judged(&setup, &[State::default()]);
+    // Whatever the two guides share, only the sum must balance: 3 and −3 more than one of them alone.
+    let mut single = all().into_iter().find(|s| s.name == "wedge").unwrap();
+    let mut states = single.states();
+    for state in &mut states {
+        state.reactions[0] += 3.0;
+        state.reactions.extend([-3.0, 0.0]);
+    }
+    let findings = judged(&setup, &states);
+    assert!(all_pass(&findings), "{}", told(&findings));
+    states[0].reactions[last - 2] += 0.01;
+    let failed = judged(&setup, &states);
+    let failed = failed.iter().filter(|f| !f.pass).map(|f| f.key.as_str());
+    assert!(failed.collect::<Vec<_>>().contains(&"state-newton"));
+    // Without its drive nothing is determined.
+    single.mechanism.actuators.clear();
+    let findings = judged(&single, &[State::default()]);
     assert_eq!(findings.len(), 1);
     assert!(
         findings[0].worst.contains("not determinate"),
