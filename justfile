@@ -8,6 +8,7 @@ default:
 [group('main')]
 validate *cases:
     cargo run --release -- validate {{ cases }}
+    cargo run --release -p dwell-tests --example size
 
 # All tests
 [group('main')]

@@ -21,6 +21,7 @@ mod machines;
 mod mobility;
 mod motion;
 mod published;
+mod random;
 mod refusals;
 mod repeatability;
 mod scaling;
