@@ -4,6 +4,7 @@ mod assemble;
 pub mod error;
 pub mod frames;
 mod groups;
+mod large;
 mod locate;
 pub mod lower;
 pub mod measure;

@@ -30,6 +30,10 @@ pub trait Scalar:
     fn sin_cos(self) -> (Self, Self);
     /// The angle of (x, y) = (`other`, `self`) from the x axis, in (−π, π].
     fn atan2(self, other: Self) -> Self;
+    /// The numbers as plain ones, if that is what they are: for a library that knows no others.
+    fn plain(_numbers: &mut [Self]) -> Option<&mut [f64]> {
+        None
+    }
     /// A function of this number, from its value and first three derivatives at
     /// [`value`](Self::value).
     fn through(self, derivatives: &[f64; 4]) -> Self;
@@ -59,6 +63,10 @@ impl Scalar for f64 {
     #[inline]
     fn through(self, derivatives: &[f64; 4]) -> Self {
         derivatives[0]
+    }
+    #[inline]
+    fn plain(numbers: &mut [Self]) -> Option<&mut [f64]> {
+        Some(numbers)
     }
 }
 

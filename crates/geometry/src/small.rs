@@ -1,5 +1,6 @@
 //! Elimination with partial pivoting for the few unknowns of one group, in any kind of number.
 
+use crate::large;
 use crate::scalar::Scalar;
 
 /// Outcome of a factorisation, on which the caller judges singularity and branch.
@@ -13,6 +14,16 @@ pub(crate) struct Factored {
 
 /// Factors the row-major n×n matrix `a` in place, with the row exchanges in `pivots`.
 pub(crate) fn factor<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> Factored {
+    if pivots.len() >= large::LARGE
+        && let Some(plain) = T::plain(a)
+    {
+        return large::factor(plain, pivots);
+    }
+    eliminate(a, pivots)
+}
+
+/// The same by elimination written out.
+pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> Factored {
     let n = pivots.len();
     let mut sign = 1.0;
     let (mut least, mut most) = (f64::INFINITY, 0.0_f64);

@@ -3,7 +3,7 @@
 use crate::run::Command;
 use crate::run::dyads::{Dyad, dyads};
 use dwell_geometry::measure::Measured;
-use dwell_geometry::{BodyId, Drive, JointId, JointKind, Plan, Vec2};
+use dwell_geometry::{BodyId, Component, Drive, JointId, JointKind, Plan, Vec2};
 use dwell_kinetostatics::{LoadKind, Model};
 use dwell_scene::Scene;
 
@@ -243,11 +243,18 @@ impl Columns {
                 let Some(k) = model.reactions().iter().position(|&r| r == reaction) else {
                     continue;
                 };
+                // What the loads do not determine is no result.
+                if !model.plan().is_unique(k) {
+                    continue;
+                }
                 let meaning = meaning(joint.kind, component, one, two);
                 let name = mechanism.reaction_name(reaction);
                 self.add(name, component.unit(), Quantity::Reaction(k), meaning);
             }
             use JointKind::{Prismatic, Revolute, Rolling, Slot, Weld};
+            if !determined(model, id) {
+                continue;
+            }
             if matches!(joint.kind, Revolute | Weld { .. }) {
                 for body in joint.bodies.into_iter().filter(|b| b.0 != mechanism.ground) {
                     for (axis, letter) in ["x", "y"].into_iter().enumerate() {
@@ -352,4 +359,12 @@ fn meaning(kind: JointKind, component: dwell_geometry::Component, one: &str, two
         (C::Axial, _) => "force of the link; positive pushes its ends apart".to_owned(),
         (C::Force, _) => format!("force {on} that keeps the relation"),
     }
+}
+
+/// Whether the loads determine every force of a joint.
+fn determined(model: &Model, joint: JointId) -> bool {
+    let reactions = model.reactions().iter().enumerate();
+    let mut forces =
+        reactions.filter(|(_, r)| r.joint == joint && r.component != Component::Moment);
+    forces.all(|(k, _)| model.plan().is_unique(k))
 }

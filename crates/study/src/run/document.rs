@@ -135,7 +135,19 @@ impl<'a> Document<'a> {
             }
         }
         text += &self.balance();
+        text += &self.shared();
         text
+    }
+
+    /// The reactions that are in no table, because the loads do not determine them.
+    fn shared(&self) -> String {
+        if self.command == Command::Kinematics || self.record.shared.is_empty() {
+            return String::new();
+        }
+        format!(
+            "  in no table, because constraints that repeat each other share them: {}\n",
+            self.record.shared.join(", ")
+        )
     }
 
     fn balance(&self) -> String {

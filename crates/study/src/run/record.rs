@@ -27,6 +27,8 @@ pub(crate) struct Record {
     pub(crate) links: Vec<Link>,
     /// The largest residual of the power balance, as a part of its absolute terms.
     pub(crate) residual: f64,
+    /// The reactions that the loads do not determine.
+    pub(crate) shared: Vec<String>,
     /// Where and why the way ended early.
     pub(crate) stop: Option<Stop>,
 }
@@ -264,6 +266,10 @@ pub(crate) fn follow(
         frames: Vec::with_capacity(way.points),
         links: sections.iter().map(Link::new).collect(),
         residual: 0.0,
+        shared: (0..model.reactions().len())
+            .filter(|&k| !model.plan().is_unique(k))
+            .map(|k| scene.mechanism.reaction_name(model.reactions()[k]))
+            .collect(),
         stop: None,
     };
     let mut before: Option<f64> = None;

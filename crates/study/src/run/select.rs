@@ -25,6 +25,9 @@ pub(crate) fn check(scene: &Scene, model: &Model) -> Result<(), StudyError> {
         if columns.iter().any(|c| stands_for(name, &c.name)) {
             continue;
         }
+        if let Some(error) = shared(scene, model, k, name) {
+            return Err(error);
+        }
         let labels = [(Place::Variable(k), "unknown column".to_owned())];
         return Err(scene
             .error(
@@ -35,6 +38,33 @@ pub(crate) fn check(scene: &Scene, model: &Model) -> Result<(), StudyError> {
             .into());
     }
     Ok(())
+}
+
+/// The refusal of a reaction that the loads do not determine.
+fn shared(scene: &Scene, model: &Model, k: usize, name: &str) -> Option<StudyError> {
+    let mechanism = &scene.mechanism;
+    let joint = name.split('.').next();
+    let of_joint = |(r, reaction): (usize, &dwell_geometry::Reaction)| {
+        let named = Some(mechanism.joints[reaction.joint.0].name.as_str()) == joint;
+        named && !model.plan().is_unique(r)
+    };
+    model
+        .reactions()
+        .iter()
+        .enumerate()
+        .find(|&r| of_joint(r))?;
+    let labels = [(Place::Variable(k), "not determined".to_owned())];
+    let error = scene.error(
+        format!(
+            "the loads do not determine `{name}`: constraints that repeat each other share them"
+        ),
+        Some(
+            "`dwell check` lists such reactions; take away one of the joints that repeat"
+                .to_owned(),
+        ),
+        &labels,
+    );
+    Some(error.into())
 }
 
 /// What may have been meant: a column, or a word before one of its dots; else what there is under the
