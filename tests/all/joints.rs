@@ -268,7 +268,9 @@ fn a_rack_driven_by_its_pinion_and_a_pinion_by_its_rack() {
         let axis = Vec2::from_angle(0.4);
         s.revolute("A", (GROUND, [0.3, 0.6]), (pinion, [0.0, 0.0]));
         let slide = s.prismatic("s", (GROUND, [0.0, 0.0]), (rack, [0.1, 0.0]), axis);
-        let kind = JointKind::Rack { axis, radius: 0.25 };
+        // From the pitch line to the pinion's centre: n·((0.3, 0.6) − (−0.1, 0.2)).
+        let radius = axis.perp().dot(vec2(0.4, 0.4));
+        let kind = JointKind::Rack { axis, radius };
         s.joint("r", (rack, [0.0, 0.2]), (pinion, [0.0, 0.0]), kind);
         if by_rack {
             s.drive_travel("x", [GROUND, rack], slide);

@@ -78,6 +78,17 @@ pub enum AssemblyError {
         /// What stays open, m.
         gap: f64,
     },
+    /// Gears, or a rack and its pinion, stand at another distance than their radii ask for.
+    #[error("gears stand {distance} m apart, and their radii ask for {wanted} m")]
+    NotMeshing {
+        /// The joint.
+        joint: JointId,
+        /// Distance of the centres, or of the pinion's centre from the pitch line (positive on the
+        /// side of the normal), m.
+        distance: f64,
+        /// What the radii ask for, m.
+        wanted: f64,
+    },
     /// The start is a position where the driven system is singular.
     #[error("the start is a singular position: the actuator does not determine the motion there")]
     SingularStart {

@@ -4,6 +4,7 @@ use crate::frames::Turning;
 use crate::mechanism::{BodyId, Mechanism};
 use crate::plan::{Plan, Pose};
 use crate::plane::Vec2;
+use crate::scalar::Scalar;
 
 impl Plan {
     /// The orientation (cos, sin) of a body.
@@ -15,20 +16,26 @@ impl Plan {
     /// The angle of a body's frame, rad: whole turns are counted where actuators turn it from the
     /// ground or a relation needs them, else it is in (−π, π].
     pub fn body_angle(&self, body: BodyId, pose: &Pose<f64>) -> f64 {
-        let attitude = self.frames.attitudes[body.0];
-        match self.driven_turn(attitude.frame, pose) {
-            _ if self.counted[attitude.frame] => {
-                let whole = self.turns.get(body.0).copied().unwrap_or(0.0);
-                pose.angle[attitude.frame] + attitude.offset.angle() + whole
-            }
-            Some(angle) => angle + attitude.offset.angle(),
-            None => self.body_turn(body, pose).angle(),
+        let counted = self.counted_angle(body.0, pose);
+        counted.unwrap_or_else(|| self.body_turn(body, pose).angle())
+    }
+
+    /// The angle of a body's frame with its whole turns, rad, where actuators turn it from the
+    /// ground or a relation needs it.
+    pub fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
+        let attitude = self.frames.attitudes[body];
+        let offset = attitude.offset.angle();
+        if self.counted[attitude.frame] {
+            let whole = self.turns.get(body).copied().unwrap_or(0.0);
+            return Some(pose.angle[attitude.frame] + T::lift(offset + whole));
         }
+        let angle = self.driven_turn(attitude.frame, pose)?;
+        Some(angle + T::lift(offset))
     }
 
     /// The angle of a frame that actuators turn from the ground's.
-    fn driven_turn(&self, mut frame: usize, pose: &Pose<f64>) -> Option<f64> {
-        let mut angle = 0.0;
+    fn driven_turn<T: Scalar>(&self, mut frame: usize, pose: &Pose<T>) -> Option<T> {
+        let mut angle = T::lift(0.0);
         loop {
             match self.frames.frames[frame].turning {
                 Turning::Ground => return Some(angle),
@@ -38,7 +45,7 @@ impl Plan {
                     actuator,
                     sign,
                 } => {
-                    angle += sign * pose.q[actuator];
+                    angle += T::lift(sign) * pose.q[actuator];
                     frame = parent;
                 }
             }

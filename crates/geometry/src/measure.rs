@@ -23,6 +23,9 @@ pub struct BodyState<T = f64> {
     pub acceleration: Vec2<T>,
     /// Orientation of the body's frame, (cos, sin).
     pub turn: Vec2<T>,
+    /// The angle of its frame with whole turns, rad, where they are counted: where actuators turn it
+    /// from the ground, or a relation needs it.
+    pub angle: Option<T>,
     /// Angular velocity ω, rad/s.
     pub spin: T,
     /// Angular acceleration α, rad/s².
@@ -145,6 +148,7 @@ impl<T: Scalar> BodyStates<T> {
             velocity: Vec2::zero(),
             acceleration: Vec2::zero(),
             turn: Vec2::IDENTITY.lift(),
+            angle: Some(T::lift(0.0)),
             spin: T::lift(0.0),
             spin_rate: T::lift(0.0),
         };
@@ -171,6 +175,7 @@ impl<T: Scalar> BodyStates<T> {
             let attitude = plan.frames().attitudes[body];
             state.spin = motion.turn[attitude.frame];
             state.spin_rate = motion.turn_rate[attitude.frame];
+            state.angle = plan.counted_angle(body, pose);
             state.turn = attitude.offset.lift().turn(pose.turn[attitude.frame]);
             state.local = self.bodies[body].local;
             if let Some((slide, direction)) = carried.slide {
@@ -239,19 +244,20 @@ impl<T: Scalar> BodyStates<T> {
         }
     }
 
-    /// Angle of the second body's frame from the first's in (−π, π] rad, its speed (rad/s) and
-    /// acceleration (rad/s²).
+    /// Angle of the second body's frame from the first's, rad, its speed (rad/s) and acceleration
+    /// (rad/s²). Whole turns are counted where they are for both bodies; else it is in (−π, π].
     pub fn angle(&self, bodies: [BodyId; 2]) -> [T; 3] {
         let [one, two] = bodies.map(|b| self.body(b));
+        let counted = one.angle.zip(two.angle).map(|(one, two)| two - one);
         [
-            angle(two.turn.turn_back(one.turn)),
+            counted.unwrap_or_else(|| angle(two.turn.turn_back(one.turn))),
             two.spin - one.spin,
             two.spin_rate - one.spin_rate,
         ]
     }
 
-    /// Value, speed and acceleration of a coordinate: rad or m, per s, per s². Angles are in
-    /// (−π, π]. Where two points coincide, the derivatives of their length are those to the right.
+    /// Value, speed and acceleration of a coordinate: rad or m, per s, per s². Angles are
+    /// those of [`angle`](Self::angle). Where two points coincide, the derivatives of their length are those to the right.
     pub fn measure(&self, measured: Measured) -> [T; 3] {
         match measured {
             Measured::Angle(bodies) => self.angle(bodies),

@@ -10,7 +10,7 @@ use crate::groups::{self, Group, Unknown};
 use crate::lower::{Bond, Lowered, Measure, Owner};
 use crate::mechanism::{ActuatorId, BodyId, Coordinate, Drive, JointId, JointKind, Mechanism};
 use crate::mobility::{Mobility, mobility};
-use crate::plane::Vec2;
+use crate::plane::{Vec2, vec2};
 use crate::range::{End, Range};
 use crate::relation::Row;
 use crate::scalar::Scalar;
@@ -395,6 +395,43 @@ impl Plan {
         Ok(plan)
     }
 
+    /// That gears and racks stand at the distance of their pitch radii.
+    fn check_meshing(&self, mechanism: &Mechanism, pose: &Pose<f64>) -> Result<(), AssemblyError> {
+        let meshes =
+            |kind: JointKind| matches!(kind, JointKind::Gear { .. } | JointKind::Rack { .. });
+        if !mechanism.joints.iter().any(|j| meshes(j.kind)) {
+            return Ok(());
+        }
+        let frames = self.body_frames(mechanism, pose);
+        for (j, joint) in mechanism.joints.iter().enumerate() {
+            let [one, two] = [0, 1].map(|i| {
+                let [x, y, angle] = frames[joint.bodies[i].0];
+                vec2(x, y) + joint.points[i].turn(Vec2::from_angle(angle))
+            });
+            let turn = Vec2::from_angle(frames[joint.bodies[0].0][2]);
+            let (distance, wanted) = match joint.kind {
+                JointKind::Gear { radii, internal } => {
+                    let sum = if internal {
+                        radii[0] - radii[1]
+                    } else {
+                        radii[0] + radii[1]
+                    };
+                    ((two - one).norm(), sum.abs())
+                }
+                JointKind::Rack { axis, radius } => (axis.turn(turn).perp().dot(two - one), radius),
+                _ => continue,
+            };
+            if (distance - wanted).abs() > MESHING * wanted.abs() {
+                return Err(AssemblyError::NotMeshing {
+                    joint: JointId(j),
+                    distance,
+                    wanted,
+                });
+            }
+        }
+        Ok(())
+    }
+
     fn note_unique(&mut self, mechanism: &Mechanism, found: Option<&Mobility>) {
         let reactions = mechanism.reactions();
         self.unique = match found {
@@ -412,6 +449,7 @@ impl Plan {
         let mut plan = Self::structure(mechanism, repeated)?;
         plan.start.clone_from(&start.q);
         let pose = plan.assemble(&start.rough)?;
+        plan.check_meshing(mechanism, &pose)?;
         plan.follow(&pose)?;
         plan.home = Some(Box::new(pose));
         Ok(plan)
@@ -621,6 +659,10 @@ impl Plan {
 /// Constraints too many that stay open by less than this part of the mechanism's size were meant to
 /// repeat each other; if they stay open by more, there are simply too many.
 const NEARLY: f64 = 0.01;
+
+/// Gears mesh when their distance is that of their radii to this part: a wrong radius is farther off,
+/// and what a tooth's play allows is closer.
+const MESHING: f64 = 2e-3;
 
 /// Refuses a description whose parts refer to what is not there.
 fn check(mechanism: &Mechanism, start: &Start) -> Result<(), StructureError> {

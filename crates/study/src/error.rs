@@ -141,13 +141,30 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
                 &body_labels(bodies, "its angle is open"),
             )
         }
+        AssemblyError::NotMeshing {
+            joint,
+            distance,
+            wanted,
+        } => scene.error(
+            format!(
+                "`{}` cannot mesh: the distance is {distance:.6} m at the start, and the radii ask for \
+                 {wanted:.6} m",
+                mechanism.joints[joint.0].name
+            ),
+            Some(
+                "correct a radius or a centre; `internal = true` is for a ring gear, a negative \
+                 radius for a pinion on the other side of its rack"
+                    .to_owned(),
+            ),
+            &joint_labels(&[*joint], "does not mesh"),
+        ),
         AssemblyError::Inconsistent {
             joints,
             excess,
             gap,
         } => scene.error(
             format!(
-                "there are {} more than the bodies can follow, and the lengths do not allow it: \
+                "the joints have {} more than the bodies can follow, and the lengths do not allow it: \
                  {gap:.2e} m stay open",
                 count(*excess, "constraint")
             ),
@@ -225,12 +242,13 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> SceneError {
             labels.extend(too_many.iter().map(driven));
             let given = mechanism.actuators.len();
             let (moving, held) = (mechanism.bodies.len() - 1, mechanism.joints.len());
-            let freedom = (3 * moving).saturating_sub(2 * held);
+            let rows = mechanism.reactions().len();
+            let freedom = (3 * moving).saturating_sub(rows);
             let (message, help) = if freedom == 0 {
                 (
                     format!(
                         "the joints leave the mechanism no degree of freedom: {} and {}, and \
-                         3 · {moving} − 2 · {held} is not above zero",
+                         3 · {moving} − {rows} constraints is not above zero",
                         count(moving, "moving body"),
                         count(held, "joint"),
                     ),

@@ -252,6 +252,7 @@ pub(crate) fn follow(
         .into_iter()
         .filter(|c| c.is_of(command))
         .collect();
+    way.check(scene)?;
     let mut probe = Probe::new(scene, model, command)?;
     let mut turns = Turns {
         last: vec![None; columns.len()],

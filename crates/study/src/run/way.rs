@@ -139,6 +139,32 @@ impl<'a> Way<'a> {
         })
     }
 
+    /// Refuses a law that has no finite value, speed or acceleration at one of the points.
+    pub(crate) fn check(&self, scene: &Scene) -> Result<(), StudyError> {
+        for k in 0..self.points {
+            let sample = self.at(self.part(k));
+            let rates = [&sample.q, &sample.q_dot, &sample.q_ddot];
+            for (values, what) in rates.into_iter().zip(["value", "speed", "acceleration"]) {
+                let Some(a) = values.iter().position(|v| !v.is_finite()) else {
+                    continue;
+                };
+                let name = &scene.mechanism.actuators[a].name;
+                let labels = [(Place::Motor(ActuatorId(a)), format!("no finite {what}"))];
+                return Err(scene
+                    .error(
+                        format!(
+                            "the law of `{name}` has no finite {what} at t = {} s",
+                            digits(sample.t, 6)
+                        ),
+                        Some("a motion needs its value and two derivatives everywhere".to_owned()),
+                        &labels,
+                    )
+                    .into());
+            }
+        }
+        Ok(())
+    }
+
     /// The actuators when `part` of the way is done, from 0 to 1.
     pub(crate) fn at(&self, part: f64) -> Sample {
         match &self.kind {
