@@ -40,7 +40,7 @@ fn seed() -> impl Strategy<Value = Seed> {
     let steps = size.prop_flat_map(|n| prop::collection::vec(step(), n));
     let drives = prop_oneof![4 => 1..=1_usize, 2 => 2..=2_usize, 1 => 3..=3_usize];
     let drives = drives.prop_flat_map(|n| prop::collection::vec(step(), n));
-    let flat = prop::option::weighted(0.02, step());
+    let flat = prop::option::weighted(0.015, step());
     (drives, steps, flat, any::<[u64; 2]>()).prop_map(|(drives, steps, flat, views)| Seed {
         drives,
         steps,
@@ -68,9 +68,9 @@ impl Seed {
     }
 }
 
-/// Faults a run may show while defects of the assembly are open: angles counted from rough ones
-/// under a rolling disc, and slides that are solved before the class they turn with.
-const OPEN: usize = 60;
+/// Faults a run may show while two defects of the assembly are open: Newton's method starts slides
+/// anywhere, finds other ways, or counts other turns; and three links are called singular too early.
+const OPEN: usize = 30;
 
 /// What a run has met.
 #[derive(Debug, Default)]
@@ -246,6 +246,10 @@ impl Made {
 }
 
 /// Holds one mechanism against everything.
+///
+/// Tolerances are parts of the condition, which is that of the dense rows at the start (up to 1e3
+/// and more): a rounding of the attachments is magnified by it. The worst met in many thousands
+/// were 1e-15 of it for the pose, 8e-15 for another description, and 5e-15 for the dense findings.
 fn judge(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
     let standing = seed.grown();
     let views = seed.views.map(|seed| View::of(&standing, seed));
@@ -266,11 +270,12 @@ fn judge(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
         tally.refused += 1;
         return Ok(());
     };
-    let condition = largest / smallest;
-    tally.solved += 1;
     if smallest < SINGULAR * largest {
+        // Solved none the less, but with no digit to judge.
+        tally.refused += 1;
         return Ok(());
     }
+    let condition = largest / smallest;
     let steps = steps(one, &standing, &views[0], 1.0 / condition);
     let said = one.say(&standing, &views[0], &steps)?;
     let other = two.say(&standing, &views[1], &steps)?;
@@ -291,8 +296,9 @@ fn judge(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
     let gaps = mine.iter().zip(&others).map(|(a, b)| (a - b).abs());
     let gap = gaps.fold(0.0_f64, f64::max);
     if gap > 0.0 {
-        tally.worst("shuffled", gap / scale / condition, 1e-12)?;
+        tally.worst("shuffled", gap / scale / condition, 1e-13)?;
     }
+    tally.solved += 1;
     Ok(())
 }
 
@@ -302,7 +308,7 @@ fn steps(made: &Made, standing: &Standing, view: &View, regular: f64) -> Vec<Vec
     // A pose moves by a step over the smallest singular value, and must not become singular by it.
     let small = (0.1 * regular).clamp(1e-6, 0.05);
     let some = |by: f64| -> Vec<f64> { (0..n).map(|i| by * (1.0 - 0.4 * i as f64)).collect() };
-    let mut steps: Vec<_> = [0.0, 1.0, -1.0, 0.4].map(|k| some(k * small)).into();
+    let mut steps: Vec<_> = [0.0, 1.0, -0.7].map(|k| some(k * small)).into();
     if let (1, Some((from, to))) = (n, made.model.plan().range().limits()) {
         let sense = view.sense(standing, 0);
         let inside = |q: f64| q > from && q < to;
@@ -352,8 +358,18 @@ fn dense(made: &Made, said: &[Said], condition: f64, tally: &mut Tally) -> Resul
         if finding.relative.is_nan() {
             return Err(format!("{}: {}", finding.key, finding.worst));
         }
-        if !finding.pass {
-            tally.worst(&finding.key, finding.relative / condition, 1e-13)?;
+        tally.worst(&finding.key, finding.relative / condition, f64::INFINITY)?;
+        // Positions differenced twice in time lose half their digits before the condition.
+        let lost = if finding.key == "state-differenced" {
+            2e-11
+        } else {
+            1e-13
+        };
+        if !finding.pass && finding.relative > lost * condition {
+            return Err(format!(
+                "{}: {:.1e} where {:.1e} times {condition:.1e} is allowed",
+                finding.key, finding.relative, lost
+            ));
         }
     }
     Ok(())

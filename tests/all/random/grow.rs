@@ -133,6 +133,8 @@ impl Standing {
         let on = step.on[0].index(self.bodies.len());
         let a = self.amid(&[on], draw);
         let new = self.body(a, draw);
+        // Where nothing that moves had mass, all would be rounding.
+        self.bodies[new].mass += 0.5;
         match step.kind % 5 {
             0 => {
                 self.pin(on, new, a);

@@ -151,8 +151,9 @@ pub(super) struct Described {
     pub(super) down: Vec2,
 }
 
-/// Rough angles are this wrong, rad.
-const ROUGH: f64 = 0.02;
+/// Rough angles are this wrong, rad: two ways to assemble are now and then not farther apart than
+/// a hundredth.
+const ROUGH: f64 = 0.002;
 
 impl Standing {
     /// The mechanism as it is described in a view.
