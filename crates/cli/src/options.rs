@@ -51,10 +51,10 @@ pub(crate) enum Command {
     Calibrate {
         /// The scene file
         scene: PathBuf,
-        /// The value, such as crank.inertia (the scene's [calibration], if absent)
+        /// The value, such as crank.inertia (the scene's calibration, if absent)
         #[arg(long, value_name = "VALUE")]
         set: Option<String>,
-        /// The wanted period, s (the scene's [calibration], if absent)
+        /// The wanted period, s (the scene's calibration, if absent)
         #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
         period: Option<f64>,
     },
