@@ -7,6 +7,7 @@ use crate::lower::{Measure, Tie};
 use crate::place::{Guess, turn};
 use crate::plan::{Branches, How, Kind, Plan, Pose};
 use crate::plane::Vec2;
+use crate::tall;
 use std::f64::consts::TAU;
 
 /// One way a group closes: the value of each unknown — (cos, sin), and its counted angle, or its
@@ -24,7 +25,8 @@ struct Way {
 /// Angles tried for each class, besides the rough ones, when Newton's method looks for
 /// all the ways in which a group closes.
 const TRIALS: usize = 4;
-/// Bound on the starts of one group.
+/// Bound on the starts of one group, from the hints and from anywhere.
+const MOST_NEAR_STARTS: usize = 256;
 const MOST_STARTS: usize = 1024;
 /// Two ways closer than this (rad) are one.
 const SAME: f64 = 1e-6;
@@ -176,26 +178,39 @@ impl Plan {
             .iter()
             .map(|&u| self.hints(u, rough).first().copied())
             .collect();
-        // The hints first; then, whether or not they lead anywhere, a grid of others, so that the
-        // way nearest to the hints is picked among all that are found.
-        let starts = 1 + u32::try_from(unknowns.len())
-            .ok()
-            .and_then(|n| TRIALS.checked_pow(n))
-            .map_or(MOST_STARTS, |s| s.min(MOST_STARTS));
+        // The hints first, with every other angle where they say nothing; then, whether or not
+        // they lead anywhere, a grid of others, so that the way nearest to the hints is picked among
+        // all that are found.
+        let grid = |unknowns: usize, most: usize| {
+            let count = u32::try_from(unknowns).ok();
+            let starts = count.and_then(|n| TRIALS.checked_pow(n));
+            starts.map_or(most, |s| s.min(most))
+        };
+        let untold =
+            |(u, hint): (&Unknown, &Option<f64>)| matches!(u, Unknown::Class(_)) && hint.is_none();
+        let hintless = unknowns.iter().zip(&hints).filter(|&u| untold(u)).count();
+        let near = grid(hintless, MOST_NEAR_STARTS);
+        let starts = near + grid(unknowns.len(), MOST_STARTS);
         let mut ways: Vec<Way> = Vec::new();
         let mut refused = None;
         for start in 0..starts {
-            let mut left = start.saturating_sub(1);
+            let by_hints = start < near;
+            let mut left = if by_hints { start } else { start - near };
             let size = self.groups[g].size;
             let guess: Vec<(Vec2, f64)> = unknowns
                 .iter()
                 .zip(&hints)
                 .map(|(&unknown, hint)| {
+                    if let (true, Some(hint)) = (by_hints, *hint) {
+                        return (Vec2::from_angle(hint), hint);
+                    }
+                    if let (true, Unknown::Slide(_)) = (by_hints, unknown) {
+                        return (Vec2::ZERO, 0.0);
+                    }
                     let k = left % TRIALS;
                     left /= TRIALS;
                     // Off the axes, where many mechanisms are singular.
-                    let other = 0.3 + TAU * k as f64 / TRIALS as f64;
-                    let trial = hint.filter(|_| start == 0).unwrap_or(other);
+                    let trial = 0.3 + TAU * k as f64 / TRIALS as f64;
                     match unknown {
                         Unknown::Class(_) => (Vec2::from_angle(trial), trial),
                         Unknown::Slide(_) => (Vec2::ZERO, (trial - 3.0) * size / 6.0),
@@ -203,8 +218,12 @@ impl Plan {
                 })
                 .collect();
             self.set(g, &guess, pose);
+            if by_hints {
+                self.settle_slides(g, pose);
+            }
             match self.place_group(g, pose) {
                 Ok(()) => {
+                    self.count_near(g, &hints, pose);
                     let values = self.values(g, pose);
                     let Kind::Solved(solved) = &self.groups[g].kind else {
                         break;
@@ -247,6 +266,71 @@ impl Plan {
         match (ways.is_empty(), refused) {
             (true, Some(e)) => Err(self.refusal(g, e)),
             _ => Ok(ways),
+        }
+    }
+
+    /// Puts a group's slides where its angles want them, by least squares: its equations are linear
+    /// in the slides.
+    fn settle_slides(&self, g: usize, pose: &mut Pose<f64>) {
+        let Kind::Solved(solved) = &self.groups[g].kind else {
+            return;
+        };
+        let unknowns = &self.groups[g].group.unknowns;
+        let slides: Vec<usize> = (0..unknowns.len())
+            .filter(|&i| matches!(unknowns[i], Unknown::Slide(_)))
+            .collect();
+        let (m, n) = (solved.rows, slides.len());
+        if n == 0 || n >= m {
+            return;
+        }
+        self.turn_group(g, pose);
+        self.residual(g, pose);
+        self.assemble_jacobian(g, solved, pose);
+        let entry = |i: usize, j: usize| pose.lu[solved.lu + i * solved.columns + slides[j]];
+        let mut matrix: Vec<f64> = (0..m * n).map(|k| entry(k / n, k % n)).collect();
+        let (mut beside, mut open) = (vec![0.0; n], pose.work[..m].to_vec());
+        if tall::factor(&mut matrix, &mut beside, m).measure < SAME {
+            return;
+        }
+        tall::solve(&matrix, &beside, m, &mut open);
+        for (&i, step) in slides.iter().zip(&open) {
+            if let Unknown::Slide(slide) = unknowns[i] {
+                pose.slide[slide] -= step * self.groups[g].scale;
+            }
+        }
+    }
+
+    /// Newton's method may have gone round: where the group closes with the turns that the hints
+    /// mean, it is left with those.
+    fn count_near(&self, g: usize, hints: &[Option<f64>], pose: &mut Pose<f64>) {
+        let found = self.values(g, pose);
+        let unknowns = &self.groups[g].group.unknowns;
+        let mut nearer = found.clone();
+        for ((value, &unknown), hint) in nearer.iter_mut().zip(unknowns).zip(hints) {
+            if let (Unknown::Class(c), Some(hint)) = (unknown, hint)
+                && self.counted[self.root_of(c)]
+            {
+                value.1 += TAU * ((hint - value.1) / TAU).round();
+            }
+        }
+        if nearer == found {
+            return;
+        }
+        self.set(g, &nearer, pose);
+        let closed = self.place_group(g, pose).is_ok();
+        let there = self.values(g, pose);
+        let same = there
+            .iter()
+            .zip(&nearer)
+            .zip(unknowns)
+            .all(|((a, b), u)| match u {
+                Unknown::Class(_) => (a.0 - b.0).norm() < SAME && (a.1 - b.1).abs() < SAME,
+                Unknown::Slide(_) => true,
+            });
+        if !(closed && same) {
+            self.set(g, &found, pose);
+            // It closed there a moment ago.
+            let _ = self.place_group(g, pose);
         }
     }
 
