@@ -6,243 +6,147 @@
 //! that fails leaves its error in a cell and a NaN in the derivative: the integrator then shrinks
 //! its step or gives up, and the error that made it do so is what the caller gets.
 
-use crate::equation::Equation;
 use crate::error::DynamicsError;
-use crate::root;
+use crate::options::{Method, Options, Statistics};
+use crate::system::{Point, System};
 use diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
-    OdeSolverStopReason, Vector,
+    OdeSolverStopReason, VectorCommon,
 };
-use dwell_geometry::{PlaceError, Range};
-use dwell_kinetostatics::Reduced;
 use std::cell::{Cell, RefCell};
-use std::f64::consts::TAU;
 
-/// For two states nalgebra is 2.3 times as fast as faer, with the same steps.
+/// For few states nalgebra is 2.3 times as fast as faer, with the same steps.
 type Matrix = NalgebraMat<f64>;
 type Solver = NalgebraLU<f64>;
 
-/// Smallest step, s, at a speed of 1 rad/s or less; at a higher one, in proportion shorter.
+/// Smallest step, s, at a rate of 1 per s or less; at a higher one, in proportion shorter.
 const SMALLEST_STEP: f64 = 1e-14;
 
-/// A motion this near a limit position, rad, has reached it: the inertia grows as the inverse of
-/// the distance, and the steps would go on shrinking.
-const AT_LIMIT: f64 = 1e-9;
-
-/// How to integrate.
+/// What the one who watches an integration says after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// Implicit, variable order 1 to 5 (backward differentiation).
-    Bdf,
-    /// Explicit Runge–Kutta of order 5 (Tsitouras 2011).
-    Tsit45,
+pub enum Next {
+    /// Another step.
+    GoOn,
+    /// Enough: the last step is the end.
+    Stop,
 }
 
-impl Method {
-    /// The name used in commands and tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Bdf => "BDF",
-            Self::Tsit45 => "Tsit45",
-        }
-    }
-}
+/// The state at any time within the last step, by dense output.
+pub type Dense<'d> = &'d mut dyn FnMut(f64, &mut [f64]) -> Result<(), DynamicsError>;
 
-/// When to stop.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Until {
-    /// At a time, s.
-    Time(f64),
-    /// After so many whole turns of the coordinate.
-    Turns(usize),
-}
+/// One step, with its dense output: from one point to the next.
+pub type Watch<'w> = &'w mut dyn FnMut(&Point, &Point, Dense<'_>) -> Result<Next, DynamicsError>;
 
-/// Accuracy and effort of an integration.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Options {
-    /// The method.
-    pub method: Method,
-    /// Relative tolerance on coordinate and speed.
-    pub relative: f64,
-    /// Absolute tolerance, rad and rad/s.
-    pub absolute: f64,
-    /// Most steps to be taken.
-    pub budget: usize,
-    /// Distance of equally spaced samples by dense output, s; none for no samples.
-    pub every: Option<f64>,
-}
-
-impl Options {
-    /// A method with the same relative and absolute tolerance.
-    pub fn new(method: Method, tolerance: f64) -> Self {
-        Self {
-            method,
-            relative: tolerance,
-            absolute: tolerance,
-            budget: 2_000_000,
-            every: None,
-        }
-    }
-}
-
-/// Time, coordinate and speed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct State {
-    /// Time, s.
-    pub t: f64,
-    /// Coordinate, rad.
-    pub q: f64,
-    /// Speed, rad/s.
-    pub q_dot: f64,
-}
-
-/// The work an integration took.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Statistics {
-    /// Steps taken.
-    pub steps: usize,
-    /// Steps rejected for their error.
-    pub rejected: usize,
-    /// Evaluations of the equation of motion.
-    pub evaluations: usize,
-    /// Evaluations of its Jacobian.
-    pub jacobians: usize,
-    /// Factorisations.
-    pub factorisations: usize,
-}
-
-/// A motion.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Run {
-    /// The start and the end of each step.
-    pub steps: Vec<State>,
-    /// Equally spaced samples, if asked for.
-    pub samples: Vec<State>,
-    /// The state at each whole turn, located on the dense output.
-    pub turns: Vec<State>,
+/// How an integration ended, and what it took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ended {
+    /// Where the last good step ended.
+    pub at: Point,
+    /// Why it could not go on, if it could not.
+    pub failed: Option<DynamicsError>,
     /// The work done.
     pub statistics: Statistics,
 }
 
-/// Integrates a free motion from `start`, until a time or a number of whole turns.
+/// Integrates a system from a point until a time (or for ever), and lets `watch` see every step.
 ///
 /// # Errors
-/// [`DynamicsError`] with the place and the reason: no pose, no inertia, a limit position, a budget
-/// used up, a state that is not finite, an option that cannot be used.
-pub fn simulate<R: Reduced>(
-    model: &R,
-    start: State,
-    until: Until,
+/// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. What
+/// fails on the way is in [`Ended::failed`].
+pub fn integrate(
+    system: &mut dyn System,
+    start: &Point,
+    end: Option<f64>,
     options: &Options,
-) -> Result<Run, DynamicsError> {
-    check(start, until, options)?;
-    let limits = limits(model.range(), start.q)?;
-    let equation = RefCell::new(Equation::new(model));
-    // What cannot even start is said at once, not after a futile search for a step size.
-    equation.borrow_mut().jacobian(start.q, start.q_dot)?;
-    if matches!(until, Until::Turns(n) if n > 0) && start.q_dot == 0.0 {
-        return Err(DynamicsError::AtRest);
+    watch: Watch<'_>,
+) -> Result<Ended, DynamicsError> {
+    options.check()?;
+    let n = system.size();
+    for &value in std::iter::once(&start.t).chain(&start.y) {
+        if !value.is_finite() {
+            return Err(DynamicsError::BadOption {
+                what: "the initial state",
+                must: "finite number",
+                value,
+            });
+        }
     }
+    if let Some(end) = end.filter(|end| !(end.is_finite() && *end > start.t)) {
+        return Err(DynamicsError::BadOption {
+            what: "the end of the motion",
+            must: "time after its start",
+            value: end,
+        });
+    }
+    // What cannot even start is said at once, not after a futile search for a step size.
+    let mut rates = vec![0.0; n];
+    system.rates(start.t, &start.y, &mut rates)?;
+    let fastest = start.y[..n]
+        .iter()
+        .fold(1.0_f64, |most, y| most.max(y.abs()));
+    let absolute: Vec<f64> = (0..n)
+        .map(|i| options.absolute * system.weight(i))
+        .collect();
+    let system = RefCell::new(system);
     let failure: RefCell<Option<DynamicsError>> = RefCell::new(None);
     let (evaluations, jacobians) = (Cell::new(0), Cell::new(0));
     // The Jacobian is asked for column by column at one state.
-    let last = Cell::new(([f64::NAN; 2], [0.0; 2]));
+    let last = RefCell::new((vec![f64::NAN; n + 1], vec![0.0; n * n]));
     let solver = |e: DiffsolError| gave_up(&e, start.t);
     let mut problem = OdeBuilder::<Matrix>::new()
         .t0(start.t)
         .rtol(options.relative)
-        .atol([options.absolute; 2])
+        .atol(absolute)
         .p(Vec::<f64>::new())
         .rhs_implicit(
-            |x, _p, _t, dx| {
+            |x, _p, t, out| {
                 evaluations.set(evaluations.get() + 1);
-                dx[0] = x[1];
-                dx[1] = keep(
-                    equation.borrow_mut().acceleration(x[0], x[1]),
-                    &failure,
-                    f64::NAN,
-                );
-            },
-            |x, _p, _t, v, jv| {
-                let (at, mut row) = last.get();
-                if at != [x[0], x[1]] {
-                    jacobians.set(jacobians.get() + 1);
-                    let jacobian = equation.borrow_mut().jacobian(x[0], x[1]);
-                    row = keep(jacobian, &failure, [f64::NAN; 2]);
-                    last.set(([x[0], x[1]], row));
+                if let Err(e) = system.borrow_mut().rates(t, x, out) {
+                    // The first error since the last good step is the cause; what a NaN then
+                    // leads to is not.
+                    failure.borrow_mut().get_or_insert(e);
+                    out.fill(f64::NAN);
                 }
-                jv[0] = v[1];
-                jv[1] = row[0] * v[0] + row[1] * v[1];
+            },
+            |x, _p, t, v, jv| {
+                let (at, matrix) = &mut *last.borrow_mut();
+                if at[n] != t || at[..n] != *x {
+                    jacobians.set(jacobians.get() + 1);
+                    at[..n].copy_from_slice(x);
+                    at[n] = t;
+                    if let Err(e) = system.borrow_mut().jacobian(t, x, matrix) {
+                        failure.borrow_mut().get_or_insert(e);
+                        matrix.fill(f64::NAN);
+                    }
+                }
+                for (out, row) in jv.iter_mut().zip(matrix.chunks_exact(n)) {
+                    // A column that is not asked for must not spoil this one (0 × ∞).
+                    let terms = row.iter().zip(v).filter(|(_, v)| **v != 0.0);
+                    *out = terms.map(|(a, v)| a * v).sum();
+                }
             },
         )
-        .init(
-            |_p, _t, x| {
-                x[0] = start.q;
-                x[1] = start.q_dot;
-            },
-            2,
-        )
+        .init(|_p, _t, x| x.copy_from_slice(&start.y), n)
         .build()
         .map_err(solver)?;
     // The counter runs over the whole integration, and its default of 50 ends long healthy runs.
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
-    problem.ode_options.min_timestep = SMALLEST_STEP / start.q_dot.abs().max(1.0);
-    let mut run = match options.method {
-        Method::Bdf => {
-            let mut bdf = problem.bdf::<Solver>().map_err(solver)?;
-            drive(&mut bdf, start, until, options, limits, &failure)
-        }
-        Method::Tsit45 => {
-            let mut tsit45 = problem.tsit45().map_err(solver)?;
-            drive(&mut tsit45, start, until, options, limits, &failure)
-        }
-    }?;
-    run.statistics.evaluations = evaluations.get();
-    run.statistics.jacobians = jacobians.get();
-    Ok(run)
-}
-
-/// Options that the integrator would answer with an endless loop are refused here.
-fn check(start: State, until: Until, options: &Options) -> Result<(), DynamicsError> {
-    let usable = |value: f64| value.is_finite() && value > 0.0;
-    let refuse = |what, must, value| Err(DynamicsError::BadOption { what, must, value });
-    for value in [start.t, start.q, start.q_dot] {
-        if !value.is_finite() {
-            return refuse("the initial state", "finite number", value);
-        }
-    }
-    if !(options.relative.is_finite() && options.relative >= 0.0) {
-        return refuse("the relative tolerance", "number from 0", options.relative);
-    }
-    if !usable(options.absolute) {
-        return refuse(
-            "the absolute tolerance",
-            "positive number",
-            options.absolute,
-        );
-    }
-    match (until, options.every) {
-        (Until::Time(t), _) if !(t.is_finite() && t > start.t) => {
-            refuse("the end of the motion", "time after its start", t)
-        }
-        (_, Some(every)) if !usable(every) => {
-            refuse("the distance of samples", "positive time", every)
-        }
-        _ => Ok(()),
-    }
-}
-
-/// The ends of the range, in the turn in which the motion starts; none if the coordinate turns
-/// fully.
-fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>, DynamicsError> {
-    let Some((from, to)) = range.limits() else {
-        return Ok(None);
+    problem.ode_options.min_timestep = SMALLEST_STEP / fastest;
+    let guard = Guard {
+        start,
+        end,
+        options,
+        failure: &failure,
     };
-    let turns = TAU * ((q - from) / TAU).floor();
-    if q > to + turns {
-        return Err(PlaceError::OutOfRange { q, from, to }.into());
-    }
-    Ok(Some((from + turns, to + turns)))
+    let mut ended = match options.method {
+        Method::Bdf => guard.drive(&mut problem.bdf::<Solver>().map_err(solver)?, watch),
+        Method::Esdirk34 => guard.drive(&mut problem.esdirk34::<Solver>().map_err(solver)?, watch),
+        Method::TrBdf2 => guard.drive(&mut problem.tr_bdf2::<Solver>().map_err(solver)?, watch),
+        Method::Tsit45 => guard.drive(&mut problem.tsit45().map_err(solver)?, watch),
+    };
+    ended.statistics.evaluations = evaluations.get();
+    ended.statistics.jacobians = jacobians.get();
+    Ok(ended)
 }
 
 /// An error of the integrator itself, at the time it had reached.
@@ -262,137 +166,99 @@ fn gave_up(error: &DiffsolError, t: f64) -> DynamicsError {
     }
 }
 
-/// Keeps the error of an evaluation for the driver; the integrator gets `instead`.
-fn keep<T>(
-    result: Result<T, DynamicsError>,
-    failure: &RefCell<Option<DynamicsError>>,
-    instead: T,
-) -> T {
-    result.unwrap_or_else(|e| {
-        // The first error since the last good step is the cause; what a NaN then leads to is not.
-        failure.borrow_mut().get_or_insert(e);
-        instead
-    })
+struct Guard<'g> {
+    start: &'g Point,
+    end: Option<f64>,
+    options: &'g Options,
+    failure: &'g RefCell<Option<DynamicsError>>,
 }
 
-fn drive<'a, E, S>(
-    solver: &mut S,
-    start: State,
-    until: Until,
-    options: &Options,
-    limits: Option<(f64, f64)>,
-    failure: &RefCell<Option<DynamicsError>>,
-) -> Result<Run, DynamicsError>
-where
-    E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
-    S: OdeSolverMethod<'a, E>,
-{
-    let mut run = Run {
-        steps: vec![start],
-        samples: options.every.map(|_| start).into_iter().collect(),
-        ..Run::default()
-    };
-    // What the last failed evaluation says of a motion that got as far as a state.
-    let cause = |State { t, q, .. }: State| match failure.borrow_mut().take()? {
-        // Within its range the mechanism has a pose everywhere: it is the end that was met.
-        DynamicsError::Place(_) if limits.is_some() => Some(DynamicsError::Limit { t, q }),
-        kept => Some(kept),
-    };
-    let said = |at: State, e: DiffsolError| cause(at).unwrap_or_else(|| gave_up(&e, at.t));
-    if let Until::Time(end) = until {
-        let stop = solver.set_stop_time(end);
-        stop.map_err(|e| said(start, e))?;
-    }
-    let mut scratch = solver.state().y.clone();
-    let mut before = start;
-    for _ in 0..options.budget {
-        let reason = solver.step().map_err(|e| said(before, e))?;
-        let state = solver.state();
-        let now = State {
-            t: state.t,
-            q: state.y.get_index(0),
-            q_dot: state.y.get_index(1),
+impl Guard<'_> {
+    fn drive<'a, E, S>(&self, solver: &mut S, watch: Watch<'_>) -> Ended
+    where
+        E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
+        S: OdeSolverMethod<'a, E>,
+    {
+        let mut at = self.start.clone();
+        let failed = self.steps(solver, &mut at, watch).err();
+        let work = solver.get_statistics();
+        let statistics = Statistics {
+            steps: work.number_of_steps,
+            rejected: work.number_of_error_test_failures,
+            factorisations: work.number_of_linear_solver_setups,
+            ..Statistics::default()
         };
-        if !(now.t.is_finite() && now.q.is_finite() && now.q_dot.is_finite() && state.h.is_finite())
-        {
-            let t = before.t;
-            return Err(cause(before).unwrap_or(DynamicsError::NotFinite { t }));
-        }
-        // Without loads the speed keeps its sign. In the coordinate of an actuator the way through a
-        // limit position looks like a smooth return, but the mechanism goes on on another branch.
-        let ends =
-            limits.is_some_and(|(from, to)| now.q < from + AT_LIMIT || now.q > to - AT_LIMIT);
-        if now.q_dot * start.q_dot < 0.0 || ends {
-            let State { t, q, .. } = before;
-            return Err(DynamicsError::Limit { t, q });
-        }
-        // A trial point that step control recovered from is no failure.
-        failure.borrow_mut().take();
-        run.steps.push(now);
-        let mut at = |t: f64| -> Result<State, DynamicsError> {
-            let inside = solver.interpolate_inplace(t, &mut scratch);
-            inside.map_err(|e| said(State { t, ..now }, e))?;
-            let [q, q_dot] = [0, 1].map(|i| scratch.get_index(i));
-            Ok(State { t, q, q_dot })
-        };
-        turns(&mut run.turns, start, before, now, &mut at)?;
-        let enough = matches!(until, Until::Turns(n) if run.turns.len() >= n);
-        let end = match run.turns.last() {
-            Some(last) if enough => last.t,
-            _ => now.t,
-        };
-        if let Some(every) = options.every {
-            samples(&mut run.samples, every, start.t, end, &mut at)?;
-        }
-        before = now;
-        if enough || matches!(reason, OdeSolverStopReason::TstopReached) {
-            let work = solver.get_statistics();
-            run.statistics.steps = work.number_of_steps;
-            run.statistics.rejected = work.number_of_error_test_failures;
-            run.statistics.factorisations = work.number_of_linear_solver_setups;
-            return Ok(run);
+        Ended {
+            at,
+            failed,
+            statistics,
         }
     }
-    Err(DynamicsError::Budget {
-        t: before.t,
-        steps: options.budget,
-    })
-}
 
-/// Locates the whole turns passed in a step, in the direction of the start's speed. They are
-/// found here rather than by the integrator's own events, which stop it and miss a second one in the step.
-fn turns(
-    found: &mut Vec<State>,
-    start: State,
-    before: State,
-    now: State,
-    at: &mut impl FnMut(f64) -> Result<State, DynamicsError>,
-) -> Result<(), DynamicsError> {
-    let forward = if start.q_dot < 0.0 { -1.0 } else { 1.0 };
-    loop {
-        let target = start.q + forward * TAU * (found.len() + 1) as f64;
-        if (now.q - target) * forward < 0.0 || (before.q - target) * forward >= 0.0 {
-            return Ok(());
+    fn steps<'a, E, S>(
+        &self,
+        solver: &mut S,
+        at: &mut Point,
+        watch: Watch<'_>,
+    ) -> Result<(), DynamicsError>
+    where
+        E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
+        S: OdeSolverMethod<'a, E>,
+    {
+        // What the last failed evaluation says, else the integrator's own words.
+        let said = |t: f64, e: DiffsolError| {
+            let kept = self.failure.borrow_mut().take();
+            kept.unwrap_or_else(|| gave_up(&e, t))
+        };
+        let mut scratch = solver.state().y.clone();
+        let mut now = at.clone();
+        self.stop_at(solver, at.t).map_err(|e| said(at.t, e))?;
+        for _ in 0..self.options.budget {
+            let reason = solver.step().map_err(|e| said(at.t, e))?;
+            let state = solver.state();
+            now.t = state.t;
+            now.y.copy_from_slice(state.y.inner().as_slice());
+            if !(now.t.is_finite() && state.h.is_finite() && now.y.iter().all(|y| y.is_finite())) {
+                let kept = self.failure.borrow_mut().take();
+                return Err(kept.unwrap_or(DynamicsError::NotFinite { t: at.t }));
+            }
+            // A trial point that step control recovered from is no failure.
+            self.failure.borrow_mut().take();
+            let mut dense = |t: f64, out: &mut [f64]| -> Result<(), DynamicsError> {
+                let inside = solver.interpolate_inplace(t, &mut scratch);
+                inside.map_err(|e| gave_up(&e, t))?;
+                out.copy_from_slice(scratch.inner().as_slice());
+                Ok(())
+            };
+            let next = watch(at, &now, &mut dense)?;
+            at.t = now.t;
+            at.y.copy_from_slice(&now.y);
+            let end = self.end.is_some_and(|end| at.t >= end);
+            if next == Next::Stop || end {
+                return Ok(());
+            }
+            if matches!(reason, OdeSolverStopReason::TstopReached) || self.options.longest.is_some()
+            {
+                self.stop_at(solver, at.t).map_err(|e| said(at.t, e))?;
+            }
         }
-        let short = |t| Ok::<_, DynamicsError>(at(t)?.q - target);
-        let passed = root::zero(short, before.t, now.t)?;
-        found.push(passed.map_or(Ok(now), &mut *at)?);
+        Err(DynamicsError::Budget {
+            t: at.t,
+            steps: self.options.budget,
+        })
     }
-}
 
-/// Takes the equally spaced samples of a step.
-fn samples(
-    taken: &mut Vec<State>,
-    every: f64,
-    from: f64,
-    until: f64,
-    at: &mut impl FnMut(f64) -> Result<State, DynamicsError>,
-) -> Result<(), DynamicsError> {
-    loop {
-        let t = from + every * taken.len() as f64;
-        if t > until {
-            return Ok(());
+    /// Sets the time at which the next step must end at the latest.
+    fn stop_at<'a, E, S>(&self, solver: &mut S, t: f64) -> Result<(), DiffsolError>
+    where
+        E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
+        S: OdeSolverMethod<'a, E>,
+    {
+        let step = self.options.longest.map(|longest| t + longest);
+        match (self.end, step) {
+            (Some(end), Some(step)) => solver.set_stop_time(end.min(step)),
+            (Some(stop), None) | (None, Some(stop)) => solver.set_stop_time(stop),
+            (None, None) => Ok(()),
         }
-        taken.push(at(t)?);
     }
 }

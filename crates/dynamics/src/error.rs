@@ -1,7 +1,17 @@
 //! What can go wrong when a mechanism moves.
 
 use dwell_geometry::PlaceError;
+use dwell_kinetostatics::KinetostaticsError;
 use thiserror::Error;
+
+impl From<KinetostaticsError> for DynamicsError {
+    fn from(error: KinetostaticsError) -> Self {
+        match error {
+            KinetostaticsError::Place(place) => Self::Place(place),
+            other => Self::Load(other),
+        }
+    }
+}
 
 /// A motion that cannot be computed.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -9,6 +19,9 @@ pub enum DynamicsError {
     /// A position on the way cannot be reached.
     #[error(transparent)]
     Place(#[from] PlaceError),
+    /// A load has no direction or magnitude on the way, or friction jams the mechanism.
+    #[error(transparent)]
+    Load(KinetostaticsError),
     /// The generalised inertia is zero (or no number): no finite acceleration answers a force.
     #[error("the generalised inertia m is {m} kg m² at q = {q} rad: nothing resists there")]
     NoInertia {

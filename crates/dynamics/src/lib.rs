@@ -1,12 +1,22 @@
 //! The equation of motion of a reduced model: integration, events, energy and period.
 
+pub mod drive;
 pub mod driver;
 pub mod equation;
 pub mod error;
+pub mod free;
+pub mod machine;
+pub mod options;
 pub mod quadrature;
 pub mod root;
+pub mod system;
 
-pub use driver::{Method, Options, Run, State, Statistics, Until, simulate};
+pub use drive::{Drive, DriveError, DriveKind, Motor, Regulator};
+pub use driver::{Dense, Ended, Next, Watch, integrate};
 pub use equation::Equation;
 pub use error::DynamicsError;
+pub use free::{Run, State, Until, simulate};
+pub use machine::{Guidance, Machine, MachineError, MachineWork, Moving, Worker};
+pub use options::{Method, Options, Statistics};
 pub use quadrature::FreeTurn;
+pub use system::{Point, System};

@@ -11,9 +11,9 @@
 //! with q measured from the start. The trapezoid rule on a smooth periodic integrand gains digits
 //! as fast as its Fourier coefficients fall, so it is doubled until they have fallen to rounding.
 
-use crate::driver::State;
 use crate::equation::positive;
 use crate::error::DynamicsError;
+use crate::free::State;
 use dwell_kinetostatics::Reduced;
 use std::f64::consts::TAU;
 

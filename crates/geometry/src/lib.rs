@@ -21,7 +21,7 @@ mod relation;
 pub mod rows;
 pub mod scalar;
 mod seeds;
-mod small;
+pub mod small;
 mod solve;
 mod tall;
 pub mod tree;

@@ -20,6 +20,8 @@ pub trait Scalar:
     + AddAssign
     + SubAssign
 {
+    /// Whether such a number carries derivatives.
+    const DERIVES: bool;
     /// A constant.
     fn lift(value: f64) -> Self;
     /// The value alone, on which every decision (pivot, convergence, limit) is made.
@@ -40,6 +42,7 @@ pub trait Scalar:
 }
 
 impl Scalar for f64 {
+    const DERIVES: bool = false;
     #[inline]
     fn lift(value: f64) -> Self {
         value
@@ -88,6 +91,7 @@ impl Dual {
 }
 
 impl Scalar for Dual {
+    const DERIVES: bool = true;
     #[inline]
     fn lift(value: f64) -> Self {
         Self { v: value, d: 0.0 }

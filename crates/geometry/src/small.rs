@@ -1,19 +1,19 @@
-//! Elimination with partial pivoting for the few unknowns of one group, in any kind of number.
+//! Elimination with partial pivoting for a few unknowns, in any kind of number.
 
 use crate::large;
 use crate::scalar::Scalar;
 
 /// Outcome of a factorisation, on which the caller judges singularity and branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Factored {
+pub struct Factored {
     /// Sign of the determinant, +1, −1 or 0.
-    pub(crate) sign: f64,
+    pub sign: f64,
     /// Smallest pivot over the largest.
-    pub(crate) measure: f64,
+    pub measure: f64,
 }
 
 /// Factors the row-major n×n matrix `a` in place, with the row exchanges in `pivots`.
-pub(crate) fn factor<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> Factored {
+pub fn factor<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> Factored {
     if pivots.len() >= large::LARGE
         && let Some(plain) = T::plain(a)
     {
@@ -73,7 +73,7 @@ pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> Factore
 }
 
 /// Solves A x = b in place.
-pub(crate) fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
+pub fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
     let n = pivots.len();
     for (k, &row) in pivots.iter().enumerate() {
         b.swap(k, row);
@@ -94,7 +94,7 @@ pub(crate) fn solve<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
 }
 
 /// Solves Aᵀ x = b in place.
-pub(crate) fn solve_transposed<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
+pub fn solve_transposed<T: Scalar>(a: &[T], pivots: &[usize], b: &mut [T]) {
     let n = pivots.len();
     for i in 0..n {
         for j in 0..i {

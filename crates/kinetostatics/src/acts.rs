@@ -3,9 +3,10 @@
 
 use crate::kinetostatics::KinetostaticsError;
 use crate::ledger::meeting;
-use crate::load::{Load, LoadKind, Magnitude, Signal};
+use crate::load::{Guide, Load, LoadKind, Magnitude};
+use crate::magnitudes::{Scratch, Sense, senses};
 use crate::mass::Mass;
-use dwell_geometry::measure::{BodyStates, Measured};
+use dwell_geometry::measure::BodyStates;
 use dwell_geometry::{ActuatorId, BodyId, JointId, Mechanism, Plan, Scalar, Vec2};
 use thiserror::Error;
 
@@ -63,20 +64,12 @@ pub struct LoadError {
     pub what: &'static str,
 }
 
-/// What a magnitude depends on, ready to be measured.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Sense {
-    Time,
-    Value(Measured),
-    Speed(Measured),
-}
-
 /// The loads of a model.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Loads {
     pub(crate) loads: Vec<Load>,
     /// By load: what its magnitude depends on.
-    senses: Vec<Vec<Sense>>,
+    pub(crate) senses: Vec<Vec<Sense>>,
     /// By load: where a couple between two bodies stands on each.
     stands: Vec<[Vec2; 2]>,
     /// The bodies that have weight, with mass and centre.
@@ -97,7 +90,7 @@ pub struct LoadState<T = f64> {
     pub(crate) moment: Vec<T>,
     /// By carried body: the forces on it and on all that it carries, N.
     pub(crate) borne: Vec<Vec2<T>>,
-    values: Vec<f64>,
+    pub(crate) scratch: Scratch<T>,
 }
 
 impl Loads {
@@ -107,11 +100,11 @@ impl Loads {
         masses: &[Mass],
         loads: Vec<Load>,
     ) -> Result<Self, LoadError> {
-        let mut senses = Vec::with_capacity(loads.len());
+        let mut sensed = Vec::with_capacity(loads.len());
         for (i, load) in loads.iter().enumerate() {
             let wrong = |what| LoadError { load: i, what };
             check(mechanism, load).map_err(wrong)?;
-            senses.push(sense(mechanism, load).map_err(wrong)?);
+            sensed.push(senses(mechanism, &load.magnitude).map_err(wrong)?);
         }
         let stands = loads.iter().map(|load| match load.kind {
             LoadKind::Torque { bodies }
@@ -127,7 +120,7 @@ impl Loads {
         let weights = plan.carried().iter().filter_map(|c| weight(BodyId(c.body)));
         Ok(Self {
             loads,
-            senses,
+            senses: sensed,
             stands,
             weights: weights.collect(),
         })
@@ -147,38 +140,8 @@ impl Loads {
             force: vec![Vec2::zero(); bodies],
             moment: vec![T::lift(0.0); bodies],
             borne: vec![Vec2::zero(); plan.carried().len()],
-            values: vec![0.0; self.senses.iter().map(Vec::len).max().unwrap_or(0)],
+            scratch: Scratch::new(self.senses.iter().map(Vec::len).max().unwrap_or(0)),
         }
-    }
-
-    /// The magnitudes at time `t` (s).
-    pub(crate) fn magnitudes(
-        &self,
-        t: f64,
-        states: &BodyStates,
-        out: &mut LoadState,
-    ) -> Result<(), KinetostaticsError> {
-        for (i, (load, senses)) in self.loads.iter().zip(&self.senses).enumerate() {
-            for (value, &sense) in out.values.iter_mut().zip(senses) {
-                *value = match sense {
-                    Sense::Time => t,
-                    Sense::Value(measured) => states.measure(measured)[0],
-                    Sense::Speed(measured) => states.measure(measured)[1],
-                };
-            }
-            let values = &out.values[..senses.len()];
-            let magnitude = match (&load.magnitude, values) {
-                (Magnitude::Constant(value), _) => *value,
-                (Magnitude::Law(_, law), &[x, ..]) => law.at(x)[0],
-                (Magnitude::Law(..), []) => f64::NAN,
-                (Magnitude::Expression(expression, _), values) => expression.at(values),
-            };
-            if !magnitude.is_finite() {
-                return Err(KinetostaticsError::MagnitudeNotFinite { load: i });
-            }
-            out.magnitude[i] = magnitude;
-        }
-        Ok(())
     }
 
     /// What the loads do to the bodies at the magnitudes in `out`.
@@ -190,40 +153,65 @@ impl Loads {
         out.acts.clear();
         out.gravity = Vec2::zero();
         for (i, load) in self.loads.iter().enumerate() {
-            let f = out.magnitude[i];
-            if let LoadKind::Gravity { direction } = load.kind {
-                let pull = direction.lift() * f;
-                out.gravity += pull;
-                for &(body, Mass { mass, center, .. }) in &self.weights {
-                    out.acts.push(Act {
-                        by: By::Load(i),
-                        body,
-                        force: pull * T::lift(mass),
-                        arm: states.body(body).arm(center),
-                        couple: T::lift(0.0),
-                    });
-                }
-                continue;
-            }
-            let [first, second] = ends(load.kind, f, states, self.stands[i])
-                .ok_or(KinetostaticsError::NoDirection { load: i })?
-                .map(|end| {
-                    end.map(|(body, force, arm, couple)| Act {
-                        by: By::Load(i),
-                        body,
-                        force,
-                        arm,
-                        couple,
-                    })
+            self.act_of(i, load.kind, out.magnitude[i], states, out)?;
+        }
+        out.sum();
+        Ok(())
+    }
+
+    /// What a load alone does at magnitude one; a damper, at one unit of resistance.
+    pub(crate) fn unit<T: Scalar>(
+        &self,
+        load: usize,
+        states: &BodyStates<T>,
+        out: &mut LoadState<T>,
+    ) -> Result<(), KinetostaticsError> {
+        out.acts.clear();
+        out.gravity = Vec2::zero();
+        let (kind, sign) = match self.loads[load].kind {
+            LoadKind::TorsionDamper { bodies } => (LoadKind::Torque { bodies }, -1.0),
+            LoadKind::SlideDamper(guide) => (LoadKind::Slide(guide), -1.0),
+            kind => (kind, 1.0),
+        };
+        self.act_of(load, kind, T::lift(sign), states, out)?;
+        out.sum();
+        Ok(())
+    }
+
+    fn act_of<T: Scalar>(
+        &self,
+        i: usize,
+        kind: LoadKind,
+        f: T,
+        states: &BodyStates<T>,
+        out: &mut LoadState<T>,
+    ) -> Result<(), KinetostaticsError> {
+        if let LoadKind::Gravity { direction } = kind {
+            let pull = direction.lift() * f;
+            out.gravity += pull;
+            for &(body, Mass { mass, center, .. }) in &self.weights {
+                out.acts.push(Act {
+                    by: By::Load(i),
+                    body,
+                    force: pull * T::lift(mass),
+                    arm: states.body(body).arm(center),
+                    couple: T::lift(0.0),
                 });
-            out.acts.extend(first.into_iter().chain(second));
+            }
+            return Ok(());
         }
-        out.force.fill(Vec2::zero());
-        out.moment.fill(T::lift(0.0));
-        for act in &out.acts {
-            out.force[act.body.0] += act.force;
-            out.moment[act.body.0] += act.moment();
-        }
+        let [first, second] = ends(kind, f, states, self.stands[i])
+            .ok_or(KinetostaticsError::NoDirection { load: i })?
+            .map(|end| {
+                end.map(|(body, force, arm, couple)| Act {
+                    by: By::Load(i),
+                    body,
+                    force,
+                    arm,
+                    couple,
+                })
+            });
+        out.acts.extend(first.into_iter().chain(second));
         Ok(())
     }
 
@@ -263,6 +251,18 @@ impl Loads {
                 Some(0.5 * f * wound * wound)
             }
             _ => None,
+        }
+    }
+}
+
+impl<T: Scalar> LoadState<T> {
+    /// Adds up what acts on each body.
+    fn sum(&mut self) {
+        self.force.fill(Vec2::zero());
+        self.moment.fill(T::lift(0.0));
+        for act in &self.acts {
+            self.force[act.body.0] += act.force;
+            self.moment[act.body.0] += act.moment();
         }
     }
 }
@@ -317,8 +317,12 @@ fn ends<T: Scalar>(
             let between = states.separation(bodies, points);
             // −k (P₂ − P₁) + k free e: the first part is smooth where the points meet.
             let mut force = -(between.gap * f);
-            if free != 0.0 && f.value() != 0.0 {
-                force += between.direction? * (f * T::lift(free));
+            if free != 0.0 {
+                match between.direction {
+                    Some(direction) => force += direction * (f * T::lift(free)),
+                    None if f.value() == 0.0 => {}
+                    None => return None,
+                }
             }
             along(bodies, points, force)
         }
@@ -329,37 +333,37 @@ fn ends<T: Scalar>(
             let between = states.separation(bodies, points);
             let rate = between.rate;
             let still = f.value() == 0.0 || (rate.x.value() == 0.0 && rate.y.value() == 0.0);
-            let force = if still {
-                Vec2::zero()
-            } else {
-                let e = between.direction?;
-                -(e * (e.dot(rate) * f))
+            let force = match between.direction {
+                Some(e) => -(e * (e.dot(rate) * f)),
+                None if still => Vec2::zero(),
+                None => return None,
             };
             along(bodies, points, force)
         }
         LoadKind::TorsionDamper { bodies } => couples(bodies, -(f * states.angle(bodies)[1])),
+        LoadKind::Slide(guide) => Some(along_guide(guide, f, states)),
+        LoadKind::SlideDamper(guide) => {
+            let [_, speed, _] = states.measure(guide.travel());
+            Some(along_guide(guide, -(f * speed), states))
+        }
     }
 }
 
-fn sense(mechanism: &Mechanism, load: &Load) -> Result<Vec<Sense>, &'static str> {
-    let signals = match &load.magnitude {
-        Magnitude::Constant(_) => &[],
-        Magnitude::Law(signal, _) => std::slice::from_ref(signal),
-        Magnitude::Expression(expression, signals) => {
-            if expression.variables().len() > signals.len() {
-                return Err("its expression has more variables than signals");
-            }
-            signals.as_slice()
-        }
-    };
-    let unknown = "its magnitude depends on a coordinate that the mechanism does not have";
-    let find = |coordinate| Measured::find(mechanism, coordinate).ok_or(unknown);
-    let sense = |signal: &Signal| match *signal {
-        Signal::Time => Ok(Sense::Time),
-        Signal::Value(coordinate) => find(coordinate).map(Sense::Value),
-        Signal::Speed(coordinate) => find(coordinate).map(Sense::Speed),
-    };
-    signals.iter().map(sense).collect()
+/// A force along a guide, on both bodies at the point of the second.
+fn along_guide<T: Scalar>(guide: Guide, f: T, states: &BodyStates<T>) -> [End<T>; 2] {
+    let Guide {
+        bodies,
+        points,
+        axis,
+    } = guide;
+    let force = axis.lift().turn(states.body(bodies[0]).turn) * f;
+    let on_first = states.body(bodies[0]).arm(points[0]) + states.separation(bodies, points).gap;
+    let on_second = states.body(bodies[1]).arm(points[1]);
+    let zero = T::lift(0.0);
+    [
+        Some((bodies[0], -force, on_first, zero)),
+        Some((bodies[1], force, on_second, zero)),
+    ]
 }
 
 /// Refuses a load that does not fit the mechanism.
@@ -387,6 +391,9 @@ fn check(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str> {
         } => (bodies, finite(points) && free.is_finite() && *free >= 0.0),
         LoadKind::TorsionSpring { bodies, free } => (bodies, free.is_finite()),
         LoadKind::Damper { bodies, points } => (bodies, finite(points)),
+        LoadKind::Slide(guide) | LoadKind::SlideDamper(guide) => {
+            (&guide.bodies, finite(&guide.points) && unit(guide.axis))
+        }
     };
     if !there(bodies) {
         return Err("it acts on a body that is not there");
@@ -398,6 +405,7 @@ fn check(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str> {
         Magnitude::Constant(value) if !value.is_finite() => {
             Err("its magnitude is not a finite number")
         }
+        Magnitude::Friction(friction) => friction.check(mechanism, load.kind),
         _ => Ok(()),
     }
 }

@@ -1,9 +1,9 @@
 //! Inverse dynamics with loads: Jᵀ[λ; τ] = M ẍ + h − f, for a prescribed motion at a given time.
 
 use crate::acts::{LoadError, LoadState, Loads};
+use crate::friction::{Rub, Rubbing};
 use crate::load::Load;
 use crate::model::{Actions, Model, Workspace};
-use crate::runs::Prescribed;
 use dwell_geometry::measure::BodyStates;
 use dwell_geometry::{Mechanism, Motion, PlaceError, Scalar};
 use thiserror::Error;
@@ -27,6 +27,14 @@ pub enum KinetostaticsError {
         /// Index of the load in [`Model::loads`].
         load: usize,
     },
+    /// Friction for which no single motion balances.
+    #[error(
+        "the friction of load {load} jams the mechanism: its effective inertia is not positive"
+    )]
+    Jams {
+        /// Index of the first friction in [`Model::loads`].
+        load: usize,
+    },
 }
 
 impl KinetostaticsError {
@@ -34,7 +42,9 @@ impl KinetostaticsError {
     pub fn load(&self) -> Option<usize> {
         match *self {
             Self::Place(_) => None,
-            Self::NoDirection { load } | Self::MagnitudeNotFinite { load } => Some(load),
+            Self::NoDirection { load }
+            | Self::MagnitudeNotFinite { load }
+            | Self::Jams { load } => Some(load),
         }
     }
 }
@@ -45,10 +55,15 @@ pub(crate) struct Loaded<T> {
     pub(crate) states: BodyStates<T>,
     pub(crate) loads: LoadState<T>,
     pub(crate) q_dot: Vec<T>,
+    /// One load alone.
+    pub(crate) alone: LoadState<T>,
+    pub(crate) rubbing: Rubbing<T>,
+    /// By friction: the actions of its channel.
+    units: Vec<Actions<T>>,
     /// A motion at unit speed of one coordinate, with its states: a virtual displacement.
-    trial: Motion<T>,
+    pub(crate) trial: Motion<T>,
     moves: BodyStates<T>,
-    unit: Vec<T>,
+    pub(crate) unit: Vec<T>,
 }
 
 impl<T: Scalar> Loaded<T> {
@@ -58,6 +73,9 @@ impl<T: Scalar> Loaded<T> {
         Self {
             states: BodyStates::new(plan),
             loads: model.loads.state(plan),
+            alone: model.loads.state(plan),
+            rubbing: Rubbing::new(model.rubs.len()),
+            units: vec![model.actions(); model.rubs.len()],
             q_dot: rest.clone(),
             trial: plan.motion(),
             moves: BodyStates::new(plan),
@@ -66,7 +84,18 @@ impl<T: Scalar> Loaded<T> {
     }
 }
 
-impl<T> Workspace<T> {
+impl<T: Scalar> Workspace<T> {
+    /// Takes the accelerations of the last run into the states of the bodies.
+    pub fn refill(&mut self, model: &Model) {
+        let Self {
+            pose,
+            motion,
+            loaded,
+            ..
+        } = self;
+        loaded.states.fill(&model.plan, pose, motion);
+    }
+
     /// The bodies at the last state of motion that [`Model::kinetostatics`] evaluated.
     pub fn states(&self) -> &BodyStates<T> {
         &self.loaded.states
@@ -90,6 +119,11 @@ impl Model {
         loads: Vec<Load>,
     ) -> Result<Self, LoadError> {
         self.loads = Loads::find(mechanism, &self.plan, &self.masses, loads)?;
+        let missing = |load| LoadError {
+            load,
+            what: "the reactions that its friction depends on are not computed",
+        };
+        self.rubs = Rub::find(mechanism, &self).map_err(missing)?;
         Ok(self)
     }
 
@@ -105,33 +139,40 @@ impl Model {
     /// # Errors
     /// [`KinetostaticsError`] when there is no pose at `q`, or a load has no direction or no finite
     /// magnitude there.
-    pub fn kinetostatics(
+    pub fn kinetostatics<T: Scalar>(
         &self,
         t: f64,
-        q: &[f64],
-        q_dot: &[f64],
-        q_ddot: &[f64],
-        work: &mut Workspace<f64>,
-        actions: &mut Actions<f64>,
+        q: &[T],
+        q_dot: &[T],
+        q_ddot: &[T],
+        work: &mut Workspace<T>,
+        actions: &mut Actions<T>,
     ) -> Result<(), KinetostaticsError> {
-        let Workspace {
-            pose,
-            motion,
-            run,
-            loaded,
-            ..
-        } = work;
-        self.plan.place(q, pose)?;
-        self.plan.speeds(pose, q_dot, motion);
-        self.plan.accelerations(pose, q_ddot, motion);
-        loaded.q_dot.copy_from_slice(q_dot);
-        loaded.states.fill(&self.plan, pose, motion);
-        self.loads
-            .magnitudes(t, &loaded.states, &mut loaded.loads)?;
-        self.loads.act(&loaded.states, &mut loaded.loads)?;
-        run.evaluate_loaded(self, pose, Prescribed(motion), &mut loaded.loads);
-        actions.take(self, pose, run);
+        self.enter(t, q, q_dot, work)?;
+        self.loaded(q_ddot, work, actions);
+        work.refill(self);
+        if self.rubs.is_empty() {
+            return Ok(());
+        }
+        let mut units = std::mem::take(&mut work.loaded.units);
+        let rubbed = self.rub_prescribed(&mut units, &actions.reactions, work);
+        work.loaded.units = units;
+        rubbed?;
+        self.loaded(q_ddot, work, actions);
         Ok(())
+    }
+
+    /// The frictions of a prescribed motion, from the reactions without them.
+    fn rub_prescribed<T: Scalar>(
+        &self,
+        units: &mut [Actions<T>],
+        without: &[T],
+        work: &mut Workspace<T>,
+    ) -> Result<(), KinetostaticsError> {
+        for (unit, rub) in units.iter_mut().zip(&self.rubs) {
+            self.channel(rub.load, work, unit)?;
+        }
+        self.rub(without, units, work)
     }
 
     /// Statics under the loads: [`Model::kinetostatics`] at rest.
@@ -177,6 +218,11 @@ impl Model {
                 }
             }
         }
+    }
+
+    /// Whether a load has a potential energy.
+    pub fn conservative(&self, load: usize) -> bool {
+        self.loads.loads.get(load).is_some_and(Load::conservative)
     }
 
     /// The potential energy of a load at the state last evaluated, J; none if it has none. Gravity,

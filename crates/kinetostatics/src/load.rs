@@ -1,7 +1,8 @@
 //! What acts on a mechanism from outside: each load is a shape that the configuration fixes, times a
 //! magnitude that may depend on time and on what moves.
 
-use dwell_geometry::{BodyId, Coordinate, Mechanism, Vec2};
+use dwell_geometry::measure::Measured;
+use dwell_geometry::{BodyId, Coordinate, JointId, Mechanism, Vec2};
 use dwell_laws::{Expression, Law};
 
 /// A named load.
@@ -68,6 +69,52 @@ pub enum LoadKind {
         /// The bodies.
         bodies: [BodyId; 2],
     },
+    /// A force F, N, along the slide of a joint: of its first body on its second, at the second's point.
+    Slide(Guide),
+    /// Viscous friction in a slide: F is its constant, N·s/m; it resists with F × speed of travel.
+    SlideDamper(Guide),
+}
+
+/// The line along which a prismatic joint or a slot slides.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Guide {
+    /// The joint's bodies.
+    pub bodies: [BodyId; 2],
+    /// Its point on each, m.
+    pub points: [Vec2; 2],
+    /// Unit vector of its axis in the first body's frame.
+    pub axis: Vec2,
+}
+
+impl Guide {
+    /// The travel of the second point along it.
+    pub fn travel(&self) -> Measured {
+        let &Self {
+            bodies,
+            points,
+            axis,
+        } = self;
+        Measured::Travel {
+            bodies,
+            points,
+            axis,
+        }
+    }
+}
+
+/// Coulomb friction in a joint: the couple −µ r |R| tanh(ω/ω₀) on the second body of a revolute joint, the
+/// force −µ N tanh(v/v₀) along a slide, N the sum of what presses on the guide. The load must be a
+/// [`LoadKind::Torque`] or a [`LoadKind::Slide`] between the joint's bodies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// The joint.
+    pub joint: JointId,
+    /// Coefficient of friction µ.
+    pub coefficient: f64,
+    /// Radius r of the pin, m; or the length of the guide, m, at whose ends it presses (0: at one point).
+    pub size: f64,
+    /// Speed ω₀ or v₀ below which the friction fades, rad/s or m/s.
+    pub fade: f64,
 }
 
 /// The magnitude of a load.
@@ -79,6 +126,8 @@ pub enum Magnitude {
     Law(Signal, Law),
     /// An expression of several signals, one for each variable it was parsed with, in their order.
     Expression(Expression, Vec<Signal>),
+    /// As the joint's own reactions make it.
+    Friction(Friction),
 }
 
 /// What a magnitude can depend on.
@@ -93,6 +142,19 @@ pub enum Signal {
 }
 
 impl Load {
+    /// Whether it has a potential energy: gravity, springs and forces that keep their direction, where
+    /// their magnitude is constant.
+    pub fn conservative(&self) -> bool {
+        let shaped = matches!(
+            self.kind,
+            LoadKind::Gravity { .. }
+                | LoadKind::Force { follows: false, .. }
+                | LoadKind::Spring { .. }
+                | LoadKind::TorsionSpring { .. }
+        );
+        shaped && matches!(self.magnitude, Magnitude::Constant(_))
+    }
+
     /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those
     /// with mass, which are needed anyway.
     pub fn bodies(&self, mechanism: &Mechanism) -> Vec<BodyId> {
@@ -103,10 +165,12 @@ impl Load {
             | LoadKind::Spring { bodies, .. }
             | LoadKind::TorsionSpring { bodies, .. }
             | LoadKind::Damper { bodies, .. }
-            | LoadKind::TorsionDamper { bodies } => bodies.to_vec(),
+            | LoadKind::TorsionDamper { bodies }
+            | LoadKind::Slide(Guide { bodies, .. })
+            | LoadKind::SlideDamper(Guide { bodies, .. }) => bodies.to_vec(),
         };
         let signals = match &self.magnitude {
-            Magnitude::Constant(_) => &[][..],
+            Magnitude::Constant(_) | Magnitude::Friction(_) => &[][..],
             Magnitude::Law(signal, _) => std::slice::from_ref(signal),
             Magnitude::Expression(_, signals) => signals,
         };

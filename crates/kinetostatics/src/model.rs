@@ -2,6 +2,7 @@
 //! the reactions that were asked for.
 
 use crate::acts::Loads;
+use crate::friction::Rub;
 use crate::kinetostatics::Loaded;
 use crate::mass::Mass;
 use crate::reactions::Sources;
@@ -26,6 +27,7 @@ pub struct Model {
     /// By body; the ground has none.
     pub(crate) masses: Vec<Mass>,
     pub(crate) loads: Loads,
+    pub(crate) rubs: Vec<Rub>,
 }
 
 /// A carried body that has inertia.
@@ -179,6 +181,7 @@ impl Model {
             reactions: reactions.to_vec(),
             masses,
             loads: Loads::default(),
+            rubs: Vec::new(),
         })
     }
 
@@ -205,6 +208,7 @@ impl Model {
     pub fn inertia_alone(&self) -> Self {
         let mut bare = self.without_reactions();
         bare.loads = Loads::default();
+        bare.rubs.clear();
         let massive: Vec<usize> = bare.massive.iter().map(|m| m.body).collect();
         let needed = bare.plan.needed_for(massive);
         bare.plan = bare.plan.only(&needed);
@@ -270,6 +274,18 @@ impl Model {
         run.evaluate(self, pose, Prescribed(motion));
         actions.take(self, pose, run);
         Ok(())
+    }
+
+    /// Kinetic energy ½ Σ m v² + I ω² at the state last entered, J.
+    pub fn kinetic(&self, work: &Workspace<f64>) -> f64 {
+        let states = work.states();
+        let energy = |body: &Massive| {
+            let id = BodyId(body.body);
+            let velocity = states.point(id, self.masses[id.0].center).velocity;
+            let spin = states.body(id).spin;
+            0.5 * (body.mass * velocity.dot(velocity) + body.inertia * spin * spin)
+        };
+        self.massive.iter().map(energy).sum()
     }
 
     /// Twice the kinetic energy at unit speed, Σ m v² + I ω², and half its derivative by power,

@@ -23,6 +23,48 @@ pub(crate) struct Prescribed<'a, T>(pub(crate) &'a Motion<T>);
 #[derive(Clone, Copy)]
 pub(crate) struct Unit<'a, T>(pub(crate) &'a Motion<T>);
 
+/// One run at rest, with the velocities of a motion for accelerations.
+#[derive(Clone, Copy)]
+pub(crate) struct Pushed<'a, T>(pub(crate) &'a Motion<T>);
+
+/// One run in which nothing moves.
+#[derive(Clone, Copy)]
+pub(crate) struct Still;
+
+impl<T: Scalar> Rates<T, 1> for Pushed<'_, T> {
+    #[inline]
+    fn turning(self, frame: usize) -> [T; 1] {
+        [self.0.turn[frame]]
+    }
+
+    #[inline]
+    fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 1] {
+        [arm.perp() * self.0.turn[frame]]
+    }
+
+    #[inline]
+    fn slide(self, slide: usize, _: usize, along: Vec2<T>) -> [Vec2<T>; 1] {
+        [along * self.0.slide[slide]]
+    }
+}
+
+impl<T: Scalar> Rates<T, 1> for Still {
+    #[inline]
+    fn turning(self, _: usize) -> [T; 1] {
+        [T::lift(0.0)]
+    }
+
+    #[inline]
+    fn arm(self, _: usize, _: Vec2<T>) -> [Vec2<T>; 1] {
+        [Vec2::zero()]
+    }
+
+    #[inline]
+    fn slide(self, _: usize, _: usize, _: Vec2<T>) -> [Vec2<T>; 1] {
+        [Vec2::zero()]
+    }
+}
+
 impl<T: Scalar> Rates<T, 1> for Prescribed<'_, T> {
     #[inline]
     fn turning(self, frame: usize) -> [T; 1] {

@@ -273,7 +273,7 @@ fn quadrature(case: &FreeMotionCase, turn: &FreeTurn) -> Option<Finding> {
 /// What a method is held to at the judged tolerance: period, and energy and periodicity.
 fn allowed(method: Method) -> ([f64; 2], &'static str) {
     match method {
-        Method::Bdf => (
+        Method::Bdf | Method::Esdirk34 | Method::TrBdf2 => (
             [1e-10, 1e-9],
             "BDF's energy error grows with time to hundreds of times its tolerance; measured 1e-10 to \
              2e-10 in ten turns, 1e-11 in a period",

@@ -3,7 +3,7 @@
 
 use crate::state::BodyAct;
 use dwell_geometry::{BodyId, Vec2, vec2};
-use dwell_kinetostatics::{LoadKind, Mass};
+use dwell_kinetostatics::{Guide, LoadKind, Mass};
 
 /// Where the bodies are and how they move, in the plane.
 struct Frames<'a> {
@@ -137,7 +137,32 @@ pub fn load_acts(
             let rate = frames.omega(bodies[1])? - frames.omega(bodies[0])?;
             couple(bodies, -magnitude * rate)
         }
+        LoadKind::Slide(guide) => along(guide, magnitude, &frames),
+        LoadKind::SlideDamper(guide) => {
+            let [first, _] = guide.bodies;
+            let [p1, p2] = [0, 1].map(|i| frames.point(guide.bodies[i], guide.points[i]));
+            let [v1, v2] = [0, 1].map(|i| frames.speed(guide.bodies[i], guide.points[i]));
+            let axis = guide.axis.turn(frames.turned(first)?);
+            // d/dt of t·(P₂ − P₁), where the axis turns with its body.
+            let turning = axis.perp() * frames.omega(first)?;
+            let rate = axis.dot(v2? - v1?) + turning.dot(p2? - p1?);
+            along(guide, -magnitude * rate, &frames)
+        }
     }
+}
+
+/// A force along a guide: both bodies feel it at the second's point.
+fn along(guide: Guide, force: f64, frames: &Frames<'_>) -> Option<Vec<BodyAct>> {
+    let [first, second] = guide.bodies;
+    let on_second = guide.axis.turn(frames.turned(first)?) * force;
+    let at = frames.point(second, guide.points[1])?;
+    let act = |body, force| BodyAct {
+        body,
+        force,
+        at,
+        couple: 0.0,
+    };
+    Some(vec![act(first, -on_second), act(second, on_second)])
 }
 
 #[cfg(test)]

@@ -292,6 +292,10 @@ impl Columns {
                 LoadKind::TorsionSpring { .. } | LoadKind::TorsionDamper { .. } => {
                     Some(("N m", "couple of the first body on the second"))
                 }
+                LoadKind::Slide(_) | LoadKind::SlideDamper(_) => Some((
+                    "N",
+                    "force along the slide, of the first body on the second",
+                )),
             };
             if let Some((unit, meaning)) = told {
                 let name = format!("{}.load", load.name);

@@ -205,6 +205,12 @@ impl<'a> Probe<'a> {
             LoadKind::TorsionSpring { bodies, .. } | LoadKind::TorsionDamper { bodies } => by_it()
                 .find(|act| act.body == bodies[1])
                 .map_or(0.0, |act| act.couple),
+            LoadKind::Slide(guide) | LoadKind::SlideDamper(guide) => {
+                let [first, second] = guide.bodies;
+                let axis = guide.axis.turn(self.work.states().body(first).turn);
+                let on_second = by_it().find(|act| act.body == second);
+                on_second.map_or(0.0, |act| act.force.dot(axis))
+            }
         }
     }
 

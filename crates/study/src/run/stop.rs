@@ -82,6 +82,23 @@ impl Stop {
                     )
                     .into()
             }
+            KinetostaticsError::Jams { load } => {
+                let name = scene.loads.get(load).map_or("", |l| l.name.as_str());
+                scene
+                    .error(
+                        format!(
+                            "friction jams the mechanism soon after {place}: no single balance"
+                        ),
+                        Some(
+                            "take a smaller coefficient, or push where the joints bear less".into(),
+                        ),
+                        &[(
+                            Place::Load(load),
+                            format!("`{name}` and the other frictions"),
+                        )],
+                    )
+                    .into()
+            }
             KinetostaticsError::MagnitudeNotFinite { load } => {
                 let name = scene.loads.get(load).map_or("", |l| l.name.as_str());
                 scene

@@ -1,0 +1,446 @@
+//! A machine: a mechanism of any number of coordinates under loads and drives, some of them free, the
+//! others prescribed.
+//!
+//! ```text
+//! Σⱼ Mᵢⱼ q̈ⱼ + cᵢ(q, q̇) = Qᵢ(t, q, q̇) + τᵢ          i, j free                    (1)
+//! ```
+//!
+//! c − Q is what the loaded run finds at the prescribed accelerations and zero free ones, the columns of
+//! M what the inertial runs find; τ is the drives' action. Friction depends on the reactions, those on q̈:
+//! what each friction does to the accelerations is put into its channel before
+//! [`Model::rub`] solves for all of them.
+//!
+//! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; work of what has no
+//! potential], so that the energy balance is integrated with the motion.
+
+use crate::drive::{Drive, DriveError, Driven};
+use crate::error::DynamicsError;
+use crate::system::System;
+use dwell_geometry::{Dual, Mechanism, Scalar, small};
+use dwell_kinetostatics::{Actions, By, Model, Workspace};
+use dwell_laws::Law;
+
+/// How a coordinate moves.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Guidance {
+    /// As loads and drives make it.
+    Free,
+    /// By a law of time.
+    Prescribed(Law),
+}
+
+/// Something that does work and has no potential.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Worker {
+    /// A load, by its place in the model.
+    Load(usize),
+    /// A drive, by its place in the machine.
+    Drive(usize),
+    /// The prescribed motion of an actuator.
+    Prescribed(usize),
+}
+
+/// A machine: constant, shared between threads.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Machine {
+    model: Model,
+    guidance: Vec<Guidance>,
+    free: Vec<usize>,
+    drives: Vec<Driven>,
+    /// Number of the drives' states.
+    memory: usize,
+    workers: Vec<Worker>,
+}
+
+/// Why a machine cannot be built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum MachineError {
+    /// A drive that makes no sense.
+    #[error(transparent)]
+    Drive(#[from] DriveError),
+    /// A drive on a coordinate whose motion is prescribed already.
+    #[error("drive {drive} acts on actuator {actuator}, whose motion is prescribed")]
+    Prescribed {
+        /// Index of the drive.
+        drive: usize,
+        /// Index of the actuator.
+        actuator: usize,
+    },
+    /// Not one guidance for each actuator.
+    #[error("the guidances do not fit the actuators")]
+    Guidance,
+}
+
+impl Machine {
+    /// A machine of a model (with its loads and the reactions its frictions need), one guidance for each
+    /// actuator, and drives.
+    ///
+    /// # Errors
+    /// [`MachineError`] where they do not fit.
+    pub fn new(
+        mechanism: &Mechanism,
+        model: Model,
+        guidance: Vec<Guidance>,
+        drives: &[Drive],
+    ) -> Result<Self, MachineError> {
+        if guidance.len() != model.plan().actuators() {
+            return Err(MachineError::Guidance);
+        }
+        let is_free = |i: &usize| guidance[*i] == Guidance::Free;
+        let free: Vec<usize> = (0..guidance.len()).filter(is_free).collect();
+        let drives = Driven::all(mechanism, drives)?;
+        for (drive, driven) in drives.iter().enumerate() {
+            let actuator = driven.actuator;
+            if !is_free(&actuator) {
+                return Err(MachineError::Prescribed { drive, actuator });
+            }
+        }
+        let lossy = (0..model.loads().len()).filter(|&l| !model.conservative(l));
+        let mut workers: Vec<Worker> = lossy.map(Worker::Load).collect();
+        workers.extend((0..drives.len()).map(Worker::Drive));
+        let led = (0..guidance.len()).filter(|i| !is_free(i));
+        workers.extend(led.map(Worker::Prescribed));
+        Ok(Self {
+            memory: drives.iter().filter(|d| d.state.is_some()).count(),
+            model,
+            guidance,
+            free,
+            drives,
+            workers,
+        })
+    }
+
+    /// The model that moves.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The free coordinates, by actuator.
+    pub fn free(&self) -> &[usize] {
+        &self.free
+    }
+
+    /// What does work without a potential, in the order of the states.
+    pub fn workers(&self) -> &[Worker] {
+        &self.workers
+    }
+
+    /// Number of states: 2 for each free coordinate, those of the drives, one for each worker.
+    pub fn states(&self) -> usize {
+        2 * self.free.len() + self.memory + self.workers.len()
+    }
+
+    /// The place of the first worker's work among the states.
+    pub fn first_work(&self) -> usize {
+        2 * self.free.len() + self.memory
+    }
+
+    /// A state at rest of the drives with no work done yet, from the coordinates and speeds of all
+    /// actuators.
+    pub fn start(&self, q: &[f64], q_dot: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; self.states()];
+        for (k, &i) in self.free.iter().enumerate() {
+            y[k] = q[i];
+            y[self.free.len() + k] = q_dot[i];
+        }
+        y
+    }
+
+    /// Working memory for one thread.
+    pub fn work<T: Scalar>(&self) -> MachineWork<T> {
+        let n = self.free.len();
+        let zeros = |count| vec![T::lift(0.0); count];
+        let actuators = self.guidance.len();
+        MachineWork {
+            inner: self.model.workspace(),
+            q: zeros(actuators),
+            q_dot: zeros(actuators),
+            q_ddot: zeros(actuators),
+            base: self.model.actions(),
+            units: vec![self.model.actions(); n],
+            rubs: vec![self.model.actions(); self.model.frictions().len()],
+            answers: vec![zeros(n); self.model.frictions().len()],
+            matrix: zeros(n * n),
+            pivots: vec![0; n],
+            rest: zeros(n),
+            action: zeros(self.drives.len()),
+            memory: zeros(self.memory),
+        }
+    }
+
+    /// Evaluates the machine at time `t` (s) and state `y`: coordinates, speeds and accelerations of all
+    /// actuators, the drives' actions and the states of bodies and loads are then in `work`.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where there is no pose, no inertia, or friction jams.
+    pub fn evaluate<T: Scalar>(
+        &self,
+        t: f64,
+        y: &[T],
+        work: &mut MachineWork<T>,
+    ) -> Result<(), DynamicsError> {
+        let n = self.free.len();
+        self.guide(t, y, work);
+        self.model.enter(t, &work.q, &work.q_dot, &mut work.inner)?;
+        self.model
+            .loaded(&work.q_ddot, &mut work.inner, &mut work.base);
+        for (k, &i) in self.free.iter().enumerate() {
+            work.rest[k] = -work.base.tau[i];
+            self.model.inertial(i, &mut work.inner, &mut work.units[k]);
+            for (row, &j) in self.free.iter().enumerate() {
+                work.matrix[row * n + k] = work.units[k].tau[j];
+            }
+        }
+        for (d, drive) in self.drives.iter().enumerate() {
+            let state = drive.state.map(|s| y[2 * n + s]);
+            let speed = work.q_dot[drive.actuator];
+            let (action, rate) = drive.act(t, work.inner.states(), speed, state);
+            work.action[d] = action;
+            if let Some(s) = drive.state {
+                work.memory[s] = rate;
+            }
+            if let Some(k) = self.free.iter().position(|&i| i == drive.actuator) {
+                work.rest[k] += action;
+                work.matrix[k * n + k] += T::lift(drive.inertia);
+            }
+        }
+        self.answer(work)
+    }
+
+    /// Coordinates and speeds of all actuators, and the accelerations of those that are led.
+    fn guide<T: Scalar>(&self, t: f64, y: &[T], work: &mut MachineWork<T>) {
+        let n = self.free.len();
+        let mut k = 0;
+        for (i, guidance) in self.guidance.iter().enumerate() {
+            match guidance {
+                Guidance::Free => {
+                    work.q[i] = y[k];
+                    work.q_dot[i] = y[n + k];
+                    work.q_ddot[i] = T::lift(0.0);
+                    k += 1;
+                }
+                Guidance::Prescribed(law) => {
+                    let [q, q_dot, q_ddot, _] = law.at(t).map(T::lift);
+                    work.q[i] = q;
+                    work.q_dot[i] = q_dot;
+                    work.q_ddot[i] = q_ddot;
+                }
+            }
+        }
+    }
+
+    /// The free accelerations, by (1), with the frictions.
+    fn answer<T: Scalar>(&self, work: &mut MachineWork<T>) -> Result<(), DynamicsError> {
+        let MachineWork {
+            inner,
+            base,
+            units,
+            rubs,
+            answers,
+            matrix,
+            pivots,
+            rest,
+            ..
+        } = work;
+        let diagonal = matrix.first().map_or(1.0, |m| m.value());
+        let factored = small::factor(matrix, pivots);
+        let inertia = factored.sign > 0.0 && factored.measure > 0.0;
+        if !self.free.is_empty() && !(inertia && diagonal > 0.0 && diagonal.is_finite()) {
+            return Err(DynamicsError::NoInertia {
+                q: work.q[self.free[0]].value(),
+                m: diagonal,
+            });
+        }
+        small::solve(matrix, pivots, rest);
+        for (load, (rub, answer)) in self.model.frictions().zip(rubs.iter_mut().zip(answers)) {
+            self.model.channel(load, inner, rub)?;
+            for (value, &i) in answer.iter_mut().zip(&self.free) {
+                *value = -rub.tau[i];
+            }
+            small::solve(matrix, pivots, answer);
+            for (unit, &q_ddot) in units.iter().zip(answer.iter()) {
+                for (sum, a) in rub.reactions.iter_mut().zip(&unit.reactions) {
+                    *sum += *a * q_ddot;
+                }
+                for (sum, a) in rub.tau.iter_mut().zip(&unit.tau) {
+                    *sum += *a * q_ddot;
+                }
+            }
+        }
+        for (unit, &q_ddot) in units.iter().zip(rest.iter()) {
+            for (sum, a) in base.reactions.iter_mut().zip(&unit.reactions) {
+                *sum += *a * q_ddot;
+            }
+            for (sum, a) in base.tau.iter_mut().zip(&unit.tau) {
+                *sum += *a * q_ddot;
+            }
+        }
+        if self.model.frictions().len() > 0 {
+            self.model.rub(&base.reactions, rubs, inner)?;
+        }
+        for (k, &i) in self.free.iter().enumerate() {
+            let mut q_ddot = work.rest[k];
+            for (answer, load) in work.answers.iter().zip(self.model.frictions()) {
+                q_ddot += answer[k] * work.inner.loads().magnitude[load];
+            }
+            work.q_ddot[i] = q_ddot;
+        }
+        for (rub, load) in work.rubs.iter().zip(self.model.frictions()) {
+            let force = work.inner.loads().magnitude[load];
+            for (sum, tau) in work.base.tau.iter_mut().zip(&rub.tau) {
+                *sum += *tau * force;
+            }
+        }
+        Ok(())
+    }
+
+    /// ẏ of the state last evaluated.
+    fn rates<T: Scalar>(&self, work: &MachineWork<T>, out: &mut [T]) {
+        let n = self.free.len();
+        for (k, &i) in self.free.iter().enumerate() {
+            out[k] = work.q_dot[i];
+            out[n + k] = work.q_ddot[i];
+        }
+        let (memory, powers) = out[2 * n..].split_at_mut(self.memory);
+        memory.copy_from_slice(&work.memory);
+        for (power, &worker) in powers.iter_mut().zip(&self.workers) {
+            *power = match worker {
+                Worker::Load(load) => {
+                    let mut sum = T::lift(0.0);
+                    for act in &work.inner.loads().acts {
+                        if act.by == By::Load(load) {
+                            sum += act.power(work.inner.states());
+                        }
+                    }
+                    sum
+                }
+                Worker::Drive(d) => work.action[d] * work.q_dot[self.drives[d].actuator],
+                Worker::Prescribed(i) => work.base.tau[i] * work.q_dot[i],
+            };
+        }
+    }
+
+    /// Kinetic energy with that of the rotors, and the potential of the conservative loads, J, at the
+    /// state last evaluated.
+    pub fn energy(&self, work: &MachineWork<f64>) -> [f64; 2] {
+        let rotors = self.drives.iter().map(|drive| {
+            let speed = work.q_dot[drive.actuator];
+            0.5 * drive.inertia * speed * speed
+        });
+        let kinetic = self.model.kinetic(&work.inner) + rotors.sum::<f64>();
+        let potentials = (0..self.model.loads().len())
+            .filter_map(|load| self.model.potential(load, &work.inner));
+        [kinetic, potentials.sum()]
+    }
+}
+
+/// Working memory of a machine for one thread, and what its last evaluation found.
+#[derive(Debug, Clone)]
+pub struct MachineWork<T = f64> {
+    /// The bodies and loads.
+    pub inner: Workspace<T>,
+    /// By actuator: coordinate, speed and acceleration, rad or m, per s, per s².
+    pub q: Vec<T>,
+    /// Speeds.
+    pub q_dot: Vec<T>,
+    /// Accelerations.
+    pub q_ddot: Vec<T>,
+    /// By drive: its action, N·m or N, without what its rotor's inertia takes.
+    pub action: Vec<T>,
+    base: Actions<T>,
+    units: Vec<Actions<T>>,
+    rubs: Vec<Actions<T>>,
+    answers: Vec<Vec<T>>,
+    matrix: Vec<T>,
+    pivots: Vec<usize>,
+    rest: Vec<T>,
+    memory: Vec<T>,
+}
+
+/// A machine with the working memory to integrate it, for one thread.
+#[derive(Debug)]
+pub struct Moving<'m> {
+    machine: &'m Machine,
+    /// The last evaluation in plain numbers.
+    pub work: MachineWork<f64>,
+    dual: MachineWork<Dual>,
+    y: Vec<Dual>,
+    out: Vec<Dual>,
+    weights: Vec<f64>,
+}
+
+impl<'m> Moving<'m> {
+    /// A machine about to move, from a state whose energies give the works their scale.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where the start cannot be evaluated.
+    pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self, DynamicsError> {
+        let mut work = machine.work();
+        machine.evaluate(t, y, &mut work)?;
+        let mut weights = vec![1.0; machine.states()];
+        let scale = machine.energy_scale(&work);
+        weights[machine.first_work()..].fill(scale);
+        let zero = vec![Dual::lift(0.0); machine.states()];
+        Ok(Self {
+            machine,
+            work,
+            dual: machine.work(),
+            y: zero.clone(),
+            out: zero,
+            weights,
+        })
+    }
+
+    /// The machine.
+    pub fn machine(&self) -> &'m Machine {
+        self.machine
+    }
+}
+
+impl Machine {
+    /// An energy to measure works by, J: the kinetic one, or what the loads and drives do in one unit of
+    /// the coordinates.
+    fn energy_scale(&self, work: &MachineWork<f64>) -> f64 {
+        let [kinetic, _] = self.energy(work);
+        let forces = work.base.tau.iter().chain(&work.action);
+        let scale = kinetic + forces.map(|f| f.abs()).sum::<f64>();
+        if scale.is_normal() { scale } else { 1.0 }
+    }
+}
+
+impl System for Moving<'_> {
+    fn size(&self) -> usize {
+        self.machine.states()
+    }
+
+    fn rates(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        self.machine.evaluate(t, y, &mut self.work)?;
+        self.machine.rates(&self.work, out);
+        Ok(())
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        let n = self.size();
+        out.fill(0.0);
+        // No rate depends on the works.
+        for j in 0..self.machine.first_work() {
+            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
+                *dual = if i == j {
+                    Dual::variable(value)
+                } else {
+                    Dual::lift(value)
+                };
+            }
+            self.machine.evaluate(t, &self.y, &mut self.dual)?;
+            self.machine.rates(&self.dual, &mut self.out);
+            for (i, rate) in self.out.iter().enumerate() {
+                out[i * n + j] = rate.d;
+            }
+        }
+        Ok(())
+    }
+
+    fn weight(&self, state: usize) -> f64 {
+        self.weights[state]
+    }
+}

@@ -1,0 +1,99 @@
+//! The runs that the equation of motion and every reaction are put together from, at one state (t, q, q̇):
+//!
+//! ```text
+//! run       what acts                        τ                 reaction k
+//! loaded    q̇, known q̈, all loads           c − Q             R⁰
+//! inertial  q̈ᵢ = 1 alone                     column i of M     a_k,i
+//! channel   magnitude 1 of a load alone      −w_ℓ              c_k,ℓ
+//! ```
+//!
+//! All of them share the pose, its factors and the measured states. With one coordinate, the first run at
+//! unit speed without loads is ½m′ and b_k.
+
+use crate::kinetostatics::KinetostaticsError;
+use crate::model::{Actions, Model, Workspace};
+use crate::runs::{Prescribed, Pushed, Still};
+use dwell_geometry::Scalar;
+
+impl Model {
+    /// Enters a state: coordinates `q` (rad or m) and speeds `q_dot` at time `t` (s). The states of the
+    /// bodies (but for accelerations) and the magnitudes of the loads are then those in `work`; friction
+    /// is zero until [`Model::rub`].
+    ///
+    /// # Errors
+    /// [`KinetostaticsError`] when there is no pose at `q`, or a load has no direction or no finite
+    /// magnitude there.
+    pub fn enter<T: Scalar>(
+        &self,
+        t: f64,
+        q: &[T],
+        q_dot: &[T],
+        work: &mut Workspace<T>,
+    ) -> Result<(), KinetostaticsError> {
+        let Workspace {
+            pose,
+            motion,
+            loaded,
+            ..
+        } = work;
+        self.plan.place(q, pose)?;
+        self.plan.speeds(pose, q_dot, motion);
+        loaded.q_dot.copy_from_slice(q_dot);
+        loaded.states.fill(&self.plan, pose, motion);
+        self.loads
+            .magnitudes(t, &loaded.states, &mut loaded.loads)?;
+        self.loads.act(&loaded.states, &mut loaded.loads)
+    }
+
+    /// The loaded run at the state entered, with these accelerations (rad/s² or m/s²): the actions and
+    /// reactions of inertia and all loads.
+    pub fn loaded<T: Scalar>(
+        &self,
+        q_ddot: &[T],
+        work: &mut Workspace<T>,
+        actions: &mut Actions<T>,
+    ) {
+        let Workspace {
+            pose,
+            motion,
+            run,
+            loaded,
+            ..
+        } = work;
+        self.plan.accelerations(pose, q_ddot, motion);
+        run.evaluate_loaded(self, pose, Prescribed(motion), &mut loaded.loads);
+        actions.take(self, pose, run);
+    }
+
+    /// The inertial run of one coordinate at the state entered: q̈ᵢ = 1 (per s²) and nothing else.
+    pub fn inertial<T: Scalar>(&self, i: usize, work: &mut Workspace<T>, actions: &mut Actions<T>) {
+        let Workspace {
+            pose, run, loaded, ..
+        } = work;
+        loaded.unit.fill(T::lift(0.0));
+        loaded.unit[i] = T::lift(1.0);
+        self.plan.speeds(pose, &loaded.unit, &mut loaded.trial);
+        run.evaluate(self, pose, Pushed(&loaded.trial));
+        actions.take(self, pose, run);
+    }
+
+    /// The channel of one load at the state entered: magnitude 1 of it alone, and rest. Of a damper, one
+    /// unit of what it resists with (N or N·m).
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::NoDirection`] where its two points coincide.
+    pub fn channel<T: Scalar>(
+        &self,
+        load: usize,
+        work: &mut Workspace<T>,
+        actions: &mut Actions<T>,
+    ) -> Result<(), KinetostaticsError> {
+        let Workspace {
+            pose, run, loaded, ..
+        } = work;
+        self.loads.unit(load, &loaded.states, &mut loaded.alone)?;
+        run.evaluate_loaded(self, pose, Still, &mut loaded.alone);
+        actions.take(self, pose, run);
+        Ok(())
+    }
+}

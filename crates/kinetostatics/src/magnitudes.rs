@@ -1,0 +1,155 @@
+//! How strong the loads are: laws and expressions of what is measured.
+
+use crate::acts::{LoadState, Loads};
+use crate::kinetostatics::KinetostaticsError;
+use crate::load::{Magnitude, Signal};
+use dwell_geometry::measure::{BodyStates, Measured};
+use dwell_geometry::{Mechanism, Scalar};
+use dwell_laws::Expression;
+
+/// What a magnitude depends on, ready to be measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Sense {
+    Time,
+    Value(Measured),
+    Speed(Measured),
+}
+
+impl Sense {
+    fn of<T: Scalar>(self, t: f64, states: &BodyStates<T>) -> T {
+        match self {
+            Self::Time => T::lift(t),
+            Self::Value(measured) => states.measure(measured)[0],
+            Self::Speed(measured) => states.measure(measured)[1],
+        }
+    }
+}
+
+impl Loads {
+    /// The magnitudes at time `t` (s). Friction is zero until its reactions are known.
+    pub(crate) fn magnitudes<T: Scalar>(
+        &self,
+        t: f64,
+        states: &BodyStates<T>,
+        out: &mut LoadState<T>,
+    ) -> Result<(), KinetostaticsError> {
+        for (i, load) in self.loads.iter().enumerate() {
+            let magnitude = load
+                .magnitude
+                .at(t, &self.senses[i], states, &mut out.scratch);
+            if !magnitude.value().is_finite() {
+                return Err(KinetostaticsError::MagnitudeNotFinite { load: i });
+            }
+            out.magnitude[i] = magnitude;
+        }
+        Ok(())
+    }
+}
+
+impl Magnitude {
+    /// The magnitude where its senses have these states.
+    pub(crate) fn at<T: Scalar>(
+        &self,
+        t: f64,
+        senses: &[Sense],
+        states: &BodyStates<T>,
+        scratch: &mut Scratch<T>,
+    ) -> T {
+        let Scratch { numbers, values } = scratch;
+        let sensed = numbers.iter_mut().zip(values.iter_mut()).zip(senses);
+        for ((number, value), sense) in sensed {
+            *number = sense.of(t, states);
+            *value = number.value();
+        }
+        let (numbers, values) = (&numbers[..senses.len()], &values[..senses.len()]);
+        match (self, numbers) {
+            (Self::Constant(value), _) => T::lift(*value),
+            (Self::Law(_, law), &[x, ..]) => x.through(&law.at(x.value())),
+            (Self::Law(..), []) => T::lift(f64::NAN),
+            (Self::Expression(expression, _), numbers) => of_several(expression, numbers, values),
+            (Self::Friction(_), _) => T::lift(0.0),
+        }
+    }
+}
+
+/// A magnitude that is measured by itself, beside those of the loads: the voltage of a motor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Meter {
+    magnitude: Magnitude,
+    senses: Vec<Sense>,
+}
+
+impl Meter {
+    /// A magnitude ready to be measured.
+    ///
+    /// # Errors
+    /// What is wrong with it: a coordinate that the mechanism does not have, a friction.
+    pub fn new(mechanism: &Mechanism, magnitude: Magnitude) -> Result<Self, &'static str> {
+        if matches!(magnitude, Magnitude::Friction(_)) {
+            return Err("friction acts in joints alone");
+        }
+        let senses = senses(mechanism, &magnitude)?;
+        Ok(Self { magnitude, senses })
+    }
+
+    /// Its value at time `t` (s) where the bodies have these states.
+    pub fn at<T: Scalar>(&self, t: f64, states: &BodyStates<T>) -> T {
+        // Allocates; drives are few, and their expressions cost more.
+        let mut scratch = Scratch::new(self.senses.len());
+        self.magnitude.at(t, &self.senses, states, &mut scratch)
+    }
+}
+
+/// Room for what a magnitude senses.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Scratch<T> {
+    numbers: Vec<T>,
+    values: Vec<f64>,
+}
+
+impl<T: Scalar> Scratch<T> {
+    pub(crate) fn new(most: usize) -> Self {
+        Self {
+            numbers: vec![T::lift(0.0); most],
+            values: vec![0.0; most],
+        }
+    }
+}
+
+/// An expression in any kind of number: its value, and what its gradient makes of the rest of each
+/// variable. That is exact to first order, which is what a dual number holds.
+fn of_several<T: Scalar>(expression: &Expression, numbers: &[T], values: &[f64]) -> T {
+    let mut sum = T::lift(expression.at(values));
+    if T::DERIVES {
+        for (i, &number) in numbers.iter().enumerate() {
+            let rest = number - T::lift(values[i]);
+            sum += rest * T::lift(expression.along(values, i)[1]);
+        }
+    }
+    sum
+}
+
+/// What a load's magnitude depends on.
+pub(crate) fn senses(
+    mechanism: &Mechanism,
+    magnitude: &Magnitude,
+) -> Result<Vec<Sense>, &'static str> {
+    let signals = match magnitude {
+        Magnitude::Constant(_) | Magnitude::Friction(_) => &[],
+        Magnitude::Law(signal, _) => std::slice::from_ref(signal),
+        Magnitude::Expression(expression, signals) => {
+            if expression.variables().len() > signals.len() {
+                return Err("its expression has more variables than signals");
+            }
+            signals.as_slice()
+        }
+    };
+    let unknown = "its magnitude depends on a coordinate that the mechanism does not have";
+    let find = |coordinate| Measured::find(mechanism, coordinate).ok_or(unknown);
+    let sense = |signal: &Signal| match *signal {
+        Signal::Time => Ok(Sense::Time),
+        Signal::Value(coordinate) => find(coordinate).map(Sense::Value),
+        Signal::Speed(coordinate) => find(coordinate).map(Sense::Speed),
+    };
+    signals.iter().map(sense).collect()
+}
