@@ -5,7 +5,7 @@ use dwell_dynamics::{
     Dense, Drive, DriveKind, Guidance, Machine, Method, Motor, Moving, Next, Options, Point,
     Regulator, System, integrate,
 };
-use dwell_geometry::{ActuatorId, Dual, Start};
+use dwell_geometry::Start;
 use dwell_kinetostatics::{Friction, Guide, Load, LoadKind, Magnitude, Model};
 use dwell_scene::Scene;
 
@@ -22,9 +22,8 @@ fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
     };
     let needed: Vec<_> = frictions.flatten().collect();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &needed).expect("a model");
-    let model = model.with_loads(&scene.mechanism, loads).expect("loads");
     let free = vec![Guidance::Free; model.plan().actuators()];
-    Machine::new(&scene.mechanism, model, free, drives).expect("a machine")
+    Machine::new(&scene.mechanism, model, &loads, free, drives).expect("a machine")
 }
 
 /// The state at a time.
@@ -172,7 +171,7 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
     let drives = [
         Drive {
             name: "motor".into(),
-            actuator: ActuatorId(0),
+            coordinate: scene.mechanism.actuators[0].coordinate(),
             kind: DriveKind::Motor(Motor {
                 voltage: Magnitude::Constant(12.0),
                 constant: 0.1,
@@ -184,7 +183,7 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
         },
         Drive {
             name: "regulator".into(),
-            actuator: ActuatorId(1),
+            coordinate: scene.mechanism.actuators[1].coordinate(),
             kind: DriveKind::Regulator(Regulator {
                 speed: Magnitude::Constant(1.0),
                 proportional: 0.4,
@@ -222,7 +221,6 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
             );
         }
     }
-    let _: Dual = Dual::variable(0.0);
 }
 
 const BLOCK: &str = r#"
@@ -298,7 +296,7 @@ angle = ["ground", "wheel"]
     let (u, k, r, ratio, rotor) = (24.0, 0.05, 0.8, 5.0, 1e-4);
     let motor = |inductance| Drive {
         name: "motor".into(),
-        actuator: ActuatorId(0),
+        coordinate: scene.mechanism.actuators[0].coordinate(),
         kind: DriveKind::Motor(Motor {
             voltage: Magnitude::Constant(u),
             constant: k,
