@@ -336,6 +336,25 @@ impl Machine {
         }
     }
 
+    /// All that another model of the same mechanism and loads computes, at the state last evaluated: its
+    /// reactions, and what every body and load does, are then in `all` and `actions`.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] as of [`Machine::evaluate`].
+    pub fn show(
+        &self,
+        shown: &Model,
+        t: f64,
+        work: &MachineWork<f64>,
+        all: &mut Workspace<f64>,
+        actions: &mut Actions<f64>,
+    ) -> Result<(), DynamicsError> {
+        for drive in &self.drives {
+            all.give(drive.load, work.inner.loads().magnitude[drive.load]);
+        }
+        Ok(shown.kinetostatics(t, &work.q, &work.q_dot, &work.q_ddot, all, actions)?)
+    }
+
     /// Kinetic energy with that of the rotors, and the potential of the conservative loads, J, at the
     /// state last evaluated.
     pub fn energy(&self, work: &MachineWork<f64>) -> [f64; 2] {
