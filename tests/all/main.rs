@@ -17,6 +17,7 @@ mod findings;
 mod invariance;
 mod joints;
 mod limits;
+mod machine;
 mod machines;
 mod mobility;
 mod motion;

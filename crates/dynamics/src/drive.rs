@@ -1,33 +1,48 @@
-//! What moves an actuator: an action given outright, a motor, a regulator of speed.
+//! What moves a coordinate: an action given outright, a motor, a regulator of speed.
 //!
 //! ```text
 //! action      τ = F(t, …)
-//! motor       L di/dt = u − R i − k N q̇,    τ = N k i,    N² J joins m            (1)
-//! regulator   τ = P e + I ∫e dt,    e = w − q̇,    held within ± limit             (2)
+//! motor       L di/dt = u − R i − k N ṡ,    τ = N k i − N² J s̈                   (1)
+//! regulator   τ = P e + I ∫e dt,    e = w − ṡ,    held within ± limit             (2)
 //! ```
 //!
 //! Without inductance the current of (1) follows at once: the motor's torque falls in a line with its
 //! speed. A regulator at its limit stops integrating what would drive it further beyond.
 
-use dwell_geometry::measure::BodyStates;
-use dwell_geometry::{ActuatorId, Mechanism, Scalar};
-use dwell_kinetostatics::{Magnitude, Meter};
+use dwell_geometry::measure::{BodyStates, Measured};
+use dwell_geometry::{Coordinate, Mechanism, Scalar};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude, Meter};
 
-/// What acts through an actuator.
+/// What acts along a coordinate s, an actuator's or another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drive {
     /// The name a table uses.
     pub name: String,
-    /// The actuator.
-    pub actuator: ActuatorId,
+    /// The coordinate.
+    pub coordinate: Coordinate,
     /// How.
     pub kind: DriveKind,
+}
+
+impl Drive {
+    /// The load through which it acts.
+    ///
+    /// # Errors
+    /// Why there is none: its coordinate is not there.
+    pub fn load(&self, mechanism: &Mechanism) -> Result<Load, &'static str> {
+        let kind = LoadKind::along(mechanism, self.coordinate);
+        Ok(Load {
+            name: self.name.clone(),
+            kind: kind.ok_or("it drives a coordinate that is not there")?,
+            magnitude: Magnitude::Given,
+        })
+    }
 }
 
 /// How a drive acts.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DriveKind {
-    /// A couple or force, N·m or N, on the actuator's coordinate.
+    /// A couple or force, N·m or N, on the coordinate.
     Action(Magnitude),
     /// A motor of direct current behind a gear.
     Motor(Motor),
@@ -78,7 +93,9 @@ pub struct DriveError {
 /// A drive ready to be evaluated.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Driven {
-    pub(crate) actuator: usize,
+    /// Its load in the model.
+    pub(crate) load: usize,
+    pub(crate) measured: Measured,
     /// Its state (current in A, or integral in rad or m), by its place among the drives' states.
     pub(crate) state: Option<usize>,
     /// N² J, kg m² or kg.
@@ -101,21 +118,30 @@ impl Driven {
     ///
     /// # Errors
     /// The first [`DriveError`].
-    pub(crate) fn all(mechanism: &Mechanism, drives: &[Drive]) -> Result<Vec<Self>, DriveError> {
+    pub(crate) fn all(
+        mechanism: &Mechanism,
+        drives: &[Drive],
+        first_load: usize,
+    ) -> Result<Vec<Self>, DriveError> {
         let mut states = 0;
         let mut found = Vec::with_capacity(drives.len());
         for (i, drive) in drives.iter().enumerate() {
             let wrong = |what| DriveError { drive: i, what };
-            if drive.actuator.0 >= mechanism.actuators.len() {
-                return Err(wrong("it drives an actuator that is not there"));
-            }
-            let one = Self::new(mechanism, drive, &mut states).map_err(wrong)?;
+            let load = first_load + i;
+            let one = Self::new(mechanism, drive, load, &mut states).map_err(wrong)?;
             found.push(one);
         }
         Ok(found)
     }
 
-    fn new(mechanism: &Mechanism, drive: &Drive, states: &mut usize) -> Result<Self, &'static str> {
+    fn new(
+        mechanism: &Mechanism,
+        drive: &Drive,
+        load: usize,
+        states: &mut usize,
+    ) -> Result<Self, &'static str> {
+        let measured = Measured::find(mechanism, drive.coordinate);
+        let measured = measured.ok_or("it drives a coordinate that is not there")?;
         let mut state = |wanted: bool| {
             let place = *states;
             *states += usize::from(wanted);
@@ -147,7 +173,8 @@ impl Driven {
             }
         };
         Ok(Self {
-            actuator: drive.actuator.0,
+            load,
+            measured,
             state,
             inertia,
             meter: Meter::new(mechanism, magnitude.clone())?,
@@ -155,16 +182,15 @@ impl Driven {
         })
     }
 
-    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state,
-    /// at the coordinate's speed and the drive's state.
+    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state.
     pub(crate) fn act<T: Scalar>(
         &self,
         t: f64,
         states: &BodyStates<T>,
-        speed: T,
         state: Option<T>,
     ) -> (T, T) {
         let given = self.meter.at(t, states);
+        let [_, speed, _] = states.measure(self.measured);
         let zero = T::lift(0.0);
         match self.law {
             Law::Action => (given, zero),

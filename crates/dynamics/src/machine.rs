@@ -2,13 +2,13 @@
 //! others prescribed.
 //!
 //! ```text
-//! Σⱼ Mᵢⱼ q̈ⱼ + cᵢ(q, q̇) = Qᵢ(t, q, q̇) + τᵢ          i, j free                    (1)
+//! Σⱼ Mᵢⱼ q̈ⱼ + cᵢ(q, q̇) = Qᵢ(t, q, q̇)          i, j free                    (1)
 //! ```
 //!
 //! c − Q is what the loaded run finds at the prescribed accelerations and zero free ones, the columns of
-//! M what the inertial runs find; τ is the drives' action. Friction depends on the reactions, those on q̈:
-//! what each friction does to the accelerations is put into its channel before
-//! [`Model::rub`] solves for all of them.
+//! M what the inertial runs find. A drive is a load along its coordinate; τ of a free coordinate is zero.
+//! A rotor resists with what its channel makes of s̈. Friction depends on the reactions, those on q̈: what
+//! each friction does to the accelerations is put into its channel before [`Model::rub`] solves for all.
 //!
 //! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; work of what has no
 //! potential], so that the energy balance is integrated with the motion.
@@ -17,7 +17,7 @@ use crate::drive::{Drive, DriveError, Driven};
 use crate::error::DynamicsError;
 use crate::system::System;
 use dwell_geometry::{Dual, Mechanism, Scalar, small};
-use dwell_kinetostatics::{Actions, By, Model, Workspace};
+use dwell_kinetostatics::{Actions, By, Load, LoadError, Model, Workspace};
 use dwell_laws::Law;
 
 /// How a coordinate moves.
@@ -58,28 +58,24 @@ pub enum MachineError {
     /// A drive that makes no sense.
     #[error(transparent)]
     Drive(#[from] DriveError),
-    /// A drive on a coordinate whose motion is prescribed already.
-    #[error("drive {drive} acts on actuator {actuator}, whose motion is prescribed")]
-    Prescribed {
-        /// Index of the drive.
-        drive: usize,
-        /// Index of the actuator.
-        actuator: usize,
-    },
+    /// A load that does not fit the mechanism.
+    #[error(transparent)]
+    Load(#[from] LoadError),
     /// Not one guidance for each actuator.
     #[error("the guidances do not fit the actuators")]
     Guidance,
 }
 
 impl Machine {
-    /// A machine of a model (with its loads and the reactions its frictions need), one guidance for each
-    /// actuator, and drives.
+    /// A machine of a model (with the reactions that its frictions need) under loads, one guidance for
+    /// each actuator, and drives. The drives are the model's last loads.
     ///
     /// # Errors
     /// [`MachineError`] where they do not fit.
     pub fn new(
         mechanism: &Mechanism,
         model: Model,
+        loads: &[Load],
         guidance: Vec<Guidance>,
         drives: &[Drive],
     ) -> Result<Self, MachineError> {
@@ -88,14 +84,10 @@ impl Machine {
         }
         let is_free = |i: &usize| guidance[*i] == Guidance::Free;
         let free: Vec<usize> = (0..guidance.len()).filter(is_free).collect();
-        let drives = Driven::all(mechanism, drives)?;
-        for (drive, driven) in drives.iter().enumerate() {
-            let actuator = driven.actuator;
-            if !is_free(&actuator) {
-                return Err(MachineError::Prescribed { drive, actuator });
-            }
-        }
-        let lossy = (0..model.loads().len()).filter(|&l| !model.conservative(l));
+        let all = all_loads(mechanism, loads, drives)?;
+        let model = model.with_loads(mechanism, all)?;
+        let drives = Driven::all(mechanism, drives, loads.len())?;
+        let lossy = (0..loads.len()).filter(|&l| !model.conservative(l));
         let mut workers: Vec<Worker> = lossy.map(Worker::Load).collect();
         workers.extend((0..drives.len()).map(Worker::Drive));
         let led = (0..guidance.len()).filter(|i| !is_free(i));
@@ -164,6 +156,7 @@ impl Machine {
             pivots: vec![0; n],
             rest: zeros(n),
             action: zeros(self.drives.len()),
+            spin: self.model.actions(),
             memory: zeros(self.memory),
         }
     }
@@ -182,29 +175,62 @@ impl Machine {
         let n = self.free.len();
         self.guide(t, y, work);
         self.model.enter(t, &work.q, &work.q_dot, &mut work.inner)?;
-        self.model
-            .loaded(&work.q_ddot, &mut work.inner, &mut work.base);
-        for (k, &i) in self.free.iter().enumerate() {
-            work.rest[k] = -work.base.tau[i];
-            self.model.inertial(i, &mut work.inner, &mut work.units[k]);
-            for (row, &j) in self.free.iter().enumerate() {
-                work.matrix[row * n + k] = work.units[k].tau[j];
-            }
-        }
         for (d, drive) in self.drives.iter().enumerate() {
             let state = drive.state.map(|s| y[2 * n + s]);
-            let speed = work.q_dot[drive.actuator];
-            let (action, rate) = drive.act(t, work.inner.states(), speed, state);
+            let (action, rate) = drive.act(t, work.inner.states(), state);
             work.action[d] = action;
+            work.inner.give(drive.load, action);
             if let Some(s) = drive.state {
                 work.memory[s] = rate;
             }
-            if let Some(k) = self.free.iter().position(|&i| i == drive.actuator) {
-                work.rest[k] += action;
-                work.matrix[k * n + k] += T::lift(drive.inertia);
+        }
+        self.model
+            .loaded(&work.q_ddot, &mut work.inner, &mut work.base)?;
+        for (k, &i) in self.free.iter().enumerate() {
+            self.model.inertial(i, &mut work.inner, &mut work.units[k]);
+        }
+        if self.drives.iter().any(|drive| drive.inertia > 0.0) {
+            self.spin_up(work)?;
+        }
+        for (k, &i) in self.free.iter().enumerate() {
+            work.rest[k] = -work.base.tau[i];
+            for (column, unit) in work.units.iter().enumerate() {
+                work.matrix[k * n + column] = unit.tau[i];
             }
         }
-        self.answer(work)
+        self.answer(work)?;
+        self.settle(work)
+    }
+
+    /// Lets the rotors resist: N² J times what their channels make of s̈ = S q̈ + what is left at zero q̈.
+    fn spin_up<T: Scalar>(&self, work: &mut MachineWork<T>) -> Result<(), DynamicsError> {
+        work.inner.refill(&self.model);
+        for drive in self.drives.iter().filter(|drive| drive.inertia > 0.0) {
+            let [_, _, rest] = work.inner.states().measure(drive.measured);
+            self.model
+                .channel(drive.load, &mut work.inner, &mut work.spin)?;
+            let inertia = T::lift(drive.inertia);
+            add(&mut work.base, &work.spin, -(inertia * rest));
+            for (unit, &i) in work.units.iter_mut().zip(&self.free) {
+                // S = −τ of the channel: virtual work.
+                add(unit, &work.spin, inertia * work.spin.tau[i]);
+            }
+        }
+        Ok(())
+    }
+
+    /// The drives' actions less what their rotors take, once the accelerations are known.
+    fn settle<T: Scalar>(&self, work: &mut MachineWork<T>) -> Result<(), DynamicsError> {
+        if self.drives.iter().all(|drive| drive.inertia == 0.0) {
+            return Ok(());
+        }
+        self.model.accelerate(&work.q_ddot, &mut work.inner);
+        for (drive, &action) in self.drives.iter().zip(&work.action) {
+            let [_, _, s_ddot] = work.inner.states().measure(drive.measured);
+            let net = action - T::lift(drive.inertia) * s_ddot;
+            work.inner.give(drive.load, net);
+        }
+        Ok(self.model.push(&mut work.inner)?)
     }
 
     /// Coordinates and speeds of all actuators, and the accelerations of those that are led.
@@ -259,21 +285,11 @@ impl Machine {
             }
             small::solve(matrix, pivots, answer);
             for (unit, &q_ddot) in units.iter().zip(answer.iter()) {
-                for (sum, a) in rub.reactions.iter_mut().zip(&unit.reactions) {
-                    *sum += *a * q_ddot;
-                }
-                for (sum, a) in rub.tau.iter_mut().zip(&unit.tau) {
-                    *sum += *a * q_ddot;
-                }
+                add(rub, unit, q_ddot);
             }
         }
         for (unit, &q_ddot) in units.iter().zip(rest.iter()) {
-            for (sum, a) in base.reactions.iter_mut().zip(&unit.reactions) {
-                *sum += *a * q_ddot;
-            }
-            for (sum, a) in base.tau.iter_mut().zip(&unit.tau) {
-                *sum += *a * q_ddot;
-            }
+            add(base, unit, q_ddot);
         }
         if self.model.frictions().len() > 0 {
             self.model.rub(&base.reactions, rubs, inner)?;
@@ -286,10 +302,7 @@ impl Machine {
             work.q_ddot[i] = q_ddot;
         }
         for (rub, load) in work.rubs.iter().zip(self.model.frictions()) {
-            let force = work.inner.loads().magnitude[load];
-            for (sum, tau) in work.base.tau.iter_mut().zip(&rub.tau) {
-                *sum += *tau * force;
-            }
+            add(&mut work.base, rub, work.inner.loads().magnitude[load]);
         }
         Ok(())
     }
@@ -314,17 +327,39 @@ impl Machine {
                     }
                     sum
                 }
-                Worker::Drive(d) => work.action[d] * work.q_dot[self.drives[d].actuator],
+                Worker::Drive(d) => {
+                    let [_, speed, _] = work.inner.states().measure(self.drives[d].measured);
+                    work.action[d] * speed
+                }
                 Worker::Prescribed(i) => work.base.tau[i] * work.q_dot[i],
             };
         }
+    }
+
+    /// All that another model of the same mechanism and loads computes, at the state last evaluated: its
+    /// reactions, and what every body and load does, are then in `all` and `actions`.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] as of [`Machine::evaluate`].
+    pub fn show(
+        &self,
+        shown: &Model,
+        t: f64,
+        work: &MachineWork<f64>,
+        all: &mut Workspace<f64>,
+        actions: &mut Actions<f64>,
+    ) -> Result<(), DynamicsError> {
+        for drive in &self.drives {
+            all.give(drive.load, work.inner.loads().magnitude[drive.load]);
+        }
+        Ok(shown.kinetostatics(t, &work.q, &work.q_dot, &work.q_ddot, all, actions)?)
     }
 
     /// Kinetic energy with that of the rotors, and the potential of the conservative loads, J, at the
     /// state last evaluated.
     pub fn energy(&self, work: &MachineWork<f64>) -> [f64; 2] {
         let rotors = self.drives.iter().map(|drive| {
-            let speed = work.q_dot[drive.actuator];
+            let [_, speed, _] = work.inner.states().measure(drive.measured);
             0.5 * drive.inertia * speed * speed
         });
         let kinetic = self.model.kinetic(&work.inner) + rotors.sum::<f64>();
@@ -332,6 +367,33 @@ impl Machine {
             .filter_map(|load| self.model.potential(load, &work.inner));
         [kinetic, potentials.sum()]
     }
+}
+
+/// Adds some of one run to another.
+fn add<T: Scalar>(sum: &mut Actions<T>, run: &Actions<T>, times: T) {
+    for (sum, more) in sum.reactions.iter_mut().zip(&run.reactions) {
+        *sum += *more * times;
+    }
+    for (sum, more) in sum.tau.iter_mut().zip(&run.tau) {
+        *sum += *more * times;
+    }
+}
+
+/// The loads with those through which the drives act, in this order.
+///
+/// # Errors
+/// The first drive that acts along nothing.
+pub fn all_loads(
+    mechanism: &Mechanism,
+    loads: &[Load],
+    drives: &[Drive],
+) -> Result<Vec<Load>, DriveError> {
+    let mut all = loads.to_vec();
+    for (i, drive) in drives.iter().enumerate() {
+        let wrong = |what| DriveError { drive: i, what };
+        all.push(drive.load(mechanism).map_err(wrong)?);
+    }
+    Ok(all)
 }
 
 /// Working memory of a machine for one thread, and what its last evaluation found.
@@ -347,6 +409,7 @@ pub struct MachineWork<T = f64> {
     pub q_ddot: Vec<T>,
     /// By drive: its action, N·m or N, without what its rotor's inertia takes.
     pub action: Vec<T>,
+    spin: Actions<T>,
     base: Actions<T>,
     units: Vec<Actions<T>>,
     rubs: Vec<Actions<T>>,

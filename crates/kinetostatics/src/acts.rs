@@ -171,6 +171,7 @@ impl Loads {
         let (kind, sign) = match self.loads[load].kind {
             LoadKind::TorsionDamper { bodies } => (LoadKind::Torque { bodies }, -1.0),
             LoadKind::SlideDamper(guide) => (LoadKind::Slide(guide), -1.0),
+            LoadKind::Damper { bodies, points } => (LoadKind::Push { bodies, points }, -1.0),
             kind => (kind, 1.0),
         };
         self.act_of(load, kind, T::lift(sign), states, out)?;
@@ -341,6 +342,11 @@ fn ends<T: Scalar>(
             along(bodies, points, force)
         }
         LoadKind::TorsionDamper { bodies } => couples(bodies, -(f * states.angle(bodies)[1])),
+        LoadKind::Push { bodies, points } => match states.separation(bodies, points).direction {
+            Some(e) => along(bodies, points, e * f),
+            None if f.value() == 0.0 => along(bodies, points, Vec2::zero()),
+            None => None,
+        },
         LoadKind::Slide(guide) => Some(along_guide(guide, f, states)),
         LoadKind::SlideDamper(guide) => {
             let [_, speed, _] = states.measure(guide.travel());
@@ -390,7 +396,9 @@ fn check(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str> {
             free,
         } => (bodies, finite(points) && free.is_finite() && *free >= 0.0),
         LoadKind::TorsionSpring { bodies, free } => (bodies, free.is_finite()),
-        LoadKind::Damper { bodies, points } => (bodies, finite(points)),
+        LoadKind::Damper { bodies, points } | LoadKind::Push { bodies, points } => {
+            (bodies, finite(points))
+        }
         LoadKind::Slide(guide) | LoadKind::SlideDamper(guide) => {
             (&guide.bodies, finite(&guide.points) && unit(guide.axis))
         }

@@ -21,8 +21,7 @@ impl Model {
     /// is zero until [`Model::rub`].
     ///
     /// # Errors
-    /// [`KinetostaticsError`] when there is no pose at `q`, or a load has no direction or no finite
-    /// magnitude there.
+    /// [`KinetostaticsError`] when there is no pose at `q`, or a load has no finite magnitude there.
     pub fn enter<T: Scalar>(
         &self,
         t: f64,
@@ -40,19 +39,20 @@ impl Model {
         self.plan.speeds(pose, q_dot, motion);
         loaded.q_dot.copy_from_slice(q_dot);
         loaded.states.fill(&self.plan, pose, motion);
-        self.loads
-            .magnitudes(t, &loaded.states, &mut loaded.loads)?;
-        self.loads.act(&loaded.states, &mut loaded.loads)
+        self.loads.magnitudes(t, &loaded.states, &mut loaded.loads)
     }
 
     /// The loaded run at the state entered, with these accelerations (rad/s² or m/s²): the actions and
     /// reactions of inertia and all loads.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
     pub fn loaded<T: Scalar>(
         &self,
         q_ddot: &[T],
         work: &mut Workspace<T>,
         actions: &mut Actions<T>,
-    ) {
+    ) -> Result<(), KinetostaticsError> {
         let Workspace {
             pose,
             motion,
@@ -60,9 +60,27 @@ impl Model {
             loaded,
             ..
         } = work;
+        self.loads.act(&loaded.states, &mut loaded.loads)?;
         self.plan.accelerations(pose, q_ddot, motion);
         run.evaluate_loaded(self, pose, Prescribed(motion), &mut loaded.loads);
         actions.take(self, pose, run);
+        Ok(())
+    }
+
+    /// Takes accelerations (rad/s² or m/s²) into the states of the bodies at the state entered.
+    pub fn accelerate<T: Scalar>(&self, q_ddot: &[T], work: &mut Workspace<T>) {
+        self.plan
+            .accelerations(&work.pose, q_ddot, &mut work.motion);
+        work.refill(self);
+    }
+
+    /// Brings what the loads do to the bodies up to date with their magnitudes.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    pub fn push<T: Scalar>(&self, work: &mut Workspace<T>) -> Result<(), KinetostaticsError> {
+        let loaded = &mut work.loaded;
+        self.loads.act(&loaded.states, &mut loaded.loads)
     }
 
     /// The inertial run of one coordinate at the state entered: q̈ᵢ = 1 (per s²) and nothing else.

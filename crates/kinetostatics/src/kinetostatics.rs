@@ -96,6 +96,12 @@ impl<T: Scalar> Workspace<T> {
         loaded.states.fill(&model.plan, pose, motion);
     }
 
+    /// Gives a load of [`Magnitude::Given`](crate::Magnitude::Given) its magnitude, until it is given
+    /// another.
+    pub fn give(&mut self, load: usize, magnitude: T) {
+        self.loaded.loads.magnitude[load] = magnitude;
+    }
+
     /// The bodies at the last state of motion that [`Model::kinetostatics`] evaluated.
     pub fn states(&self) -> &BodyStates<T> {
         &self.loaded.states
@@ -138,7 +144,7 @@ impl Model {
     ///
     /// # Errors
     /// [`KinetostaticsError`] when there is no pose at `q`, or a load has no direction or no finite
-    /// magnitude there.
+    /// magnitude there, or friction jams it.
     pub fn kinetostatics<T: Scalar>(
         &self,
         t: f64,
@@ -149,7 +155,7 @@ impl Model {
         actions: &mut Actions<T>,
     ) -> Result<(), KinetostaticsError> {
         self.enter(t, q, q_dot, work)?;
-        self.loaded(q_ddot, work, actions);
+        self.loaded(q_ddot, work, actions)?;
         work.refill(self);
         if self.rubs.is_empty() {
             return Ok(());
@@ -158,8 +164,7 @@ impl Model {
         let rubbed = self.rub_prescribed(&mut units, &actions.reactions, work);
         work.loaded.units = units;
         rubbed?;
-        self.loaded(q_ddot, work, actions);
-        Ok(())
+        self.loaded(q_ddot, work, actions)
     }
 
     /// The frictions of a prescribed motion, from the reactions without them.

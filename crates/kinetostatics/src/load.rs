@@ -69,6 +69,13 @@ pub enum LoadKind {
         /// The bodies.
         bodies: [BodyId; 2],
     },
+    /// A force F, N, that pushes two points apart.
+    Push {
+        /// The bodies.
+        bodies: [BodyId; 2],
+        /// The point on each, m.
+        points: [Vec2; 2],
+    },
     /// A force F, N, along the slide of a joint: of its first body on its second, at the second's point.
     Slide(Guide),
     /// Viscous friction in a slide: F is its constant, N·s/m; it resists with F × speed of travel.
@@ -84,6 +91,26 @@ pub struct Guide {
     pub points: [Vec2; 2],
     /// Unit vector of its axis in the first body's frame.
     pub axis: Vec2,
+}
+
+impl LoadKind {
+    /// A couple or force along a coordinate, that grows it where it is positive; none if the coordinate
+    /// is not there.
+    pub fn along(mechanism: &Mechanism, coordinate: Coordinate) -> Option<Self> {
+        Some(match Measured::find(mechanism, coordinate)? {
+            Measured::Angle(bodies) => Self::Torque { bodies },
+            Measured::Travel {
+                bodies,
+                points,
+                axis,
+            } => Self::Slide(Guide {
+                bodies,
+                points,
+                axis,
+            }),
+            Measured::Length { bodies, points } => Self::Push { bodies, points },
+        })
+    }
 }
 
 impl Guide {
@@ -128,6 +155,8 @@ pub enum Magnitude {
     Expression(Expression, Vec<Signal>),
     /// As the joint's own reactions make it.
     Friction(Friction),
+    /// What [`Workspace::give`](crate::Workspace::give) said last: of a drive, for whoever evaluates it.
+    Given,
 }
 
 /// What a magnitude can depend on.
@@ -165,12 +194,13 @@ impl Load {
             | LoadKind::Spring { bodies, .. }
             | LoadKind::TorsionSpring { bodies, .. }
             | LoadKind::Damper { bodies, .. }
+            | LoadKind::Push { bodies, .. }
             | LoadKind::TorsionDamper { bodies }
             | LoadKind::Slide(Guide { bodies, .. })
             | LoadKind::SlideDamper(Guide { bodies, .. }) => bodies.to_vec(),
         };
         let signals = match &self.magnitude {
-            Magnitude::Constant(_) | Magnitude::Friction(_) => &[][..],
+            Magnitude::Constant(_) | Magnitude::Friction(_) | Magnitude::Given => &[][..],
             Magnitude::Law(signal, _) => std::slice::from_ref(signal),
             Magnitude::Expression(_, signals) => signals,
         };

@@ -26,7 +26,8 @@ impl Sense {
 }
 
 impl Loads {
-    /// The magnitudes at time `t` (s). Friction is zero until its reactions are known.
+    /// The magnitudes at time `t` (s). Friction is zero until its reactions are known; what is given
+    /// stays.
     pub(crate) fn magnitudes<T: Scalar>(
         &self,
         t: f64,
@@ -34,6 +35,9 @@ impl Loads {
         out: &mut LoadState<T>,
     ) -> Result<(), KinetostaticsError> {
         for (i, load) in self.loads.iter().enumerate() {
+            if load.magnitude == Magnitude::Given {
+                continue;
+            }
             let magnitude = load
                 .magnitude
                 .at(t, &self.senses[i], states, &mut out.scratch);
@@ -67,7 +71,7 @@ impl Magnitude {
             (Self::Law(_, law), &[x, ..]) => x.through(&law.at(x.value())),
             (Self::Law(..), []) => T::lift(f64::NAN),
             (Self::Expression(expression, _), numbers) => of_several(expression, numbers, values),
-            (Self::Friction(_), _) => T::lift(0.0),
+            (Self::Friction(_) | Self::Given, _) => T::lift(0.0),
         }
     }
 }
@@ -85,8 +89,8 @@ impl Meter {
     /// # Errors
     /// What is wrong with it: a coordinate that the mechanism does not have, a friction.
     pub fn new(mechanism: &Mechanism, magnitude: Magnitude) -> Result<Self, &'static str> {
-        if matches!(magnitude, Magnitude::Friction(_)) {
-            return Err("friction acts in joints alone");
+        if matches!(magnitude, Magnitude::Friction(_) | Magnitude::Given) {
+            return Err("friction acts in joints alone, and what is given is not measured");
         }
         let senses = senses(mechanism, &magnitude)?;
         Ok(Self { magnitude, senses })
@@ -135,7 +139,7 @@ pub(crate) fn senses(
     magnitude: &Magnitude,
 ) -> Result<Vec<Sense>, &'static str> {
     let signals = match magnitude {
-        Magnitude::Constant(_) | Magnitude::Friction(_) => &[],
+        Magnitude::Constant(_) | Magnitude::Friction(_) | Magnitude::Given => &[],
         Magnitude::Law(signal, _) => std::slice::from_ref(signal),
         Magnitude::Expression(expression, signals) => {
             if expression.variables().len() > signals.len() {

@@ -137,6 +137,10 @@ pub fn load_acts(
             let rate = frames.omega(bodies[1])? - frames.omega(bodies[0])?;
             couple(bodies, -magnitude * rate)
         }
+        LoadKind::Push { bodies, points } => {
+            let d = gap(bodies, points)?;
+            pull(bodies, points, d * (magnitude / d.norm()))
+        }
         LoadKind::Slide(guide) => along(guide, magnitude, &frames),
         LoadKind::SlideDamper(guide) => {
             let [first, _] = guide.bodies;

@@ -30,6 +30,7 @@ fn count() {
 struct Counted(f64);
 
 impl Scalar for Counted {
+    const DERIVES: bool = false;
     fn lift(value: f64) -> Self {
         Self(value)
     }

@@ -286,7 +286,7 @@ impl Columns {
                 LoadKind::Gravity { .. } => None,
                 LoadKind::Force { .. } => Some(("N", "the force along its direction")),
                 LoadKind::Torque { .. } => Some(("N m", "the couple on the second body")),
-                LoadKind::Spring { .. } | LoadKind::Damper { .. } => {
+                LoadKind::Spring { .. } | LoadKind::Damper { .. } | LoadKind::Push { .. } => {
                     Some(("N", "force between the points; positive pushes them apart"))
                 }
                 LoadKind::TorsionSpring { .. } | LoadKind::TorsionDamper { .. } => {

@@ -191,9 +191,10 @@ impl<'a> Probe<'a> {
     fn load(&self, k: usize) -> f64 {
         let by_it = || self.acts.iter().filter(|act| act.by == By::Load(k));
         match self.scene.loads[k].kind {
-            LoadKind::Gravity { .. } | LoadKind::Force { .. } | LoadKind::Torque { .. } => {
-                self.work.loads().magnitude[k]
-            }
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Push { .. } => self.work.loads().magnitude[k],
             LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
                 let line = self.work.states().separation(bodies, points).direction;
                 let on_second = by_it().find(|act| act.body == bodies[1]);

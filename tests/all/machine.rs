@@ -1,0 +1,334 @@
+//! Free motions under loads and drives, against closed forms, published values and their own Jacobian.
+
+use crate::world::scene;
+use dwell_dynamics::{
+    Dense, Drive, DriveKind, Guidance, Machine, Method, Motor, Moving, Next, Options, Point,
+    Regulator, System, integrate,
+};
+use dwell_geometry::Start;
+use dwell_kinetostatics::{Friction, Guide, Load, LoadKind, Magnitude, Model};
+use dwell_scene::Scene;
+
+/// The machine of a scene, all coordinates free, with more loads and drives.
+fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
+    let loads = [&scene.loads, more].concat();
+    let frictions = loads.iter().filter_map(|load| match load.magnitude {
+        Magnitude::Friction(f) => Some(f.reactions(&scene.mechanism)),
+        _ => None,
+    });
+    let start = Start {
+        q: scene.assembly.start.clone(),
+        rough: scene.assembly.rough.clone(),
+    };
+    let needed: Vec<_> = frictions.flatten().collect();
+    let model = Model::new(&scene.mechanism, &scene.masses, &start, &needed).expect("a model");
+    let free = vec![Guidance::Free; model.plan().actuators()];
+    Machine::new(&scene.mechanism, model, &loads, free, drives).expect("a machine")
+}
+
+/// The state at a time.
+fn at(machine: &Machine, y: &[f64], until: f64, method: Method, tolerance: f64) -> Vec<f64> {
+    let mut moving = Moving::new(machine, 0.0, y).expect("a start");
+    let start = Point {
+        t: 0.0,
+        y: y.to_vec(),
+    };
+    let options = Options::new(method, tolerance);
+    let mut watch = |_: &Point, _: &Point, _: Dense<'_>| Ok(Next::GoOn);
+    let ended = integrate(&mut moving, &start, Some(until), &options, &mut watch).expect("a run");
+    assert_eq!(ended.failed, None);
+    println!("{} {tolerance:e}: {:?}", method.name(), ended.statistics);
+    ended.at.y
+}
+
+fn parse(text: &str) -> Scene {
+    Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"))
+}
+
+/// Andrews' squeezer at 0.03 s against the 25-digit values of an energy quadrature.
+#[test]
+fn val_squeezer() {
+    let scene = scene("andrews");
+    let machine = machine(&scene, &[], &[]);
+    let y = machine.start(&scene.assembly.start, &[0.0]);
+    let (beta, speed) = (15.810_771_195_153_707_f64, 1_139.920_302_259_106_f64);
+    for (method, tolerance, within) in [
+        (Method::Tsit45, 1e-13, 1e-10),
+        (Method::Bdf, 1e-13, 1e-9),
+        (Method::Esdirk34, 1e-11, 1e-7),
+        (Method::TrBdf2, 1e-9, 1e-4),
+    ] {
+        let end = at(&machine, &y, 0.03, method, tolerance);
+        println!(
+            "{} {:e} {:e}",
+            method.name(),
+            end[0] - beta,
+            end[1] / speed - 1.0
+        );
+        assert!(
+            (end[0] - beta).abs() < within,
+            "{} {:e}",
+            method.name(),
+            end[0] - beta
+        );
+        assert!(
+            (end[1] / speed - 1.0).abs() < 100.0 * within,
+            "{} {}",
+            method.name(),
+            end[1]
+        );
+        // The motor's torque is constant: its work is that times the angle.
+        let work = 0.033 * (end[0] - y[0]);
+        assert!((end[2] - work).abs() < within, "{} {work}", end[2]);
+    }
+}
+
+const DOUBLE: &str = r#"
+[bodies.ground]
+points = { A = [0, 0] }
+[bodies.one]
+points = { A = [0, 0], B = [0.6, 0] }
+mass = 1.3
+center = [0.35, 0]
+inertia = 0.05
+[bodies.two]
+points = { B = [0, 0] }
+mass = 0.8
+center = [0.25, 0]
+inertia = 0.02
+[joints]
+A = { revolute = ["ground.A", "one.A"] }
+B = { revolute = ["one.B", "two.B"] }
+[actuators.p]
+angle = ["ground", "one"]
+[actuators.q]
+angle = ["ground", "two"]
+[assembly]
+p = 0.4
+q = -0.3
+[loads]
+weight = { gravity = [0, -9.81] }
+"#;
+
+/// A double pendulum in absolute angles against its equations of motion written by hand:
+/// α θ₁″ + β cos(θ₁−θ₂) θ₂″ + β sin(θ₁−θ₂) θ₂′² = −g (m₁ c₁ + m₂ l) cos θ₁, and the like.
+#[test]
+fn a_double_pendulum_by_hand() {
+    let scene = parse(DOUBLE);
+    let machine = machine(&scene, &[], &[]);
+    let y = [0.4, -0.3, 1.7, -2.2];
+    let mut moving = Moving::new(&machine, 0.0, &y).expect("a start");
+    let mut rates = [0.0; 4];
+    moving.rates(0.0, &y, &mut rates).expect("rates");
+    let (m1, c1, i1, l, m2, c2, i2, g) = (1.3, 0.35, 0.05, 0.6, 0.8, 0.25, 0.02, 9.81);
+    let alpha = i1 + m1 * c1 * c1 + m2 * l * l;
+    let (beta, gamma) = (m2 * l * c2, i2 + m2 * c2 * c2);
+    let (s, c) = (y[0] - y[1]).sin_cos();
+    let f1 = -beta * s * y[3] * y[3] - g * (m1 * c1 + m2 * l) * y[0].cos();
+    let f2 = beta * s * y[2] * y[2] - g * m2 * c2 * y[1].cos();
+    let determinant = alpha * gamma - beta * beta * c * c;
+    let expected = [
+        (gamma * f1 - beta * c * f2) / determinant,
+        (alpha * f2 - beta * c * f1) / determinant,
+    ];
+    for (rate, expected) in rates[2..].iter().zip(expected) {
+        assert!((rate / expected - 1.0).abs() < 1e-13, "{rate} {expected}");
+    }
+    // Nothing is lost: kinetic and potential energy stay.
+    let mut work = machine.work();
+    machine.evaluate(0.0, &y, &mut work).expect("a state");
+    let before: f64 = machine.energy(&work).iter().sum();
+    let end = at(&machine, &y, 5.0, Method::Tsit45, 1e-13);
+    machine.evaluate(5.0, &end, &mut work).expect("a state");
+    let after: f64 = machine.energy(&work).iter().sum();
+    // Tsit45 errs by some tens of its tolerance of the energies exchanged, about 10 J.
+    assert!((after - before).abs() < 1e-10, "{before} {after}");
+}
+
+/// The Jacobian from dual numbers against central differences of the rates, with every kind of load and
+/// drive at once.
+#[test]
+fn jacobians_agree_with_differences() {
+    let text = DOUBLE.to_owned()
+        + r#"
+spring = { spring = ["ground.A", "two.B"], stiffness = "40 + 5*sin(p)*q.speed", free = 0.1 }
+drag = { torsion-damper = ["one", "two"], constant = 0.3 }
+push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = "q.speed" } }
+"#;
+    let scene = parse(&text);
+    let rub = |name: &str, j: usize| Load {
+        name: name.to_owned(),
+        kind: LoadKind::Torque {
+            bodies: scene.mechanism.joints[j].bodies,
+        },
+        magnitude: Magnitude::Friction(Friction {
+            joint: dwell_geometry::JointId(j),
+            coefficient: 0.4,
+            size: 0.05,
+            fade: 1.5,
+        }),
+    };
+    let drives = [
+        Drive {
+            name: "motor".into(),
+            coordinate: scene.mechanism.actuators[0].coordinate(),
+            kind: DriveKind::Motor(Motor {
+                voltage: Magnitude::Constant(12.0),
+                constant: 0.1,
+                resistance: 2.0,
+                inductance: 0.05,
+                ratio: 3.0,
+                inertia: 0.001,
+            }),
+        },
+        Drive {
+            name: "regulator".into(),
+            coordinate: scene.mechanism.actuators[1].coordinate(),
+            kind: DriveKind::Regulator(Regulator {
+                speed: Magnitude::Constant(1.0),
+                proportional: 0.4,
+                integral: 0.7,
+                limit: 100.0,
+            }),
+        },
+    ];
+    let machine = machine(&scene, &[rub("rub-a", 0), rub("rub-b", 1)], &drives);
+    let n = machine.states();
+    let mut y = machine.start(&[0.4, -0.3], &[1.7, -1.2]);
+    (y[4], y[5]) = (2.0, 0.3);
+    let mut moving = Moving::new(&machine, 0.0, &y).expect("a start");
+    let mut jacobian = vec![0.0; n * n];
+    moving.jacobian(0.0, &y, &mut jacobian).expect("a Jacobian");
+    let scale = jacobian.iter().fold(0.0_f64, |most, j| most.max(j.abs()));
+    for j in 0..n {
+        let h = 1e-4;
+        let mut at = |times: f64| {
+            let mut moved = y.clone();
+            moved[j] += times * h;
+            let mut out = vec![0.0; n];
+            moving.rates(0.0, &moved, &mut out).expect("rates");
+            out
+        };
+        let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(&mut at);
+        for i in 0..n {
+            let slope = (8.0 * (c[i] - b[i]) - (d[i] - a[i])) / (12.0 * h);
+            let error = (slope - jacobian[i * n + j]).abs();
+            // Rounding over h, and h⁴ times a fifth derivative of order 10⁴.
+            assert!(
+                error < 1e-10 * scale,
+                "∂{i}/∂{j}: {slope} {}",
+                jacobian[i * n + j]
+            );
+        }
+    }
+}
+
+const BLOCK: &str = r#"
+[bodies.ground]
+points = { O = [0, 0] }
+[bodies.block]
+points = { P = [0, 0] }
+mass = 2.0
+center = "P"
+inertia = 0.1
+[joints]
+slide = { prismatic = ["ground.O", "block.P"], axis = [0.8, -0.6] }
+[actuators.s]
+length = "slide"
+[loads]
+weight = { gravity = [0, -9.81] }
+"#;
+
+/// A block slides down an incline with friction: g (sin α − µ cos α); and one that is pushed against
+/// its guide from above, at an angle at which more push means more friction than drive, jams.
+#[test]
+fn a_block_on_an_incline() {
+    let scene = parse(BLOCK);
+    let joint = &scene.mechanism.joints[0];
+    let friction = |coefficient| Load {
+        name: "rub".into(),
+        kind: LoadKind::Slide(Guide {
+            bodies: joint.bodies,
+            points: joint.points,
+            axis: dwell_geometry::vec2(0.8, -0.6),
+        }),
+        magnitude: Magnitude::Friction(Friction {
+            joint: dwell_geometry::JointId(0),
+            coefficient,
+            size: 0.0,
+            fade: 1e-3,
+        }),
+    };
+    let machine = machine(&scene, &[friction(0.3)], &[]);
+    let y = machine.start(&[0.0], &[1.0]);
+    let mut moving = Moving::new(&machine, 0.0, &y).expect("a start");
+    let mut rates = vec![0.0; machine.states()];
+    moving.rates(0.0, &y, &mut rates).expect("rates");
+    let expected = 9.81 * (0.6 - 0.3 * 0.8);
+    assert!(
+        (rates[1] - expected).abs() < 1e-14 * expected,
+        "{}",
+        rates[1]
+    );
+    // The work of friction is what is lost.
+    let normal = 2.0 * 9.81 * 0.8;
+    assert!((rates[2] + 0.3 * normal).abs() < 1e-14 * normal);
+}
+
+/// A motor and a flywheel: without inductance the speed goes exponentially to its idle one.
+#[test]
+fn a_motor_turns_a_flywheel_up() {
+    let scene = parse(
+        r#"
+[bodies.ground]
+points = { A = [0, 0] }
+[bodies.wheel]
+points = { A = [0, 0] }
+inertia = 0.02
+center = "A"
+mass = 1.0
+[joints]
+A = { revolute = ["ground.A", "wheel.A"] }
+[actuators.phi]
+angle = ["ground", "wheel"]
+"#,
+    );
+    let (u, k, r, ratio, rotor) = (24.0, 0.05, 0.8, 5.0, 1e-4);
+    let motor = |inductance| Drive {
+        name: "motor".into(),
+        coordinate: scene.mechanism.actuators[0].coordinate(),
+        kind: DriveKind::Motor(Motor {
+            voltage: Magnitude::Constant(u),
+            constant: k,
+            resistance: r,
+            inductance,
+            ratio,
+            inertia: rotor,
+        }),
+    };
+    let t = 0.4;
+    let (kn, inertia) = (k * ratio, 0.02 + ratio * ratio * rotor);
+    let plain = machine(&scene, &[], &[motor(0.0)]);
+    let end = at(&plain, &plain.start(&[0.0], &[0.0]), t, Method::Bdf, 1e-12);
+    let expected = u / kn * (1.0 - (-kn * kn / (r * inertia) * t).exp());
+    // BDF errs by hundreds of its tolerance.
+    assert!(
+        (end[1] / expected - 1.0).abs() < 1e-9,
+        "{} {expected}",
+        end[1]
+    );
+    // With inductance: ω̈ + R/L ω̇ + (kN)²/(JL) ω = u kN/(JL), here with two real roots.
+    let l = 0.01;
+    let coil = machine(&scene, &[], &[motor(l)]);
+    let end = at(&coil, &coil.start(&[0.0], &[0.0]), t, Method::Tsit45, 1e-12);
+    let (b, c) = (r / l, kn * kn / (inertia * l));
+    let root = (b * b / 4.0 - c).sqrt();
+    let [s1, s2] = [-b / 2.0 + root, -b / 2.0 - root];
+    let idle = u / kn;
+    let expected = idle * (1.0 - (s2 * (s1 * t).exp() - s1 * (s2 * t).exp()) / (s2 - s1));
+    assert!(
+        (end[1] / expected - 1.0).abs() < 1e-10,
+        "{} {expected}",
+        end[1]
+    );
+}
