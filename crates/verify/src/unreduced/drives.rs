@@ -2,8 +2,8 @@
 
 use super::instant::Instant;
 use super::{Unreduced, UnreducedError};
-use dwell_dynamics::{DriveKind, Guidance};
-use dwell_kinetostatics::Magnitude;
+use dwell_dynamics::{Drive, DriveKind};
+use dwell_geometry::{Actuator, Coordinate, Mechanism};
 
 /// What a drive does at an instant.
 pub(super) struct Driving {
@@ -21,33 +21,58 @@ pub(super) fn rotor(kind: &DriveKind) -> f64 {
     }
 }
 
+/// The mechanism with one more actuator for each drive: its row tells the drive's coordinate, and what
+/// a unit of its action does to every body.
+pub(super) fn with_drives(
+    mechanism: &Mechanism,
+    drives: &[Drive],
+) -> Result<Mechanism, UnreducedError> {
+    let mut made = mechanism.clone();
+    for (i, drive) in drives.iter().enumerate() {
+        let what = "its coordinate is not there";
+        let wrong = UnreducedError::Drive { drive: i, what };
+        let (bodies, along) = match drive.coordinate {
+            Coordinate::Angle(bodies) => (bodies, dwell_geometry::Drive::Angle),
+            Coordinate::Length { bodies, points } => {
+                (bodies, dwell_geometry::Drive::Length(points))
+            }
+            Coordinate::Travel(joint) => {
+                let of = mechanism.joints.get(joint.0).ok_or(wrong)?;
+                (of.bodies, dwell_geometry::Drive::Travel(joint))
+            }
+        };
+        if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
+            return Err(wrong);
+        }
+        made.actuators.push(Actuator {
+            name: drive.name.clone(),
+            bodies,
+            drive: along,
+        });
+    }
+    Ok(made)
+}
+
 impl Unreduced {
     pub(super) fn check_drives(&self) -> Result<(), UnreducedError> {
         for (i, drive) in self.drives.iter().enumerate() {
-            let wrong = |what| UnreducedError::Drive { drive: i, what };
-            match self.guidance.get(drive.actuator.0) {
-                None => return Err(wrong("its actuator is not there")),
-                Some(Guidance::Prescribed(_)) => {
-                    return Err(wrong("its actuator is prescribed"));
-                }
-                Some(Guidance::Free) => {}
-            }
             let magnitude = match &drive.kind {
                 DriveKind::Action(magnitude) => magnitude,
                 DriveKind::Motor(motor) => &motor.voltage,
                 DriveKind::Regulator(regulator) => &regulator.speed,
             };
-            if matches!(magnitude, Magnitude::Friction(_)) {
-                return Err(wrong("friction acts in joints alone"));
+            if self.magnitude(magnitude, &self.still()).is_none() {
+                let what = "its magnitude does not fit the mechanism";
+                return Err(UnreducedError::Drive { drive: i, what });
             }
         }
         Ok(())
     }
 
-    /// Kinetic energy of the rotors, ½ N² J q̇², J.
+    /// Kinetic energy of the rotors, ½ N² J ṡ², J.
     pub(super) fn rotor_energy(&self, at: &Instant) -> f64 {
         let energy = self.drives.iter().map(|drive| {
-            let speed = self.actuator_speed(drive.actuator.0, at).unwrap_or(0.0);
+            let speed = self.measure(drive.coordinate, at).map_or(0.0, |s| s[1]);
             0.5 * rotor(&drive.kind) * speed * speed
         });
         energy.sum()

@@ -25,7 +25,7 @@ pub(super) struct Meshed<'a> {
 pub(super) struct Solved {
     /// ẏ of the state [x, v, states of the drives, work].
     pub(super) rates: Vec<f64>,
-    /// By row, actuators after reactions.
+    /// By row, actuators after reactions, the drives' (zero) after these.
     multipliers: Vec<f64>,
     drives: Vec<f64>,
     at: Instant,
@@ -130,11 +130,11 @@ impl Meshed<'_> {
         Some(())
     }
 
-    /// All drives: the rotors' inertia I on q̈ = J ẍ + Φ̇ₓ ẋ joins the masses as Jᵀ I J.
+    /// All drives: the rotors' inertia I on s̈ = J ẍ + Φ̇ₓ ẋ joins the masses as Jᵀ I J.
     fn drive(&self, at: &Instant, local: &Local<'_>, to: &mut Applied) -> Option<()> {
         let n = self.frames.count();
         for (d, drive) in self.of.drives.iter().enumerate() {
-            let row = self.frames.driven + drive.actuator.0;
+            let row = self.frames.driven + self.of.guidance.len() + d;
             let speed = self.frames.rate(&local.jacobian, row, local.v);
             let driving = self.of.drive(d, speed, local.memory[d], at)?;
             let inertia = rotor(&drive.kind);
@@ -284,7 +284,8 @@ impl Meshed<'_> {
             ..
         } = self.solve(t, y)?;
         let [kinetic, potential] = self.of.energies(&at);
-        let tau = multipliers.split_off(self.frames.driven);
+        let mut tau = multipliers.split_off(self.frames.driven);
+        tau.truncate(self.of.guidance.len());
         Ok(MotionSample {
             t,
             bodies: at.bodies,

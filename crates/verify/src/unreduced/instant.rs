@@ -68,7 +68,7 @@ impl Instant {
 
 impl Unreduced {
     /// Value and speed of a coordinate; none if the mechanism does not have it.
-    fn measure(&self, coordinate: Coordinate, at: &Instant) -> Option<[f64; 2]> {
+    pub(super) fn measure(&self, coordinate: Coordinate, at: &Instant) -> Option<[f64; 2]> {
         match coordinate {
             Coordinate::Angle(bodies) => at.angle(bodies),
             Coordinate::Length { bodies, points } => at.length(bodies, points),
@@ -92,8 +92,8 @@ impl Unreduced {
         }
     }
 
-    /// A magnitude; none if it needs a coordinate or a signal that is not there. Friction has none
-    /// of its own.
+    /// A magnitude; none if it needs a coordinate or a signal that is not there. Friction, and
+    /// what another is to give, has none of its own.
     pub(super) fn magnitude(&self, magnitude: &Magnitude, at: &Instant) -> Option<f64> {
         match magnitude {
             Magnitude::Constant(value) => Some(*value),
@@ -104,7 +104,7 @@ impl Unreduced {
                 let enough = expression.variables().len() <= values.len();
                 enough.then(|| expression.at(&values))
             }
-            Magnitude::Friction(_) => None,
+            Magnitude::Friction(_) | Magnitude::Given => None,
         }
     }
 
@@ -124,14 +124,19 @@ impl Unreduced {
         acts.unwrap_or_default()
     }
 
-    /// Every load must find its bodies and coordinates.
-    pub(super) fn check_loads(&self) -> Result<(), UnreducedError> {
+    /// Everything at the origin and at rest: to see what is there at all.
+    pub(super) fn still(&self) -> Instant {
         let still = vec![[0.0; 3]; self.masses.len()];
-        let at = Instant {
+        Instant {
             t: 0.0,
             bodies: still.clone(),
             velocity: still,
-        };
+        }
+    }
+
+    /// Every load must find its bodies and coordinates.
+    pub(super) fn check_loads(&self) -> Result<(), UnreducedError> {
+        let at = self.still();
         for (i, load) in self.loads.iter().enumerate() {
             let wrong = |what| UnreducedError::Load { load: i, what };
             let (ground, masses) = (self.mechanism.ground, &self.masses);
@@ -158,12 +163,6 @@ impl Unreduced {
         kinetic += self.rotor_energy(at);
         let potential = |load| self.potential(load, at).unwrap_or(0.0);
         [kinetic, (0..self.loads.len()).map(potential).sum()]
-    }
-
-    /// The speed of an actuator's coordinate.
-    pub(super) fn actuator_speed(&self, actuator: usize, at: &Instant) -> Option<f64> {
-        let actuator = self.mechanism.actuators.get(actuator)?;
-        Some(self.measure(actuator.coordinate(), at)?[1])
     }
 
     /// ½ F s² of a spring, −F · displacement of weight and of a force that keeps its direction: where

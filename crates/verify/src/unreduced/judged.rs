@@ -219,24 +219,23 @@ impl Unreduced {
     }
 
     fn actions(&self, pairs: &[(&MotionSample, &MotionSample)]) -> Finding {
-        let actuators = &self.mechanism.actuators;
         let (mut forces, mut moments) = (Kind::new("N"), Kind::new("N m"));
         let mut work = Kind::new("J");
+        let actuators = self.mechanism.actuators.iter();
+        let names = actuators.map(|a| (a.coordinate().is_angle(), a.name.as_str()));
+        let drives = self.drives.iter();
+        let names = names.chain(drives.map(|d| (d.coordinate.is_angle(), d.name.as_str())));
+        let names: Vec<_> = names.collect();
         for (claim, sample) in pairs {
             work.read(claim.work, sample.work, sample.t, "work");
             for energy in [sample.kinetic, sample.work] {
                 work.least = work.least.max(energy.abs());
             }
-            let prescribed = claim.tau.iter().zip(&sample.tau).enumerate();
-            let driven = claim.drives.iter().zip(&sample.drives).zip(&self.drives);
-            let driven = driven.map(|(both, drive)| (drive.actuator.0, both));
-            for (i, (one, other)) in prescribed.chain(driven) {
-                let Some(actuator) = actuators.get(i) else {
-                    continue;
-                };
-                let angle = actuator.coordinate().is_angle();
+            let claimed = claim.tau.iter().chain(&claim.drives);
+            let truth = sample.tau.iter().chain(&sample.drives);
+            for (&(angle, name), (one, other)) in names.iter().zip(claimed.zip(truth)) {
                 let kind = if angle { &mut moments } else { &mut forces };
-                kind.read(*one, *other, sample.t, &actuator.name);
+                kind.read(*one, *other, sample.t, name);
             }
         }
         finding(

@@ -1,7 +1,7 @@
 //! Truth 6: the full multibody equations, not reduced.
 //!
 //! Every body has its centre of mass and its angle, x = [x_G, y_G, θ], whatever joins it to others,
-//! and every joint has its multipliers. A free actuator has no row; the row of a prescribed one is
+//! and every joint has its multipliers. A free actuator has no row, and a drive is what it does; the row of a prescribed one is
 //! imposed by its law of time. At each instant
 //!
 //! ```text
@@ -134,7 +134,7 @@ pub struct Unreduced {
 
 impl Unreduced {
     /// The equations of a mechanism with one mass for each body, loads, one guidance for each
-    /// actuator, and drives of the free ones.
+    /// actuator, and drives along any coordinates.
     ///
     /// # Errors
     /// [`UnreducedError`] where they do not fit each other.
@@ -145,7 +145,7 @@ impl Unreduced {
         guidance: &[Guidance],
         drives: &[Drive],
     ) -> Result<Self, UnreducedError> {
-        let frames = Frames::new(mechanism, masses)?;
+        let frames = Frames::new(&drives::with_drives(mechanism, drives)?, masses)?;
         if guidance.len() != mechanism.actuators.len() {
             return Err(UnreducedError::Guidance);
         }

@@ -4,10 +4,11 @@ use dwell_dynamics::{
     Drive as Driving, DriveKind, Guidance, Machine, Method, Moving, Next, Options, Point, integrate,
 };
 use dwell_geometry::{
-    Actuator, ActuatorId, Body, BodyId, Drive, Joint, JointId, JointKind, Mechanism, Start, Vec2,
-    vec2,
+    Actuator, ActuatorId, Body, BodyId, Coordinate, Drive, Joint, JointId, JointKind, Mechanism,
+    Start, Vec2, vec2,
 };
 use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model};
+use dwell_laws::Law;
 use dwell_verify::{MotionSample, Unreduced};
 
 pub(crate) const GROUND: BodyId = BodyId(0);
@@ -18,11 +19,11 @@ pub(crate) const DOWN: LoadKind = LoadKind::Gravity {
 pub(crate) type On = (BodyId, [f64; 2]);
 
 /// A mechanism with all that makes it move.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct Plant {
     pub(crate) mechanism: Mechanism,
     pub(crate) masses: Vec<Mass>,
-    rough: Vec<Option<f64>>,
+    pub(crate) rough: Vec<Option<f64>>,
     pub(crate) loads: Vec<Load>,
     guidance: Vec<Guidance>,
     pub(crate) drives: Vec<Driving>,
@@ -32,16 +33,7 @@ pub(crate) struct Plant {
 
 impl Plant {
     pub(crate) fn new() -> Self {
-        let mut plant = Self {
-            mechanism: Mechanism::default(),
-            masses: vec![],
-            rough: vec![],
-            loads: vec![],
-            guidance: vec![],
-            drives: vec![],
-            q: vec![],
-            q_dot: vec![],
-        };
+        let mut plant = Self::default();
         plant.body("ground", 0.0, [0.0; 2], 0.0, None);
         plant
     }
@@ -110,11 +102,16 @@ impl Plant {
     }
 
     /// An angle that is led by a law of time.
-    pub(crate) fn led(&mut self, bodies: [BodyId; 2], law: dwell_laws::Law) -> ActuatorId {
+    pub(crate) fn led(&mut self, bodies: [BodyId; 2], law: Law) {
+        self.led_along(bodies, Drive::Angle, law);
+    }
+
+    /// Any coordinate that is led.
+    pub(crate) fn led_along(&mut self, bodies: [BodyId; 2], drive: Drive, law: Law) {
         let [q, q_dot, _, _] = law.at(0.0);
         self.q.push(q);
         self.q_dot.push(q_dot);
-        self.actuator(bodies, Drive::Angle, Guidance::Prescribed(law))
+        self.actuator(bodies, drive, Guidance::Prescribed(law));
     }
 
     pub(crate) fn load(&mut self, name: &str, kind: LoadKind, magnitude: Magnitude) {
@@ -130,10 +127,15 @@ impl Plant {
     }
 
     pub(crate) fn drive(&mut self, actuator: ActuatorId, kind: DriveKind) {
-        let name = format!("drive {}", actuator.0);
+        let coordinate = self.mechanism.actuators[actuator.0].coordinate();
+        self.drive_along(coordinate, kind);
+    }
+
+    pub(crate) fn drive_along(&mut self, coordinate: Coordinate, kind: DriveKind) {
+        let name = format!("drive {}", self.drives.len());
         self.drives.push(Driving {
             name,
-            actuator,
+            coordinate,
             kind,
         });
     }
@@ -176,7 +178,8 @@ impl Plant {
             .with_loads(&self.mechanism, self.loads.clone())
             .unwrap();
         let guidance = self.guidance.clone();
-        let machine = Machine::new(&self.mechanism, model, guidance, &self.drives).unwrap();
+        let machine =
+            Machine::new(&self.mechanism, model, &self.loads, guidance, &self.drives).unwrap();
         let mut at = Point {
             t: 0.0,
             y: machine.start(&self.q, &self.q_dot),
@@ -207,15 +210,25 @@ impl Plant {
         let [kinetic, potential] = machine.energy(&work);
         let model = machine.model();
         let (mut inner, mut actions) = (model.workspace(), model.actions());
-        let (q, q_dot, q_ddot) = (&work.q, &work.q_dot, &work.q_ddot);
-        model
-            .kinetostatics(at.t, q, q_dot, q_ddot, &mut inner, &mut actions)
+        machine
+            .show(model, at.t, &work, &mut inner, &mut actions)
             .unwrap();
+        // Nothing is left for an actuator that is free.
+        let most = actions
+            .reactions
+            .iter()
+            .fold(1.0_f64, |m, r| m.max(r.abs()));
         for &free in machine.free() {
+            assert!(
+                actions.tau[free].abs() < 1e-10 * most,
+                "{}",
+                actions.tau[free]
+            );
             actions.tau[free] = 0.0;
         }
         let states = inner.states();
-        let bodies = (0..states.len()).map(BodyId);
+        // There are more states: of what the lowering adds.
+        let bodies = (0..self.masses.len()).map(BodyId);
         let pose = |body: BodyId| {
             let position = states.point(body, Vec2::ZERO).position;
             let state = states.body(body);
