@@ -22,7 +22,7 @@ const TOLERANCE: f64 = 1e-13;
 const COLUMNS: usize = 10;
 const FEWEST: usize = 3;
 /// Most steps of a run, tried and taken.
-const BUDGET: usize = 200_000;
+const BUDGET: usize = 20_000;
 /// A step this short, relative to what the motion takes for a radian or a size, crosses a jump of
 /// the forces: no order is left, and what it is wrong by is no more than itself.
 const SHORTEST: f64 = 1e-13;

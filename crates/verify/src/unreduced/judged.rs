@@ -131,24 +131,30 @@ impl Unreduced {
         self.mechanism.bodies.get(body).map_or("", |b| &b.name)
     }
 
+    /// The claimed frames. Where no row feels turns, a claim may leave them out.
+    fn counted(&self, claim: &MotionSample, sample: &MotionSample) -> Vec<[f64; 3]> {
+        let felt = self.frames.rows.counted();
+        let both = claim.bodies.iter().zip(&sample.bodies);
+        both.map(|(&[x, y, angle], other)| {
+            let turns = ((angle - other[2]) / TAU).round();
+            let less = if felt { 0.0 } else { TAU * turns };
+            [x, y, angle - less]
+        })
+        .collect()
+    }
+
     fn poses(&self, pairs: &[(&MotionSample, &MotionSample)]) -> Finding {
         let (mut lengths, mut angles) = (Kind::new("m"), Kind::new("rad"));
         angles.most = 1.0;
-        let counted = self.frames.rows.counted();
         for (claim, sample) in pairs {
-            for (b, (one, other)) in claim.bodies.iter().zip(&sample.bodies).enumerate() {
+            let claimed = self.counted(claim, sample);
+            for (b, (one, other)) in claimed.iter().zip(&sample.bodies).enumerate() {
                 let from = pairs[0].1.bodies[b];
                 let (name, t) = (self.body(b), sample.t);
                 for i in 0..2 {
                     lengths.read(one[i] - from[i], other[i] - from[i], t, name);
                 }
-                // Where nothing feels turns, a claim may leave them out.
-                let turns = if counted {
-                    0.0
-                } else {
-                    TAU * ((one[2] - other[2]) / TAU).round()
-                };
-                angles.read(one[2] - turns - from[2], other[2] - from[2], t, name);
+                angles.read(one[2] - from[2], other[2] - from[2], t, name);
             }
         }
         finding(
@@ -256,7 +262,7 @@ impl Unreduced {
         for (claim, sample) in pairs {
             let [kinetic, potential] = self.energies(&super::instant::Instant {
                 t: claim.t,
-                bodies: claim.bodies.clone(),
+                bodies: self.counted(claim, sample),
                 velocity: claim.velocity.clone(),
             });
             let sum = kinetic + potential - claim.work;

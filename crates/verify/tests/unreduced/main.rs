@@ -11,6 +11,7 @@ mod joints;
 mod machines;
 #[path = "../states/mechanisms.rs"]
 mod mechanisms;
+mod more;
 #[path = "../states/plain.rs"]
 mod plain;
 mod plant;
