@@ -247,7 +247,7 @@ fn val_five_bar_with_two_free_actuators() {
     plant.drive(two, DriveKind::Regulator(regulator));
     passes(&plant, 0.8, 8);
     finds(&plant, 0.3, |wrong| {
-        wrong.loads[1].magnitude = Magnitude::Constant(-25.0)
+        wrong.loads[1].magnitude = Magnitude::Constant(-25.0);
     });
     finds(&plant, 0.3, |wrong| {
         if let DriveKind::Regulator(regulator) = &mut wrong.drives[1].kind {
@@ -305,7 +305,7 @@ const START: [f64; 7] = [
     0.222_668_390_165_885_87,
     0.487_364_979_543_842_55,
     -0.222_668_390_165_885_87,
-    1.230_547_444_549_821_1,
+    1.230_547_444_549_821,
 ];
 
 /// Andrews' squeezer: data of the Test Set for IVP Solvers (andrews.f), as in `validation/andrews`.
@@ -356,11 +356,11 @@ fn andrews() -> Plant {
 const ANGLES: [f64; 7] = [
     15.810_771_195_153_707,
     -15.756_371_058_411_84,
-    0.040_822_240_119_645_806,
+    0.040_822_240_119_645_8,
     -0.534_730_116_342_079_6,
     0.524_409_965_879_954_1,
     0.534_730_116_342_079_6,
-    1.048_080_741_041_937_9,
+    1.048_080_741_041_938,
 ];
 const SPEEDS: [f64; 7] = [
     1_139.920_302_259_106,
@@ -416,6 +416,6 @@ fn val_andrews_by_the_machine() {
     let plant = andrews();
     passes(&plant, 0.03, 10);
     finds(&plant, 0.01, |wrong| {
-        wrong.loads[0].magnitude = Magnitude::Constant(-4530.0)
+        wrong.loads[0].magnitude = Magnitude::Constant(-4530.0);
     });
 }
