@@ -128,8 +128,8 @@ fn a_spring_gives_back_what_it_took_across_the_half_turn() {
         crossed |= (angle - PI).abs() < 0.02;
         let mut force = [0.0];
         case.model.generalised_forces(&mut case.work, &mut force);
-        // h⁴/30 times the fifth derivative of an energy of up to 60 J.
-        assert!((fall - force[0]).abs() < 1e-5, "{k}: {fall} {}", force[0]);
+        // h⁴/30 times the fifth derivative of the energy; 1.4e-8 W is met.
+        assert!((fall - force[0]).abs() < 3e-8, "{k}: {fall} {}", force[0]);
     }
     assert!(crossed);
 }
@@ -145,10 +145,13 @@ fn turns_are_counted_with_several_actuators() {
         format!("{text}    x = {{ length = \"guide\" }}\n[assembly]\nphi = 2.0\nfollower = 2.0\n");
     let mut plain = drag_link(2.0, torsion);
     let mut case = Case::parse(&text, torsion);
+    let mut wound = false;
     for q in [2.0, 3.5, 5.0, 8.0, -3.0] {
         let [one, _] = couple(&mut plain, &[q]);
-        let [two, _] = couple(&mut case, &[q, 0.0]);
+        let [two, angle] = couple(&mut case, &[q, 0.0]);
+        wound |= angle > PI;
         // Rounding of couples up to 40 N m.
         assert!((one - two).abs() < 4e-14, "{q}: {one} {two}");
     }
+    assert!(wound);
 }
