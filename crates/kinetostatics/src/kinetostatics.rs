@@ -5,7 +5,7 @@ use crate::load::Load;
 use crate::model::{Actions, Model, Workspace};
 use crate::runs::Prescribed;
 use dwell_geometry::measure::BodyStates;
-use dwell_geometry::{BodyId, Mechanism, Motion, PlaceError, Plan, Scalar};
+use dwell_geometry::{Mechanism, Motion, PlaceError, Scalar};
 use thiserror::Error;
 
 /// No actions at a state of motion. Small and `Copy`: it is made in the inner loop; whoever holds
@@ -83,7 +83,7 @@ impl Model {
     /// [`Model::kinetostatics`] and [`Model::statics`] alone: reduced inertia knows nothing of them.
     ///
     /// Where they feel an angle (a torsional spring, a magnitude), whole turns are counted from the
-    /// rough angles of the start: a body that points to −x has no jump there. Groups that
+    /// rough angles of the start, or else from within half a turn of the other body. Groups that
     /// [`Model::only_for`] left out may come back for that.
     ///
     /// # Errors
@@ -95,19 +95,7 @@ impl Model {
         loads: Vec<Load>,
     ) -> Result<Self, LoadError> {
         self.loads = Loads::find(mechanism, &self.plan, &self.masses, loads)?;
-        let feel = |load: &Load| load.angles().into_iter().flatten().collect::<Vec<_>>();
-        let felt: Vec<Vec<BodyId>> = self.loads().iter().map(feel).collect();
-        let uncounted = |bodies: &Vec<BodyId>| bodies.iter().any(|&b| !self.plan.counts_turns(b));
-        if let Some(load) = felt.iter().position(uncounted) {
-            // The structure hangs on the mechanism alone, so all else of the model stays as it is.
-            self.plan =
-                Plan::compile_counting(mechanism, &self.start, &felt.concat()).map_err(|_| {
-                    LoadError {
-                        load,
-                        what: "it feels an angle whose whole turns cannot be counted",
-                    }
-                })?;
-        }
+        self.count_felt(mechanism)?;
         Ok(self)
     }
 

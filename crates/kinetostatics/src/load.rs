@@ -53,7 +53,8 @@ pub enum LoadKind {
     TorsionSpring {
         /// The bodies.
         bodies: [BodyId; 2],
-        /// Free angle of the second from the first, rad, counted as the rough angles of the start are.
+        /// Free angle of the second from the first, rad; whole turns are those of
+        /// [`Model::with_loads`](crate::Model::with_loads).
         free: f64,
     },
     /// A damper between two points: F is its constant, N·s/m; it resists with F × d(length)/dt.

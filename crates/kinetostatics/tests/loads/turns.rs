@@ -155,3 +155,28 @@ fn turns_are_counted_with_several_actuators() {
     }
     assert!(wound);
 }
+
+/// Between two bodies of which only one has a rough angle, the other stands within half a turn of
+/// it, wherever both point.
+#[test]
+fn an_angle_that_is_not_told_is_within_half_a_turn() {
+    let between = |mechanism: &Mechanism| {
+        let kind = LoadKind::TorsionSpring {
+            bodies: ["coupler", "follower"].map(|name| body(mechanism, name)),
+            free: 0.0,
+        };
+        vec![load("torsion", kind, STIFFNESS)]
+    };
+    // The follower points to 3.03 rad and the coupler to -2.02, 1.24 rad before it.
+    for rough in ["follower = 3.0", "coupler = -2.0", "follower = 9.3"] {
+        let mut case = Case::parse(
+            &format!("{DRAG_LINK}[assembly]\nphi = 2.0\n{rough}\n"),
+            between,
+        );
+        let [torque, _] = couple(&mut case, &[2.0]);
+        assert!(
+            (torque / STIFFNESS - 1.24).abs() < 0.01,
+            "{rough}: {torque}"
+        );
+    }
+}
