@@ -161,7 +161,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Counts the whole turns of a group's classes where a relation needs them: the number that is
+    /// Counts the whole turns of a group's classes where a relation or a load needs them: the number that is
     /// nearest to the stored angle, or while a branch is followed to the last one.
     #[inline(never)]
     fn count<T: Scalar>(

@@ -342,16 +342,12 @@ fn ends<T: Scalar>(
 }
 
 fn sense(mechanism: &Mechanism, load: &Load) -> Result<Vec<Sense>, &'static str> {
-    let signals = match &load.magnitude {
-        Magnitude::Constant(_) => &[],
-        Magnitude::Law(signal, _) => std::slice::from_ref(signal),
-        Magnitude::Expression(expression, signals) => {
-            if expression.variables().len() > signals.len() {
-                return Err("its expression has more variables than signals");
-            }
-            signals.as_slice()
-        }
-    };
+    let signals = load.magnitude.signals();
+    if let Magnitude::Expression(expression, _) = &load.magnitude
+        && expression.variables().len() > signals.len()
+    {
+        return Err("its expression has more variables than signals");
+    }
     let unknown = "its magnitude depends on a coordinate that the mechanism does not have";
     let find = |coordinate| Measured::find(mechanism, coordinate).ok_or(unknown);
     let sense = |signal: &Signal| match *signal {

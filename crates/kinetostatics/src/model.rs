@@ -26,6 +26,8 @@ pub struct Model {
     /// By body; the ground has none.
     pub(crate) masses: Vec<Mass>,
     pub(crate) loads: Loads,
+    /// Where it was put together.
+    pub(crate) start: Start,
 }
 
 /// A carried body that has inertia.
@@ -179,6 +181,7 @@ impl Model {
             reactions: reactions.to_vec(),
             masses,
             loads: Loads::default(),
+            start: start.clone(),
         })
     }
 

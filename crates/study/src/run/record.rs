@@ -157,7 +157,11 @@ impl<'a> Probe<'a> {
             Quantity::Drive(i, order) => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
             Quantity::Action(i) => self.actions.tau[i],
             Quantity::Measured(measured, order) => states.measure(measured)[order],
-            Quantity::Angle(body, 0) => states.body(body).turn.angle(),
+            // As relations and loads count it, so that columns of one angle agree.
+            Quantity::Angle(body, 0) => {
+                let ground = BodyId(self.scene.mechanism.ground);
+                states.angle([ground, body])[0]
+            }
             Quantity::Angle(body, 1) => states.body(body).spin,
             Quantity::Angle(body, _) => states.body(body).spin_rate,
             Quantity::Ratio(body) => self.unit.body(body).spin,
