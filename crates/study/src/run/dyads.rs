@@ -29,6 +29,13 @@ impl Dyad {
         a.cross(b).abs().atan2(a.dot(b))
     }
 
+    /// Its two bodies.
+    pub(crate) fn bodies(&self) -> [BodyId; 2] {
+        self.lines.map(|line| match line {
+            Line::Bar(body, _) | Line::Normal(body, _) => body,
+        })
+    }
+
     pub(crate) fn meaning(&self) -> &'static str {
         let slides = self.lines.iter().any(|l| matches!(l, Line::Normal(..)));
         match slides {
