@@ -40,7 +40,9 @@ impl Dyad {
         let slides = self.lines.iter().any(|l| matches!(l, Line::Normal(..)));
         match slides {
             false => "transmission angle: between the lines of the two bodies at their pin",
-            true => "transmission angle: between the rod and the normal of the slide",
+            true => {
+                "transmission angle: between the rod and the normal of the slide; what it lacks of 90° is the pressure angle"
+            }
         }
     }
 }

@@ -124,3 +124,44 @@ fn a_part_that_is_not_modelled_still_ends_the_way() {
     // Eight digits are told.
     assert!((told - (-1.0_f64 / 7.0).acos()).abs() < 1e-7, "{message}");
 }
+
+/// Three cranks hold one coupler and share its forces in no unique way, but those of a dyad on it are
+/// determined: `reduce` gives these alone, and each under its own name.
+#[test]
+fn reduce_leaves_out_reactions_that_are_not_unique() {
+    let home = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation/");
+    let path = format!("{home}parallelogram-three-cranks/scene.toml");
+    let dyad = "[bodies.arm]\npoints = { H = [0, 0], P = [0.4, 0] }\nmass = 0.5\ncenter = [0.2, 0]\n\
+                inertia = 0.01\n[bodies.tip]\npoints = { G = [0, 0], P = [0.4, 0] }\nmass = 0.4\n\
+                center = [0.2, 0]\ninertia = 0.01\n[joints]\n\
+                H = { revolute = [\"coupler.H\", \"arm.H\"] }\n\
+                G = { revolute = [\"ground.G\", \"tip.G\"] }\n\
+                P = { revolute = [\"arm.P\", \"tip.P\"] }";
+    let text = std::fs::read_to_string(path).unwrap();
+    let text = text
+        .replace("E = [0.9, 0.1] }", "E = [0.9, 0.1], G = [0.9, 0.8] }")
+        .replace("F = [0.9, 0.1] }", "F = [0.9, 0.1], H = [0.45, 0.3] }")
+        .replace("[joints]", dyad)
+        .replace("[assembly]", "[assembly]\narm = 0.0");
+    let reduced = |reactions: &str| {
+        let asked = format!("[requests]\nreactions = [{reactions}]");
+        let scene = scene(&text.replace("[requests]", &asked));
+        let outcome = dwell_study::reduce(&scene).unwrap();
+        let (_, bytes) = outcome.files.iter().next().unwrap();
+        let table = Table::parse(&String::from_utf8(bytes.to_vec()).unwrap());
+        (table, outcome.summary)
+    };
+    let (all, told) = reduced(r#""A", "P", "C", "G.y""#);
+    assert_eq!(
+        all.names,
+        [
+            "phi", "m", "half_dm", "P.x a", "P.x b", "P.y a", "P.y b", "G.y a", "G.y b"
+        ]
+    );
+    assert!(told.contains("share them: A.x, A.y, C.x, C.y\n"), "{told}");
+    let (alone, told) = reduced(r#""G.y""#);
+    assert!(!told.contains("share"), "{told}");
+    for name in ["m", "half_dm", "G.y a", "G.y b"] {
+        assert_eq!(all.column(name), alone.column(name), "{name}");
+    }
+}

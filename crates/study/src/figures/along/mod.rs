@@ -300,7 +300,10 @@ impl<'a> Sheet<'a> {
         let absent = self.record.absent(self.scene);
         let absent = match absent.is_empty() {
             true => String::new(),
-            false => format!(" Nothing needs {}: not modelled.", absent.join(", ")),
+            false => format!(
+                " Not modelled, as nothing needs them: {}.",
+                absent.join(", ")
+            ),
         };
         let words = format!(
             "Drawn in full at {}, lighter further on.{absent}",
