@@ -297,8 +297,9 @@ fn eliminated(mut rows: [[f64; 5]; 4]) -> [f64; 4] {
         rows.swap(k, pivot.expect("rows"));
         for i in (0..4).filter(|&i| i != k) {
             let part = rows[i][k] / rows[k][k];
-            for j in k..5 {
-                rows[i][j] -= part * rows[k][j];
+            let pivot = rows[k];
+            for (value, pivot) in rows[i].iter_mut().zip(pivot).skip(k) {
+                *value -= part * pivot;
             }
         }
     }

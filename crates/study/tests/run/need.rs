@@ -147,8 +147,10 @@ fn reduce_leaves_out_reactions_that_are_not_unique() {
         let asked = format!("[requests]\nreactions = [{reactions}]");
         let scene = scene(&text.replace("[requests]", &asked));
         let outcome = dwell_study::reduce(&scene).unwrap();
-        let (_, bytes) = outcome.files.iter().next().unwrap();
-        let table = Table::parse(&String::from_utf8(bytes.to_vec()).unwrap());
+        let mut files = outcome.files.iter();
+        let is_table = |path: &std::path::Path| path.to_str().unwrap().ends_with("-reduced.csv");
+        let (_, bytes) = files.find(|(path, _)| is_table(path)).unwrap();
+        let table = Table::parse(std::str::from_utf8(bytes).unwrap());
         (table, outcome.summary)
     };
     let (all, told) = reduced(r#""A", "P", "C", "G.y""#);
