@@ -123,7 +123,8 @@ fn snapshot(scene: &Scene, judged: &Judged) -> String {
             let tau = rounded_to(*tau, if angle { moments } else { forces });
             let _ = writeln!(text, "    {} = {q:.7}  action = {tau}", actuator.name);
         }
-        for &wanted in &scene.requests.reactions {
+        let told = scene.requests.reactions.iter();
+        for &wanted in told.filter(|r| !judged.shared.contains(r)) {
             let Some(k) = reactions.iter().position(|&r| r == wanted) else {
                 continue;
             };

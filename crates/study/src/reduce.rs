@@ -104,5 +104,6 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
         outcome.summary +=
             "  no body with mass moves: no motion follows from this, and every reaction is zero\n";
     }
+    outcome.summary += &prepared.told_shared();
     Ok(outcome)
 }

@@ -16,7 +16,7 @@ pub(crate) use curves::{coefficients, reduced};
 pub(crate) use digits::digits;
 pub(crate) use mechanism::{Dwell, mechanism};
 pub(crate) use motion::history;
-pub(crate) use skeleton::Frame;
+pub(crate) use skeleton::{Frame, size};
 pub(crate) use states::{actions, drawing};
 pub(crate) use steps::steps;
 

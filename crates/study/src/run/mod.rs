@@ -4,18 +4,20 @@
 mod columns;
 mod document;
 mod dyads;
+mod leverage;
 mod link;
+mod need;
 mod peaks;
 mod record;
-pub(crate) use record::model;
 mod select;
 mod stop;
 mod way;
 
 pub(crate) use columns::{Column, Quantity};
 pub(crate) use link::Link;
-pub(crate) use record::Record;
-pub(crate) use select::stands_for;
+pub(crate) use need::wanted;
+pub(crate) use record::{Record, model};
+pub(crate) use select::is_named;
 pub(crate) use way::Way;
 
 use crate::error::StudyError;
