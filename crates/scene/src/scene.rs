@@ -183,6 +183,17 @@ impl Scene {
         }
     }
 
+    /// The name of a coordinate: an actuator's, or one of `[coordinates]`; empty if it has none.
+    pub fn name_of(&self, coordinate: Coordinate) -> String {
+        let actuators = &self.mechanism.actuators;
+        let actuator = actuators.iter().find(|a| a.coordinate() == coordinate);
+        let named = || self.coordinates.iter().find(|c| c.coordinate == coordinate);
+        match actuator {
+            Some(a) => a.name.clone(),
+            None => named().map(|c| c.name.clone()).unwrap_or_default(),
+        }
+    }
+
     /// Reads the text of a scene. `source_name` is the file's name in messages.
     pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
         let name = crate::read::scene_name(Path::new(source_name));

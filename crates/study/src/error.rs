@@ -1,5 +1,6 @@
 //! Errors of a study, each pointing into the scene file where one of its lines is to blame.
 
+use crate::run::broken_relation;
 use crate::words::{count, number};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, Mechanism, StructureError};
 use dwell_kinetostatics::ModelError;
@@ -69,6 +70,26 @@ fn joint_names(mechanism: &Mechanism, joints: &[JointId]) -> String {
     list.join(", ")
 }
 
+/// The error of a relation's function that is not finite: `what` of it at the joint's variable `x`.
+pub(crate) fn broken(
+    scene: &Scene,
+    (joint, x, what): (JointId, f64, &str),
+    place: &str,
+) -> StudyError {
+    let label = format!("no finite {what} at x = {}", number(x));
+    scene
+        .error(
+            format!(
+                "the function of relation `{}` has no finite {what} at x = {}, {place}",
+                scene.mechanism.joints[joint.0].name,
+                number(x)
+            ),
+            Some("a relation needs its value and two derivatives everywhere".to_owned()),
+            &[(Place::Law(joint), label)],
+        )
+        .into()
+}
+
 /// Explains why no model could be made of a scene.
 pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
     let assembly = match error {
@@ -81,6 +102,12 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
         }
     };
     let mechanism = &scene.mechanism;
+    let start = &scene.assembly.start;
+    if !matches!(assembly, AssemblyError::Structure(_))
+        && let Some(relation) = broken_relation(mechanism, start)
+    {
+        return broken(scene, relation, "where the mechanism starts");
+    }
     match assembly {
         AssemblyError::Structure(error) => explain_structure(scene, error),
         AssemblyError::CannotClose {

@@ -10,12 +10,14 @@ mod record;
 pub(crate) use record::model;
 mod select;
 mod stop;
+mod watch;
 mod way;
 
 pub(crate) use columns::{Column, Quantity};
 pub(crate) use link::Link;
 pub(crate) use record::Record;
 pub(crate) use select::stands_for;
+pub(crate) use watch::broken_relation;
 pub(crate) use way::Way;
 
 use crate::error::StudyError;

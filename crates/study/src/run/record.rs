@@ -5,12 +5,13 @@ use crate::figures::Frame;
 use crate::run::Command;
 use crate::run::columns::{Column, Columns, Quantity, Term};
 use crate::run::link::Link;
-use crate::run::stop::{Stop, is_cut_off};
+use crate::run::stop::{End, Stop, is_cut_off};
+use crate::run::watch::Watch;
 use crate::run::way::{Sample, Way};
 use dwell_geometry::measure::{BodyStates, Measured};
 use dwell_geometry::{BodyId, Motion, Plan, Start, Vec2};
 use dwell_kinetostatics::{
-    Act, Actions, By, KinetostaticsError, Ledger, LoadKind, Model, PowerBalance, Workspace, Wrench,
+    Act, Actions, By, Ledger, LoadKind, Model, PowerBalance, Workspace, Wrench,
 };
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
@@ -71,6 +72,7 @@ struct Probe<'a> {
     forces: Vec<Vec2>,
     shaking: Wrench,
     power: PowerBalance,
+    watch: Watch<'a>,
 }
 
 impl<'a> Probe<'a> {
@@ -91,10 +93,11 @@ impl<'a> Probe<'a> {
             forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
             shaking: Wrench::default(),
             power: PowerBalance::default(),
+            watch: Watch::new(scene),
         })
     }
 
-    fn evaluate(&mut self, sample: &Sample, timed: bool) -> Result<(), KinetostaticsError> {
+    fn evaluate(&mut self, sample: &Sample, timed: bool) -> Result<(), End> {
         let plan = self.model.plan();
         let Sample {
             t,
@@ -103,17 +106,20 @@ impl<'a> Probe<'a> {
             q_ddot,
         } = sample;
         let (work, actions) = (&mut self.work, &mut self.actions);
+        // Without a time loads stand at their beginning.
+        let t = if timed { *t } else { 0.0 };
         match self.command {
             Command::Kinematics => plan.place(q, &mut work.pose)?,
-            // Without a time loads stand at their beginning.
-            Command::Statics => {
-                let t = if timed { *t } else { 0.0 };
-                self.model.statics(t, q, work, actions)?;
-            }
+            Command::Statics => self.model.statics(t, q, work, actions)?,
             Command::Kinetostatics => {
                 self.model
-                    .kinetostatics(*t, q, q_dot, q_ddot, work, actions)?;
+                    .kinetostatics(t, q, q_dot, q_ddot, work, actions)?;
             }
+        }
+        if self.command != Command::Kinematics
+            && let Some(fault) = self.watch.off_table(t, work.states())
+        {
+            return Err(End::Fault(fault));
         }
         if plan.actuators() == 1 {
             plan.speeds(&work.pose, &[1.0], &mut self.motion);
@@ -122,6 +128,9 @@ impl<'a> Probe<'a> {
         plan.speeds(&work.pose, q_dot, &mut self.motion);
         plan.accelerations(&work.pose, q_ddot, &mut self.motion);
         self.moving.fill(plan, &work.pose, &self.motion);
+        if let Some(fault) = self.watch.jump(&self.moving) {
+            return Err(End::Fault(fault));
+        }
         if self.command != Command::Kinematics {
             self.account();
         }
