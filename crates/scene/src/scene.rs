@@ -34,7 +34,7 @@ pub struct Scene {
     pub assembly: Assembly,
     /// The prescribed motion.
     pub prescribed: Option<Prescribed>,
-    /// The positions of statics and kinematics.
+    /// The positions of kinematics, statics and kinetostatics without a prescribed motion.
     pub sweep: Option<Sweep>,
     /// What acts on the mechanism from outside.
     pub loads: Vec<Load>,
@@ -138,7 +138,7 @@ pub struct Sweep {
     pub held: Vec<f64>,
     /// How many positions, the ends among them: two or more.
     pub points: usize,
-    /// Speed of the swept actuator in kinematics, rad/s or m/s, above zero.
+    /// Speed of the swept actuator in kinematics and kinetostatics, rad/s or m/s, above zero.
     pub speed: f64,
 }
 

@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 /// the requests. It writes no file.
 ///
 /// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be put together.
+/// [`StudyError::Scene`] when the mechanism cannot be put together, or a requested column does not exist.
 pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
     let mechanism = &scene.mechanism;
     let start = Start {
@@ -21,6 +21,7 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
         rough: scene.assembly.rough.clone(),
     };
     let model = crate::run::model(scene)?;
+    crate::run::check_variables(scene, &model)?;
     let plan = model.plan();
     let mut text = format!("{}\n", scene.title);
     // Writing to a string cannot fail.

@@ -49,6 +49,24 @@ fn body_labels(bodies: &[BodyId], words: &str) -> Labels {
     bodies.iter().take(8).map(label).collect()
 }
 
+/// Where the scene says in which position it is put together.
+fn start_labels(scene: &Scene) -> Labels {
+    let written = |&a: &ActuatorId| {
+        // What is not written stands where the motion's start does.
+        scene.span(Place::Start(a)) != scene.span(Place::MotionStart(a))
+    };
+    let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
+    let mut labels: Labels = actuators
+        .filter(written)
+        .take(8)
+        .map(|a| (Place::Start(a), "at this start".to_owned()))
+        .collect();
+    if labels.is_empty() {
+        labels.push((Place::Assembly, "at this start".to_owned()));
+    }
+    labels
+}
+
 pub(crate) fn joint_labels(joints: &[JointId], words: &str) -> Labels {
     let label = |&j: &JointId| (Place::Joint(j), words.to_owned());
     joints.iter().take(8).map(label).collect()
@@ -116,7 +134,7 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
             gap,
         } => {
             let mut labels = joint_labels(joints, "cannot be joined");
-            labels.push((Place::Assembly, "at this start".to_owned()));
+            labels.extend(start_labels(scene));
             let names = names(mechanism, bodies);
             if *gap <= BARELY * size(scene) {
                 return scene
@@ -204,7 +222,7 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
         ),
         AssemblyError::SingularStart { bodies, joints } => {
             let mut labels = joint_labels(joints, "in line with the others");
-            labels.push((Place::Assembly, "at this start".to_owned()));
+            labels.extend(start_labels(scene));
             scene.error(
                 format!(
                     "the start is a limit position: the actuator does not determine the motion of {}",

@@ -16,7 +16,7 @@ mod way;
 pub(crate) use columns::{Column, Quantity};
 pub(crate) use link::Link;
 pub(crate) use record::Record;
-pub(crate) use select::stands_for;
+pub(crate) use select::{check as check_variables, stands_for};
 pub(crate) use watch::broken_relation;
 pub(crate) use way::Way;
 

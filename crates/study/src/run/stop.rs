@@ -6,7 +6,7 @@ use crate::run::way::{Sample, Way};
 use crate::words::{digits, number};
 use dwell_geometry::measure::BodyStates;
 use dwell_geometry::{PlaceError, Plan, Range};
-use dwell_kinetostatics::{KinetostaticsError, Signal};
+use dwell_kinetostatics::{KinetostaticsError, LoadKind, Signal};
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
 
@@ -96,7 +96,12 @@ impl Stop {
                         "load `{}` has no direction {when}: its two points meet",
                         load_name(scene, load)
                     ),
-                    Some("a spring of free length 0 needs none; or keep the points apart".into()),
+                    Some(match scene.loads.get(load).map(|l| l.kind) {
+                        Some(LoadKind::Spring { .. }) => {
+                            "a spring of free length 0 needs none; or keep the points apart".into()
+                        }
+                        _ => "it acts along the line of its points: keep them apart".into(),
+                    }),
                     &[(Place::Load(load), "between two points".to_owned())],
                 )
                 .into(),
