@@ -121,13 +121,14 @@ fn range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
             "  {name} turns on and on; the mechanism does not come back after a few turns"
         ),
         Range::Endless => writeln!(text, "  no end of {name} was found"),
-        Range::Followed(from, to) => writeln!(
-            text,
-            "  {name} {verb} {}; no end was met, it is followed no farther",
-            both(from, to)
-        ),
-        Range::Between(from, to) | Range::Stroke(from, to) => {
-            writeln!(text, "  {name} {verb} {}", both(from, to))
+        Range::Between(from, to) | Range::Stroke(from, to) | Range::Followed(from, to) => {
+            let open = match plan.ends() {
+                [Some(_), Some(_)] => "",
+                [Some(_), None] => "; no upper end was met, it is followed no farther",
+                [None, Some(_)] => "; no lower end was met, it is followed no farther",
+                [None, None] => "; no end was met, it is followed no farther",
+            };
+            writeln!(text, "  {name} {verb} {}{open}", both(from, to))
         }
     };
     for end in plan.ends().into_iter().flatten() {

@@ -80,6 +80,14 @@ pub(crate) fn names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
     list.join(", ")
 }
 
+/// The same; what no body of the scene does, the mechanism does.
+pub(crate) fn names_or_whole(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
+    match bodies {
+        [] => "the mechanism".to_owned(),
+        bodies => names(mechanism, bodies),
+    }
+}
+
 fn joint_names(mechanism: &Mechanism, joints: &[JointId]) -> String {
     let list: Vec<_> = joints
         .iter()
@@ -135,7 +143,7 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
         } => {
             let mut labels = joint_labels(joints, "cannot be joined");
             labels.extend(start_labels(scene));
-            let names = names(mechanism, bodies);
+            let names = names_or_whole(mechanism, bodies);
             if *gap <= BARELY * size(scene) {
                 return scene
                     .error(
@@ -173,17 +181,30 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
                 all.join(", ")
             };
             let ways: Vec<_> = choices.iter().take(6).map(way).collect();
+            let (labels, help) = if bodies.is_empty() {
+                (
+                    start_labels(scene),
+                    "they differ in where a body slides, which no rough angle tells: drive the slide \
+                     itself, or another joint"
+                        .to_owned(),
+                )
+            } else {
+                (
+                    body_labels(bodies, "its angle is open"),
+                    format!(
+                        "give a rough angle of one of them in [assembly]; the ways are: {}",
+                        ways.join("; or ")
+                    ),
+                )
+            };
             scene.error(
                 format!(
                     "{} can be assembled in {} ways, and nothing says which is meant",
-                    names(mechanism, bodies),
+                    names_or_whole(mechanism, bodies),
                     choices.len()
                 ),
-                Some(format!(
-                    "give a rough angle of one of them in [assembly]; the ways are: {}",
-                    ways.join("; or ")
-                )),
-                &body_labels(bodies, "its angle is open"),
+                Some(help),
+                &labels,
             )
         }
         AssemblyError::NotMeshing {

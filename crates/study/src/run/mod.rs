@@ -104,7 +104,7 @@ pub fn run(
             .files
             .add(file("-envelope"), link.envelope_table().csv()?);
     }
-    let pictures = figures::run(scene, &record, &way, command);
+    let (pictures, left_out) = figures::run(scene, &record, &way, command);
     let total = parts + pictures.len() + 1;
     let drawn = draw(&pictures, total, progress)?;
     for (figure, bytes) in pictures.iter().zip(drawn) {
@@ -123,6 +123,9 @@ pub fn run(
         .files
         .add(name(".md"), document.markdown(&pictures, &file));
     outcome.summary = document.summary();
+    if let Some(note) = left_out {
+        outcome.summary += &format!("  {note}\n");
+    }
     Ok(Followed { outcome, stopped })
 }
 

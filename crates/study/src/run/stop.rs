@@ -1,11 +1,11 @@
 //! A way that ends early: where, and who is to blame.
 
-use crate::error::{StudyError, broken, joint_labels, names};
+use crate::error::{StudyError, broken, joint_labels, names_or_whole};
 use crate::run::watch::{Fault, broken_relation, table_of};
 use crate::run::way::{Sample, Way};
 use crate::words::{digits, number};
 use dwell_geometry::measure::BodyStates;
-use dwell_geometry::{PlaceError, Plan, Range};
+use dwell_geometry::{PlaceError, Plan};
 use dwell_kinetostatics::{KinetostaticsError, LoadKind, Signal};
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
@@ -148,14 +148,17 @@ impl Stop {
         if !self.begun {
             return self.unreached(scene, plan, way, place, error);
         }
-        let in_the_middle = matches!(plan.range(), Range::Followed(..))
-            && matches!(error, PlaceError::OutOfRange { .. });
+        let in_the_middle = match *error {
+            // Out of the range on a side where no end was met.
+            PlaceError::OutOfRange { q, to, .. } => plan.ends()[usize::from(q > to)].is_none(),
+            _ => false,
+        };
         if in_the_middle {
             return scene
                 .error(
                     format!(
-                        "the mechanism is followed only so far from its start, to {place}: it did not \
-                         come back before, and no position is known beyond"
+                        "the mechanism is followed only so far from its start, to {place}: no end \
+                         was met before, and no position is known beyond"
                     ),
                     Some("the results end there; start nearer, or end the motion before".into()),
                     &[(way.place, "goes on beyond it".to_owned())],
@@ -165,10 +168,7 @@ impl Stop {
         let group = error.group().or_else(|| racing(plan, &self.last.q));
         let bodies = group.map(|g| plan.group_bodies(g)).unwrap_or_default();
         let joints = group.map(|g| plan.group_joints(g)).unwrap_or_default();
-        let who = match names(&scene.mechanism, &bodies) {
-            none if none.is_empty() => "the mechanism".to_owned(),
-            names => names,
-        };
+        let who = names_or_whole(&scene.mechanism, &bodies);
         let why = match error {
             PlaceError::NotFinite { .. } => "a coordinate is not a finite number beyond".to_owned(),
             PlaceError::Unreachable { .. } => format!("{who} cannot reach each other beyond"),
@@ -216,11 +216,11 @@ impl Stop {
         let range = match plan.range().limits() {
             Some((from, to)) => {
                 let unit = if plan.is_angle(0) { "rad" } else { "m" };
-                format!(
-                    ", outside the range of {} to {} {unit}",
-                    number(from),
-                    number(to)
-                )
+                let [from, to] = [from, to].map(number);
+                match plan.ends() {
+                    [Some(_), Some(_)] => format!(", outside the range of {from} to {to} {unit}"),
+                    _ => format!(", and the mechanism is followed from {from} to {to} {unit} only"),
+                }
             }
             None => String::new(),
         };

@@ -262,14 +262,14 @@ fn ends(scene: &Scene, plan: &Plan) -> Ends {
             between(from + margin, to - margin, [true; 2], "the range")
         }
         Range::Stroke(from, to) => {
-            // An end that is only as far as it was followed lies many sizes away.
-            let far = 4.0 * reach(scene);
-            let near = [start - from < far, to - start < far];
-            let low = if near[0] { from } else { start - around };
-            let high = if near[1] { to } else { start + around };
+            // An end that was not met is only as far as it was followed.
+            let met = plan.ends().map(|end| end.is_some());
+            let around = if plan.is_angle(0) { TAU } else { around };
+            let low = if met[0] { from } else { start - around };
+            let high = if met[1] { to } else { start + around };
             let margin = MARGIN * (high - low);
-            let cut = |near: bool| if near { margin } else { 0.0 };
-            between(low + cut(near[0]), high - cut(near[1]), near, "the range")
+            let cut = |met: bool| if met { margin } else { 0.0 };
+            between(low + cut(met[0]), high - cut(met[1]), met, "the range")
         }
         Range::Endless | Range::Followed(..) if plan.is_angle(0) => {
             between(start, start + TAU, [false; 2], "one turn")

@@ -1,7 +1,7 @@
 //! Ways that end early, and scenes that do not say their way.
 
 use crate::table::{Table, WEIGHTS, case, file, follow, scene};
-use dwell_study::{Command, StudyError, run, silent};
+use dwell_study::{Command, StudyError, check, run, silent};
 
 /// Crank 0.3, coupler 0.2, rocker 0.25 on a base of 0.4 m.
 fn limited(sweep: &str) -> String {
@@ -198,6 +198,71 @@ fn without_ends_a_sweep_fills_the_range_but_for_a_thousandth() {
         // The ends of the range are found by halving, to about 1e-13.
         assert!((at - end * 0.998).abs() < 1e-9, "{at} {end}");
     }
+}
+
+/// A rod that slides in an arm leads a slider on a line 0.1 m above the arm's pivot: pushed out, it
+/// never comes to an end.
+const RAM: &str = r#"
+[bodies.ground]
+points = { A = [0, 0], S = [0, 0.1] }
+[bodies.arm]
+points = { A = [0, 0] }
+[bodies.rod]
+points = { P = [0, 0] }
+[bodies.slider]
+points = { P = [0, 0] }
+mass = 1
+center = "P"
+[joints]
+A = { revolute = ["ground.A", "arm.A"] }
+T = { prismatic = ["arm.A", "rod.P"], axis = [1, 0] }
+P = { revolute = ["rod.P", "slider.P"] }
+S = { prismatic = ["ground.S", "slider.P"], axis = [1, 0] }
+[actuators]
+d = { length = "T" }
+[assembly]
+d = 0.2
+arm = 0.5
+[sweep]
+"#;
+
+#[test]
+fn where_the_search_gave_up_is_no_end_of_the_mechanism() {
+    let told = check(&scene(RAM)).unwrap().summary;
+    assert!(
+        told.contains("m; no upper end was met, it is followed no farther"),
+        "{told}"
+    );
+    let swept = follow(&scene(RAM), Command::Statics, 11);
+    assert!(swept.stopped.is_none());
+    let d = Table::parse(&file(&swept, "-statics.csv")).column("d");
+    // From its one end, a thousandth left out, to a part of its size beyond the start: the ends are
+    // found to about 1e-13.
+    let (low, high) = (0.1, 0.2 + 0.25 * 0.1);
+    assert!(
+        (d[0] - low - 1e-3 * (high - low)).abs() < 1e-9 && d[10] == high,
+        "{d:?}"
+    );
+    let far = follow(&scene(&format!("{RAM}d = [10, 100]")), Command::Statics, 11);
+    let Some(StudyError::Scene(error)) = far.stopped else {
+        panic!("it was followed without end");
+    };
+    assert!(
+        error
+            .message
+            .contains("no end was met before, and no position is known beyond"),
+        "{}",
+        error.message
+    );
+}
+
+#[test]
+fn check_knows_which_columns_there_are() {
+    let text = WEIGHTS.replace("[requests]", "[requests]\nvariables = [\"rocker.angel\"]");
+    let Err(StudyError::Scene(error)) = check(&scene(&text)) else {
+        panic!("there is no such column");
+    };
+    assert_eq!(error.message, "there is no column `rocker.angel`");
 }
 
 #[test]
