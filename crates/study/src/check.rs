@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 /// the requests. It writes no file.
 ///
 /// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be put together.
+/// [`StudyError::Scene`] when the mechanism cannot be put together, or a requested column does not exist.
 pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
     let mechanism = &scene.mechanism;
     let start = Start {
@@ -21,6 +21,7 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
         rough: scene.assembly.rough.clone(),
     };
     let model = crate::run::model(scene)?;
+    crate::run::check_variables(scene, &model)?;
     let plan = model.plan();
     let mut text = format!("{}\n", scene.title);
     // Writing to a string cannot fail.
@@ -120,13 +121,14 @@ fn range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
             "  {name} turns on and on; the mechanism does not come back after a few turns"
         ),
         Range::Endless => writeln!(text, "  no end of {name} was found"),
-        Range::Followed(from, to) => writeln!(
-            text,
-            "  {name} {verb} {}; no end was met, it is followed no farther",
-            both(from, to)
-        ),
-        Range::Between(from, to) | Range::Stroke(from, to) => {
-            writeln!(text, "  {name} {verb} {}", both(from, to))
+        Range::Between(from, to) | Range::Stroke(from, to) | Range::Followed(from, to) => {
+            let open = match plan.ends() {
+                [Some(_), Some(_)] => "",
+                [Some(_), None] => "; no upper end was met, it is followed no farther",
+                [None, Some(_)] => "; no lower end was met, it is followed no farther",
+                [None, None] => "; no end was met, it is followed no farther",
+            };
+            writeln!(text, "  {name} {verb} {}{open}", both(from, to))
         }
     };
     for end in plan.ends().into_iter().flatten() {

@@ -8,12 +8,13 @@ use crate::run::leverage::Pace;
 use crate::run::link::Link;
 use crate::run::need::lean;
 use crate::run::select::is_named;
-use crate::run::stop::{Stop, is_cut_off};
+use crate::run::stop::{End, Stop, is_cut_off};
+use crate::run::watch::Watch;
 use crate::run::way::{Sample, Way};
 use dwell_geometry::measure::{BodyStates, Measured};
 use dwell_geometry::{BodyId, Motion, Plan, Pose, Start, Vec2};
 use dwell_kinetostatics::{
-    Act, Actions, By, KinetostaticsError, Ledger, LoadKind, Model, PowerBalance, Workspace, Wrench,
+    Act, Actions, By, Ledger, LoadKind, Model, PowerBalance, Workspace, Wrench,
 };
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
@@ -90,6 +91,7 @@ struct Probe<'a> {
     forces: Vec<Vec2>,
     shaking: Wrench,
     power: PowerBalance,
+    watch: Watch<'a>,
 }
 
 impl<'a> Probe<'a> {
@@ -120,10 +122,11 @@ impl<'a> Probe<'a> {
             forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
             shaking: Wrench::default(),
             power: PowerBalance::default(),
+            watch: Watch::new(scene),
         })
     }
 
-    fn evaluate(&mut self, sample: &Sample, timed: bool) -> Result<(), KinetostaticsError> {
+    fn evaluate(&mut self, sample: &Sample, timed: bool) -> Result<(), End> {
         let plan = self.model.plan();
         let Sample {
             t,
@@ -135,17 +138,20 @@ impl<'a> Probe<'a> {
             whole.place(q, pose)?;
         }
         let (work, actions) = (&mut self.work, &mut self.actions);
+        // Without a time loads stand at their beginning.
+        let t = if timed { *t } else { 0.0 };
         match self.command {
             Command::Kinematics => plan.place(q, &mut work.pose)?,
-            // Without a time loads stand at their beginning.
-            Command::Statics => {
-                let t = if timed { *t } else { 0.0 };
-                self.model.statics(t, q, work, actions)?;
-            }
+            Command::Statics => self.model.statics(t, q, work, actions)?,
             Command::Kinetostatics => {
                 self.model
-                    .kinetostatics(*t, q, q_dot, q_ddot, work, actions)?;
+                    .kinetostatics(t, q, q_dot, q_ddot, work, actions)?;
             }
+        }
+        if self.command != Command::Kinematics
+            && let Some(fault) = self.watch.off_table(t, work.states())
+        {
+            return Err(End::Fault(fault));
         }
         if plan.actuators() == 1 {
             plan.speeds(&work.pose, &[1.0], &mut self.motion);
@@ -155,6 +161,9 @@ impl<'a> Probe<'a> {
         plan.accelerations(&work.pose, q_ddot, &mut self.motion);
         self.moving.fill(plan, &work.pose, &self.motion);
         self.pace = [&self.unit, &self.moving].map(|states| Pace::of(states, self.size));
+        if let Some(fault) = self.watch.jump(&self.moving) {
+            return Err(End::Fault(fault));
+        }
         if self.command != Command::Kinematics {
             self.account();
         }

@@ -37,8 +37,13 @@ struct Sheet<'a> {
     limits: [bool; 2],
 }
 
-/// The pictures of a run but for the film.
-pub(crate) fn run(scene: &Scene, record: &Record, way: &Way<'_>, command: Command) -> Vec<Figure> {
+/// The pictures of a run but for the film, and what has to be said if some are left out.
+pub(crate) fn run(
+    scene: &Scene,
+    record: &Record,
+    way: &Way<'_>,
+    command: Command,
+) -> (Vec<Figure>, Option<String>) {
     let sheet = Sheet::new(scene, record, way, command);
     let mut figures = vec![sheet.mechanism(last_drawn(record, way.period))];
     figures.extend(sheet.angles());
@@ -46,11 +51,12 @@ pub(crate) fn run(scene: &Scene, record: &Record, way: &Way<'_>, command: Comman
     figures.extend(sheet.lengths());
     figures.extend(sheet.transmission());
     figures.extend(sheet.actions());
-    figures.extend(sheet.reactions());
+    let (reactions, note) = sheet.reactions();
+    figures.extend(reactions);
     figures.extend(sheet.frame());
     figures.extend(sheet.power());
     figures.extend(record.links.iter().filter_map(|link| sheet.link(link)));
-    figures
+    (figures, note)
 }
 
 /// The mechanism in motion, with the paths that were asked for.
