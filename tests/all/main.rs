@@ -13,6 +13,7 @@ mod chain;
 mod change_points;
 mod changes;
 mod derivatives;
+mod ends;
 mod findings;
 mod invariance;
 mod joints;

@@ -85,6 +85,7 @@ mod value;
 mod tests;
 
 pub use error::SceneError;
+pub use fields::LARGEST_ANGLE;
 pub use place::Place;
 pub use problem::choices;
 pub use scene::{

@@ -34,7 +34,7 @@ pub struct Scene {
     pub assembly: Assembly,
     /// The prescribed motion.
     pub prescribed: Option<Prescribed>,
-    /// The positions of statics and kinematics.
+    /// The positions of kinematics, statics and kinetostatics without a prescribed motion.
     pub sweep: Option<Sweep>,
     /// What acts on the mechanism from outside.
     pub loads: Vec<Load>,
@@ -138,7 +138,7 @@ pub struct Sweep {
     pub held: Vec<f64>,
     /// How many positions, the ends among them: two or more.
     pub points: usize,
-    /// Speed of the swept actuator in kinematics, rad/s or m/s, above zero.
+    /// Speed of the swept actuator in kinematics and kinetostatics, rad/s or m/s, above zero.
     pub speed: f64,
 }
 
@@ -180,6 +180,17 @@ impl Scene {
         match actuator {
             Some(a) => Some(a.coordinate()),
             None => named().map(|c| c.coordinate),
+        }
+    }
+
+    /// The name of a coordinate: an actuator's, or one of `[coordinates]`; empty if it has none.
+    pub fn name_of(&self, coordinate: Coordinate) -> String {
+        let actuators = &self.mechanism.actuators;
+        let actuator = actuators.iter().find(|a| a.coordinate() == coordinate);
+        let named = || self.coordinates.iter().find(|c| c.coordinate == coordinate);
+        match actuator {
+            Some(a) => a.name.clone(),
+            None => named().map(|c| c.name.clone()).unwrap_or_default(),
         }
     }
 
