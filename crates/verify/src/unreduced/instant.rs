@@ -104,7 +104,7 @@ impl Unreduced {
                 let enough = expression.variables().len() <= values.len();
                 enough.then(|| expression.at(&values))
             }
-            Magnitude::Friction(_) | Magnitude::Given => None,
+            Magnitude::Friction(_) | Magnitude::Given(_) => None,
         }
     }
 

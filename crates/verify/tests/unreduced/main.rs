@@ -7,6 +7,8 @@
 )]
 
 mod closed_forms;
+#[path = "../subjects/gauss.rs"]
+mod gauss;
 mod joints;
 mod machines;
 #[path = "../states/mechanisms.rs"]
