@@ -85,6 +85,15 @@ fn val_every_joint_in_free_motion() {
     }
 }
 
+/// The same a few kilometres away: differences of large numbers must cost neither side its digits.
+#[test]
+fn val_every_joint_far_away() {
+    for setup in crate::mechanisms::all() {
+        let setup = setup.moved(vec2(3e3, -2e3));
+        check(&let_go(&setup, 0), setup.name);
+    }
+}
+
 /// Motors along coordinates that no actuator has: of every body against the ground.
 #[test]
 fn val_motors_along_any_coordinate() {
