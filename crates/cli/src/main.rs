@@ -10,7 +10,7 @@ mod validate;
 use clap::Parser;
 use dwell_findings::all_pass;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Accuracy, Command as Run, Outcome, Step, StudyError};
+use dwell_study::{Accuracy, Command as Run, Followed, Outcome, Progress, Step, StudyError};
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{Report, miette};
 use options::{Along, Command, Options};
@@ -56,13 +56,19 @@ fn run(options: Options) -> Result<bool, Report> {
             method,
             rtol,
             atol,
+            max_step,
+            every,
         } => {
             let accuracy = Accuracy {
                 method: (*method).into(),
                 relative: *rtol,
                 absolute: atol.unwrap_or(*rtol),
+                longest: *max_step,
+                every: *every,
             };
-            told(dwell_study::simulate(&read(scene)?, &accuracy))?
+            let scene = read(scene)?;
+            let simulate = |heard: Progress<'_>| dwell_study::simulate(&scene, &accuracy, heard);
+            followed(simulate, &mut stopped)?
         }
         Command::Kinematics(along) => follow(along, Run::Kinematics, &mut stopped)?,
         Command::Statics(along) => follow(along, Run::Statics, &mut stopped)?,
@@ -111,13 +117,24 @@ fn run(options: Options) -> Result<bool, Report> {
 fn follow(along: &Along, run: Run, stopped: &mut Option<Report>) -> Result<Outcome, Report> {
     let scene = read(&along.scene)?;
     let points = along.points.map(|n| n as usize);
+    followed(
+        |heard| dwell_study::run(&scene, run, points, heard),
+        stopped,
+    )
+}
+
+/// Shows the progress of what is followed; if it ends early, `stopped` says why.
+fn followed(
+    run: impl FnOnce(Progress<'_>) -> Result<Followed, StudyError>,
+    stopped: &mut Option<Report>,
+) -> Result<Outcome, Report> {
     let bar = progress_bar();
     let heard = |step: Step<'_>| {
         bar.set_length(step.total as u64);
         bar.set_message(step.done.to_owned());
         bar.inc(1);
     };
-    let followed = dwell_study::run(&scene, run, points, &heard);
+    let followed = run(&heard);
     bar.finish_and_clear();
     let followed = told(followed)?;
     *stopped = followed.stopped.map(|e| Report::new(as_scene_error(e)));

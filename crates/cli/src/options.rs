@@ -27,7 +27,7 @@ pub(crate) enum Command {
         /// The scene file
         scene: PathBuf,
     },
-    /// Free motion in time, with energy and reactions: table and picture
+    /// Motion in time under loads and drives, with energies and reactions: tables and pictures
     Simulate {
         /// The scene file
         scene: PathBuf,
@@ -40,6 +40,12 @@ pub(crate) enum Command {
         /// Absolute tolerance, rad and rad/s (as the relative one, if absent)
         #[arg(long, value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
         atol: Option<f64>,
+        /// Longest step, s (as long as the tolerance lets it be, if absent)
+        #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
+        max_step: Option<f64>,
+        /// Time between the samples of the table, s (a thousandth of the motion, if absent)
+        #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
+        every: Option<f64>,
     },
     /// Positions, speeds and accelerations along the prescribed motion, the sweep or the range
     Kinematics(Along),
@@ -81,9 +87,13 @@ pub(crate) struct Along {
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum MethodName {
-    /// Implicit, variable order
+    /// Implicit, variable order 1 to 5: for whatever is stiff, such as friction
     Bdf,
-    /// Explicit Runge–Kutta of order 5
+    /// Implicit Runge–Kutta of order 4
+    Esdirk34,
+    /// Implicit, order 2
+    TrBdf2,
+    /// Explicit Runge–Kutta of order 5: for what is smooth
     Tsit45,
 }
 
@@ -91,6 +101,8 @@ impl From<MethodName> for Method {
     fn from(name: MethodName) -> Self {
         match name {
             MethodName::Bdf => Self::Bdf,
+            MethodName::Esdirk34 => Self::Esdirk34,
+            MethodName::TrBdf2 => Self::TrBdf2,
             MethodName::Tsit45 => Self::Tsit45,
         }
     }
@@ -116,6 +128,6 @@ fn time(text: &str) -> Result<f64, String> {
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
-        Err("a period is a time above zero, in seconds".to_owned())
+        Err("expected a time above zero, in seconds".to_owned())
     }
 }

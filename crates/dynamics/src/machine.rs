@@ -112,6 +112,11 @@ impl Machine {
         &self.free
     }
 
+    /// Number of drives.
+    pub fn drives(&self) -> usize {
+        self.drives.len()
+    }
+
     /// What does work without a potential, in the order of the states.
     pub fn workers(&self) -> &[Worker] {
         &self.workers

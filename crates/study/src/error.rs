@@ -2,6 +2,7 @@
 
 use crate::run::broken_relation;
 use crate::words::{count, number};
+use dwell_dynamics::MachineError;
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, Mechanism, StructureError};
 use dwell_kinetostatics::ModelError;
 use dwell_report::ReportError;
@@ -376,4 +377,16 @@ pub(crate) fn not_one_actuator(scene: &Scene) -> StudyError {
             &labels,
         )
         .into()
+}
+
+/// Explains a machine that cannot be built.
+pub(crate) fn explain_machine(scene: &Scene, error: MachineError) -> StudyError {
+    match error {
+        MachineError::Load(load) => {
+            let labels = [(Place::Load(load.load), "this load".to_owned())];
+            scene.error(load.to_string(), None, &labels).into()
+        }
+        // The scene has checked its drives and laws: what is left needs no place.
+        other => scene.error(other.to_string(), None, &[]).into(),
+    }
 }

@@ -17,6 +17,8 @@ mod claims;
 mod dossier;
 mod error;
 mod figures;
+
+mod history;
 mod index;
 mod motion_error;
 mod outcome;

@@ -1,8 +1,9 @@
 //! Speed and reactions in time: the paper's Figure 4.
 
 use super::{caption, coordinate_label, symbol};
+use crate::history::History;
 use crate::prepare::Prepared;
-use crate::simulate::{Accuracy, History};
+use crate::simulate::Accuracy;
 use dwell_report::{Axis, Chart, Figure, Mark, Panel, Series};
 
 /// Turns that are drawn; more would only repeat.

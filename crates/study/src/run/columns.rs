@@ -35,6 +35,8 @@ pub(crate) enum Quantity {
     Balance(Term),
     Load(usize),
     LoadPower(usize),
+    /// What an integration tells, by its place in the way's columns.
+    Told(usize),
 }
 
 /// A term of the power balance.
@@ -83,7 +85,8 @@ impl Quantity {
             | Self::Frame(_)
             | Self::Balance(_)
             | Self::Load(_)
-            | Self::LoadPower(_) => Vec::new(),
+            | Self::LoadPower(_)
+            | Self::Told(_) => Vec::new(),
         }
     }
 }
@@ -123,7 +126,10 @@ impl Column {
             | Quantity::Measured(_, order)
             | Quantity::Angle(_, order) => order == 0 || moves,
             Quantity::Point(_, _, k) => k < 2 || moves,
-            Quantity::Ratio(_) | Quantity::Advantage(..) | Quantity::Transmission(_) => true,
+            Quantity::Ratio(_) | Quantity::Advantage(..) | Quantity::Transmission(_) => {
+                command != Command::Simulate
+            }
+            Quantity::Told(_) => command == Command::Simulate,
             Quantity::Pole(..) => moves,
             Quantity::Action(_)
             | Quantity::Reaction(_)

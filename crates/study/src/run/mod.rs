@@ -17,14 +17,15 @@ mod way;
 pub(crate) use columns::{Column, Quantity};
 pub(crate) use link::Link;
 pub(crate) use need::wanted;
-pub(crate) use record::{Record, model};
+pub(crate) use record::{Record, model, model as loaded};
 pub(crate) use select::{check as check_variables, is_named};
 pub(crate) use watch::broken_relation;
-pub(crate) use way::Way;
+pub(crate) use way::{Sample, Told, Way};
 
 use crate::error::StudyError;
 use crate::figures;
 use crate::outcome::{Outcome, Progress, Step};
+use dwell_kinetostatics::Model;
 use dwell_report::{Figure, ReportError, Table, png};
 use dwell_scene::Scene;
 use rayon::prelude::*;
@@ -38,6 +39,8 @@ pub enum Command {
     Statics,
     /// Actions and reactions under the loads and the inertia of the motion.
     Kinetostatics,
+    /// The free motion, with all that acts in it.
+    Simulate,
 }
 
 impl Command {
@@ -47,6 +50,7 @@ impl Command {
             Self::Kinematics => "kinematics",
             Self::Statics => "statics",
             Self::Kinetostatics => "kinetostatics",
+            Self::Simulate => "motion",
         }
     }
 }
@@ -78,6 +82,20 @@ pub fn run(
     let model = record::model(scene)?;
     select::check(scene, &model)?;
     let way = Way::new(scene, model.plan(), command, points)?;
+    write_up(scene, &model, &way, command, progress)
+}
+
+/// Follows a scene along a way, and writes up what was found.
+///
+/// # Errors
+/// [`StudyError`] where not even the first position can be reached.
+pub(crate) fn write_up(
+    scene: &Scene,
+    model: &Model,
+    way: &Way<'_>,
+    command: Command,
+    progress: Progress<'_>,
+) -> Result<Followed, StudyError> {
     let parts = way.points.div_ceil(PART);
     let heard = |k: usize| {
         if k.is_multiple_of(PART) {
@@ -87,16 +105,16 @@ pub fn run(
             });
         }
     };
-    let record = record::follow(scene, &model, &way, command, &heard)?;
+    let record = record::follow(scene, model, way, command, &heard)?;
     let stopped = record.stop.as_ref();
-    let stopped = stopped.map(|stop| stop.explain(scene, model.plan(), &way));
+    let stopped = stopped.map(|stop| stop.explain(scene, model.plan(), way));
     let chosen = select::chosen(scene, &record.columns);
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-{}{rest}", scene.name, command.name());
     let table = table(&record, &chosen);
     outcome.files.add(name(".csv"), table.csv()?);
     outcome.files.add(name(".npz"), table.npz()?);
-    let document = document::Document::new(scene, &record, &way, command, &chosen);
+    let document = document::Document::new(scene, &record, way, command, &chosen);
     outcome.files.add(name("-peaks.csv"), document.peaks_csv());
     for link in &record.links {
         let of = link.name(scene.mechanism.body_name(link.request.body));
@@ -106,7 +124,7 @@ pub fn run(
             .files
             .add(file("-envelope"), link.envelope_table().csv()?);
     }
-    let (pictures, left_out) = figures::run(scene, &record, &way, command);
+    let (pictures, left_out) = figures::run(scene, &record, way, command);
     let total = parts + pictures.len() + 1;
     let drawn = draw(&pictures, total, progress)?;
     for (figure, bytes) in pictures.iter().zip(drawn) {
@@ -114,7 +132,7 @@ pub fn run(
             .files
             .add(name(&format!("-{}.png", figure.name)), bytes);
     }
-    let film = figures::film(scene, &record, &way);
+    let film = figures::film(scene, &record, way);
     outcome.files.add(name("-mechanism.gif"), film.gif()?);
     progress(Step {
         total,

@@ -133,6 +133,8 @@ impl<'a> Probe<'a> {
             q,
             q_dot,
             q_ddot,
+            given,
+            ..
         } = sample;
         if let Some((whole, pose)) = &mut self.whole {
             whole.place(q, pose)?;
@@ -143,7 +145,10 @@ impl<'a> Probe<'a> {
         match self.command {
             Command::Kinematics => plan.place(q, &mut work.pose)?,
             Command::Statics => self.model.statics(t, q, work, actions)?,
-            Command::Kinetostatics => {
+            Command::Kinetostatics | Command::Simulate => {
+                for &(load, magnitude) in given {
+                    work.give(load, magnitude);
+                }
                 self.model
                     .kinetostatics(t, q, q_dot, q_ddot, work, actions)?;
             }
@@ -240,6 +245,7 @@ impl<'a> Probe<'a> {
             Quantity::Balance(Term::Energy) => self.power.energy,
             Quantity::Load(k) => self.load(k),
             Quantity::LoadPower(k) => self.powers[k],
+            Quantity::Told(k) => sample.told[k],
         }
     }
 
@@ -318,8 +324,15 @@ pub(crate) fn follow(
     };
     // A sweep of statics has no time.
     let timed = way.swept().is_none() || command != Command::Statics;
+    let told = way.told().iter().enumerate().map(|(k, told)| Column {
+        name: told.name.clone(),
+        unit: told.unit,
+        quantity: Quantity::Told(k),
+        meaning: told.meaning.clone(),
+    });
     let columns: Vec<Column> = Columns::all(scene, model, timed)
         .into_iter()
+        .chain(told)
         .filter(|c| c.is_of(command) && is_placed(c))
         .filter(|c| !c.is_optional() || is_named(scene, c))
         .collect();
@@ -386,7 +399,8 @@ pub(crate) fn follow(
         for link in &mut record.links {
             link.take(k, &probe.ledger, model, &probe.work, &probe.acts);
         }
-        if command == Command::Kinetostatics && probe.power.scale > 0.0 {
+        if matches!(command, Command::Kinetostatics | Command::Simulate) && probe.power.scale > 0.0
+        {
             let residual = probe.power.residual().abs() / probe.power.scale;
             record.residual = record.residual.max(residual);
         }

@@ -25,6 +25,18 @@ pub(crate) struct Sample {
     pub(crate) q: Vec<f64>,
     pub(crate) q_dot: Vec<f64>,
     pub(crate) q_ddot: Vec<f64>,
+    /// Of a free motion: the magnitude of each drive, by its load.
+    pub(crate) given: Vec<(usize, f64)>,
+    /// Of a free motion: what its integration tells, by [`Told`].
+    pub(crate) told: Vec<f64>,
+}
+
+/// What an integration tells beside the motion: name, unit and meaning of a column.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Told {
+    pub(crate) name: String,
+    pub(crate) unit: &'static str,
+    pub(crate) meaning: String,
 }
 
 /// A way of the actuators, as a function of the part of it that is done.
@@ -46,6 +58,11 @@ pub(crate) struct Way<'a> {
 #[derive(Debug, Clone)]
 enum Kind<'a> {
     Prescribed(&'a Prescribed),
+    /// A free motion, sampled.
+    Free {
+        samples: Vec<Sample>,
+        told: Vec<Told>,
+    },
     Swept {
         actuator: usize,
         from: f64,
@@ -140,6 +157,27 @@ impl<'a> Way<'a> {
         })
     }
 
+    /// A free motion that was followed already: two samples or more.
+    pub(crate) fn free(plan: &Plan, samples: Vec<Sample>, told: Vec<Told>) -> Self {
+        let last = samples.last().map_or(0.0, |s| s.t);
+        Self {
+            points: samples.len(),
+            words: format!("a free motion of {} s", digits(last, 6)),
+            kind: Kind::Free { samples, told },
+            place: Place::Motion,
+            at_limits: [false; 2],
+            period: plan.range().period(),
+        }
+    }
+
+    /// The columns that its integration tells.
+    pub(crate) fn told(&self) -> &[Told] {
+        match &self.kind {
+            Kind::Free { told, .. } => told,
+            Kind::Prescribed(_) | Kind::Swept { .. } => &[],
+        }
+    }
+
     /// Refuses a law that has no finite value, speed or acceleration at one of the points, turns
     /// too far to keep its digits, or jumps between two points.
     pub(crate) fn check(&self, scene: &Scene) -> Result<(), StudyError> {
@@ -203,7 +241,14 @@ impl<'a> Way<'a> {
                     q: derivative(0),
                     q_dot: derivative(1),
                     q_ddot: derivative(2),
+                    given: Vec::new(),
+                    told: Vec::new(),
                 }
+            }
+            Kind::Free { samples, .. } => {
+                let last = samples.len().saturating_sub(1);
+                let k = (part * last as f64).round() as usize;
+                samples[k.min(last)].clone()
             }
             Kind::Swept {
                 actuator,
@@ -218,6 +263,8 @@ impl<'a> Way<'a> {
                     q: held.clone(),
                     q_dot: rest.clone(),
                     q_ddot: rest,
+                    given: Vec::new(),
+                    told: Vec::new(),
                 };
                 // Both ends to the last digit.
                 sample.q[*actuator] = from * (1.0 - part) + to * part;
@@ -235,7 +282,7 @@ impl<'a> Way<'a> {
     /// The actuator that is swept; none in a prescribed motion.
     pub(crate) fn swept(&self) -> Option<usize> {
         match &self.kind {
-            Kind::Prescribed(_) => None,
+            Kind::Prescribed(_) | Kind::Free { .. } => None,
             Kind::Swept { actuator, .. } => Some(*actuator),
         }
     }
