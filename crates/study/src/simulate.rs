@@ -87,7 +87,8 @@ pub fn simulate(
     );
     let trace = trace.map_err(|e| explain(&e))?;
     let (samples, told) = run.samples(&trace).map_err(|e| explain(&e))?;
-    let way = Way::free(run.shown.plan(), samples, told);
+    let led = motion.laws.iter().map(Option::is_some).collect();
+    let way = Way::free(run.shown.plan(), samples, told, led);
     let mut followed = write_up(&run.scene, &run.shown, &way, Command::Simulate, progress)?;
     let outcome = &mut followed.outcome;
     if !trace.occurrences.is_empty() {

@@ -161,7 +161,7 @@ impl<'a> Document<'a> {
     }
 
     fn balance(&self) -> String {
-        if self.command != Command::Kinetostatics {
+        if !matches!(self.command, Command::Kinetostatics | Command::Simulate) {
             return String::new();
         }
         let residual = self.record.residual;

@@ -334,6 +334,7 @@ pub(crate) fn follow(
         .into_iter()
         .chain(told)
         .filter(|c| c.is_of(command) && is_placed(c))
+        .filter(|c| !matches!(c.quantity, Quantity::Action(i) if !way.acts(i)))
         .filter(|c| !c.is_optional() || is_named(scene, c))
         .collect();
     way.check(scene)?;

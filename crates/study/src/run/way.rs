@@ -62,6 +62,8 @@ enum Kind<'a> {
     Free {
         samples: Vec<Sample>,
         told: Vec<Told>,
+        /// By actuator: whether it is led by a law.
+        led: Vec<bool>,
     },
     Swept {
         actuator: usize,
@@ -158,15 +160,23 @@ impl<'a> Way<'a> {
     }
 
     /// A free motion that was followed already: two samples or more.
-    pub(crate) fn free(plan: &Plan, samples: Vec<Sample>, told: Vec<Told>) -> Self {
+    pub(crate) fn free(plan: &Plan, samples: Vec<Sample>, told: Vec<Told>, led: Vec<bool>) -> Self {
         let last = samples.last().map_or(0.0, |s| s.t);
         Self {
             points: samples.len(),
             words: format!("a free motion of {} s", digits(last, 6)),
-            kind: Kind::Free { samples, told },
+            kind: Kind::Free { samples, told, led },
             place: Place::Motion,
             at_limits: [false; 2],
             period: plan.range().period(),
+        }
+    }
+
+    /// Whether an actuator acts: in a free motion only those that are led do.
+    pub(crate) fn acts(&self, actuator: usize) -> bool {
+        match &self.kind {
+            Kind::Free { led, .. } => led[actuator],
+            Kind::Prescribed(_) | Kind::Swept { .. } => true,
         }
     }
 

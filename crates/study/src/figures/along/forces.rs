@@ -109,7 +109,7 @@ impl Sheet<'_> {
         let words =
             "What joints, actuators and loads do to the frame, with the moment about its origin.";
         let title = match self.command {
-            Command::Kinetostatics => "Shaking force and moment",
+            Command::Kinetostatics | Command::Simulate => "Shaking force and moment",
             _ => "Force and moment on the frame",
         };
         Some(self.figure(

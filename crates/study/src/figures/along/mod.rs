@@ -1,6 +1,7 @@
 //! A mechanism along its way: motion, actions, reactions, power, inner forces, and the film.
 
 mod forces;
+mod free;
 mod motion;
 
 use super::skeleton::{Frame, Skeleton, place};
@@ -50,11 +51,14 @@ pub(crate) fn run(
     figures.extend(sheet.paths());
     figures.extend(sheet.lengths());
     figures.extend(sheet.transmission());
+    figures.extend(sheet.coordinates());
     figures.extend(sheet.actions());
     let (reactions, note) = sheet.reactions();
     figures.extend(reactions);
     figures.extend(sheet.frame());
     figures.extend(sheet.power());
+    figures.extend(sheet.energies());
+    figures.extend(sheet.phases());
     figures.extend(record.links.iter().filter_map(|link| sheet.link(link)));
     (figures, note)
 }
