@@ -12,6 +12,7 @@
 //! and differ in the columns that they compute.
 
 mod calibrate;
+mod channels;
 mod check;
 mod claims;
 mod dossier;

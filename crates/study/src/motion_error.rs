@@ -4,6 +4,7 @@ use crate::error::{Labels, StudyError, joint_labels, names};
 use crate::words::{digits, number};
 use dwell_dynamics::DynamicsError;
 use dwell_geometry::{ActuatorId, BodyId, PlaceError, Plan};
+use dwell_kinetostatics::KinetostaticsError;
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
 
@@ -125,6 +126,7 @@ pub(crate) fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) 
             Place::Length,
             "until there",
         ),
+        DynamicsError::Load(load) => explain_load(scene, *load),
         DynamicsError::TooShort => motion(
             "the motion is too short to compute: its end is its start, to rounding".to_owned(),
             "give it more time",
@@ -144,6 +146,33 @@ pub(crate) fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) 
             "this motion",
         ),
     }
+}
+
+/// Explains a load that cannot act.
+fn explain_load(scene: &Scene, error: KinetostaticsError) -> StudyError {
+    let load = error.load().unwrap_or(0);
+    let name = scene.loads.get(load).map_or("", |l| l.name.as_str());
+    let (message, help, label) = match error {
+        KinetostaticsError::Jams { .. } => (
+            "friction jams the mechanism: its effective inertia is no longer positive, so that no \
+             single motion balances"
+                .to_owned(),
+            "take a smaller coefficient, or push where the joints bear less",
+            "with the other frictions",
+        ),
+        KinetostaticsError::NoDirection { .. } => (
+            format!("load `{name}` has no direction: its two points meet"),
+            "keep them apart; a spring of free length 0 needs no direction",
+            "between two points",
+        ),
+        _ => (
+            format!("the magnitude of load `{name}` is not finite"),
+            "check its expression there: a root, a logarithm or a division",
+            "not a finite number",
+        ),
+    };
+    let labels = [(Place::Load(load), label.to_owned())];
+    scene.error(message, Some(help.to_owned()), &labels).into()
 }
 
 /// A time of two digits before `t`, if that leaves any.

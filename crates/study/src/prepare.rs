@@ -42,7 +42,7 @@ pub(crate) fn shared(scene: &Scene, plan: &Plan) -> HashSet<Reaction> {
 }
 
 /// A model of a scene for the requested reactions that the loads determine.
-fn determined(scene: &Scene) -> Result<Model, StudyError> {
+pub(crate) fn determined(scene: &Scene) -> Result<Model, StudyError> {
     let requested = &scene.requests.reactions;
     let model = compiled(scene, requested)?;
     let shared = shared(scene, model.plan());

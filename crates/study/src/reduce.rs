@@ -1,5 +1,6 @@
 //! `dwell reduce`: the reduced parameters over the range, as a table and as figures.
 
+use crate::channels::Channels;
 use crate::error::StudyError;
 use crate::figures;
 use crate::motion_error::explain_place;
@@ -7,7 +8,7 @@ use crate::outcome::Outcome;
 use crate::prepare::Prepared;
 use crate::words::digits;
 use dwell_kinetostatics::{Coefficients, Reduced};
-use dwell_report::{Column, Figure, Table, png};
+use dwell_report::{Axis, Column, Figure, Table, png};
 use dwell_scene::Scene;
 
 /// Positions of the table: half a degree over a turn.
@@ -79,9 +80,22 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
     let mut figures: Vec<Figure> = vec![figures::reduced(&prepared, &sweep)];
     let (coefficients, note) = figures::coefficients(&prepared, &sweep);
     figures.extend(coefficients);
+    let channels = Channels::new(&prepared, &sweep.q)?;
+    let mut table = sweep.table(&prepared);
+    if let Some(channels) = &channels {
+        let x = Axis::degrees(figures::coordinate_label(&prepared));
+        figures.push(channels.figure(&prepared, &sweep.q, &x));
+        for (column, values) in channels.columns(&prepared) {
+            table.columns.push(column);
+            for (row, value) in table.rows.iter_mut().zip(values) {
+                row.push(value);
+            }
+        }
+    }
     let mut outcome = Outcome::default();
-    let table = format!("{}-reduced.csv", scene.name);
-    outcome.files.add(table, sweep.table(&prepared).csv()?);
+    let name = |rest: &str| format!("{}-reduced.{rest}", scene.name);
+    outcome.files.add(name("csv"), table.csv()?);
+    outcome.files.add(name("npz"), table.npz()?);
     for figure in &figures {
         let name = format!("{}-{}.png", scene.name, figure.name);
         outcome.files.add(name, png(figure)?);

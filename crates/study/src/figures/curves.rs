@@ -17,7 +17,7 @@ fn points(sweep: &Sweep, of: impl Fn(&Coefficients) -> f64) -> Vec<[f64; 2]> {
 
 /// The extent of the curves that is worth showing. Towards a limit position everything grows
 /// without bound, so there the extent is that of the inner nine tenths of the range.
-fn extent(prepared: &Prepared<'_>, curves: &[Series]) -> Option<[f64; 2]> {
+pub(crate) fn extent(prepared: &Prepared<'_>, curves: &[Series]) -> Option<[f64; 2]> {
     if prepared.model.range() == Range::Full {
         return None;
     }

@@ -12,7 +12,7 @@ mod steps;
 
 pub(crate) use along::{film, run};
 pub(crate) use cost::{cost, drift};
-pub(crate) use curves::{coefficients, reduced};
+pub(crate) use curves::{coefficients, extent, reduced};
 pub(crate) use digits::digits;
 pub(crate) use mechanism::{Dwell, mechanism};
 pub(crate) use motion::history;

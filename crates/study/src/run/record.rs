@@ -60,6 +60,14 @@ pub(crate) fn model(scene: &Scene) -> Result<Model, StudyError> {
     let reactions = scene.mechanism.reactions();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &reactions)
         .map_err(|e| explain_model(scene, &e))?;
+    with_loads(scene, model)
+}
+
+/// A model under the loads of its scene.
+///
+/// # Errors
+/// [`StudyError::Scene`] where a load does not fit it.
+pub(crate) fn with_loads(scene: &Scene, model: Model) -> Result<Model, StudyError> {
     let loads = scene.loads.clone();
     model.with_loads(&scene.mechanism, loads).map_err(|e| {
         let labels = [(Place::Load(e.load), "this load".to_owned())];
