@@ -332,3 +332,120 @@ angle = ["ground", "wheel"]
         end[1]
     );
 }
+
+/// Every action and every reaction is one line: M q̈ + (what speeds alone make) + Σ c_ℓ F_ℓ, on every
+/// case with loads, whatever its number of coordinates; and w of what has a potential is its slope.
+#[test]
+fn reactions_are_the_sum_of_their_channels() {
+    let mut kinds = std::collections::HashSet::new();
+    for case in [
+        "andrews",
+        "boom",
+        "cam",
+        "four-bar",
+        "five-bar",
+        "massless-coupler",
+        "rack-pinion",
+        "whitworth",
+        "watt-six-bar",
+    ] {
+        let scene = scene(case);
+        let start = Start {
+            q: scene.assembly.start.clone(),
+            rough: scene.assembly.rough.clone(),
+        };
+        let all = scene.mechanism.reactions();
+        let bare = Model::new(&scene.mechanism, &scene.masses, &start, &all).expect("a model");
+        let mut empty = (bare.workspace::<f64>(), bare.actions::<f64>());
+        let model = bare
+            .clone()
+            .with_loads(&scene.mechanism, scene.loads.clone())
+            .expect("loads");
+        let n = model.plan().actuators();
+        let q: Vec<f64> = start.q.iter().map(|q| q + 1e-3).collect();
+        let q_dot: Vec<f64> = (0..n).map(|i| 1.3 - 0.4 * i as f64).collect();
+        let q_ddot: Vec<f64> = (0..n).map(|i| -2.1 + 0.9 * i as f64).collect();
+        let t = 0.01;
+        let (mut work, mut total) = (model.workspace(), model.actions());
+        model
+            .kinetostatics(t, &q, &q_dot, &q_ddot, &mut work, &mut total)
+            .expect("a state");
+        let loads = work.loads().magnitude.clone();
+        let resisted: Vec<f64> = model
+            .loads()
+            .iter()
+            .zip(&loads)
+            .map(|(load, &f)| match load.kind {
+                LoadKind::Damper { bodies, points } => {
+                    let between = work.states().separation(bodies, points);
+                    f * between.direction.expect("a line").dot(between.rate)
+                }
+                LoadKind::TorsionDamper { bodies } => f * work.states().angle(bodies)[1],
+                _ => f,
+            })
+            .collect();
+        // What speeds alone make, without loads.
+        let rest = vec![0.0; n];
+        bare.kinetostatics(t, &q, &q_dot, &rest, &mut empty.0, &mut empty.1)
+            .expect("a state");
+        let mut sum = empty.1.clone();
+        let mut scale =
+            [&sum.tau, &sum.reactions].map(|v| v.iter().map(|x| x.abs()).fold(0.0, f64::max));
+        let mut run = model.actions();
+        let mut add = |run: &dwell_kinetostatics::Actions<f64>, times: f64| {
+            let pairs = [
+                (&mut sum.tau, &run.tau),
+                (&mut sum.reactions, &run.reactions),
+            ];
+            for ((sum, run), scale) in pairs.into_iter().zip(&mut scale) {
+                for (sum, value) in sum.iter_mut().zip(run) {
+                    *sum += value * times;
+                    *scale = scale.max((value * times).abs());
+                }
+            }
+        };
+        model.enter(t, &q, &q_dot, &mut work).expect("a state");
+        for (i, &q_ddot) in q_ddot.iter().enumerate() {
+            model.inertial(i, &mut work, &mut run);
+            add(&run, q_ddot);
+        }
+        for (load, &f) in resisted.iter().enumerate() {
+            model
+                .channel(load, &mut work, &mut run)
+                .expect("a direction");
+            add(&run, f);
+            kinds.insert(std::mem::discriminant(&model.loads()[load].kind));
+            if n == 1 && model.conservative(load) {
+                let h = 1e-4;
+                let mut potential = |x: f64| {
+                    model
+                        .enter(t, &[q[0] + x], &q_dot, &mut work)
+                        .expect("a state");
+                    model.potential(load, &work).expect("a potential")
+                };
+                let slope = (8.0 * (potential(h) - potential(-h))
+                    - (potential(2.0 * h) - potential(-2.0 * h)))
+                    / (12.0 * h);
+                let w = -run.tau[0] * f;
+                let size = w.abs().max(1e-3 * potential(0.0).abs());
+                model.enter(t, &q, &q_dot, &mut work).expect("a state");
+                // Rounding of V over h, and h⁴ times its fifth derivative.
+                assert!(
+                    (slope + w).abs() < 1e-8 * size.max(1e-6),
+                    "{case} {load}: {slope} {w}"
+                );
+            }
+        }
+        let pairs = [(&sum.tau, &total.tau), (&sum.reactions, &total.reactions)];
+        for ((sum, total), scale) in pairs.into_iter().zip(scale) {
+            for (k, (sum, total)) in sum.iter().zip(total).enumerate() {
+                // Rounding of some dozens of terms.
+                assert!(
+                    (sum - total).abs() <= 1e-12 * scale,
+                    "{case} {k}: {sum} {total}"
+                );
+            }
+        }
+    }
+    assert!(kinds.len() >= 5, "only {} kinds of load", kinds.len());
+}
