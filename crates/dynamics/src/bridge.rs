@@ -1,0 +1,569 @@
+//! Change points crossed on their branch: a parallelogram passing its flat position.
+//!
+//! Dyad by dyad, ½m′/m errs there as N·eps/|sin θ|³ (N dyads, θ from the flat position), though the branch
+//! itself is smooth. So poses from both sides of a window, where that exceeds the tolerance, are fitted by
+//! polynomials orthogonal on their nodes, and the window is bridged:
+//!
+//! ```text
+//! m = Σ m v² + I ω²,  ½m′ = Σ m v·a + I ω α,  Q = Σ F·v     at q̇ = 1, q̈ = 0             (1)
+//! ```
+//!
+//! There is no multiplier in (1). Reactions that the flat position determines are fitted across it too,
+//! at the state's own speed and acceleration; of the others, which grow beyond all bounds, there is none.
+
+use crate::error::DynamicsError;
+use crate::machine::{Machine, MachineWork};
+use dwell_geometry::measure::BodyStates;
+use dwell_geometry::mobility::mobility_here;
+use dwell_geometry::{Mechanism, Motion, PlaceError, Plan, Pose, Reaction, Scalar};
+use dwell_kinetostatics::{Actions, Model, Workspace};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Nodes of a fit on each side of the window, and its highest degree.
+const NODES: usize = 24;
+const HIGHEST: usize = 20;
+/// The same of the reactions.
+const REACTION_NODES: usize = 8;
+const REACTION_DEGREE: usize = 8;
+/// Degree of the fit from one side that leads to the other: it need only tell the branches apart.
+const AHEAD_DEGREE: usize = 5;
+/// Half the widest window, rad, and the tightest tolerance that one is made for.
+const WIDEST: f64 = 0.2;
+const TIGHTEST: f64 = 1e-12;
+/// How far from the change point poses are fitted, in parts of a radian: the best is taken.
+const REACHES: [f64; 5] = [0.15, 0.3, 0.5, 0.8, 1.2];
+/// Largest gap between a bridge and the plan at its ends, in first and second derivatives.
+const MEETS: f64 = 1e-6;
+
+/// Why a change point cannot be crossed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BridgeError {
+    /// Friction depends on reactions that grow beyond all bounds there.
+    #[error("friction depends on reactions that are not determined at the change point")]
+    Friction,
+    /// Whole turns are counted in it.
+    #[error("a mechanism with gears or related coordinates is not carried through a change point")]
+    Relations,
+    /// There is no pose next to it.
+    #[error(transparent)]
+    Place(#[from] PlaceError),
+    /// What comes on the other side does not go together.
+    #[error("the branch cannot be put together behind the change point")]
+    NotBehind,
+    /// The branch is not smooth.
+    #[error("the branch is not smooth there: its fit is {gap:.1e} off the plan")]
+    NotSmooth {
+        /// Largest gap in the derivatives of the angles.
+        gap: f64,
+    },
+}
+
+/// The way across one change point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bridge {
+    /// The change point, rad or m.
+    pub center: f64,
+    /// Half the window in which the fit takes the place of the plan, rad or m.
+    pub half: f64,
+    /// How far the fit is good to either side, rad or m.
+    pub reach: f64,
+    /// How far it is off the plan at the window's ends, in the first two derivatives of the angles (and
+    /// travels over the mechanism's size) by the coordinate.
+    pub gap: f64,
+    /// Degrees of freedom at the change point; elsewhere there is one.
+    pub mobility: usize,
+    /// The reactions that the loads do not determine there.
+    pub not_unique: Vec<Reaction>,
+    /// The branch before and behind, by the coordinate, with all the reactions that are shown.
+    pub(crate) sides: [Model; 2],
+    angular: bool,
+    fit: Fit,
+}
+
+/// The part of the coordinate on which a machine goes by a bridge.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Span {
+    pub(crate) bridge: Arc<Bridge>,
+    /// From and to, from the change point.
+    pub(crate) reach: [f64; 2],
+}
+
+/// Half the window for a tolerance, rad: where N·eps/|sin θ|³ exceeds it.
+pub(crate) fn half_window(plan: &Plan, tolerance: f64) -> f64 {
+    let groups = plan.group_kinds().len() as f64;
+    let tolerance = tolerance.max(TIGHTEST);
+    (groups * f64::EPSILON / tolerance).cbrt().min(WIDEST)
+}
+
+/// The orientations of all frames and the travels of all slides as functions of one coordinate.
+#[derive(Debug, Clone, PartialEq)]
+struct Fit {
+    basis: Basis,
+    /// By function: its coefficients.
+    rows: Vec<Vec<f64>>,
+}
+
+/// Polynomials orthogonal on some nodes, by their recurrence
+/// pₖ₊₁ = (x/s − αₖ) pₖ − βₖ pₖ₋₁ (Forsythe 1957).
+#[derive(Debug, Clone, PartialEq)]
+struct Basis {
+    scale: f64,
+    alpha: Vec<f64>,
+    beta: Vec<f64>,
+}
+
+impl Basis {
+    /// The basis on some nodes, with the values of each polynomial there.
+    fn new(nodes: &[f64], scale: f64, degree: usize) -> (Self, Vec<Vec<f64>>) {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let x: Vec<f64> = nodes.iter().map(|x| x / scale).collect();
+        let mut all = vec![vec![1.0; x.len()]];
+        let (mut alpha, mut beta) = (Vec::new(), Vec::new());
+        let mut before = 0.0;
+        for k in 0..degree.min(x.len().saturating_sub(1)) {
+            let last = &all[k];
+            let moved: Vec<f64> = last.iter().zip(&x).map(|(p, x)| p * x).collect();
+            let square = dot(last, last);
+            alpha.push(dot(&moved, last) / square);
+            beta.push(if k == 0 { 0.0 } else { square / before });
+            before = square;
+            let next = (0..x.len()).map(|i| {
+                let earlier = if k == 0 { 0.0 } else { all[k - 1][i] };
+                (x[i] - alpha[k]) * last[i] - beta[k] * earlier
+            });
+            let next = next.collect();
+            all.push(next);
+        }
+        (Self { scale, alpha, beta }, all)
+    }
+
+    /// The polynomials with their first two derivatives.
+    fn at<T: Scalar>(&self, x: T, out: &mut Vec<[T; 3]>) {
+        let (zero, one) = (T::lift(0.0), T::lift(1.0));
+        let by = T::lift(1.0 / self.scale);
+        let x = x * by;
+        out.clear();
+        out.push([one, zero, zero]);
+        for (k, (&alpha, &beta)) in self.alpha.iter().zip(&self.beta).enumerate() {
+            let last = out[k];
+            let early = if k == 0 { [zero; 3] } else { out[k - 1] };
+            let (x, beta) = (x - T::lift(alpha), T::lift(beta));
+            out.push([
+                x * last[0] - beta * early[0],
+                x * last[1] + last[0] - beta * early[1],
+                x * last[2] + last[1] + last[1] - beta * early[2],
+            ]);
+        }
+        for p in out {
+            p[1] = p[1] * by;
+            p[2] = p[2] * by * by;
+        }
+    }
+}
+
+impl Fit {
+    /// Fits each function, no higher than its values on the nodes are known.
+    fn new(nodes: &[f64], samples: &[Vec<f64>], scale: f64, degree: usize) -> Self {
+        let (basis, all) = Basis::new(nodes, scale, degree);
+        let functions = samples.first().map_or(0, Vec::len);
+        let row = |f: usize| {
+            let mut rest: Vec<f64> = samples.iter().map(|sample| sample[f]).collect();
+            let mut row = Vec::with_capacity(all.len());
+            let mut left = Vec::with_capacity(all.len());
+            for p in &all {
+                let square: f64 = p.iter().map(|p| p * p).sum();
+                let along: f64 = p.iter().zip(&rest).map(|(p, r)| p * r).sum();
+                let c = along / square;
+                for (rest, p) in rest.iter_mut().zip(p) {
+                    *rest -= c * p;
+                }
+                row.push(c);
+                left.push(rest.iter().map(|r| r * r).sum::<f64>());
+            }
+            // What brings the rest down no further is rounding.
+            let least = left.iter().copied().fold(f64::INFINITY, f64::min);
+            let enough = left.iter().position(|&l| l <= 4.0 * least);
+            row.truncate(enough.map_or(row.len(), |e| e + 1));
+            row
+        };
+        Self {
+            rows: (0..functions).map(row).collect(),
+            basis,
+        }
+    }
+
+    /// Values and first two derivatives of all functions.
+    fn at<T: Scalar>(&self, x: T, powers: &mut Vec<[T; 3]>, out: &mut [[T; 3]]) {
+        self.basis.at(x, powers);
+        for (out, row) in out.iter_mut().zip(&self.rows) {
+            *out = [T::lift(0.0); 3];
+            for (p, &c) in powers.iter().zip(row) {
+                for (out, &p) in out.iter_mut().zip(p) {
+                    *out += p * T::lift(c);
+                }
+            }
+        }
+    }
+}
+
+/// Nodes between two distances, dense at both, on one side of the change point.
+fn nodes(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
+    (0..count).map(move |i| {
+        let part = 0.5 - 0.5 * ((i as f64 + 0.5) * PI / count as f64).cos();
+        from + (to - from) * part
+    })
+}
+
+/// Angles of the frames, each next to the one before, and travels of the slides.
+fn sample(
+    plan: &Plan,
+    q: f64,
+    pose: &mut Pose<f64>,
+    last: Option<&Vec<f64>>,
+) -> Result<Vec<f64>, PlaceError> {
+    plan.place(&[q], pose)?;
+    let angle = |(f, turn): (usize, &dwell_geometry::Vec2)| {
+        let angle = turn.angle();
+        let near = last.map_or(angle, |last| last[f]);
+        angle + TAU * ((near - angle) / TAU).round()
+    };
+    let mut found: Vec<f64> = pose.turn.iter().enumerate().map(angle).collect();
+    found.extend_from_slice(&pose.slide);
+    Ok(found)
+}
+
+/// The angles of all bodies at a distance `x` behind a change point at `center`, from the poses between
+/// the distances `from` and `to` before it; `upwards` if it lies above them.
+pub(crate) fn ahead(
+    model: &Model,
+    center: f64,
+    upwards: bool,
+    [from, to]: [f64; 2],
+    x: f64,
+) -> Result<Vec<f64>, BridgeError> {
+    let plan = model.plan();
+    let way = if upwards { 1.0 } else { -1.0 };
+    let mut pose = plan.pose();
+    let nodes: Vec<f64> = nodes(from, to, NODES).map(|d| -way * d).collect();
+    let mut samples: Vec<Vec<f64>> = Vec::new();
+    for &node in &nodes {
+        samples.push(sample(plan, center + node, &mut pose, samples.last())?);
+    }
+    let fit = Fit::new(&nodes, &samples, to, AHEAD_DEGREE);
+    let mut values = vec![[0.0; 3]; fit.rows.len()];
+    fit.at(way * x, &mut Vec::new(), &mut values);
+    let mut own = CrossWork::new(model);
+    own.values = values;
+    own.impose(plan, &[center + way * x], &mut pose);
+    own.moves.fill(plan, &pose, &own.trial);
+    let bodies = (0..own.moves.len()).map(dwell_geometry::BodyId);
+    Ok(bodies.map(|b| own.moves.body(b).turn.angle()).collect())
+}
+
+impl Bridge {
+    /// The bridge between the branch below and the one above a change point, with half its window; `unit`
+    /// is 1 for an angle and the mechanism's size for a length.
+    ///
+    /// # Errors
+    /// [`BridgeError`] where the branch is not smooth enough.
+    pub(crate) fn new(
+        mechanism: &Mechanism,
+        sides: [&Model; 2],
+        center: f64,
+        [half, unit]: [f64; 2],
+    ) -> Result<Self, BridgeError> {
+        let room = |model: &Model| match model.plan().range().limits() {
+            Some((from, to)) => 0.45 * (to - from),
+            None => f64::INFINITY,
+        };
+        let most = room(sides[0]).min(room(sides[1]));
+        let reaches = REACHES.map(|reach| (reach * unit).max(1.5 * half).min(most));
+        let mut best: Option<(f64, f64, Fit)> = None;
+        for reach in reaches {
+            let fit = Self::fit(sides, center, half, reach)?;
+            let gap = gap(&fit, sides, center, [half, unit])?;
+            if best.as_ref().is_none_or(|(least, ..)| gap < *least) {
+                best = Some((gap, reach, fit));
+            }
+        }
+        let Some((gap, reach, fit)) = best else {
+            return Err(BridgeError::NotSmooth { gap: f64::NAN });
+        };
+        if gap.is_nan() || gap > MEETS {
+            return Err(BridgeError::NotSmooth { gap });
+        }
+        let mut bridge = Self {
+            center,
+            half,
+            reach,
+            gap,
+            mobility: 1,
+            not_unique: Vec::new(),
+            sides: sides.map(Clone::clone),
+            angular: sides[0].plan().is_angle(0),
+            fit,
+        };
+        bridge.look_at_center(mechanism);
+        Ok(bridge)
+    }
+
+    fn fit(
+        sides: [&Model; 2],
+        center: f64,
+        half: f64,
+        reach: f64,
+    ) -> Result<Fit, BridgeError> {
+        let mut below: Vec<f64> = nodes(half, reach, NODES).map(|d| -d).collect();
+        below.reverse();
+        let above: Vec<f64> = nodes(half, reach, NODES).collect();
+        let mut samples: Vec<Vec<f64>> = Vec::with_capacity(2 * NODES);
+        for (model, nodes) in sides.iter().zip([&below, &above]) {
+            let mut pose = model.plan().pose();
+            for &node in nodes {
+                let found = sample(model.plan(), center + node, &mut pose, samples.last())?;
+                samples.push(found);
+            }
+        }
+        let nodes = [below, above].concat();
+        Ok(Fit::new(&nodes, &samples, reach, HIGHEST))
+    }
+
+    /// What moves at the change point, and which reactions are determined there.
+    fn look_at_center(&mut self, mechanism: &Mechanism) {
+        let plan = self.sides[0].plan();
+        let mut own = CrossWork::new(&self.sides[0]);
+        let mut pose = plan.pose();
+        self.fit.at(0.0, &mut own.powers, &mut own.values);
+        own.impose(plan, &[self.center], &mut pose);
+        own.moves.fill(plan, &pose, &own.trial);
+        if let Some(here) = mobility_here(mechanism, &own.moves) {
+            self.mobility = here.freedom();
+            let all = mechanism.reactions().into_iter().zip(&here.unique);
+            self.not_unique = all.filter(|(_, unique)| !**unique).map(|(r, _)| r).collect();
+        }
+    }
+
+    /// How far a coordinate is from the change point, whole turns aside.
+    pub(crate) fn offset(&self, q: f64) -> f64 {
+        q - self.near(q)
+    }
+
+    /// The change point nearest to a coordinate.
+    fn near(&self, q: f64) -> f64 {
+        let turns = if self.angular {
+            TAU * ((q - self.center) / TAU).round()
+        } else {
+            0.0
+        };
+        self.center + turns
+    }
+
+    /// As [`Machine::show`] within the window. A reaction that is not determined at the change point is
+    /// not a number.
+    pub(crate) fn show(
+        &self,
+        shown: &Model,
+        t: f64,
+        work: &MachineWork<f64>,
+        all: &mut Workspace<f64>,
+        actions: &mut Actions<f64>,
+    ) -> Result<(), DynamicsError> {
+        // The bodies and loads are as the machine has them.
+        all.pose.clone_from(&work.inner.pose);
+        all.motion.clone_from(&work.inner.motion);
+        shown.enter_placed(t, &work.q_dot, all)?;
+        for (load, &magnitude) in work.inner.loads().magnitude.iter().enumerate() {
+            all.give(load, magnitude);
+        }
+        shown.push(all)?;
+        actions.tau.fill(0.0);
+        let q = work.q.first().copied().unwrap_or(self.center);
+        let near = self.near(q);
+        let (mut at, mut samples) = (Vec::new(), Vec::new());
+        for (model, way) in self.sides.iter().zip([-1.0, 1.0]) {
+            let mut there = model.workspace();
+            let mut found = model.actions();
+            for d in nodes(self.half, self.reach, REACTION_NODES) {
+                for (load, one) in model.loads().iter().enumerate() {
+                    if one.magnitude == dwell_kinetostatics::Magnitude::Given {
+                        there.give(load, work.inner.loads().magnitude[load]);
+                    }
+                }
+                let q = [near + way * d];
+                let rates = (&work.q_dot, &work.q_ddot);
+                model.kinetostatics(t, &q, rates.0, rates.1, &mut there, &mut found)?;
+                at.push(way * d);
+                samples.push(found.reactions.clone());
+            }
+        }
+        let fit = Fit::new(&at, &samples, self.reach, REACTION_DEGREE);
+        let mut values = vec![[0.0; 3]; fit.rows.len()];
+        fit.at(q - near, &mut Vec::new(), &mut values);
+        for (own, reaction) in actions.reactions.iter_mut().zip(shown.reactions()) {
+            let of_sides = self.sides[0].reactions().iter().position(|r| r == reaction);
+            let determined = !self.not_unique.contains(reaction);
+            *own = match of_sides.filter(|_| determined) {
+                Some(k) => values[k][0],
+                None => f64::NAN,
+            };
+        }
+        Ok(())
+    }
+}
+
+/// The largest gap between a fit and the plans at the window's ends, in first and second derivatives.
+fn gap(
+    fit: &Fit,
+    sides: [&Model; 2],
+    center: f64,
+    [half, unit]: [f64; 2],
+) -> Result<f64, BridgeError> {
+    let mut values = vec![[0.0; 3]; fit.rows.len()];
+    let mut largest = 0.0_f64;
+    for (model, way) in sides.iter().zip([-1.0, 1.0]) {
+        let plan = model.plan();
+        let (mut pose, mut motion) = (plan.pose(), plan.motion());
+        plan.place(&[center + way * half], &mut pose)?;
+        plan.speeds(&pose, &[1.0], &mut motion);
+        plan.accelerations(&pose, &[0.0], &mut motion);
+        fit.at(way * half, &mut Vec::new(), &mut values);
+        let (frames, slides) = values.split_at(motion.turn.len());
+        let turning = frames.iter().zip(motion.turn.iter().zip(&motion.turn_rate));
+        for ([_, first, second], (speed, rate)) in turning {
+            let off = [(first - speed) * unit, (second - rate) * unit * unit];
+            largest = off.iter().fold(largest, |most, off| most.max(off.abs()));
+        }
+        let sliding = slides.iter().zip(motion.slide.iter().zip(&motion.slide_rate));
+        for ([_, first, second], (speed, rate)) in sliding {
+            let off = [first - speed, (second - rate) * unit];
+            largest = off.iter().fold(largest, |most, off| most.max(off.abs()));
+        }
+    }
+    Ok(largest)
+}
+
+/// Working memory for the way across a bridge.
+#[derive(Debug, Clone)]
+pub(crate) struct CrossWork<T> {
+    powers: Vec<[T; 3]>,
+    /// By frame and then by slide: value and derivatives by the coordinate.
+    values: Vec<[T; 3]>,
+    angles: Vec<T>,
+    slides: Vec<T>,
+    /// The motion at unit speed, and the bodies in it.
+    trial: Motion<T>,
+    moves: BodyStates<T>,
+}
+
+impl<T: Scalar> CrossWork<T> {
+    fn new(model: &Model) -> Self {
+        let plan = model.plan();
+        let trial = plan.motion();
+        let (frames, slides) = (trial.turn.len(), trial.slide.len());
+        Self {
+            powers: Vec::with_capacity(HIGHEST + 1),
+            values: vec![[T::lift(0.0); 3]; frames + slides],
+            angles: vec![T::lift(0.0); frames],
+            slides: vec![T::lift(0.0); slides],
+            trial,
+            moves: BodyStates::new(plan),
+        }
+    }
+
+    /// Sets a pose to the values.
+    fn impose(&mut self, plan: &Plan, q: &[T], pose: &mut Pose<T>) {
+        let places = self.angles.iter_mut().chain(&mut self.slides);
+        for (place, value) in places.zip(&self.values) {
+            *place = value[0];
+        }
+        plan.impose(q, &self.angles, &self.slides, pose);
+    }
+
+    /// Sets a motion to the values at a speed, and at an acceleration.
+    fn moving(&self, q_dot: T, q_ddot: T, motion: &mut Motion<T>) {
+        let speeds = motion.turn.iter_mut().chain(&mut motion.slide);
+        let rates = motion.turn_rate.iter_mut().chain(&mut motion.slide_rate);
+        for ((speed, rate), [_, first, second]) in speeds.zip(rates).zip(&self.values) {
+            *speed = *first * q_dot;
+            *rate = *first * q_ddot + *second * q_dot * q_dot;
+        }
+    }
+}
+
+impl Machine {
+    /// The bridge that holds a coordinate, if one does.
+    #[inline]
+    pub(crate) fn bridge_at<T: Scalar>(&self, q: Option<&T>) -> Option<&Bridge> {
+        if self.bridges.is_empty() {
+            return None;
+        }
+        let q = q?.value();
+        let holds = |span: &&Span| {
+            let x = span.bridge.offset(q);
+            (span.reach[0]..=span.reach[1]).contains(&x)
+        };
+        self.bridges.iter().find(holds).map(|s| s.bridge.as_ref())
+    }
+
+    /// As [`Machine::evaluate`] on a bridge, by (1). `memory` are the drives' states.
+    pub(crate) fn cross<T: Scalar>(
+        &self,
+        bridge: &Bridge,
+        t: f64,
+        memory: &[T],
+        work: &mut MachineWork<T>,
+    ) -> Result<(), DynamicsError> {
+        let new = || Box::new(CrossWork::new(&self.model));
+        let mut own = work.crossing.take().unwrap_or_else(new);
+        let done = self.cross_with(bridge, t, memory, work, &mut own);
+        work.crossing = Some(own);
+        done
+    }
+
+    fn cross_with<T: Scalar>(
+        &self,
+        bridge: &Bridge,
+        t: f64,
+        memory: &[T],
+        work: &mut MachineWork<T>,
+        own: &mut CrossWork<T>,
+    ) -> Result<(), DynamicsError> {
+        let plan = self.model.plan();
+        let (q, q_dot) = (work.q[0], work.q_dot[0]);
+        let x = q - T::lift(bridge.near(q.value()));
+        let (zero, one) = (T::lift(0.0), T::lift(1.0));
+        bridge.fit.at(x, &mut own.powers, &mut own.values);
+        own.impose(plan, &work.q, &mut work.inner.pose);
+        let mut trial = std::mem::replace(&mut own.trial, Motion::default());
+        own.moving(one, zero, &mut trial);
+        own.moves.fill(plan, &work.inner.pose, &trial);
+        own.trial = trial;
+        own.moving(q_dot, zero, &mut work.inner.motion);
+        self.model.enter_placed(t, &work.q_dot, &mut work.inner)?;
+        self.drive(t, memory, work);
+        self.model.push(&mut work.inner)?;
+        let [mut m, mut half_dm] = self.model.sums(&own.moves);
+        for drive in &self.drives {
+            let [_, first, second] = own.moves.measure(drive.measured);
+            m += T::lift(drive.inertia) * first * first;
+            half_dm += T::lift(drive.inertia) * first * second;
+        }
+        let inertia = m.value();
+        if !(inertia > 0.0 && inertia.is_finite()) {
+            return Err(DynamicsError::NoInertia {
+                q: q.value(),
+                m: inertia,
+            });
+        }
+        let mut force = zero;
+        for act in &work.inner.loads().acts {
+            force += act.power(&own.moves);
+        }
+        let q_ddot = (force - half_dm * q_dot * q_dot) / m;
+        work.q_ddot[0] = q_ddot;
+        own.moving(q_dot, q_ddot, &mut work.inner.motion);
+        work.inner.refill(&self.model);
+        self.net(work)
+    }
+}
