@@ -22,8 +22,10 @@ use crate::options::Options;
 use crate::system::Point;
 use dwell_geometry::measure::{BodyStates, Measured};
 use dwell_geometry::{
-    Actuator, BodyId, Coordinate, Drive as Drives, End, JointKind, Mechanism, Motion, Reaction, Start,
+    Actuator, Body, BodyId, Coordinate, Drive as Drives, End, Joint, JointId, JointKind, Mechanism,
+    Motion, Reaction, Relation, Start, Vec2,
 };
+use dwell_laws::{Law, Polynomial};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model, ModelError, Signal};
 use guard::{Guard, Turning};
 pub use journey::{Change, Journey, Leg, Tracked, Why};
@@ -36,6 +38,8 @@ const FOLDS: f64 = 8.0;
 const RELATIVE: f64 = 0.5;
 /// Coordinates tried for a chart before the motion is given up.
 const TRIES: usize = 6;
+/// Charts in a row in which nothing moves before the motion is given up.
+const MOST_IDLE: usize = 3;
 /// Two poses closer than this, rad, are one.
 const SAME: f64 = 1e-6;
 
@@ -90,6 +94,8 @@ pub struct Atlas<'s> {
     charts: Vec<Chart>,
     crossings: Vec<Crossing>,
     refused: Vec<(f64, BridgeError)>,
+    /// By coordinate: after how much its branches follow each other again, once that is known, rad.
+    periods: Vec<(Coordinate, f64)>,
     size: f64,
 }
 
@@ -124,6 +130,7 @@ impl<'s> Atlas<'s> {
             charts: Vec::new(),
             crossings: Vec::new(),
             refused: Vec::new(),
+            periods: Vec::new(),
             size,
         };
         let home = atlas.build(site.mechanism, site.start)?;
@@ -148,25 +155,27 @@ impl<'s> Atlas<'s> {
 
     fn build(&self, mechanism: &Mechanism, start: &Start) -> Result<Chart, AtlasError> {
         let Site {
-            masses,
             loads,
             drives,
             reactions,
             ..
         } = self.site;
+        // Witnesses have no mass.
+        let mut masses = self.site.masses.to_vec();
+        masses.resize(mechanism.bodies.len().max(masses.len()), Mass::default());
         let frictions = loads.iter().filter_map(|load| match load.magnitude {
             Magnitude::Friction(friction) => Some(friction.reactions(mechanism)),
             _ => None,
         });
         let needed: Vec<Reaction> = frictions.flatten().collect();
-        let model = Model::new(mechanism, masses, start, &needed)?;
+        let model = Model::new(mechanism, &masses, start, &needed)?;
         let free = vec![Guidance::Free; model.plan().actuators()];
         let machine = Machine::new(mechanism, model, loads, free, drives)?;
         let all = all_loads(mechanism, loads, drives).map_err(MachineError::from)?;
         // Friction needs its reactions in the shown model too.
         let mut asked = reactions.to_vec();
         asked.extend(needed.iter().filter(|r| !reactions.contains(r)));
-        let shown = Model::new(mechanism, masses, start, &asked)?;
+        let shown = Model::new(mechanism, &masses, start, &asked)?;
         let shown = shown.with_loads(mechanism, all);
         let (name, coordinate) = match mechanism.actuators.first() {
             Some(actuator) => (actuator.name.clone(), actuator.coordinate()),
@@ -197,40 +206,39 @@ impl<'s> Atlas<'s> {
         let mut journey = Journey::default();
         let mut record = Record::new(start.t, events);
         let (mut chart, mut at) = (0, start.clone());
-        // Without progress no chart is left because it fails.
-        let mut stuck = false;
+        let mut options = *options;
+        let mut idle = 0;
         loop {
-            self.prepare(chart, options);
-            let (trace, turning) = self.leg(chart, &at, end, options, &mut record)?;
-            let moved = trace.steps.len() > 1;
+            self.prepare(chart, &options);
+            let (trace, turning) = match self.leg(chart, &at, end, &options, &mut record) {
+                // What is left after a change is nothing.
+                Err(DynamicsError::TooShort) if !journey.legs.is_empty() => return Ok(journey),
+                leg => leg?,
+            };
+            idle = if trace.steps.len() > 1 { 0 } else { idle + 1 };
+            options.budget = options.budget.saturating_sub(trace.statistics.steps);
             if let Some(last) = trace.steps.last() {
                 at.clone_from(last);
             }
-            let (stopped, failed) = (trace.stopped, trace.failed.clone());
+            journey.stopped = trace.stopped;
+            journey.failed = trace.failed.clone();
             journey.legs.push(Leg { chart, trace });
-            journey.stopped = stopped;
+            if journey.stopped || (journey.failed.is_none() && at.t >= end) {
+                return Ok(journey);
+            }
             let turning = match turning {
-                _ if stopped => None,
-                None if failed.is_some() && (moved || !stuck) => {
-                    stuck = true;
-                    self.rescue(chart, &at)
-                }
-                turning => {
-                    stuck = false;
-                    turning
-                }
+                None => self.rescue(chart, &at),
+                turning => turning,
             };
-            let next = match &turning {
-                Some(turning) => self.turn(chart, &at, turning),
-                None => None,
-            };
+            // A chart that should be left and cannot be ends the motion; so do charts that lead from
+            // one to another and nowhere else.
+            let turning = turning.filter(|_| idle < MOST_IDLE);
+            let next = turning.and_then(|turning| self.turn(chart, &at, &turning));
             let Some((to, y, why)) = next else {
-                // A chart that should be left and cannot be ends the motion.
-                let limit = DynamicsError::Limit {
-                    t: at.t,
-                    q: at.y.first().copied().unwrap_or(f64::NAN),
-                };
-                journey.failed = failed.or(turning.map(|_| limit));
+                let (t, q) = (at.t, at.y.first().copied().unwrap_or(f64::NAN));
+                journey
+                    .failed
+                    .get_or_insert(DynamicsError::Limit { t, q });
                 return Ok(journey);
             };
             journey.changes.push(Change {
@@ -240,9 +248,6 @@ impl<'s> Atlas<'s> {
                 why,
             });
             (chart, at.y) = (to, y);
-            if at.t >= end {
-                return Ok(journey);
-            }
         }
     }
 
@@ -328,18 +333,21 @@ impl<'s> Atlas<'s> {
         (y[0], y[1]) = (q, q_dot);
         let there = Point { t: at.t, y };
         for (to, chart) in self.charts.iter().enumerate() {
-            if chart.coordinate == coordinate && self.agrees(chart, &there, &states) {
-                return Some((to, there.y));
+            if chart.coordinate == coordinate {
+                let mut there = there.clone();
+                // Within its own range: which bridge lies at which end depends on whole turns.
+                there.y[0] = chart.machine.model.plan().range().fold(q).unwrap_or(q);
+                if self.agrees(chart, &there, &states) {
+                    return Some((to, there.y));
+                }
             }
         }
         let mechanism = Mechanism {
             actuators: vec![actuator(self.site.mechanism, name, coordinate)?],
             ..self.site.mechanism.clone()
         };
-        let start = Start {
-            q: vec![q],
-            rough: self.rough(&states),
-        };
+        let (mechanism, rough) = self.counting(mechanism, &states);
+        let start = Start { q: vec![q], rough };
         let chart = self.build(&mechanism, &start).ok()?;
         if !self.agrees(&chart, &there, &states) {
             return None;
@@ -369,13 +377,47 @@ impl<'s> Atlas<'s> {
             && angles_used(&self.site).into_iter().all(alike)
     }
 
-    /// The angles of all bodies, as rough angles to start from.
-    fn rough(&self, states: &BodyStates) -> Vec<Option<f64>> {
+    /// A mechanism in which the turns of all angles are counted whose values loads depend on, and the
+    /// angles of its bodies. Each such angle turns a massless witness.
+    fn counting(
+        &self,
+        mut mechanism: Mechanism,
+        states: &BodyStates,
+    ) -> (Mechanism, Vec<Option<f64>>) {
         let angle = |b: usize| {
             let state = states.body(BodyId(b));
             Some(state.angle.unwrap_or_else(|| state.turn.angle()))
         };
-        (0..self.site.mechanism.bodies.len()).map(angle).collect()
+        let mut rough: Vec<Option<f64>> = (0..mechanism.bodies.len()).map(angle).collect();
+        let ground = BodyId(mechanism.ground);
+        for bodies in angles_used(&self.site) {
+            let by = Coordinate::Angle(bodies);
+            if mechanism.actuators.iter().any(|a| a.coordinate() == by) {
+                continue;
+            }
+            let witness = BodyId(mechanism.bodies.len());
+            let name = format!("turns of {}", mechanism.body_name(bodies[1]));
+            mechanism.bodies.push(Body { name: name.clone() });
+            rough.push(Some(states.angle(bodies)[0]));
+            let joint = |kind| Joint {
+                name: name.clone(),
+                bodies: [ground, witness],
+                points: [Vec2::ZERO; 2],
+                kind,
+            };
+            let relation = JointKind::Relation(mechanism.relations.len());
+            mechanism
+                .joints
+                .extend([joint(JointKind::Revolute), joint(relation)]);
+            mechanism.relations.push(Relation {
+                of: Coordinate::Angle([ground, witness]),
+                by,
+                law: Law::Polynomial(Polynomial {
+                    coefficients: vec![0.0, 1.0],
+                }),
+            });
+        }
+        (mechanism, rough)
     }
 
     /// Looks for bridges at the change points in which a chart's range ends.
@@ -424,7 +466,8 @@ impl<'s> Atlas<'s> {
         angles.truncate(self.site.mechanism.bodies.len());
         let q = end.q + way * beyond;
         let there = self.behind(chart, q, &angles)?;
-        let center = self.middle(end, there, upwards, half)?;
+        let (center, turns) = self.middle(end, there, upwards, half)?;
+        let period = self.close_ring(chart, turns)?;
         let charts = if upwards {
             [chart, there]
         } else {
@@ -433,37 +476,72 @@ impl<'s> Atlas<'s> {
         let sides = charts.map(|c| &self.charts[c].shown);
         let bridge = Bridge::new(self.site.mechanism, sides, center, [half, unit])?;
         let bridge = Arc::new(bridge);
-        let far = bridge.reach;
-        let spans = if there == chart {
-            [[-half, half]; 2]
-        } else {
-            [[-half, far], [-far, half]]
-        };
-        for (c, reach) in charts.into_iter().zip(spans) {
-            let bridge = bridge.clone();
-            self.charts[c].machine.bridges.push(Span { bridge, reach });
+        let far = if there == chart { half } else { bridge.reach };
+        for (c, above, reach) in [
+            (charts[0], false, [-half, far]),
+            (charts[1], true, [-far, half]),
+        ] {
+            self.charts[c].machine.bridges.push(Span {
+                bridge: bridge.clone(),
+                crossing: self.crossings.len(),
+                above,
+                reach,
+                period,
+            });
         }
         self.crossings.push(Crossing { bridge, charts });
         Ok(())
     }
 
+    /// Notes that a coordinate comes back to a chart after some turns (rad); the period that is known
+    /// then, if one is.
+    fn close_ring(&mut self, chart: usize, turns: f64) -> Result<Option<f64>, BridgeError> {
+        let coordinate = self.charts[chart].coordinate;
+        let mut known = self.periods.iter().filter(|(c, _)| *c == coordinate);
+        let known = known.next().map(|(_, period)| *period);
+        if turns == 0.0 {
+            return Ok(known);
+        }
+        match known {
+            Some(period) if (turns / period).fract() == 0.0 => Ok(known),
+            Some(_) => Err(BridgeError::NotBehind),
+            None => {
+                self.periods.push((coordinate, turns.abs()));
+                let charts = self.charts.iter_mut().filter(|c| c.coordinate == coordinate);
+                for span in charts.flat_map(|c| &mut c.machine.bridges) {
+                    span.period = Some(turns.abs());
+                }
+                Ok(Some(turns.abs()))
+            }
+        }
+    }
+
     /// The change point between the end of one range and the beginning of the next: both stop equally
-    /// far from it.
-    fn middle(&self, end: End, there: usize, upwards: bool, half: f64) -> Result<f64, BridgeError> {
+    /// far from it. The second number is the turns between the two, rad.
+    fn middle(
+        &self,
+        end: End,
+        there: usize,
+        upwards: bool,
+        half: f64,
+    ) -> Result<(f64, f64), BridgeError> {
         let plan = self.charts[there].machine.model.plan();
         let [low, high] = plan.ends();
         let opposite = if upwards { low } else { high };
         let Some(opposite) = opposite else {
-            return Ok(end.q);
+            return Ok((end.q, 0.0));
         };
-        let mut apart = opposite.q - end.q;
-        if plan.is_angle(0) {
-            apart -= TAU * (apart / TAU).round();
-        }
+        let apart = opposite.q - end.q;
+        let turns = if plan.is_angle(0) {
+            TAU * (apart / TAU).round()
+        } else {
+            0.0
+        };
+        let apart = apart - turns;
         if apart.abs() > 0.5 * half {
             return Err(BridgeError::NotBehind);
         }
-        Ok(end.q + 0.5 * apart)
+        Ok((end.q + 0.5 * apart, turns))
     }
 
     /// The chart of the same coordinate on the branch with these angles of the bodies.
@@ -598,7 +676,7 @@ fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
             }
             JointKind::Prismatic { .. } | JointKind::Slot { .. } => {
                 let name = format!("travel in {}", joint.name);
-                add(name, Coordinate::Travel(dwell_geometry::JointId(j)));
+                add(name, Coordinate::Travel(JointId(j)));
             }
             _ => {}
         }

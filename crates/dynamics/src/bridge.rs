@@ -77,7 +77,6 @@ pub struct Bridge {
     pub not_unique: Vec<Reaction>,
     /// The branch before and behind, by the coordinate, with all the reactions that are shown.
     pub(crate) sides: [Model; 2],
-    angular: bool,
     fit: Fit,
 }
 
@@ -85,8 +84,33 @@ pub struct Bridge {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Span {
     pub(crate) bridge: Arc<Bridge>,
+    /// Index of the crossing it belongs to, and whether the machine is that of the branch above.
+    pub(crate) crossing: usize,
+    pub(crate) above: bool,
     /// From and to, from the change point.
     pub(crate) reach: [f64; 2],
+    /// After how much the branches before and behind follow each other again, rad.
+    pub(crate) period: Option<f64>,
+}
+
+impl Span {
+    /// How far a coordinate is from the change point, if it is on the bridge.
+    fn on(&self, q: f64) -> Option<f64> {
+        let x = self.offset(q);
+        (self.reach[0]..=self.reach[1]).contains(&x).then_some(x)
+    }
+
+    fn offset(&self, q: f64) -> f64 {
+        let x = q - self.bridge.center;
+        x - self.period.map_or(0.0, |period| period * (x / period).round())
+    }
+
+    /// Whether a coordinate is so far behind the window that the machine of the branch there goes on.
+    pub(crate) fn crossed(&self, q: f64) -> bool {
+        let half = self.bridge.half;
+        let behind = |x: f64| if self.above { x < -half } else { x > half };
+        self.on(q).is_some_and(behind)
+    }
 }
 
 /// Half the window for a tolerance, rad: where N·eps/|sin θ|³ exceeds it.
@@ -301,7 +325,6 @@ impl Bridge {
             mobility: 1,
             not_unique: Vec::new(),
             sides: sides.map(Clone::clone),
-            angular: sides[0].plan().is_angle(0),
             fit,
         };
         bridge.look_at_center(mechanism);
@@ -344,25 +367,11 @@ impl Bridge {
         }
     }
 
-    /// How far a coordinate is from the change point, whole turns aside.
-    pub(crate) fn offset(&self, q: f64) -> f64 {
-        q - self.near(q)
-    }
-
-    /// The change point nearest to a coordinate.
-    fn near(&self, q: f64) -> f64 {
-        let turns = if self.angular {
-            TAU * ((q - self.center) / TAU).round()
-        } else {
-            0.0
-        };
-        self.center + turns
-    }
-
     /// As [`Machine::show`] within the window. A reaction that is not determined at the change point is
     /// not a number.
     pub(crate) fn show(
         &self,
+        x: f64,
         shown: &Model,
         t: f64,
         work: &MachineWork<f64>,
@@ -379,7 +388,7 @@ impl Bridge {
         shown.push(all)?;
         actions.tau.fill(0.0);
         let q = work.q.first().copied().unwrap_or(self.center);
-        let near = self.near(q);
+        let near = q - x;
         let (mut at, mut samples) = (Vec::new(), Vec::new());
         for (model, way) in self.sides.iter().zip([-1.0, 1.0]) {
             let mut there = model.workspace();
@@ -399,7 +408,7 @@ impl Bridge {
         }
         let fit = Fit::new(&at, &samples, self.reach, REACTION_DEGREE);
         let mut values = vec![[0.0; 3]; fit.rows.len()];
-        fit.at(q - near, &mut Vec::new(), &mut values);
+        fit.at(x, &mut Vec::new(), &mut values);
         for (own, reaction) in actions.reactions.iter_mut().zip(shown.reactions()) {
             let of_sides = self.sides[0].reactions().iter().position(|r| r == reaction);
             let determined = !self.not_unique.contains(reaction);
@@ -492,38 +501,35 @@ impl<T: Scalar> CrossWork<T> {
 }
 
 impl Machine {
-    /// The bridge that holds a coordinate, if one does.
+    /// The bridge that holds a coordinate, if one does, and how far that is from the change point.
     #[inline]
-    pub(crate) fn bridge_at<T: Scalar>(&self, q: Option<&T>) -> Option<&Bridge> {
+    pub(crate) fn bridge_at<T: Scalar>(&self, q: Option<&T>) -> Option<(&Bridge, f64)> {
         if self.bridges.is_empty() {
             return None;
         }
         let q = q?.value();
-        let holds = |span: &&Span| {
-            let x = span.bridge.offset(q);
-            (span.reach[0]..=span.reach[1]).contains(&x)
-        };
-        self.bridges.iter().find(holds).map(|s| s.bridge.as_ref())
+        let mut spans = self.bridges.iter();
+        spans.find_map(|span| Some((span.bridge.as_ref(), span.on(q)?)))
     }
 
     /// As [`Machine::evaluate`] on a bridge, by (1). `memory` are the drives' states.
     pub(crate) fn cross<T: Scalar>(
         &self,
-        bridge: &Bridge,
+        (bridge, x): (&Bridge, f64),
         t: f64,
         memory: &[T],
         work: &mut MachineWork<T>,
     ) -> Result<(), DynamicsError> {
         let new = || Box::new(CrossWork::new(&self.model));
         let mut own = work.crossing.take().unwrap_or_else(new);
-        let done = self.cross_with(bridge, t, memory, work, &mut own);
+        let done = self.cross_with((bridge, x), t, memory, work, &mut own);
         work.crossing = Some(own);
         done
     }
 
     fn cross_with<T: Scalar>(
         &self,
-        bridge: &Bridge,
+        (bridge, x): (&Bridge, f64),
         t: f64,
         memory: &[T],
         work: &mut MachineWork<T>,
@@ -531,7 +537,7 @@ impl Machine {
     ) -> Result<(), DynamicsError> {
         let plan = self.model.plan();
         let (q, q_dot) = (work.q[0], work.q_dot[0]);
-        let x = q - T::lift(bridge.near(q.value()));
+        let x = q - T::lift(q.value() - x);
         let (zero, one) = (T::lift(0.0), T::lift(1.0));
         bridge.fit.at(x, &mut own.powers, &mut own.values);
         own.impose(plan, &work.q, &mut work.inner.pose);

@@ -370,8 +370,8 @@ impl Machine {
         for drive in &self.drives {
             all.give(drive.load, work.inner.loads().magnitude[drive.load]);
         }
-        if let Some(bridge) = self.bridge_at(work.q.first()) {
-            return bridge.show(shown, t, work, all, actions);
+        if let Some((bridge, x)) = self.bridge_at(work.q.first()) {
+            return bridge.show(x, shown, t, work, all, actions);
         }
         Ok(shown.kinetostatics(t, &work.q, &work.q_dot, &work.q_ddot, all, actions)?)
     }

@@ -48,7 +48,6 @@ impl Ranks {
 
 pub(super) struct Guard<'a, 's> {
     atlas: &'a Atlas<'s>,
-    index: usize,
     chart: &'a Chart,
     /// Whether its coordinate has ends at all.
     limited: bool,
@@ -63,7 +62,6 @@ impl<'a, 's> Guard<'a, 's> {
         let plan = chart.machine.model.plan();
         Self {
             atlas,
-            index,
             chart,
             limited: plan.range().limits().is_some(),
             work: chart.machine.work(),
@@ -109,19 +107,12 @@ impl<'a, 's> Guard<'a, 's> {
     /// How the chart is left after a good step, if it is.
     fn leaves(&mut self, now: &Point) -> Option<Turning> {
         let q = now.y.first().copied()?;
-        for (crossing, one) in self.atlas.crossings.iter().enumerate() {
-            let x = one.bridge.offset(q);
-            let half = one.bridge.half;
-            let [below, above] = one.charts.map(|c| c == self.index);
-            if below && above || x.abs() > one.bridge.reach {
-                continue;
-            }
-            if (below && x > half) || (above && x < -half) {
-                return Some(Turning::Crosses {
-                    crossing,
-                    above: below,
-                });
-            }
+        let mut spans = self.chart.machine.bridges.iter();
+        if let Some(span) = spans.find(|span| span.crossed(q)) {
+            return Some(Turning::Crosses {
+                crossing: span.crossing,
+                above: !span.above,
+            });
         }
         if self.on_bridge(now) {
             return None;

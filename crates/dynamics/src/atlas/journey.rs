@@ -128,6 +128,9 @@ impl Atlas<'_> {
                 };
                 let point = if first { &steps[i] } else { &samples[k] };
                 machine.evaluate(point.t, &point.y, &mut work)?;
+                if machine.bridge_at(point.y.first()).is_none() {
+                    machine.model.accelerate(&work.q_ddot, &mut work.inner);
+                }
                 let states = work.inner.states();
                 let mut now = states.measure(measured);
                 if let (Measured::Angle(bodies), Some((t, before))) = (measured, last) {
