@@ -264,7 +264,7 @@ impl<'s> Atlas<'s> {
         let mut watcher = record.on(&own.machine, &own.shown, at)?;
         let mut trace = watcher.trace(at, options);
         let mut guard = Guard::new(self, chart);
-        if let Some(turning) = guard.at_start(at)? {
+        if let Some(turning) = guard.folds(at)? {
             return Ok((trace, Some(turning)));
         }
         let mut moving = Moving::new(&own.machine, at.t, &at.y)?;
@@ -688,8 +688,13 @@ fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
 fn size(mechanism: &Mechanism) -> f64 {
     let mut size = 0.0_f64;
     let mut first = vec![None; mechanism.bodies.len()];
-    for joint in &mechanism.joints {
-        for (body, point) in joint.bodies.iter().zip(joint.points) {
+    let joints = mechanism.joints.iter().map(|j| (j.bodies, j.points));
+    let lengths = mechanism.actuators.iter().filter_map(|a| match a.drive {
+        Drives::Length(points) => Some((a.bodies, points)),
+        _ => None,
+    });
+    for (bodies, points) in joints.chain(lengths) {
+        for (body, point) in bodies.iter().zip(points) {
             if let Some(first) = first.get_mut(body.0) {
                 let first = first.get_or_insert(point);
                 size = size.max((point - *first).norm());

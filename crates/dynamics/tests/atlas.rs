@@ -440,3 +440,32 @@ fn reactions_across() {
         assert!((work.q_ddot[0] - expected).abs() < 1e-9);
     }
 }
+
+/// A lever on a cylinder passes its dead point so fast that a step leads right over it.
+#[test]
+fn a_fold_in_one_step() {
+    let mechanism = Mechanism {
+        bodies: ["ground", "lever"].map(body).to_vec(),
+        joints: vec![pin("A", [0, 1], [Vec2::ZERO; 2])],
+        actuators: vec![Actuator { name: "s".into(), bodies: [BodyId(0), BodyId(1)], drive: Drives::Length([vec2(0.9, 0.0), vec2(1.0, 0.0)]) }],
+        ..Mechanism::default()
+    };
+    let masses = vec![Mass::default(), Mass { mass: 1.0, center: Vec2::ZERO, inertia: 0.3 }];
+    for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
+        for method in Method::ALL {
+            let s = 1.81_f64 - 1.8 * 1.0_f64.cos();
+            let s = s.sqrt();
+            let start = Start { q: vec![s], rough: vec![None, Some(1.0)] };
+            let site = Site { mechanism: &mechanism, masses: &masses, start: &start, loads: &[], drives: &[], reactions: &[] };
+            let mut atlas = Atlas::new(site).expect("an atlas");
+            let speed = -0.9 * 1.0_f64.sin() / s;
+            let p = Point { t: 0.0, y: atlas.charts()[0].machine.start(&[s], &[speed]) };
+            let journey = atlas.follow(&p, 6.0, &Options::new(method, tolerance), &[]).expect("a run");
+            let track = atlas.track(&journey, Measured::Angle([BodyId(0), BodyId(1)])).expect("a track").steps.concat();
+            let end = track.last().expect("a step");
+            println!("{method:?} {tolerance} {:?} {:?} steps {:?} end {:?}", journey.failed, journey.changes, journey.legs.iter().map(|l| l.trace.steps.len()).collect::<Vec<_>>(), end);
+            assert_eq!(journey.failed, None);
+            assert!(end[1] < -0.1 && end[0] < -1.0, "{end:?}");
+        }
+    }
+}

@@ -70,8 +70,8 @@ impl<'a, 's> Guard<'a, 's> {
         }
     }
 
-    /// How the chart is left before it is begun, if it is.
-    pub(super) fn at_start(&mut self, at: &Point) -> Result<Option<Turning>, DynamicsError> {
+    /// Whether the coordinate folds at a state.
+    pub(super) fn folds(&mut self, at: &Point) -> Result<Option<Turning>, DynamicsError> {
         if !self.limited || self.on_bridge(at) {
             return Ok(None);
         }
@@ -97,28 +97,26 @@ impl<'a, 's> Guard<'a, 's> {
             *left = Some(Turning::Folds(ranks));
             return Ok(Next::Stop);
         }
+        // An explicit method may take a step to where nothing can be evaluated; it is not good.
+        let leaves = self.leaves(now)?;
         let next = step(dense)?;
         if next == Next::GoOn {
-            *left = self.leaves(now);
+            *left = leaves;
         }
         Ok(if left.is_some() { Next::Stop } else { next })
     }
 
     /// How the chart is left after a good step, if it is.
-    fn leaves(&mut self, now: &Point) -> Option<Turning> {
-        let q = now.y.first().copied()?;
+    fn leaves(&mut self, now: &Point) -> Result<Option<Turning>, DynamicsError> {
+        let q = now.y[0];
         let mut spans = self.chart.machine.bridges.iter();
         if let Some(span) = spans.find(|span| span.crossed(q)) {
-            return Some(Turning::Crosses {
+            return Ok(Some(Turning::Crosses {
                 crossing: span.crossing,
                 above: !span.above,
-            });
+            }));
         }
-        if self.on_bridge(now) {
-            return None;
-        }
-        let ranks = self.ranks(now).ok()?;
-        ranks.better_than(FOLDS).map(Turning::Folds)
+        self.folds(now)
     }
 
     fn on_bridge(&self, at: &Point) -> bool {
