@@ -9,33 +9,31 @@
 //! A change point, where assembly branches meet, needs no other coordinate, but a chart on the branch
 //! behind it, and a [`Bridge`] across.
 
+mod candidates;
+mod counting;
+mod crossing;
 mod guard;
 mod journey;
 
-use crate::bridge::{Bridge, BridgeError, Span, ahead, half_window};
-use crate::drive::{Drive, DriveKind};
-use crate::driver::integrate;
+use crate::bridge::{Bridge, BridgeError};
+use crate::drive::Drive;
+use crate::driver::{Dense, integrate};
 use crate::error::DynamicsError;
 use crate::follow::{Event, Record, Trace};
-use crate::machine::{Guidance, Machine, MachineError, MachineWork, Moving, all_loads};
+use crate::machine::{Guidance, Machine, MachineError, Moving, all_loads};
 use crate::options::Options;
 use crate::system::Point;
-use dwell_geometry::measure::{BodyStates, Measured};
-use dwell_geometry::{
-    Actuator, Body, BodyId, Coordinate, Drive as Drives, End, Joint, JointId, JointKind, Mechanism,
-    Motion, Reaction, Relation, Start, Vec2,
-};
-use dwell_laws::{Law, Polynomial};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model, ModelError, Signal};
+use candidates::{Candidate, actuator, candidates, size};
+use counting::angles_used;
+use crossing::Crossing;
+use dwell_geometry::measure::BodyStates;
+use dwell_geometry::{BodyId, Coordinate, Mechanism, Reaction, Start};
+use dwell_kinetostatics::{Load, Magnitude, Mass, Model, ModelError};
 use guard::{Guard, Turning};
 pub use journey::{Change, Journey, Leg, Tracked, Why};
-use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// Times by which another coordinate must be the faster for the present one to be left.
 const FOLDS: f64 = 8.0;
-/// What an angle between two moving bodies counts against one from the ground: it may fold sooner.
-const RELATIVE: f64 = 0.5;
 /// Coordinates tried for a chart before the motion is given up.
 const TRIES: usize = 6;
 /// Charts in a row in which nothing moves before the motion is given up.
@@ -94,26 +92,11 @@ pub struct Atlas<'s> {
     charts: Vec<Chart>,
     crossings: Vec<Crossing>,
     refused: Vec<(f64, BridgeError)>,
+    /// What the bridges are good for.
+    tolerance: f64,
     /// By coordinate: after how much its branches follow each other again, once that is known, rad.
     periods: Vec<(Coordinate, f64)>,
     size: f64,
-}
-
-/// A coordinate that a chart may have.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Candidate {
-    name: String,
-    coordinate: Coordinate,
-    measured: Measured,
-    /// What its speed is multiplied by to compare it.
-    weight: f64,
-}
-
-/// A bridge with the charts below and above it.
-#[derive(Debug, Clone)]
-pub(crate) struct Crossing {
-    bridge: Arc<Bridge>,
-    charts: [usize; 2],
 }
 
 impl<'s> Atlas<'s> {
@@ -130,6 +113,7 @@ impl<'s> Atlas<'s> {
             charts: Vec::new(),
             crossings: Vec::new(),
             refused: Vec::new(),
+            tolerance: f64::INFINITY,
             periods: Vec::new(),
             size,
         };
@@ -190,6 +174,20 @@ impl<'s> Atlas<'s> {
         })
     }
 
+    /// Drops the bridges where they were made for a looser tolerance than is asked for now.
+    fn sharpen(&mut self, tolerance: f64) {
+        if tolerance < self.tolerance {
+            self.tolerance = tolerance;
+            self.crossings.clear();
+            self.refused.clear();
+            self.periods.clear();
+            for chart in &mut self.charts {
+                chart.machine.bridges.clear();
+                chart.looked = [false; 2];
+            }
+        }
+    }
+
     /// Follows the motion from a state of the first chart until a time, through as many charts as it
     /// takes. Where the first is enough, it is what [`follow`](crate::follow()) finds, to the last bit.
     ///
@@ -203,13 +201,14 @@ impl<'s> Atlas<'s> {
         options: &Options,
         events: &[Event],
     ) -> Result<Journey, DynamicsError> {
+        self.sharpen(options.relative);
         let mut journey = Journey::default();
         let mut record = Record::new(start.t, events);
         let (mut chart, mut at) = (0, start.clone());
         let mut options = *options;
         let mut idle = 0;
         loop {
-            self.prepare(chart, &options);
+            self.prepare(chart);
             let (trace, turning) = match self.leg(chart, &at, end, &options, &mut record) {
                 // What is left after a change is nothing.
                 Err(DynamicsError::TooShort) if !journey.legs.is_empty() => return Ok(journey),
@@ -236,9 +235,7 @@ impl<'s> Atlas<'s> {
             let next = turning.and_then(|turning| self.turn(chart, &at, &turning));
             let Some((to, y, why)) = next else {
                 let (t, q) = (at.t, at.y.first().copied().unwrap_or(f64::NAN));
-                journey
-                    .failed
-                    .get_or_insert(DynamicsError::Limit { t, q });
+                journey.failed.get_or_insert(DynamicsError::Limit { t, q });
                 return Ok(journey);
             };
             journey.changes.push(Change {
@@ -269,7 +266,7 @@ impl<'s> Atlas<'s> {
         }
         let mut moving = Moving::new(&own.machine, at.t, &at.y)?;
         let mut left = None;
-        let mut watch = |before: &Point, now: &Point, dense: crate::Dense<'_>| {
+        let mut watch = |before: &Point, now: &Point, dense: Dense<'_>| {
             guard.watch(before, now, dense, &mut left, |dense| {
                 watcher.step(&mut trace, options, before, now, dense)
             })
@@ -376,330 +373,4 @@ impl<'s> Atlas<'s> {
         bodies.all(|b| (own.body(b).turn - states.body(b).turn).norm() < SAME)
             && angles_used(&self.site).into_iter().all(alike)
     }
-
-    /// A mechanism in which the turns of all angles are counted whose values loads depend on, and the
-    /// angles of its bodies. Each such angle turns a massless witness.
-    fn counting(
-        &self,
-        mut mechanism: Mechanism,
-        states: &BodyStates,
-    ) -> (Mechanism, Vec<Option<f64>>) {
-        let angle = |b: usize| {
-            let state = states.body(BodyId(b));
-            Some(state.angle.unwrap_or_else(|| state.turn.angle()))
-        };
-        let mut rough: Vec<Option<f64>> = (0..mechanism.bodies.len()).map(angle).collect();
-        let ground = BodyId(mechanism.ground);
-        for bodies in angles_used(&self.site) {
-            let by = Coordinate::Angle(bodies);
-            if mechanism.actuators.iter().any(|a| a.coordinate() == by) {
-                continue;
-            }
-            let witness = BodyId(mechanism.bodies.len());
-            let name = format!("turns of {}", mechanism.body_name(bodies[1]));
-            mechanism.bodies.push(Body { name: name.clone() });
-            rough.push(Some(states.angle(bodies)[0]));
-            let joint = |kind| Joint {
-                name: name.clone(),
-                bodies: [ground, witness],
-                points: [Vec2::ZERO; 2],
-                kind,
-            };
-            let relation = JointKind::Relation(mechanism.relations.len());
-            mechanism
-                .joints
-                .extend([joint(JointKind::Revolute), joint(relation)]);
-            mechanism.relations.push(Relation {
-                of: Coordinate::Angle([ground, witness]),
-                by,
-                law: Law::Polynomial(Polynomial {
-                    coefficients: vec![0.0, 1.0],
-                }),
-            });
-        }
-        (mechanism, rough)
-    }
-
-    /// Looks for bridges at the change points in which a chart's range ends.
-    fn prepare(&mut self, chart: usize, options: &Options) {
-        for (e, upwards) in [(0, false), (1, true)] {
-            let own = &mut self.charts[chart];
-            let end = own.machine.model.plan().ends()[e].filter(|end| end.change_point);
-            let looked = std::mem::replace(&mut own.looked[e], true);
-            let known = self.crossings.iter();
-            let mut known = known.filter(|c| c.charts[usize::from(!upwards)] == chart);
-            let Some(end) = end.filter(|_| !looked && known.next().is_none()) else {
-                continue;
-            };
-            if let Err(error) = self.span(chart, end, upwards, options) {
-                self.refused.push((end.q, error));
-            }
-        }
-    }
-
-    /// Builds the bridge across a change point, with the chart behind it.
-    fn span(
-        &mut self,
-        chart: usize,
-        end: End,
-        upwards: bool,
-        options: &Options,
-    ) -> Result<(), BridgeError> {
-        let own = &self.charts[chart];
-        let plan = own.machine.model.plan();
-        if own.machine.model.frictions().len() > 0 {
-            return Err(BridgeError::Friction);
-        }
-        if plan.relations() > 0 {
-            return Err(BridgeError::Relations);
-        }
-        let unit = if own.coordinate.is_angle() {
-            1.0
-        } else {
-            self.size
-        };
-        let half = unit * half_window(plan, options.relative);
-        let beyond = 1.5 * half;
-        let way = if upwards { 1.0 } else { -1.0 };
-        let to = (4.0 * half).max(0.1 * unit);
-        let mut angles = ahead(&own.machine.model, end.q, upwards, [half, to], beyond)?;
-        angles.truncate(self.site.mechanism.bodies.len());
-        let q = end.q + way * beyond;
-        let there = self.behind(chart, q, &angles)?;
-        let (center, turns) = self.middle(end, there, upwards, half)?;
-        let period = self.close_ring(chart, turns)?;
-        let charts = if upwards {
-            [chart, there]
-        } else {
-            [there, chart]
-        };
-        let sides = charts.map(|c| &self.charts[c].shown);
-        let bridge = Bridge::new(self.site.mechanism, sides, center, [half, unit])?;
-        let bridge = Arc::new(bridge);
-        let far = if there == chart { half } else { bridge.reach };
-        for (c, above, reach) in [
-            (charts[0], false, [-half, far]),
-            (charts[1], true, [-far, half]),
-        ] {
-            self.charts[c].machine.bridges.push(Span {
-                bridge: bridge.clone(),
-                crossing: self.crossings.len(),
-                above,
-                reach,
-                period,
-            });
-        }
-        self.crossings.push(Crossing { bridge, charts });
-        Ok(())
-    }
-
-    /// Notes that a coordinate comes back to a chart after some turns (rad); the period that is known
-    /// then, if one is.
-    fn close_ring(&mut self, chart: usize, turns: f64) -> Result<Option<f64>, BridgeError> {
-        let coordinate = self.charts[chart].coordinate;
-        let mut known = self.periods.iter().filter(|(c, _)| *c == coordinate);
-        let known = known.next().map(|(_, period)| *period);
-        if turns == 0.0 {
-            return Ok(known);
-        }
-        match known {
-            Some(period) if (turns / period).fract() == 0.0 => Ok(known),
-            Some(_) => Err(BridgeError::NotBehind),
-            None => {
-                self.periods.push((coordinate, turns.abs()));
-                let charts = self.charts.iter_mut().filter(|c| c.coordinate == coordinate);
-                for span in charts.flat_map(|c| &mut c.machine.bridges) {
-                    span.period = Some(turns.abs());
-                }
-                Ok(Some(turns.abs()))
-            }
-        }
-    }
-
-    /// The change point between the end of one range and the beginning of the next: both stop equally
-    /// far from it. The second number is the turns between the two, rad.
-    fn middle(
-        &self,
-        end: End,
-        there: usize,
-        upwards: bool,
-        half: f64,
-    ) -> Result<(f64, f64), BridgeError> {
-        let plan = self.charts[there].machine.model.plan();
-        let [low, high] = plan.ends();
-        let opposite = if upwards { low } else { high };
-        let Some(opposite) = opposite else {
-            return Ok((end.q, 0.0));
-        };
-        let apart = opposite.q - end.q;
-        let turns = if plan.is_angle(0) {
-            TAU * (apart / TAU).round()
-        } else {
-            0.0
-        };
-        let apart = apart - turns;
-        if apart.abs() > 0.5 * half {
-            return Err(BridgeError::NotBehind);
-        }
-        Ok((end.q + 0.5 * apart, turns))
-    }
-
-    /// The chart of the same coordinate on the branch with these angles of the bodies.
-    fn behind(&mut self, chart: usize, q: f64, angles: &[f64]) -> Result<usize, BridgeError> {
-        let own = &self.charts[chart];
-        let (name, coordinate) = (own.name.clone(), own.coordinate);
-        let on_branch = |chart: &Chart| {
-            let plan = chart.machine.model.plan();
-            let (mut pose, mut states) = (plan.pose(), BodyStates::new(plan));
-            let placed = plan.place(&[q], &mut pose).is_ok();
-            states.fill(plan, &pose, &plan.motion());
-            let near = |(b, angle): (usize, &f64)| {
-                let off = states.body(BodyId(b)).turn.angle() - angle;
-                // Two branches part by about the distance from the change point.
-                (off - TAU * (off / TAU).round()).abs() < 1e-3
-            };
-            placed && angles.iter().enumerate().all(near)
-        };
-        let known = |c: &Chart| c.coordinate == coordinate && on_branch(c);
-        if let Some(found) = self.charts.iter().position(known) {
-            return Ok(found);
-        }
-        let actuator = actuator(self.site.mechanism, name, coordinate);
-        let mechanism = Mechanism {
-            actuators: vec![actuator.ok_or(BridgeError::NotBehind)?],
-            ..self.site.mechanism.clone()
-        };
-        let start = Start {
-            q: vec![q],
-            rough: angles.iter().map(|&a| Some(a)).collect(),
-        };
-        let built = self.build(&mechanism, &start);
-        let built = built.map_err(|_| BridgeError::NotBehind)?;
-        if !on_branch(&built) {
-            return Err(BridgeError::NotBehind);
-        }
-        self.charts.push(built);
-        Ok(self.charts.len() - 1)
-    }
-}
-
-/// The angles whose values, not only speeds, a load or drive depends on.
-fn angles_used(site: &Site<'_>) -> Vec<[BodyId; 2]> {
-    let mut used = Vec::new();
-    let mut of = |magnitude: &Magnitude| {
-        let signals = match magnitude {
-            Magnitude::Law(signal, _) => std::slice::from_ref(signal),
-            Magnitude::Expression(_, signals) => signals.as_slice(),
-            _ => &[],
-        };
-        for signal in signals {
-            if let Signal::Value(Coordinate::Angle(bodies)) = signal {
-                used.push(*bodies);
-            }
-        }
-    };
-    for load in site.loads {
-        of(&load.magnitude);
-    }
-    for drive in site.drives {
-        match &drive.kind {
-            DriveKind::Action(magnitude) => of(magnitude),
-            DriveKind::Motor(motor) => of(&motor.voltage),
-            DriveKind::Regulator(regulator) => of(&regulator.speed),
-        }
-    }
-    used.extend(site.loads.iter().filter_map(|load| match load.kind {
-        LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
-        _ => None,
-    }));
-    used
-}
-
-/// An actuator of a coordinate; none of a joint that is not there.
-fn actuator(mechanism: &Mechanism, name: String, coordinate: Coordinate) -> Option<Actuator> {
-    let (bodies, drive) = match coordinate {
-        Coordinate::Angle(bodies) => (bodies, Drives::Angle),
-        Coordinate::Travel(joint) => {
-            let bodies = mechanism.joints.get(joint.0)?.bodies;
-            (bodies, Drives::Travel(joint))
-        }
-        Coordinate::Length { bodies, points } => (bodies, Drives::Length(points)),
-    };
-    Some(Actuator {
-        name,
-        bodies,
-        drive,
-    })
-}
-
-/// The mechanism's own coordinate, the angles of all bodies and of all hinges, and all travels.
-fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
-    let mut found: Vec<Candidate> = Vec::new();
-    let ground = BodyId(mechanism.ground);
-    let mut add = |name: String, coordinate: Coordinate| {
-        let turned = |c: Coordinate| match c {
-            Coordinate::Angle([a, b]) => Coordinate::Angle([b, a]),
-            other => other,
-        };
-        let known = |c: &Candidate| c.coordinate == coordinate || c.coordinate == turned(coordinate);
-        if found.iter().any(known) {
-            return;
-        }
-        let weight = match coordinate {
-            Coordinate::Angle(bodies) if bodies.contains(&ground) => 1.0,
-            Coordinate::Angle(_) => RELATIVE,
-            _ => 1.0 / size,
-        };
-        if let Some(measured) = Measured::find(mechanism, coordinate) {
-            found.push(Candidate {
-                name,
-                coordinate,
-                measured,
-                weight,
-            });
-        }
-    };
-    if let Some(own) = mechanism.actuators.first() {
-        add(own.name.clone(), own.coordinate());
-    }
-    for b in (0..mechanism.bodies.len()).map(BodyId) {
-        if b != ground {
-            let name = format!("angle of {}", mechanism.body_name(b));
-            add(name, Coordinate::Angle([ground, b]));
-        }
-    }
-    for (j, joint) in mechanism.joints.iter().enumerate() {
-        match joint.kind {
-            JointKind::Revolute => {
-                let name = format!("angle in {}", joint.name);
-                add(name, Coordinate::Angle(joint.bodies));
-            }
-            JointKind::Prismatic { .. } | JointKind::Slot { .. } => {
-                let name = format!("travel in {}", joint.name);
-                add(name, Coordinate::Travel(JointId(j)));
-            }
-            _ => {}
-        }
-    }
-    found
-}
-
-/// The largest distance of two points of one body, m.
-fn size(mechanism: &Mechanism) -> f64 {
-    let mut size = 0.0_f64;
-    let mut first = vec![None; mechanism.bodies.len()];
-    let joints = mechanism.joints.iter().map(|j| (j.bodies, j.points));
-    let lengths = mechanism.actuators.iter().filter_map(|a| match a.drive {
-        Drives::Length(points) => Some((a.bodies, points)),
-        _ => None,
-    });
-    for (bodies, points) in joints.chain(lengths) {
-        for (body, point) in bodies.iter().zip(points) {
-            if let Some(first) = first.get_mut(body.0) {
-                let first = first.get_or_insert(point);
-                size = size.max((point - *first).norm());
-            }
-        }
-    }
-    if size > 0.0 { size } else { 1.0 }
 }

@@ -11,13 +11,16 @@
 //! There is no multiplier in (1). Reactions that the flat position determines are fitted across it too,
 //! at the state's own speed and acceleration; of the others, which grow beyond all bounds, there is none.
 
+mod fit;
+
 use crate::error::DynamicsError;
 use crate::machine::{Machine, MachineWork};
 use dwell_geometry::measure::BodyStates;
 use dwell_geometry::mobility::mobility_here;
 use dwell_geometry::{Mechanism, Motion, PlaceError, Plan, Pose, Reaction, Scalar};
 use dwell_kinetostatics::{Actions, Model, Workspace};
-use std::f64::consts::{PI, TAU};
+use fit::{Fit, nodes};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Nodes of a fit on each side of the window, and its highest degree.
@@ -102,7 +105,9 @@ impl Span {
 
     fn offset(&self, q: f64) -> f64 {
         let x = q - self.bridge.center;
-        x - self.period.map_or(0.0, |period| period * (x / period).round())
+        x - self
+            .period
+            .map_or(0.0, |period| period * (x / period).round())
     }
 
     /// Whether a coordinate is so far behind the window that the machine of the branch there goes on.
@@ -118,125 +123,6 @@ pub(crate) fn half_window(plan: &Plan, tolerance: f64) -> f64 {
     let groups = plan.group_kinds().len() as f64;
     let tolerance = tolerance.max(TIGHTEST);
     (groups * f64::EPSILON / tolerance).cbrt().min(WIDEST)
-}
-
-/// The orientations of all frames and the travels of all slides as functions of one coordinate.
-#[derive(Debug, Clone, PartialEq)]
-struct Fit {
-    basis: Basis,
-    /// By function: its coefficients.
-    rows: Vec<Vec<f64>>,
-}
-
-/// Polynomials orthogonal on some nodes, by their recurrence
-/// pₖ₊₁ = (x/s − αₖ) pₖ − βₖ pₖ₋₁ (Forsythe 1957).
-#[derive(Debug, Clone, PartialEq)]
-struct Basis {
-    scale: f64,
-    alpha: Vec<f64>,
-    beta: Vec<f64>,
-}
-
-impl Basis {
-    /// The basis on some nodes, with the values of each polynomial there.
-    fn new(nodes: &[f64], scale: f64, degree: usize) -> (Self, Vec<Vec<f64>>) {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let x: Vec<f64> = nodes.iter().map(|x| x / scale).collect();
-        let mut all = vec![vec![1.0; x.len()]];
-        let (mut alpha, mut beta) = (Vec::new(), Vec::new());
-        let mut before = 0.0;
-        for k in 0..degree.min(x.len().saturating_sub(1)) {
-            let last = &all[k];
-            let moved: Vec<f64> = last.iter().zip(&x).map(|(p, x)| p * x).collect();
-            let square = dot(last, last);
-            alpha.push(dot(&moved, last) / square);
-            beta.push(if k == 0 { 0.0 } else { square / before });
-            before = square;
-            let next = (0..x.len()).map(|i| {
-                let earlier = if k == 0 { 0.0 } else { all[k - 1][i] };
-                (x[i] - alpha[k]) * last[i] - beta[k] * earlier
-            });
-            let next = next.collect();
-            all.push(next);
-        }
-        (Self { scale, alpha, beta }, all)
-    }
-
-    /// The polynomials with their first two derivatives.
-    fn at<T: Scalar>(&self, x: T, out: &mut Vec<[T; 3]>) {
-        let (zero, one) = (T::lift(0.0), T::lift(1.0));
-        let by = T::lift(1.0 / self.scale);
-        let x = x * by;
-        out.clear();
-        out.push([one, zero, zero]);
-        for (k, (&alpha, &beta)) in self.alpha.iter().zip(&self.beta).enumerate() {
-            let last = out[k];
-            let early = if k == 0 { [zero; 3] } else { out[k - 1] };
-            let (x, beta) = (x - T::lift(alpha), T::lift(beta));
-            out.push([
-                x * last[0] - beta * early[0],
-                x * last[1] + last[0] - beta * early[1],
-                x * last[2] + last[1] + last[1] - beta * early[2],
-            ]);
-        }
-        for p in out {
-            p[1] = p[1] * by;
-            p[2] = p[2] * by * by;
-        }
-    }
-}
-
-impl Fit {
-    /// Fits each function, no higher than its values on the nodes are known.
-    fn new(nodes: &[f64], samples: &[Vec<f64>], scale: f64, degree: usize) -> Self {
-        let (basis, all) = Basis::new(nodes, scale, degree);
-        let functions = samples.first().map_or(0, Vec::len);
-        let row = |f: usize| {
-            let mut rest: Vec<f64> = samples.iter().map(|sample| sample[f]).collect();
-            let mut row = Vec::with_capacity(all.len());
-            let mut left = Vec::with_capacity(all.len());
-            for p in &all {
-                let square: f64 = p.iter().map(|p| p * p).sum();
-                let along: f64 = p.iter().zip(&rest).map(|(p, r)| p * r).sum();
-                let c = along / square;
-                for (rest, p) in rest.iter_mut().zip(p) {
-                    *rest -= c * p;
-                }
-                row.push(c);
-                left.push(rest.iter().map(|r| r * r).sum::<f64>());
-            }
-            // What brings the rest down no further is rounding.
-            let least = left.iter().copied().fold(f64::INFINITY, f64::min);
-            let enough = left.iter().position(|&l| l <= 4.0 * least);
-            row.truncate(enough.map_or(row.len(), |e| e + 1));
-            row
-        };
-        Self {
-            rows: (0..functions).map(row).collect(),
-            basis,
-        }
-    }
-
-    /// Values and first two derivatives of all functions.
-    fn at<T: Scalar>(&self, x: T, powers: &mut Vec<[T; 3]>, out: &mut [[T; 3]]) {
-        self.basis.at(x, powers);
-        for (out, row) in out.iter_mut().zip(&self.rows) {
-            *out = [T::lift(0.0); 3];
-            for (p, &c) in powers.iter().zip(row) {
-                for (out, &p) in out.iter_mut().zip(p) {
-                    *out += p * T::lift(c);
-                }
-            }
-        }
-    }
-}
-
-/// Nodes between two distances, dense at both, on one side of the change point.
-fn nodes(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
-    (0..count).map(move |i| {
-        let part = 0.5 - 0.5 * ((i as f64 + 0.5) * PI / count as f64).cos();
-        from + (to - from) * part
-    })
 }
 
 /// Angles of the frames, each next to the one before, and travels of the slides.
@@ -275,7 +161,7 @@ pub(crate) fn ahead(
         samples.push(sample(plan, center + node, &mut pose, samples.last())?);
     }
     let fit = Fit::new(&nodes, &samples, to, AHEAD_DEGREE);
-    let mut values = vec![[0.0; 3]; fit.rows.len()];
+    let mut values = fit.room();
     fit.at(way * x, &mut Vec::new(), &mut values);
     let mut own = CrossWork::new(model);
     own.values = values;
@@ -331,12 +217,7 @@ impl Bridge {
         Ok(bridge)
     }
 
-    fn fit(
-        sides: [&Model; 2],
-        center: f64,
-        half: f64,
-        reach: f64,
-    ) -> Result<Fit, BridgeError> {
+    fn fit(sides: [&Model; 2], center: f64, half: f64, reach: f64) -> Result<Fit, BridgeError> {
         let mut below: Vec<f64> = nodes(half, reach, NODES).map(|d| -d).collect();
         below.reverse();
         let above: Vec<f64> = nodes(half, reach, NODES).collect();
@@ -363,7 +244,10 @@ impl Bridge {
         if let Some(here) = mobility_here(mechanism, &own.moves) {
             self.mobility = here.freedom();
             let all = mechanism.reactions().into_iter().zip(&here.unique);
-            self.not_unique = all.filter(|(_, unique)| !**unique).map(|(r, _)| r).collect();
+            self.not_unique = all
+                .filter(|(_, unique)| !**unique)
+                .map(|(r, _)| r)
+                .collect();
         }
     }
 
@@ -407,7 +291,7 @@ impl Bridge {
             }
         }
         let fit = Fit::new(&at, &samples, self.reach, REACTION_DEGREE);
-        let mut values = vec![[0.0; 3]; fit.rows.len()];
+        let mut values = fit.room();
         fit.at(x, &mut Vec::new(), &mut values);
         for (own, reaction) in actions.reactions.iter_mut().zip(shown.reactions()) {
             let of_sides = self.sides[0].reactions().iter().position(|r| r == reaction);
@@ -428,7 +312,7 @@ fn gap(
     center: f64,
     [half, unit]: [f64; 2],
 ) -> Result<f64, BridgeError> {
-    let mut values = vec![[0.0; 3]; fit.rows.len()];
+    let mut values = fit.room();
     let mut largest = 0.0_f64;
     for (model, way) in sides.iter().zip([-1.0, 1.0]) {
         let plan = model.plan();
@@ -443,7 +327,9 @@ fn gap(
             let off = [(first - speed) * unit, (second - rate) * unit * unit];
             largest = off.iter().fold(largest, |most, off| most.max(off.abs()));
         }
-        let sliding = slides.iter().zip(motion.slide.iter().zip(&motion.slide_rate));
+        let sliding = slides
+            .iter()
+            .zip(motion.slide.iter().zip(&motion.slide_rate));
         for ([_, first, second], (speed, rate)) in sliding {
             let off = [first - speed, (second - rate) * unit];
             largest = off.iter().fold(largest, |most, off| most.max(off.abs()));
@@ -488,15 +374,15 @@ impl<T: Scalar> CrossWork<T> {
         }
         plan.impose(q, &self.angles, &self.slides, pose);
     }
+}
 
-    /// Sets a motion to the values at a speed, and at an acceleration.
-    fn moving(&self, q_dot: T, q_ddot: T, motion: &mut Motion<T>) {
-        let speeds = motion.turn.iter_mut().chain(&mut motion.slide);
-        let rates = motion.turn_rate.iter_mut().chain(&mut motion.slide_rate);
-        for ((speed, rate), [_, first, second]) in speeds.zip(rates).zip(&self.values) {
-            *speed = *first * q_dot;
-            *rate = *first * q_ddot + *second * q_dot * q_dot;
-        }
+/// Sets a motion to some derivatives by the coordinate at its speed and acceleration.
+fn moving<T: Scalar>(values: &[[T; 3]], [q_dot, q_ddot]: [T; 2], motion: &mut Motion<T>) {
+    let speeds = motion.turn.iter_mut().chain(&mut motion.slide);
+    let rates = motion.turn_rate.iter_mut().chain(&mut motion.slide_rate);
+    for ((speed, rate), [_, first, second]) in speeds.zip(rates).zip(values) {
+        *speed = *first * q_dot;
+        *rate = *first * q_ddot + *second * q_dot * q_dot;
     }
 }
 
@@ -510,6 +396,12 @@ impl Machine {
         let q = q?.value();
         let mut spans = self.bridges.iter();
         spans.find_map(|span| Some((span.bridge.as_ref(), span.on(q)?)))
+    }
+
+    /// Whether a state is on the bridge across a change point. There are the states of bodies and loads
+    /// there, and the reactions that [`Machine::show`] finds, but no others.
+    pub fn on_bridge(&self, y: &[f64]) -> bool {
+        self.bridge_at(y.first()).is_some()
     }
 
     /// As [`Machine::evaluate`] on a bridge, by (1). `memory` are the drives' states.
@@ -541,11 +433,9 @@ impl Machine {
         let (zero, one) = (T::lift(0.0), T::lift(1.0));
         bridge.fit.at(x, &mut own.powers, &mut own.values);
         own.impose(plan, &work.q, &mut work.inner.pose);
-        let mut trial = std::mem::replace(&mut own.trial, Motion::default());
-        own.moving(one, zero, &mut trial);
-        own.moves.fill(plan, &work.inner.pose, &trial);
-        own.trial = trial;
-        own.moving(q_dot, zero, &mut work.inner.motion);
+        moving(&own.values, [one, zero], &mut own.trial);
+        own.moves.fill(plan, &work.inner.pose, &own.trial);
+        moving(&own.values, [q_dot, zero], &mut work.inner.motion);
         self.model.enter_placed(t, &work.q_dot, &mut work.inner)?;
         self.drive(t, memory, work);
         self.model.push(&mut work.inner)?;
@@ -568,7 +458,7 @@ impl Machine {
         }
         let q_ddot = (force - half_dm * q_dot * q_dot) / m;
         work.q_ddot[0] = q_ddot;
-        own.moving(q_dot, q_ddot, &mut work.inner.motion);
+        moving(&own.values, [q_dot, q_ddot], &mut work.inner.motion);
         work.inner.refill(&self.model);
         self.net(work)
     }

@@ -319,12 +319,7 @@ impl Lookout {
     }
 
     /// The function with the whole turns that it has without a jump since it was `last`.
-    fn see(
-        &self,
-        last: (f64, Seen),
-        eye: &mut Eye<'_>,
-        at: &Point,
-    ) -> Result<Seen, DynamicsError> {
+    fn see(&self, last: (f64, Seen), eye: &mut Eye<'_>, at: &Point) -> Result<Seen, DynamicsError> {
         let mut seen = eye.value(self.event.trigger, at)?;
         seen.value += match seen.whole {
             None => 0.0,

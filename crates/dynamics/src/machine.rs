@@ -355,7 +355,8 @@ impl Machine {
     }
 
     /// All that another model of the same mechanism and loads computes, at the state last evaluated: its
-    /// reactions, and what every body and load does, are then in `all` and `actions`.
+    /// reactions, and what every body and load does, are then in `all` and `actions`. On a bridge, a
+    /// reaction that the change point does not determine is not a number.
     ///
     /// # Errors
     /// [`DynamicsError`] as of [`Machine::evaluate`].

@@ -10,7 +10,7 @@ use crate::plane::{Vec2, vec2};
 use crate::scalar::Scalar;
 
 /// Rates of every frame and slide at a pose.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Motion<T> {
     /// By frame: angular velocity, rad/s.
     pub turn: Vec<T>,

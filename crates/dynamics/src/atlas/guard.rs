@@ -1,11 +1,14 @@
 //! Looks after the steps of a chart: whether its coordinate still tells how the mechanism moves.
 
-use super::{Atlas, BodyStates, Chart, FOLDS, MachineWork, Motion, SAME};
+use super::{Atlas, Chart, FOLDS, SAME};
 use crate::driver::{Dense, Next};
 use crate::error::DynamicsError;
 use crate::follow::inside;
+use crate::machine::MachineWork;
 use crate::root;
 use crate::system::Point;
+use dwell_geometry::Motion;
+use dwell_geometry::measure::BodyStates;
 
 /// Parts of a step between which the speed's sign is looked at.
 const LOOKS: usize = 4;
@@ -143,7 +146,9 @@ impl<'a, 's> Guard<'a, 's> {
                         Ok(ranks) if ranks.times() <= FOLDS => {}
                         Ok(ranks) => return Ok(Some(ranks)),
                         // The zero lies beyond the range's end, by the error of the step.
-                        Err(_) => return Ok(Some(self.ranks(&last).or_else(|_| self.ranks(before))?)),
+                        Err(_) => {
+                            return Ok(Some(self.ranks(&last).or_else(|_| self.ranks(before))?));
+                        }
                     }
                 }
             }
@@ -158,8 +163,7 @@ impl<'a, 's> Guard<'a, 's> {
         let plan = machine.model.plan();
         machine.evaluate(at.t, &at.y, &mut self.work)?;
         plan.speeds(&self.work.inner.pose, &[1.0], &mut self.unit);
-        self.states
-            .fill(plan, &self.work.inner.pose, &self.unit);
+        self.states.fill(plan, &self.work.inner.pose, &self.unit);
         let all = &self.atlas.coordinates;
         let present = all.iter().find(|c| c.coordinate == self.chart.coordinate);
         let present = present.map_or(1.0, |c| c.weight);

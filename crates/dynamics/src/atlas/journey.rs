@@ -5,8 +5,8 @@ use crate::error::DynamicsError;
 use crate::follow::{Occurrence, Trace};
 use crate::options::Statistics;
 use crate::system::Point;
-use dwell_geometry::measure::Measured;
 use dwell_geometry::BodyId;
+use dwell_geometry::measure::Measured;
 use std::f64::consts::TAU;
 
 /// A motion through one or more charts.
