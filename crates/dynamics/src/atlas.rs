@@ -212,6 +212,10 @@ impl<'s> Atlas<'s> {
             let (trace, turning) = match self.leg(chart, &at, end, &options, &mut record) {
                 // What is left after a change is nothing.
                 Err(DynamicsError::TooShort) if !journey.legs.is_empty() => return Ok(journey),
+                Err(error) if !journey.legs.is_empty() => {
+                    journey.failed = Some(error);
+                    return Ok(journey);
+                }
                 leg => leg?,
             };
             idle = if trace.steps.len() > 1 { 0 } else { idle + 1 };
