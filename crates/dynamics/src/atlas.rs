@@ -38,6 +38,8 @@ const FOLDS: f64 = 8.0;
 const TRIES: usize = 6;
 /// Charts in a row in which nothing moves before the motion is given up.
 const MOST_IDLE: usize = 3;
+/// How far steps that may have led over a bridge are shortened.
+const SLOWEST: f64 = 1e-2;
 /// Two poses closer than this, rad, are one.
 const SAME: f64 = 1e-6;
 
@@ -117,6 +119,9 @@ impl<'s> Atlas<'s> {
             periods: Vec::new(),
             size,
         };
+        if site.mechanism.actuators.len() != 1 {
+            return Err(MachineError::Guidance.into());
+        }
         let home = atlas.build(site.mechanism, site.start)?;
         atlas.charts.push(home);
         Ok(atlas)
@@ -205,7 +210,8 @@ impl<'s> Atlas<'s> {
         let mut journey = Journey::default();
         let mut record = Record::new(start.t, events);
         let (mut chart, mut at) = (0, start.clone());
-        let mut options = *options;
+        let asked = options;
+        let (mut options, mut longest) = (*asked, None);
         let mut idle = 0;
         loop {
             self.prepare(chart);
@@ -225,14 +231,19 @@ impl<'s> Atlas<'s> {
             }
             journey.stopped = trace.stopped;
             journey.failed = trace.failed.clone();
-            journey.legs.push(Leg { chart, trace });
+            journey.take(chart, trace);
             if journey.stopped || (journey.failed.is_none() && at.t >= end) {
                 return Ok(journey);
             }
             let turning = match turning {
+                None if self.slow_down(chart, &at, &mut longest) => {
+                    options.longest = longest;
+                    continue;
+                }
                 None => self.rescue(chart, &at),
                 turning => turning,
             };
+            (longest, options.longest) = (None, asked.longest);
             // A chart that should be left and cannot be ends the motion; so do charts that lead from
             // one to another and nowhere else.
             let turning = turning.filter(|_| idle < MOST_IDLE);
@@ -279,6 +290,20 @@ impl<'s> Atlas<'s> {
         trace.failed = ended.failed;
         trace.statistics = ended.statistics;
         Ok((trace, left))
+    }
+
+    /// Shorter steps for a chart that failed, if it has a bridge that they may have led over.
+    fn slow_down(&self, chart: usize, at: &Point, longest: &mut Option<f64>) -> bool {
+        let spans = self.charts[chart].machine.bridges.iter();
+        let near = spans.map(|span| span.bridge.reach).reduce(f64::min);
+        let (Some(reach), Some(&speed)) = (near, at.y.get(1)) else {
+            return false;
+        };
+        let first = 0.5 * reach / speed.abs();
+        let next = longest.map_or(first, |last| 0.25 * last);
+        let worth = next.is_finite() && next > SLOWEST * first;
+        *longest = Some(next);
+        worth
     }
 
     /// The best coordinates besides the present one where a chart ends, if there are better ones.

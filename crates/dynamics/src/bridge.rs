@@ -34,10 +34,14 @@ const AHEAD_DEGREE: usize = 5;
 /// Half the widest window, rad, and the tightest tolerance that one is made for.
 const WIDEST: f64 = 0.2;
 const TIGHTEST: f64 = 1e-12;
-/// How far from the change point poses are fitted, in parts of a radian: the best is taken.
+/// A looser tolerance is no reason for a window in which nothing is known.
+const LOOSEST: f64 = 1e-9;
+/// How far from the change point poses are fitted, rad: the farthest of the good ones is taken.
 const REACHES: [f64; 5] = [0.15, 0.3, 0.5, 0.8, 1.2];
 /// Largest gap between a bridge and the plan at its ends, in first and second derivatives.
 const MEETS: f64 = 1e-6;
+/// A gap below this is as good as any.
+const ROUNDING: f64 = 1e-11;
 
 /// Why a change point cannot be crossed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -121,7 +125,7 @@ impl Span {
 /// Half the window for a tolerance, rad: where N·eps/|sin θ|³ exceeds it.
 pub(crate) fn half_window(plan: &Plan, tolerance: f64) -> f64 {
     let groups = plan.group_kinds().len() as f64;
-    let tolerance = tolerance.max(TIGHTEST);
+    let tolerance = tolerance.clamp(TIGHTEST, LOOSEST);
     (groups * f64::EPSILON / tolerance).cbrt().min(WIDEST)
 }
 
@@ -189,20 +193,19 @@ impl Bridge {
         };
         let most = room(sides[0]).min(room(sides[1]));
         let reaches = REACHES.map(|reach| (reach * unit).max(1.5 * half).min(most));
-        let mut best: Option<(f64, f64, Fit)> = None;
+        let mut fits: Vec<(f64, f64, Fit)> = Vec::with_capacity(reaches.len());
         for reach in reaches {
             let fit = Self::fit(sides, center, half, reach)?;
             let gap = gap(&fit, sides, center, [half, unit])?;
-            if best.as_ref().is_none_or(|(least, ..)| gap < *least) {
-                best = Some((gap, reach, fit));
-            }
+            fits.push((gap, reach, fit));
         }
-        let Some((gap, reach, fit)) = best else {
-            return Err(BridgeError::NotSmooth { gap: f64::NAN });
+        let least = fits.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);
+        // A far reach catches steps that lead over the window.
+        let good = |gap: f64| gap <= (10.0 * least).max(ROUNDING);
+        let best = fits.into_iter().rev().find(|f| good(f.0));
+        let Some((gap, reach, fit)) = best.filter(|f| f.0 <= MEETS) else {
+            return Err(BridgeError::NotSmooth { gap: least });
         };
-        if gap.is_nan() || gap > MEETS {
-            return Err(BridgeError::NotSmooth { gap });
-        }
         let mut bridge = Self {
             center,
             half,
@@ -273,11 +276,13 @@ impl Bridge {
         actions.tau.fill(0.0);
         let q = work.q.first().copied().unwrap_or(self.center);
         let near = q - x;
+        // Reactions are known worse than poses, and needed in the window alone.
+        let reach = self.reach.min(3.0 * self.half);
         let (mut at, mut samples) = (Vec::new(), Vec::new());
         for (model, way) in self.sides.iter().zip([-1.0, 1.0]) {
             let mut there = model.workspace();
             let mut found = model.actions();
-            for d in nodes(self.half, self.reach, REACTION_NODES) {
+            for d in nodes(self.half, reach, REACTION_NODES) {
                 for (load, one) in model.loads().iter().enumerate() {
                     if one.magnitude == dwell_kinetostatics::Magnitude::Given {
                         there.give(load, work.inner.loads().magnitude[load]);
@@ -290,7 +295,7 @@ impl Bridge {
                 samples.push(found.reactions.clone());
             }
         }
-        let fit = Fit::new(&at, &samples, self.reach, REACTION_DEGREE);
+        let fit = Fit::new(&at, &samples, reach, REACTION_DEGREE);
         let mut values = fit.room();
         fit.at(x, &mut Vec::new(), &mut values);
         for (own, reaction) in actions.reactions.iter_mut().zip(shown.reactions()) {

@@ -147,6 +147,29 @@ fn loads_and_drives_cross_with_it() {
     }
 }
 
+/// Rough steps lead over whole windows, and still to the same branch: the links stay parallel.
+#[test]
+fn rough_steps_stay_on_the_branch() {
+    for n in [1, 5] {
+        let setup = along(n, FRAC_PI_2);
+        let mut atlas = setup.atlas();
+        let start = setup.at(&atlas, -1.0);
+        for tolerance in [1e-1, 1e-2, 1e-4, 1e-6, 1e-9] {
+            for method in Method::ALL {
+                let options = Options::new(method, tolerance);
+                let journey = atlas.follow(&start, 6.0, &options, &[]).expect("a run");
+                assert_eq!(journey.failed, None, "{n} {tolerance} {method:?}");
+                assert!(crossed(&journey) >= 3, "{n} {tolerance} {method:?}");
+                let links = Measured::Angle([BodyId(1), BodyId(2 * n + 1)]);
+                let track = atlas.track(&journey, links).expect("a track").steps;
+                for [apart, ..] in track.concat() {
+                    assert!(apart.abs() < 1e-9, "{n} {tolerance} {method:?} {apart}");
+                }
+            }
+        }
+    }
+}
+
 /// Where the sides of 1 + 3 = 2 + 2 lie on one line the angles are curved, and it takes two turns of the
 /// crank to come back.
 #[test]

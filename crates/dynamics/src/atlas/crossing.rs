@@ -8,6 +8,9 @@ use dwell_geometry::{BodyId, End, Mechanism, Start};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// Two branches part by about the distance from their change point; one is known to this part of it.
+const PARTED: f64 = 0.1;
+
 /// A bridge with the charts below and above it.
 #[derive(Debug, Clone)]
 pub(super) struct Crossing {
@@ -49,13 +52,14 @@ impl Atlas<'_> {
             self.size
         };
         let half = unit * half_window(plan, self.tolerance);
-        let beyond = 1.5 * half;
+        // Far enough for the branches to have parted.
+        let beyond = (1.5 * half).max(0.05 * unit);
         let way = if upwards { 1.0 } else { -1.0 };
         let to = (4.0 * half).max(0.1 * unit);
         let mut angles = ahead(&own.machine.model, end.q, upwards, [half, to], beyond)?;
         angles.truncate(self.site.mechanism.bodies.len());
         let q = end.q + way * beyond;
-        let there = self.behind(chart, q, &angles)?;
+        let there = self.behind(chart, q, &angles, PARTED * beyond / unit)?;
         let (center, turns) = self.middle(end, there, upwards, half)?;
         let period = self.close_ring(chart, turns)?;
         let charts = if upwards {
@@ -137,8 +141,14 @@ impl Atlas<'_> {
         Ok((end.q + 0.5 * apart, turns))
     }
 
-    /// The chart of the same coordinate on the branch with these angles of the bodies.
-    fn behind(&mut self, chart: usize, q: f64, angles: &[f64]) -> Result<usize, BridgeError> {
+    /// The chart of the same coordinate on the branch with these angles of the bodies, to so much.
+    fn behind(
+        &mut self,
+        chart: usize,
+        q: f64,
+        angles: &[f64],
+        within: f64,
+    ) -> Result<usize, BridgeError> {
         let own = &self.charts[chart];
         let (name, coordinate) = (own.name.clone(), own.coordinate);
         let on_branch = |chart: &Chart| {
@@ -148,8 +158,7 @@ impl Atlas<'_> {
             states.fill(plan, &pose, &plan.motion());
             let near = |(b, angle): (usize, &f64)| {
                 let off = states.body(BodyId(b)).turn.angle() - angle;
-                // Two branches part by about the distance from the change point.
-                (off - TAU * (off / TAU).round()).abs() < 1e-3
+                (off - TAU * (off / TAU).round()).abs() < within
             };
             placed && angles.iter().enumerate().all(near)
         };

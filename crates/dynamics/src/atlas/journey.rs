@@ -72,6 +72,21 @@ pub struct Tracked {
 }
 
 impl Journey {
+    /// Adds what one chart made of the motion; it goes on from the last leg if the chart is the same.
+    pub(super) fn take(&mut self, chart: usize, trace: Trace) {
+        let same = self.legs.len() == self.changes.len() + 1;
+        let Some(leg) = self.legs.last_mut().filter(|_| same) else {
+            self.legs.push(Leg { chart, trace });
+            return;
+        };
+        leg.trace.steps.extend(trace.steps.into_iter().skip(1));
+        leg.trace.samples.extend(trace.samples);
+        leg.trace.occurrences.extend(trace.occurrences);
+        leg.trace.stopped = trace.stopped;
+        leg.trace.failed = trace.failed;
+        leg.trace.statistics = sum(leg.trace.statistics, trace.statistics);
+    }
+
     /// What happened, in order, with the leg it happened in.
     pub fn occurrences(&self) -> impl Iterator<Item = (usize, &Occurrence)> {
         let legs = self.legs.iter().enumerate();
@@ -80,16 +95,8 @@ impl Journey {
 
     /// The work of all legs together.
     pub fn statistics(&self) -> Statistics {
-        let mut sum = Statistics::default();
-        for Leg { trace, .. } in &self.legs {
-            let own = trace.statistics;
-            sum.steps += own.steps;
-            sum.rejected += own.rejected;
-            sum.evaluations += own.evaluations;
-            sum.jacobians += own.jacobians;
-            sum.factorisations += own.factorisations;
-        }
-        sum
+        let legs = self.legs.iter().map(|leg| leg.trace.statistics);
+        legs.fold(Statistics::default(), sum)
     }
 
     /// The last state, with the chart it is of.
@@ -161,6 +168,16 @@ impl Atlas<'_> {
             tracked.samples.push(samples);
         }
         Ok(tracked)
+    }
+}
+
+fn sum(a: Statistics, b: Statistics) -> Statistics {
+    Statistics {
+        steps: a.steps + b.steps,
+        rejected: a.rejected + b.rejected,
+        evaluations: a.evaluations + b.evaluations,
+        jacobians: a.jacobians + b.jacobians,
+        factorisations: a.factorisations + b.factorisations,
     }
 }
 
