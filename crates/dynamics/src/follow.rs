@@ -10,6 +10,7 @@ use crate::machine::{Machine, MachineWork, Moving};
 use crate::options::{Options, Statistics};
 use crate::root;
 use crate::system::Point;
+use dwell_geometry::BodyId;
 use dwell_geometry::measure::Measured;
 use dwell_kinetostatics::{Actions, Model, Workspace};
 use std::f64::consts::TAU;
@@ -84,24 +85,93 @@ pub fn follow(
     options: &Options,
     events: &[Event],
 ) -> Result<Trace, DynamicsError> {
-    let mut eye = Eye::new(machine, shown);
-    let mut trace = Trace {
-        steps: vec![start.clone()],
-        samples: options.every.map(|_| start.clone()).into_iter().collect(),
-        ..Trace::default()
-    };
-    let mut lookouts = Vec::with_capacity(events.len());
-    for &event in events {
-        lookouts.push(Lookout::new(event, &mut eye, start)?);
-    }
+    let mut record = Record::new(start.t, events);
+    let mut watcher = record.on(machine, shown, start)?;
+    let mut trace = watcher.trace(start, options);
     let mut moving = Moving::new(machine, start.t, &start.y)?;
     let mut watch = |before: &Point, now: &Point, dense: Dense<'_>| {
+        watcher.step(&mut trace, options, before, now, dense)
+    };
+    let ended = integrate(&mut moving, start, Some(end), options, &mut watch)?;
+    trace.failed = ended.failed;
+    trace.statistics = ended.statistics;
+    Ok(trace)
+}
+
+/// What a motion remembers from one machine that carries it to the next.
+pub(crate) struct Record<'e> {
+    events: &'e [Event],
+    lookouts: Vec<Lookout>,
+    /// When the motion began, and the samples taken since.
+    began: f64,
+    sampled: usize,
+}
+
+impl<'e> Record<'e> {
+    pub(crate) fn new(began: f64, events: &'e [Event]) -> Self {
+        Self {
+            events,
+            lookouts: Vec::with_capacity(events.len()),
+            began,
+            sampled: 0,
+        }
+    }
+
+    /// Goes on with a machine from a point.
+    pub(crate) fn on<'m>(
+        &'m mut self,
+        machine: &'m Machine,
+        shown: &'m Model,
+        from: &Point,
+    ) -> Result<Watcher<'m, 'e>, DynamicsError> {
+        let mut eye = Eye::new(machine, shown);
+        if self.lookouts.is_empty() {
+            for &event in self.events {
+                self.lookouts.push(Lookout::new(event, &mut eye, from)?);
+            }
+        } else {
+            for lookout in &mut self.lookouts {
+                lookout.go_on(&mut eye, from)?;
+            }
+        }
+        Ok(Watcher { eye, record: self })
+    }
+}
+
+/// Looks after the steps of one machine.
+pub(crate) struct Watcher<'m, 'e> {
+    eye: Eye<'m>,
+    record: &'m mut Record<'e>,
+}
+
+impl Watcher<'_, '_> {
+    /// A trace that begins at a point.
+    pub(crate) fn trace(&mut self, start: &Point, options: &Options) -> Trace {
+        let first = options.every.is_some() && self.record.sampled == 0;
+        self.record.sampled += usize::from(first);
+        Trace {
+            steps: vec![start.clone()],
+            samples: first.then(|| start.clone()).into_iter().collect(),
+            ..Trace::default()
+        }
+    }
+
+    /// Takes a step into the trace, with the samples and events in it.
+    pub(crate) fn step(
+        &mut self,
+        trace: &mut Trace,
+        options: &Options,
+        before: &Point,
+        now: &Point,
+        dense: Dense<'_>,
+    ) -> Result<Next, DynamicsError> {
+        let Self { eye, record } = self;
         let mut found = Vec::new();
-        for (i, lookout) in lookouts.iter_mut().enumerate() {
-            lookout.look(i, before, now, dense, &mut eye, &mut found)?;
+        for (i, lookout) in record.lookouts.iter_mut().enumerate() {
+            lookout.look(i, before, now, dense, eye, &mut found)?;
         }
         found.sort_by(|a, b| a.at.t.total_cmp(&b.at.t));
-        let stop = found.iter().position(|o| events[o.event].stop);
+        let stop = found.iter().position(|o| record.events[o.event].stop);
         if let Some(stop) = stop {
             found.truncate(stop + 1);
         }
@@ -110,10 +180,11 @@ pub fn follow(
             _ => now.t,
         };
         if let Some(every) = options.every {
-            while let t = start.t + every * trace.samples.len() as f64
+            while let t = record.began + every * record.sampled as f64
                 && t <= until
             {
                 trace.samples.push(inside(t, now, dense)?);
+                record.sampled += 1;
             }
         }
         let last = inside(until, now, dense)?;
@@ -125,15 +196,11 @@ pub fn follow(
         } else {
             Next::GoOn
         })
-    };
-    let ended = integrate(&mut moving, start, Some(end), options, &mut watch)?;
-    trace.failed = ended.failed;
-    trace.statistics = ended.statistics;
-    Ok(trace)
+    }
 }
 
 /// The state at a time within a step that ends at `now`.
-fn inside(t: f64, now: &Point, dense: Dense<'_>) -> Result<Point, DynamicsError> {
+pub(crate) fn inside(t: f64, now: &Point, dense: Dense<'_>) -> Result<Point, DynamicsError> {
     let mut point = now.clone();
     if t < now.t {
         dense(t, &mut point.y)?;
@@ -162,13 +229,25 @@ impl<'m> Eye<'m> {
         }
     }
 
-    fn value(&mut self, trigger: Trigger, point: &Point) -> Result<f64, DynamicsError> {
+    fn value(&mut self, trigger: Trigger, point: &Point) -> Result<Seen, DynamicsError> {
         self.machine.evaluate(point.t, &point.y, &mut self.work)?;
         let states = self.work.inner.states();
+        let seen = |measured: Measured, less: f64| {
+            let [value, speed, _] = states.measure(measured);
+            let counted = |b: BodyId| states.body(b).angle.is_some();
+            Seen {
+                value: value - less,
+                speed,
+                whole: match measured {
+                    Measured::Angle(bodies) => Some(bodies.into_iter().all(counted)),
+                    _ => None,
+                },
+            }
+        };
         Ok(match trigger {
-            Trigger::Reaches(measured, value) => states.measure(measured)[0] - value,
-            Trigger::WholeTurn(measured) => states.measure(measured)[0],
-            Trigger::Turns(measured) => states.measure(measured)[1],
+            Trigger::Reaches(measured, value) => seen(measured, value),
+            Trigger::WholeTurn(measured) => seen(measured, 0.0),
+            Trigger::Turns(measured) => Seen::plain(states.measure(measured)[1]),
             Trigger::Reaction(k, value) => {
                 self.machine.show(
                     self.shown,
@@ -177,17 +256,38 @@ impl<'m> Eye<'m> {
                     &mut self.all,
                     &mut self.actions,
                 )?;
-                self.actions.reactions[k] - value
+                Seen::plain(self.actions.reactions[k] - value)
             }
         })
     }
 }
 
+/// The value of an event's function.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    value: f64,
+    speed: f64,
+    /// Of an angle: whether its whole turns are counted.
+    whole: Option<bool>,
+}
+
+impl Seen {
+    fn plain(value: f64) -> Self {
+        Self {
+            value,
+            speed: 0.0,
+            whole: None,
+        }
+    }
+}
+
 /// An event being looked for.
-struct Lookout {
+pub(crate) struct Lookout {
     event: Event,
-    /// The function's value at the end of the last step.
-    last: f64,
+    /// When it was last looked at, and the function then. Angles that are not counted go on from here.
+    last: (f64, Seen),
+    /// Whole turns that counted angles are ahead of what is seen, since another machine began.
+    ahead: f64,
     /// Of whole turns: where they are counted from, and how many were passed.
     from: f64,
     turns: f64,
@@ -195,13 +295,42 @@ struct Lookout {
 
 impl Lookout {
     fn new(event: Event, eye: &mut Eye<'_>, start: &Point) -> Result<Self, DynamicsError> {
-        let value = eye.value(event.trigger, start)?;
+        let seen = eye.value(event.trigger, start)?;
         Ok(Self {
             event,
-            last: value,
-            from: value,
+            last: (start.t, seen),
+            ahead: 0.0,
+            from: seen.value,
             turns: 0.0,
         })
+    }
+
+    /// Goes on with another machine, whose angles may be whole turns away.
+    fn go_on(&mut self, eye: &mut Eye<'_>, at: &Point) -> Result<(), DynamicsError> {
+        let mut seen = eye.value(self.event.trigger, at)?;
+        self.ahead = 0.0;
+        if seen.whole.is_some() {
+            let turns = TAU * ((self.last.1.value - seen.value) / TAU).round();
+            seen.value += turns;
+            self.ahead = turns;
+        }
+        self.last = (at.t, seen);
+        Ok(())
+    }
+
+    /// The function with the whole turns that it has without a jump since it was `last`.
+    fn see(&self, last: (f64, Seen), eye: &mut Eye<'_>, at: &Point) -> Result<Seen, DynamicsError> {
+        let mut seen = eye.value(self.event.trigger, at)?;
+        seen.value += match seen.whole {
+            None => 0.0,
+            Some(true) => self.ahead,
+            Some(false) => {
+                let (t, last) = last;
+                let near = last.value + 0.5 * (last.speed + seen.speed) * (at.t - t);
+                TAU * ((near - seen.value) / TAU).round()
+            }
+        };
+        Ok(seen)
     }
 
     /// Looks through one step.
@@ -215,15 +344,17 @@ impl Lookout {
         found: &mut Vec<Occurrence>,
     ) -> Result<(), DynamicsError> {
         let trigger = self.event.trigger;
-        let (mut t0, mut v0) = (before.t, self.last);
         for k in 1..=LOOKS {
             let t1 = before.t + (now.t - before.t) * k as f64 / LOOKS as f64;
             let point = inside(if k == LOOKS { now.t } else { t1 }, now, dense)?;
-            let v1 = eye.value(trigger, &point)?;
+            let last = self.last;
+            let (t0, v0) = (last.0, last.1.value);
+            let seen = self.see(last, eye, &point)?;
+            let v1 = seen.value;
             while let Some(target) = self.target(v0, v1) {
                 let mut off = |t: f64| -> Result<f64, DynamicsError> {
                     let at = inside(t, now, dense)?;
-                    Ok(eye.value(trigger, &at)? - target)
+                    Ok(self.see(last, eye, &at)?.value - target)
                 };
                 // What was zero already has happened before.
                 let t = if v0 == target {
@@ -244,9 +375,8 @@ impl Lookout {
                 }
                 self.turns += (v1 - v0).signum();
             }
-            (t0, v0) = (point.t, v1);
+            self.last = (point.t, seen);
         }
-        self.last = v0;
         Ok(())
     }
 

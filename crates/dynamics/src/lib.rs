@@ -1,5 +1,7 @@
 //! The equation of motion of a reduced model: integration, events, energy and period.
 
+pub mod atlas;
+mod bridge;
 pub mod drive;
 pub mod driver;
 pub mod equation;
@@ -12,6 +14,8 @@ pub mod quadrature;
 pub mod root;
 pub mod system;
 
+pub use atlas::{Atlas, AtlasError, Change, Chart, Journey, Leg, Site, Tracked, Why};
+pub use bridge::{Bridge, BridgeError};
 pub use drive::{Drive, DriveError, DriveKind, Motor, Regulator};
 pub use driver::{Dense, Ended, Next, Watch, integrate};
 pub use equation::Equation;

@@ -13,6 +13,7 @@
 //! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; work of what has no
 //! potential], so that the energy balance is integrated with the motion.
 
+use crate::bridge::{CrossWork, Span};
 use crate::drive::{Drive, DriveError, Driven};
 use crate::error::DynamicsError;
 use crate::system::System;
@@ -43,13 +44,15 @@ pub enum Worker {
 /// A machine: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Machine {
-    model: Model,
+    pub(crate) model: Model,
     guidance: Vec<Guidance>,
     free: Vec<usize>,
-    drives: Vec<Driven>,
+    pub(crate) drives: Vec<Driven>,
     /// Number of the drives' states.
     memory: usize,
     workers: Vec<Worker>,
+    /// Where it crosses change points.
+    pub(crate) bridges: Vec<Span>,
 }
 
 /// Why a machine cannot be built.
@@ -99,6 +102,7 @@ impl Machine {
             free,
             drives,
             workers,
+            bridges: Vec::new(),
         })
     }
 
@@ -163,6 +167,7 @@ impl Machine {
             action: zeros(self.drives.len()),
             spin: self.model.actions(),
             memory: zeros(self.memory),
+            crossing: None,
         }
     }
 
@@ -179,16 +184,11 @@ impl Machine {
     ) -> Result<(), DynamicsError> {
         let n = self.free.len();
         self.guide(t, y, work);
-        self.model.enter(t, &work.q, &work.q_dot, &mut work.inner)?;
-        for (d, drive) in self.drives.iter().enumerate() {
-            let state = drive.state.map(|s| y[2 * n + s]);
-            let (action, rate) = drive.act(t, work.inner.states(), state);
-            work.action[d] = action;
-            work.inner.give(drive.load, action);
-            if let Some(s) = drive.state {
-                work.memory[s] = rate;
-            }
+        if let Some(bridge) = self.bridge_at(work.q.first()) {
+            return self.cross(bridge, t, &y[2 * n..], work);
         }
+        self.model.enter(t, &work.q, &work.q_dot, &mut work.inner)?;
+        self.drive(t, &y[2 * n..], work);
         self.model
             .loaded(&work.q_ddot, &mut work.inner, &mut work.base)?;
         for (k, &i) in self.free.iter().enumerate() {
@@ -205,6 +205,19 @@ impl Machine {
         }
         self.answer(work)?;
         self.settle(work)
+    }
+
+    /// The drives' actions at the state entered, from their own states.
+    pub(crate) fn drive<T: Scalar>(&self, t: f64, memory: &[T], work: &mut MachineWork<T>) {
+        for (d, drive) in self.drives.iter().enumerate() {
+            let state = drive.state.map(|s| memory[s]);
+            let (action, rate) = drive.act(t, work.inner.states(), state);
+            work.action[d] = action;
+            work.inner.give(drive.load, action);
+            if let Some(s) = drive.state {
+                work.memory[s] = rate;
+            }
+        }
     }
 
     /// Lets the rotors resist: N² J times what their channels make of s̈ = S q̈ + what is left at zero q̈.
@@ -230,6 +243,11 @@ impl Machine {
             return Ok(());
         }
         self.model.accelerate(&work.q_ddot, &mut work.inner);
+        self.net(work)
+    }
+
+    /// What is left of the drives' actions at the accelerations in `work`.
+    pub(crate) fn net<T: Scalar>(&self, work: &mut MachineWork<T>) -> Result<(), DynamicsError> {
         for (drive, &action) in self.drives.iter().zip(&work.action) {
             let [_, _, s_ddot] = work.inner.states().measure(drive.measured);
             let net = action - T::lift(drive.inertia) * s_ddot;
@@ -342,7 +360,8 @@ impl Machine {
     }
 
     /// All that another model of the same mechanism and loads computes, at the state last evaluated: its
-    /// reactions, and what every body and load does, are then in `all` and `actions`.
+    /// reactions, and what every body and load does, are then in `all` and `actions`. On a bridge, a
+    /// reaction that the change point does not determine is not a number.
     ///
     /// # Errors
     /// [`DynamicsError`] as of [`Machine::evaluate`].
@@ -356,6 +375,9 @@ impl Machine {
     ) -> Result<(), DynamicsError> {
         for drive in &self.drives {
             all.give(drive.load, work.inner.loads().magnitude[drive.load]);
+        }
+        if let Some((bridge, x)) = self.bridge_at(work.q.first()) {
+            return bridge.show(x, shown, t, work, all, actions);
         }
         Ok(shown.kinetostatics(t, &work.q, &work.q_dot, &work.q_ddot, all, actions)?)
     }
@@ -423,6 +445,7 @@ pub struct MachineWork<T = f64> {
     pivots: Vec<usize>,
     rest: Vec<T>,
     memory: Vec<T>,
+    pub(crate) crossing: Option<Box<CrossWork<T>>>,
 }
 
 /// A machine with the working memory to integrate it, for one thread.

@@ -6,6 +6,7 @@
 //! without any load: a reaction with a part in one of these is not unique (M. Wojtyra, Joint
 //! reaction forces in multibody systems with redundant constraints, 2005).
 
+use crate::measure::BodyStates;
 use crate::mechanism::{BodyId, JointKind, Mechanism};
 use crate::plan::Start;
 use crate::plane::{Vec2, vec2};
@@ -52,6 +53,8 @@ impl Mobility {
 const ZERO: f64 = 1e-8;
 /// A body or a row has a part in a null space of orthonormal vectors from here on.
 const PART: f64 = 1e-6;
+/// Where a position is known to less, what is zero there is this small.
+const NEARLY_ZERO: f64 = 1e-5;
 /// Closed: the residual relative to the size.
 const CLOSED: f64 = 1e-11;
 /// Steps of one attempt to close, and attempts from other angles.
@@ -69,6 +72,8 @@ struct Dense {
     size: f64,
     joints: usize,
     imposed: Vec<f64>,
+    /// Singular values this small against the largest are zero.
+    zero: f64,
 }
 
 /// Finds the mobility of a mechanism near its start; none where it is too large for dense matrices
@@ -85,6 +90,7 @@ pub fn mobility(mechanism: &Mechanism, start: &Start) -> Option<Mobility> {
         size: size(mechanism),
         joints,
         imposed,
+        zero: ZERO,
         rows,
     };
     let (x, gap) = dense.assemble(mechanism, start);
@@ -98,6 +104,28 @@ pub fn mobility(mechanism: &Mechanism, start: &Start) -> Option<Mobility> {
     }
     ranks.gap = (!closed).then_some(gap);
     Some(ranks)
+}
+
+/// The mobility at one position, which may be singular: more may move there than elsewhere, and fewer
+/// reactions be determined. None where the rows cannot be written.
+pub fn mobility_here(mechanism: &Mechanism, states: &BodyStates) -> Option<Mobility> {
+    let rows = Rows::new(mechanism).ok()?;
+    let mut x = vec![0.0; rows.columns()];
+    for b in (0..mechanism.bodies.len()).map(BodyId) {
+        if let Some(c) = rows.column(b) {
+            let origin = states.point(b, Vec2::ZERO).position;
+            (x[c], x[c + 1]) = (origin.x, origin.y);
+            x[c + 2] = states.body(b).turn.angle();
+        }
+    }
+    let dense = Dense {
+        size: size(mechanism),
+        joints: rows.len() - mechanism.actuators.len(),
+        imposed: vec![0.0; rows.len()],
+        zero: NEARLY_ZERO,
+        rows,
+    };
+    Some(dense.ranks(mechanism, &x))
 }
 
 /// The largest distance of two points of one body, m.
@@ -227,7 +255,7 @@ impl Dense {
     fn elsewhere(&self, x: &[f64]) -> Option<Vec<f64>> {
         let jacobian = self.jacobian(x);
         let svd = jacobian.subrows(0, self.joints).svd().ok()?;
-        let (rank, v) = (rank_of(&svd.S().column_vector()), svd.V());
+        let (rank, v) = (rank_of(&svd.S().column_vector(), self.zero), svd.V());
         let mut other = x.to_vec();
         for k in rank..v.ncols() {
             for (j, value) in other.iter_mut().enumerate() {
@@ -253,10 +281,10 @@ impl Dense {
             gap: None,
         };
         if let Ok(svd) = all.subrows(0, self.joints).svd() {
-            found.rank = rank_of(&svd.S().column_vector());
+            found.rank = rank_of(&svd.S().column_vector(), self.zero);
         }
         if let Ok(svd) = all.svd() {
-            let rank = rank_of(&svd.S().column_vector());
+            let rank = rank_of(&svd.S().column_vector(), self.zero);
             found.excess = self.rows.len() - rank;
             let part = |m: MatRef<'_, f64>, i: usize| -> f64 {
                 (rank..m.ncols()).map(|k| m[(i, k)] * m[(i, k)]).sum()
@@ -313,9 +341,9 @@ impl Dense {
     }
 }
 
-fn rank_of(values: &faer::ColRef<'_, f64>) -> usize {
+fn rank_of(values: &faer::ColRef<'_, f64>, zero: f64) -> usize {
     let largest = if values.nrows() > 0 { values[0] } else { 0.0 };
     (0..values.nrows())
-        .filter(|&k| values[k] > ZERO * largest)
+        .filter(|&k| values[k] > zero * largest)
         .count()
 }

@@ -200,6 +200,22 @@ impl Plan {
         Ok(())
     }
 
+    /// Sets a pose from the coordinates, the angles of all frames (rad) and the travels of all slides
+    /// (m), wherever they come from. It holds no factors: there are states of bodies in it, but no speeds
+    /// or multipliers.
+    pub fn impose<T: Scalar>(&self, q: &[T], angles: &[T], slides: &[T], pose: &mut Pose<T>) {
+        pose.q.copy_from_slice(q);
+        pose.angle.copy_from_slice(angles);
+        pose.slide.copy_from_slice(slides);
+        for (turn, angle) in pose.turn.iter_mut().zip(angles) {
+            let (sin, cos) = angle.sin_cos();
+            *turn = vec2(cos, sin);
+        }
+        for (own, Arm { frame, local }) in pose.arm.iter_mut().zip(&self.arms) {
+            *own = local.lift::<T>().turn(pose.turn[*frame]);
+        }
+    }
+
     /// The frame whose angle is a class's unknown.
     pub(crate) fn root_of(&self, class: usize) -> usize {
         self.class_roots[class]

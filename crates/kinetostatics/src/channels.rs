@@ -42,6 +42,22 @@ impl Model {
         self.loads.magnitudes(t, &loaded.states, &mut loaded.loads)
     }
 
+    /// Enters a state whose pose and motion (with accelerations) the caller has put into `work`.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError`] when a load has no finite magnitude there.
+    pub fn enter_placed<T: Scalar>(
+        &self,
+        t: f64,
+        q_dot: &[T],
+        work: &mut Workspace<T>,
+    ) -> Result<(), KinetostaticsError> {
+        work.refill(self);
+        let loaded = &mut work.loaded;
+        loaded.q_dot.copy_from_slice(q_dot);
+        self.loads.magnitudes(t, &loaded.states, &mut loaded.loads)
+    }
+
     /// The loaded run at the state entered, with these accelerations (rad/s² or m/s²): the actions and
     /// reactions of inertia and all loads.
     ///

@@ -308,15 +308,23 @@ impl Model {
     pub fn energy_and_power(&self, work: &Workspace<f64>) -> (f64, f64) {
         let mut states = BodyStates::new(&self.plan);
         states.fill(&self.plan, &work.pose, &work.motion);
-        let (mut energy, mut power) = (0.0, 0.0);
+        let [energy, power] = self.sums(&states);
+        (energy, power)
+    }
+
+    /// Σ m v² + I ω² and Σ m v·a + I ω α of some states of the bodies: at unit speed and zero
+    /// acceleration of one coordinate, m and ½m′.
+    pub fn sums<T: Scalar>(&self, states: &BodyStates<T>) -> [T; 2] {
+        let (mut energy, mut power) = (T::lift(0.0), T::lift(0.0));
         for body in &self.massive {
             let id = BodyId(body.body);
             let center = states.point(id, self.masses[id.0].center);
             let (w, a) = (states.body(id).spin, states.body(id).spin_rate);
-            energy += body.mass * center.velocity.dot(center.velocity) + body.inertia * w * w;
-            power += body.mass * center.velocity.dot(center.acceleration) + body.inertia * w * a;
+            let (mass, inertia) = (T::lift(body.mass), T::lift(body.inertia));
+            energy += mass * center.velocity.dot(center.velocity) + inertia * w * w;
+            power += mass * center.velocity.dot(center.acceleration) + inertia * w * a;
         }
-        (energy, power)
+        [energy, power]
     }
 }
 

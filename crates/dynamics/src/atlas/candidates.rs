@@ -1,0 +1,113 @@
+//! The coordinates that can carry a motion of one degree of freedom.
+
+use dwell_geometry::measure::Measured;
+use dwell_geometry::{
+    Actuator, BodyId, Coordinate, Drive as Drives, JointId, JointKind, Mechanism,
+};
+
+/// What an angle between two moving bodies counts against one from the ground: it may fold sooner.
+const RELATIVE: f64 = 0.5;
+
+/// A coordinate that a chart may have.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Candidate {
+    pub(super) name: String,
+    pub(super) coordinate: Coordinate,
+    pub(super) measured: Measured,
+    /// What its speed is multiplied by to compare it.
+    pub(super) weight: f64,
+}
+
+/// An actuator of a coordinate; none of a joint that is not there.
+pub(super) fn actuator(
+    mechanism: &Mechanism,
+    name: String,
+    coordinate: Coordinate,
+) -> Option<Actuator> {
+    let (bodies, drive) = match coordinate {
+        Coordinate::Angle(bodies) => (bodies, Drives::Angle),
+        Coordinate::Travel(joint) => {
+            let bodies = mechanism.joints.get(joint.0)?.bodies;
+            (bodies, Drives::Travel(joint))
+        }
+        Coordinate::Length { bodies, points } => (bodies, Drives::Length(points)),
+    };
+    Some(Actuator {
+        name,
+        bodies,
+        drive,
+    })
+}
+
+/// The mechanism's own coordinate, the angles of all bodies and of all hinges, and all travels.
+pub(super) fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
+    let mut found: Vec<Candidate> = Vec::new();
+    let ground = BodyId(mechanism.ground);
+    let mut add = |name: String, coordinate: Coordinate| {
+        let turned = |c: Coordinate| match c {
+            Coordinate::Angle([a, b]) => Coordinate::Angle([b, a]),
+            other => other,
+        };
+        let known =
+            |c: &Candidate| c.coordinate == coordinate || c.coordinate == turned(coordinate);
+        if found.iter().any(known) {
+            return;
+        }
+        let weight = match coordinate {
+            Coordinate::Angle(bodies) if bodies.contains(&ground) => 1.0,
+            Coordinate::Angle(_) => RELATIVE,
+            _ => 1.0 / size,
+        };
+        if let Some(measured) = Measured::find(mechanism, coordinate) {
+            found.push(Candidate {
+                name,
+                coordinate,
+                measured,
+                weight,
+            });
+        }
+    };
+    if let Some(own) = mechanism.actuators.first() {
+        add(own.name.clone(), own.coordinate());
+    }
+    for b in (0..mechanism.bodies.len()).map(BodyId) {
+        if b != ground {
+            let name = format!("angle of {}", mechanism.body_name(b));
+            add(name, Coordinate::Angle([ground, b]));
+        }
+    }
+    for (j, joint) in mechanism.joints.iter().enumerate() {
+        match joint.kind {
+            JointKind::Revolute => {
+                let name = format!("angle in {}", joint.name);
+                add(name, Coordinate::Angle(joint.bodies));
+            }
+            JointKind::Prismatic { .. } | JointKind::Slot { .. } => {
+                let name = format!("travel in {}", joint.name);
+                add(name, Coordinate::Travel(JointId(j)));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The largest distance of two points of one body, m.
+pub(super) fn size(mechanism: &Mechanism) -> f64 {
+    let mut size = 0.0_f64;
+    let mut first = vec![None; mechanism.bodies.len()];
+    let joints = mechanism.joints.iter().map(|j| (j.bodies, j.points));
+    let lengths = mechanism.actuators.iter().filter_map(|a| match a.drive {
+        Drives::Length(points) => Some((a.bodies, points)),
+        _ => None,
+    });
+    for (bodies, points) in joints.chain(lengths) {
+        for (body, point) in bodies.iter().zip(points) {
+            if let Some(first) = first.get_mut(body.0) {
+                let first = first.get_or_insert(point);
+                size = size.max((point - *first).norm());
+            }
+        }
+    }
+    if size > 0.0 { size } else { 1.0 }
+}
