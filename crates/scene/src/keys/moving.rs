@@ -27,7 +27,7 @@ pub(crate) static PRESCRIBED: Table = Table {
 };
 
 pub(crate) static LAW: Table = table(
-    "[prescribed.<actuator>]",
+    "[prescribed.<actuator>], [motion.laws.<actuator>]",
     "The law of a coordinate in time: one of these. A speed, a sine and a rise start from the coordinate in `[assembly]`.",
     &[
         key(
@@ -189,7 +189,7 @@ pub(crate) static SWEEP: Table = Table {
 };
 
 pub(crate) static MAGNITUDE: Table = table(
-    "magnitude, stiffness, constant",
+    "magnitude, stiffness, constant, voltage, speed",
     "A function through points.",
     &[
         key(
