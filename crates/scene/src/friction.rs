@@ -96,9 +96,10 @@ impl Rub {
         let guide = number("guide", &units.length, Sign::NotNegative, problems);
         let fade = number("fade", units.of(turns), Sign::Positive, problems);
         let viscous = number("viscous", &si, Sign::NotNegative, problems);
-        if fields.get("coefficient").is_some() && turns {
-            let help = "add for instance `radius = 0.005`: that of the pin, in the unit of lengths";
-            fields.need("radius", &entry.key, help, problems);
+        // A guide in its place is one slip, not two.
+        if turns && fields.get("coefficient").is_some() && fields.get("guide").is_none() {
+            let help = format!("add `radius`: that of the pin, in {}", units.length.name);
+            fields.need("radius", &entry.key, &help, problems);
         }
         if problems.count() != before {
             return None;
@@ -164,7 +165,9 @@ fn keys_of(fields: &Fields<'_>, kind: JointKind, problems: &mut Problems) {
     };
     let is_slot = matches!(kind, JointKind::Slot { .. });
     let dry = fields.get("coefficient");
-    if dry.is_none() && fields.get("viscous").is_none() && !fields.has_others_than(table) {
+    // What seems to be missing may be a key that is misspelt.
+    let misspelt = fields.has_others_than(table);
+    if dry.is_none() && fields.get("viscous").is_none() && !misspelt {
         problems.push(
             Problem::new(format!(
                 "{} has neither `coefficient` nor `viscous`",
@@ -182,7 +185,7 @@ fn keys_of(fields: &Fields<'_>, kind: JointKind, problems: &mut Problems) {
             "radius" if !table.knows(name) => other("`guide` is the length of a slide"),
             "guide" if !table.knows(name) => other("`radius` is that of a pin"),
             "guide" if is_slot => other("the pin of a slot presses at one point: leave it out"),
-            "radius" | "guide" | "fade" if dry.is_none() => (
+            "radius" | "guide" | "fade" if dry.is_none() && !misspelt => (
                 format!("{what} has a `{name}` but no `coefficient`"),
                 "it is a number of dry friction: add its coefficient, or leave it out",
             ),

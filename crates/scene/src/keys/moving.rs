@@ -195,7 +195,7 @@ pub(crate) static MAGNITUDE: Table = table(
         key(
             "table",
             Rows,
-            "s, angle, length or their speeds; SI",
+            "s, angle, length or their speeds; SI, but a wanted speed in angle/s or length/s",
             "Points [x, magnitude]; a smooth curve passes through them. A run ends where x leaves them: an angle counts whole turns, so they have to go as far as it does.",
             "[[0, 1], [1, 2]]",
         ),
