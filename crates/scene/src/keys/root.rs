@@ -176,7 +176,7 @@ pub(crate) static REQUESTS: Table = table(
             .or("all"),
         key("paths", Names("body.point", 0), "", "Points whose paths are drawn.", "[\"rod.P\"]").or("none"),
         key("dwell", One(&DWELL), "", "A dwell that is marked.", "{ body = \"rod\", band = 0.02 }").or("none"),
-        key("variables", Names("variable", 0), "", "Columns of the tables, such as `crank.angle`, `rod.P.x`, `phi.action`, `A.magnitude`, `rocker.advantage` (of a body with an angle), `coupler.pole` or the name of a coordinate.", "[\"crank.angle\", \"rod.P.x\"]")
+        key("variables", Names("variable", 0), "", "Columns of the tables, such as `crank.angle`, `rod.P.x`, `phi.action`, `A.magnitude`, `rocker.advantage`, `coupler.pole` or the name of a coordinate.", "[\"crank.angle\", \"rod.P.x\"]")
             .or("all"),
         key("sections", Tables(&SECTION), "", "Links along which axial force, shear and bending moment are wanted.", "[{ body = \"rod\", from = \"B\", to = \"P\" }]")
             .or("none"),
