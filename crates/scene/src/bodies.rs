@@ -76,16 +76,9 @@ impl<'a> Bodies<'a> {
             };
             bodies.list.push(reader.body(entry, table.as_ref()));
         }
-        if let Some(span) = &units.open {
-            let with_inertia = bodies.list.iter().find(|b| b.inertia_at.is_some());
-            if let Some(at) = with_inertia.and_then(|b| b.inertia_at.clone()) {
-                problems.push(
-                    Problem::new("[units] leaves the unit of inertia open")
-                        .at(span.clone(), "not an SI unit")
-                        .at(at, "in which unit?")
-                        .help("add for instance `inertia = \"kg m2\"` to [units]"),
-                );
-            }
+        let with_inertia = bodies.list.iter().find_map(|b| b.inertia_at.as_ref());
+        if let Some(at) = with_inertia {
+            units.ask_inertia(at, problems);
         }
         bodies
     }

@@ -1,23 +1,27 @@
-//! The scene put together from the sections of the file.
+//! The sections of the file, read in an order in which each finds what it refers to.
+
+mod finish;
 
 use crate::assembly::AssemblyText;
-use crate::bodies::{Bodies, BodyText};
+use crate::bodies::Bodies;
 use crate::coordinates::{ActuatorText, Measures, actuators};
+use crate::drives::{DriveReader, DriveText, held};
 use crate::error::{SceneError, Source};
+use crate::events::EventReader;
 use crate::fields::{Entry, Fields, string};
-use crate::joints::{JointText, Joints};
+use crate::friction::friction;
+use crate::joints::Joints;
 use crate::keys;
 use crate::loads::{LoadReader, LoadText};
+use crate::magnitude::Magnitudes;
 use crate::motion::{MotionText, calibration};
 use crate::names::shorten;
-use crate::place::{BodyPlaces, JointPlaces, LoadPlaces, Places};
 use crate::prescribed::{PrescribedText, SweepText};
 use crate::problem::{Problem, Problems, Span};
 use crate::requests::RequestsText;
-use crate::scene::{Assembly, Calibration, Motion, NamedCoordinate, Requests, Scene};
+use crate::scene::{Calibration, Scene};
 use crate::units::Units;
-use dwell_geometry::{Body, Mechanism, Vec2};
-use toml::de::DeTable;
+use toml::de::{DeTable, DeValue};
 
 impl Scene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
@@ -49,8 +53,9 @@ struct Parts<'a> {
     prescribed: Option<PrescribedText>,
     sweep: Option<SweepText>,
     loads: Vec<LoadText>,
+    drives: Vec<DriveText>,
     requests: RequestsText,
-    motion: Option<MotionText>,
+    motion: Option<MotionText<'a>>,
     calibration: Option<(Calibration, Span)>,
     sections: Sections,
 }
@@ -124,9 +129,12 @@ impl<'a> Parts<'a> {
         let assembly_text =
             AssemblyText::read(assembly.as_ref(), &bodies, &actuators, &units, problems);
         let motion = section(&fields, "motion", false, problems);
-        let motion_text = motion
+        let moved = ["loads", "drives"]
+            .iter()
+            .any(|key| is_filled(&fields, key));
+        let mut motion_text = motion
             .as_ref()
-            .map(|f| MotionText::read(f, &actuators, &units, problems));
+            .map(|f| MotionText::read(f, &actuators, moved, &units, problems));
         let section_of = assembly.as_ref().map(|f| &f.span);
         let start = starts(
             &assembly_text,
@@ -135,6 +143,17 @@ impl<'a> Parts<'a> {
             section_of,
             problems,
         );
+        if let (Some(text), Some(f)) = (&mut motion_text, &motion) {
+            text.lead(&actuators, &start, &units, problems);
+            let events = f.get("events");
+            let events = events.and_then(|e| Fields::open(e, "events of [motion]", problems));
+            let reader = EventReader {
+                measures: &measures,
+                joints: &joints,
+                units: &units,
+            };
+            text.events = events.map_or_else(Vec::new, |f| reader.read(&f, problems));
+        }
         let prescribed = section(&fields, "prescribed", false, problems);
         let prescribed_text = prescribed
             .as_ref()
@@ -143,9 +162,24 @@ impl<'a> Parts<'a> {
         let sweep_text = sweep
             .as_ref()
             .map(|f| SweepText::read(f, &actuators, &start, &units, problems));
-        let loads = section(&fields, "loads", false, problems).map_or_else(Vec::new, |f| {
-            LoadReader::new(&bodies, &measures, &units).read(&f, problems)
+        let magnitudes = Magnitudes::new(&measures, &units);
+        let mut loads = section(&fields, "loads", false, problems).map_or_else(Vec::new, |f| {
+            LoadReader::new(&bodies, &joints, &units, &magnitudes).read(&f, problems)
         });
+        if let Some(f) = section(&fields, "friction", false, problems) {
+            loads.extend(friction(&f, &joints, &units, problems));
+        }
+        let drives = section(&fields, "drives", false, problems).map_or_else(Vec::new, |f| {
+            let reader = DriveReader {
+                measures: &measures,
+                units: &units,
+                magnitudes: &magnitudes,
+            };
+            reader.read(&f, problems)
+        });
+        if let Some(motion) = &motion_text {
+            held(&drives, motion, &actuators, problems);
+        }
         let requests = section(&fields, "requests", false, problems);
         let requests_text = match &requests {
             Some(f) => RequestsText::read(f, &bodies, &joints, problems),
@@ -187,155 +221,11 @@ impl<'a> Parts<'a> {
             prescribed: prescribed_text,
             sweep: sweep_text,
             loads,
+            drives,
             requests: requests_text,
             motion: motion_text,
             calibration,
         })
-    }
-
-    /// The scene of parts in which nothing was found wrong.
-    fn finish(self, name: String, source: Source) -> Scene {
-        let places = self.places();
-        let mechanism = Mechanism {
-            bodies: self.bodies.list.iter().map(body).collect(),
-            ground: self.bodies.ground.unwrap_or(0),
-            joints: self
-                .joints
-                .list
-                .iter()
-                .filter_map(|j| j.joint.clone())
-                .collect(),
-            actuators: self
-                .actuators
-                .iter()
-                .filter_map(|a| a.actuator.clone())
-                .collect(),
-            relations: self.joints.relations,
-        };
-        let actuators = 0..self.actuators.len();
-        let named = self.measures.list.iter().skip(self.measures.actuators);
-        let coordinates = named.filter_map(|m| {
-            Some(NamedCoordinate {
-                name: m.name.to_owned(),
-                coordinate: m.coordinate?,
-            })
-        });
-        let coordinates = coordinates.collect();
-        let assembly = Assembly {
-            start: self.start,
-            rough: self
-                .assembly
-                .rough
-                .iter()
-                .map(|r| r.as_ref().map(|r| r.0))
-                .collect(),
-        };
-        let motion = self.motion.as_ref().and_then(|m| {
-            Some(Motion {
-                start: actuators
-                    .clone()
-                    .map(|k| said(&m.start, k).unwrap_or(assembly.start[k]))
-                    .collect(),
-                speed: actuators
-                    .clone()
-                    .map(|k| said(&m.speed, k).unwrap_or(0.0))
-                    .collect(),
-                laws: actuators.map(|_| None).collect(),
-                length: m.length.as_ref()?.0,
-                events: Vec::new(),
-            })
-        });
-        let requests = Requests {
-            reactions: match self.requests.reactions {
-                Some(asked) => asked.into_iter().map(|(r, _)| r).collect(),
-                None => mechanism.reactions(),
-            },
-            paths: self.requests.paths.into_iter().map(|(p, _)| p).collect(),
-            dwell: self.requests.dwell.map(|(d, _)| d),
-            variables: self
-                .requests
-                .variables
-                .map(|all| all.into_iter().map(|(name, _)| name).collect()),
-            sections: self.requests.sections.into_iter().map(|(s, _)| s).collect(),
-        };
-        Scene {
-            title: self.title.map_or_else(|| name.clone(), one_line),
-            name,
-            note: self.note.map(printable),
-            mechanism,
-            masses: self.bodies.list.iter().map(|b| b.mass).collect(),
-            points: self.bodies.list.iter().map(points).collect(),
-            coordinates,
-            assembly,
-            prescribed: self.prescribed.and_then(|p| p.prescribed),
-            sweep: self.sweep.and_then(|s| s.sweep),
-            loads: self.loads.into_iter().filter_map(|l| l.load).collect(),
-            drives: Vec::new(),
-            requests,
-            motion,
-            calibration: self.calibration.map(|(c, _)| c),
-            source,
-            units: self.units,
-            places,
-            numbers: self.bodies.numbers,
-        }
-    }
-
-    fn places(&self) -> Places {
-        let spans = |said: &[Option<(f64, Span)>]| -> Vec<Option<Span>> {
-            said.iter()
-                .map(|s| s.as_ref().map(|s| s.1.clone()))
-                .collect()
-        };
-        let body = |b: &BodyText<'_>| BodyPlaces {
-            key: b.key.clone(),
-            points: b.points.iter().map(|p| p.span.clone()).collect(),
-            mass: b.mass_at.clone(),
-            inertia: b.inertia_at.clone(),
-            center: b.center_at.clone(),
-        };
-        let joint = |j: &JointText| JointPlaces {
-            key: j.key.clone(),
-            ends: j.ends.clone(),
-            axis: j.axis.clone(),
-            law: j.law.clone(),
-        };
-        let load = |l: &LoadText| LoadPlaces {
-            key: l.key.clone(),
-            magnitude: l.magnitude.clone(),
-        };
-        let named = self.measures.list.iter().skip(self.measures.actuators);
-        let prescribed = self.prescribed.as_ref();
-        let swept = self.sweep.as_ref();
-        let variables = self.requests.variables.as_deref().unwrap_or(&[]);
-        let motion = self.motion.as_ref();
-        let reactions = self.requests.reactions.as_deref().unwrap_or(&[]);
-        Places {
-            units: self.sections.units.clone(),
-            bodies: self.bodies.list.iter().map(body).collect(),
-            joints: self.joints.list.iter().map(joint).collect(),
-            actuators: self.actuators.iter().map(|a| a.key.clone()).collect(),
-            coordinates: named.map(|m| m.key.clone()).collect(),
-            assembly: self.sections.assembly.clone(),
-            start: spans(&self.assembly.start),
-            rough: spans(&self.assembly.rough),
-            prescribed: self.sections.prescribed.clone(),
-            laws: prescribed.map_or_else(Vec::new, |p| p.laws.clone()),
-            sweep: self.sections.sweep.clone(),
-            swept: swept.map_or_else(Vec::new, |s| s.actuators.clone()),
-            loads: self.loads.iter().map(load).collect(),
-            requests: self.sections.requests.clone(),
-            reactions: reactions.iter().map(|r| Some(r.1.clone())).collect(),
-            paths: self.requests.paths.iter().map(|p| p.1.clone()).collect(),
-            dwell: self.requests.dwell.as_ref().map(|d| d.1.clone()),
-            variables: variables.iter().map(|v| v.1.clone()).collect(),
-            sections: self.requests.sections.iter().map(|s| s.1.clone()).collect(),
-            motion: self.sections.motion.clone(),
-            motion_start: motion.map_or_else(Vec::new, |m| spans(&m.start)),
-            speed: motion.map_or_else(Vec::new, |m| spans(&m.speed)),
-            length: motion.and_then(|m| m.length.as_ref()).map(|l| l.1.clone()),
-            calibration: self.calibration.as_ref().map(|c| c.1.clone()),
-        }
     }
 }
 
@@ -348,7 +238,7 @@ fn said(values: &[Option<(f64, Span)>], k: usize) -> Option<f64> {
 /// points are at 0 from each other by default: says which distances are missing.
 fn starts(
     assembly: &AssemblyText,
-    motion: Option<&MotionText>,
+    motion: Option<&MotionText<'_>>,
     actuators: &[ActuatorText<'_>],
     section: Option<&Span>,
     problems: &mut Problems,
@@ -400,6 +290,12 @@ fn section<'a>(
     Some(table)
 }
 
+/// Whether there is something in a section; what is wrong with it is said where it is read.
+fn is_filled(fields: &Fields<'_>, key: &str) -> bool {
+    let value = fields.get(key).map(|e| e.value.get_ref());
+    matches!(value, Some(DeValue::Table(table)) if !table.is_empty())
+}
+
 /// A text shown to people; blank it is as good as absent.
 fn text_of<'a>(fields: &Fields<'a>, key: &str, problems: &mut Problems) -> Option<&'a str> {
     let entry: &Entry<'a> = fields.get(key)?;
@@ -423,26 +319,4 @@ fn unjoined(bodies: &Bodies<'_>, joints: &Joints<'_>, problems: &mut Problems) {
                 .help("join it to another body in [joints], or leave it out"),
         );
     }
-}
-
-fn body(b: &BodyText<'_>) -> Body {
-    Body {
-        name: b.name.to_owned(),
-    }
-}
-
-fn points(b: &BodyText<'_>) -> Vec<(String, Vec2)> {
-    b.points.iter().map(|p| (p.name.to_owned(), p.at)).collect()
-}
-
-/// A title heads a page: whatever white space it is written with becomes single spaces.
-fn one_line(text: &str) -> String {
-    let text = printable(text);
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
-/// Control characters other than line breaks would reach the reader's terminal: they become spaces.
-fn printable(text: &str) -> String {
-    let shown = |c: char| if c.is_control() && c != '\n' { ' ' } else { c };
-    text.chars().map(shown).collect()
 }

@@ -1,10 +1,10 @@
-//! Tables of several kinds, each told by the one key that names it: joints and loads.
+//! Tables of several kinds, each told by the one key that names it: joints, loads, drives and events.
 
 use crate::fields::{Entry, Fields};
-use crate::keys::Table;
+use crate::keys::{Need, Table};
 use crate::problem::{Problem, Problems, Span, list};
 
-/// The kind of a joint or a load, and the key that names it, if there is exactly one. Says which
+/// The kind of a joint, a load or another, and the key that names it, if there is exactly one. Says which
 /// keys are not of this kind; `thing` is what has a kind, `at` its name.
 pub(crate) fn kind<'f, 'a>(
     fields: &'f Fields<'a>,
@@ -57,8 +57,12 @@ fn none(
     if problems.count() > count {
         return;
     }
-    let example = kinds.first().and_then(|t| t.keys.first());
-    let example = example.map_or_else(String::new, |k| format!("{} = {}", k.name, k.example));
+    let keys = kinds.first().map_or(&[][..], |t| t.keys);
+    let needed = keys.iter().filter(|k| k.need == Need::Required);
+    let example: Vec<_> = needed
+        .map(|k| format!("{} = {}", k.name, k.example))
+        .collect();
+    let example = example.join(", ");
     let list = list(words).unwrap_or_default();
     problems.push(
         Problem::new(format!("{} has no kind", fields.what))

@@ -42,7 +42,9 @@
 //!   `speed`: 1 rad/s or 1 m/s.
 //! - `[requests]`, or its `reactions`: every reaction. `reactions = []` asks for none. Its
 //!   `variables`: every column; `sections`: none.
-//! - `[motion]`: none; its `start`: the coordinates at assembly.
+//! - `[friction]`: none; its `fade`: 0.01 rad/s or 0.001 m/s. `[drives]`: none.
+//! - `[motion]`: none; its `start`: the coordinates at assembly; its `speed`: 0 where loads, drives or
+//!   laws can move the mechanism; its `laws` and `events`: none.
 //!
 //! Names are made of letters and digits of any script, `_`, `-`, primes and inner spaces. They
 //! hold no dot, so that `body.point` and `joint.component` can be read in one way only. Bodies,
@@ -50,9 +52,9 @@
 //! two are names in expressions, where `t` is the time. A pin of three bodies or more makes a joint
 //! of the first with each of the others, named `pin-body`; `pin` in `[requests]` means them all.
 //!
-//! Lengths, angles, masses and inertias are in the scene's units, in tables of laws too. Forces,
-//! couples, stiffness, damping, gravity and time are in SI, and so is all that an expression sees
-//! and gives.
+//! Lengths, angles, their speeds, masses and inertias are in the scene's units, in tables of laws too.
+//! Forces, couples, stiffness, damping, gravity, what is electric and time are in SI, and so is all
+//! that an expression sees and gives.
 //!
 //! A number, once in SI, is at most 1e60 in magnitude: squares and products of what a scene holds
 //! then stay finite.
@@ -61,14 +63,18 @@ mod assembly;
 mod bodies;
 mod build;
 mod coordinates;
+mod drives;
 mod error;
+mod events;
 mod expression;
 mod fields;
+mod friction;
 mod joints;
 mod keys;
 mod kind;
 mod law;
 mod loads;
+mod magnitude;
 mod motion;
 mod names;
 mod place;

@@ -1,20 +1,18 @@
 //! The loads: what acts on the mechanism from outside, where, and how strongly.
 
 use crate::bodies::{Bodies, TWO_POINTS};
-use crate::coordinates::Measures;
-use crate::expression::expression;
 use crate::fields::{
-    Entry, Fields, POINT, Sign, angle, pair, quantity, rows, signed, string, unit_vector,
+    Entry, Fields, POINT, Sign, angle, pair, quantity, signed, string, unit_vector,
 };
-use crate::keys::{self, LOADS};
+use crate::joints::Joints;
+use crate::keys::LOADS;
 use crate::kind::kind;
-use crate::law::spline;
+use crate::magnitude::{Magnitudes, Size};
 use crate::names::{check, shorten};
 use crate::problem::{Problem, Problems, Span};
 use crate::units::{Unit, Units};
-use dwell_geometry::{BodyId, Coordinate, Vec2, vec2};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Signal};
-use dwell_laws::{Expression, Law};
+use dwell_geometry::{BodyId, Vec2, vec2};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use toml::de::DeValue;
 
 /// A load as read; nothing in it if it was wrong.
@@ -29,23 +27,23 @@ pub(crate) struct LoadText {
 /// What loads are read with.
 pub(crate) struct LoadReader<'r> {
     bodies: &'r Bodies<'r>,
+    joints: &'r Joints<'r>,
     units: &'r Units,
-    /// The signals an expression can name, and their names.
-    signals: Vec<(String, Option<Signal>)>,
+    magnitudes: &'r Magnitudes<'r>,
 }
 
 impl<'r> LoadReader<'r> {
-    pub(crate) fn new(bodies: &'r Bodies<'r>, measures: &Measures<'_>, units: &'r Units) -> Self {
-        let mut signals = vec![("t".to_owned(), Some(Signal::Time))];
-        for m in &measures.list {
-            signals.push((m.name.to_owned(), m.coordinate.map(Signal::Value)));
-            let speed = m.coordinate.map(Signal::Speed);
-            signals.push((format!("{}.speed", m.name), speed));
-        }
+    pub(crate) fn new(
+        bodies: &'r Bodies<'r>,
+        joints: &'r Joints<'r>,
+        units: &'r Units,
+        magnitudes: &'r Magnitudes<'r>,
+    ) -> Self {
         Self {
             bodies,
+            joints,
             units,
-            signals,
+            magnitudes,
         }
     }
 
@@ -88,7 +86,7 @@ impl<'r> LoadReader<'r> {
         };
         let (size, unit, sign) = match word {
             "gravity" => ("gravity", "m/s2", Sign::Any),
-            "force" => ("magnitude", "N", Sign::Any),
+            "force" | "push" | "slide" => ("magnitude", "N", Sign::Any),
             "torque" => ("magnitude", "N m", Sign::Any),
             "spring" => ("stiffness", "N/m", Sign::NotNegative),
             "torsion" => ("stiffness", "N m/rad", Sign::NotNegative),
@@ -105,7 +103,19 @@ impl<'r> LoadReader<'r> {
         let help = format!("add for instance `{size} = 10`, in {unit}");
         let magnitude = fields.need(size, &entry.key, &help, problems);
         text.magnitude = magnitude.map(|e| e.value.span());
-        let magnitude = magnitude.and_then(|e| self.magnitude(e, &fields, sign, problems));
+        let magnitude = magnitude.and_then(|e| {
+            let why = match size {
+                "stiffness" => "below zero it would push away instead of pulling back",
+                _ => "below zero it would feed the motion instead of resisting it",
+            };
+            let si = Unit::of_si();
+            let size = Size {
+                unit: &si,
+                sign,
+                why,
+            };
+            self.magnitudes.read(e, &fields.what, &size, problems)
+        });
         text.load = kind
             .zip(magnitude)
             .map(|(kind, magnitude)| named(entry, kind, magnitude));
@@ -146,6 +156,19 @@ impl<'r> LoadReader<'r> {
             "damper" => {
                 let (bodies, points) = self.two_points(held, fields, problems)?;
                 Some(LoadKind::Damper { bodies, points })
+            }
+            "push" => {
+                let (bodies, points) = self.two_points(held, fields, problems)?;
+                Some(LoadKind::Push { bodies, points })
+            }
+            "slide" => {
+                let name = string(
+                    held.value,
+                    format_args!("slide of {}", fields.what),
+                    problems,
+                )?;
+                let joint = self.joints.sliding(name, &held.value.span(), problems)?;
+                self.joints.guide(joint).map(LoadKind::Slide)
             }
             "torsion" => {
                 let bodies = self.two_bodies(held, fields, problems);
@@ -272,109 +295,6 @@ impl<'r> LoadReader<'r> {
             .at(at_a, "this body")
             .at(at_b, "and the same again")
             .help("what acts within one rigid body moves nothing"),
-        );
-        None
-    }
-
-    /// How strong a load is: a number, an expression, or a table.
-    fn magnitude(
-        &self,
-        entry: &Entry<'_>,
-        fields: &Fields<'_>,
-        sign: Sign,
-        problems: &mut Problems,
-    ) -> Option<Magnitude> {
-        let what = format!("{} of {}", entry.name, fields.what);
-        let why = match entry.name {
-            "stiffness" => "below zero it would push away instead of pulling back",
-            _ => "below zero it would feed the motion instead of resisting it",
-        };
-        match entry.value.get_ref() {
-            DeValue::String(_) => self.expression(entry, &what, problems),
-            DeValue::Table(_) => self.table(entry, &what, (sign, why), problems),
-            DeValue::Integer(_) | DeValue::Float(_) => {
-                let what = format_args!("{what}");
-                let si = signed(entry.value, &Unit::of_si(), sign, what, why, problems)?;
-                Some(Magnitude::Constant(si))
-            }
-            _ => {
-                let expected = "a number, an expression in quotes, or a table";
-                crate::fields::mismatch(entry.value, expected, format_args!("{what}"), problems);
-                None
-            }
-        }
-    }
-
-    fn expression(
-        &self,
-        entry: &Entry<'_>,
-        what: &str,
-        problems: &mut Problems,
-    ) -> Option<Magnitude> {
-        let names: Vec<_> = self.signals.iter().map(|(name, _)| name.as_str()).collect();
-        let all = expression(entry.value, &names, what, problems)?;
-        let used: Vec<_> = all.variables().iter().map(String::as_str).collect();
-        let signals: Option<Vec<_>> = used.iter().map(|name| self.signal(name)).collect();
-        // Read once more with the names that occur: a value for each is then all it takes.
-        let text = string(entry.value, format_args!("{what}"), problems)?;
-        let expression = Expression::parse(text, &used).ok()?;
-        Some(Magnitude::Expression(expression, signals?))
-    }
-
-    /// The signal of that name; nothing if its coordinate was wrong, which has been reported.
-    fn signal(&self, name: &str) -> Option<Signal> {
-        self.signals.iter().find(|(n, _)| n == name)?.1
-    }
-
-    fn table(
-        &self,
-        entry: &Entry<'_>,
-        what: &str,
-        (sign, why): (Sign, &str),
-        problems: &mut Problems,
-    ) -> Option<Magnitude> {
-        let fields = Fields::open(entry, what, problems)?;
-        fields.allow(&keys::MAGNITUDE, problems);
-        let help = "write it as `{ table = [[0, 1], [1, 2]], of = \"phi\" }`";
-        let table = fields.need("table", &fields.span, help, problems);
-        let signal = match fields.get("of") {
-            None => Some(Signal::Time),
-            Some(e) => self.of(e, what, problems),
-        };
-        let (table, signal) = (table?, signal?);
-        let si = Unit::of_si();
-        let unit = match signal {
-            Signal::Time => &si,
-            Signal::Value(c) | Signal::Speed(c) => self.units.of(Coordinate::is_angle(c)),
-        };
-        let name = format!("the table of {what}");
-        let rows = rows(table.value, [unit, &si], &name, problems)?;
-        if sign == Sign::NotNegative && rows.iter().any(|[_, y]| *y < 0.0) {
-            problems.push(
-                Problem::new(format!("{name} goes below zero"))
-                    .at(table.value.span(), "negative")
-                    .help(why),
-            );
-            return None;
-        }
-        let law = spline(table, &name, &rows, problems)?;
-        Some(Magnitude::Law(signal, Law::Spline(law)))
-    }
-
-    fn of(&self, entry: &Entry<'_>, what: &str, problems: &mut Problems) -> Option<Signal> {
-        let name = string(entry.value, format_args!("`of` in {what}"), problems)?;
-        if self.signals.iter().any(|(n, _)| n == name) {
-            return self.signal(name);
-        }
-        let names = self.signals.iter().map(|(n, _)| n.as_str());
-        let help = problems.choices(name, "signals", names);
-        problems.push(
-            Problem::new(format!("`{}` is not what a table can be of", shorten(name)))
-                .at(
-                    entry.value.span(),
-                    "neither the time nor a coordinate or its speed",
-                )
-                .help(help),
         );
         None
     }

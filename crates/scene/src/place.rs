@@ -49,10 +49,13 @@ pub enum Place {
     Sweep,
     /// What the sweep says of the actuator.
     Swept(ActuatorId),
-    /// The name of the k-th of the scene's loads where it is defined.
+    /// The name of the k-th of the scene's loads where it is defined: of a friction, that of its joint
+    /// in `[friction]`. After the loads come the drives, as in a model that has them as its last loads.
     Load(usize),
-    /// How strong the k-th of the scene's loads is.
+    /// How strong the k-th of the scene's loads is, or after them what a drive is given.
     Magnitude(usize),
+    /// The name of the k-th of the scene's drives where it is defined.
+    Drive(usize),
     /// `[requests]`.
     Requests,
     /// The request for the k-th of the scene's reactions.
@@ -71,6 +74,10 @@ pub enum Place {
     MotionStart(ActuatorId),
     /// The actuator's speed at the start of the motion.
     Speed(ActuatorId),
+    /// The law by which the motion leads the actuator.
+    Led(ActuatorId),
+    /// The name of the k-th of the motion's events where it is defined.
+    Event(usize),
     /// The motion's periods or duration.
     Length,
     /// The number the calibration sets.
@@ -93,6 +100,7 @@ pub(crate) struct Places {
     pub(crate) sweep: Option<Span>,
     pub(crate) swept: Vec<Option<Span>>,
     pub(crate) loads: Vec<LoadPlaces>,
+    pub(crate) drives: Vec<LoadPlaces>,
     pub(crate) requests: Option<Span>,
     pub(crate) reactions: Vec<Option<Span>>,
     pub(crate) paths: Vec<Span>,
@@ -102,6 +110,8 @@ pub(crate) struct Places {
     pub(crate) motion: Option<Span>,
     pub(crate) motion_start: Vec<Option<Span>>,
     pub(crate) speed: Vec<Option<Span>>,
+    pub(crate) led: Vec<Option<Span>>,
+    pub(crate) events: Vec<Span>,
     pub(crate) length: Option<Span>,
     pub(crate) calibration: Option<Span>,
 }
@@ -133,6 +143,10 @@ impl Places {
     fn span(&self, place: Place) -> Option<Span> {
         let body = |b: BodyId| self.bodies.get(b.0);
         let joint = |j: JointId| self.joints.get(j.0);
+        let load = |k: usize| {
+            let mut all = self.loads.iter().chain(&self.drives);
+            all.nth(k)
+        };
         let nth = |list: &[Option<Span>], k: usize| list.get(k).cloned().flatten();
         match place {
             Place::Whole => None,
@@ -155,8 +169,9 @@ impl Places {
             Place::Motor(a) => nth(&self.laws, a.0),
             Place::Sweep => self.sweep.clone(),
             Place::Swept(a) => nth(&self.swept, a.0),
-            Place::Load(k) => self.loads.get(k).map(|l| l.key.clone()),
-            Place::Magnitude(k) => self.loads.get(k)?.magnitude.clone(),
+            Place::Load(k) => load(k).map(|l| l.key.clone()),
+            Place::Magnitude(k) => load(k)?.magnitude.clone(),
+            Place::Drive(k) => self.drives.get(k).map(|d| d.key.clone()),
             Place::Requests => self.requests.clone(),
             Place::Reaction(k) => nth(&self.reactions, k),
             Place::Path(k) => self.paths.get(k).cloned(),
@@ -166,6 +181,8 @@ impl Places {
             Place::Motion => self.motion.clone(),
             Place::MotionStart(a) => nth(&self.motion_start, a.0),
             Place::Speed(a) => nth(&self.speed, a.0),
+            Place::Led(a) => nth(&self.led, a.0),
+            Place::Event(k) => self.events.get(k).cloned(),
             Place::Length => self.length.clone(),
             Place::Calibration => self.calibration.clone(),
         }
@@ -189,7 +206,7 @@ impl Places {
             | Place::Dwell
             | Place::Variable(_)
             | Place::Section(_) => Place::Requests,
-            Place::Length => Place::Motion,
+            Place::Led(_) | Place::Event(_) | Place::Length => Place::Motion,
             _ => Place::Whole,
         }
     }

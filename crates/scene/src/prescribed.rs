@@ -119,7 +119,7 @@ impl PrescribedText {
             .map(|((a, e), &start)| {
                 // A wrong duration is reported once, not again for each table.
                 let end = duration.unwrap_or(0.0);
-                law_of((*e)?, a, start, end, units, problems)
+                law_of((*e)?, "[prescribed]", a, (start, end), units, problems)
             })
             .collect();
         let laws: Option<Vec<Law>> = laws.into_iter().collect();
@@ -137,15 +137,16 @@ impl PrescribedText {
     }
 }
 
-fn law_of(
+/// The law of an actuator from time 0 to `end` (s), that a speed, a sine or a rise begins at `start`.
+pub(crate) fn law_of(
     entry: &Entry<'_>,
+    section: &str,
     actuator: &ActuatorText<'_>,
-    start: f64,
-    end: f64,
+    (start, end): (f64, f64),
     units: &Units,
     problems: &mut Problems,
 ) -> Option<Law> {
-    let what = format!("`{}` in [prescribed]", shorten(entry.name));
+    let what = format!("`{}` in {section}", shorten(entry.name));
     let fields = Fields::open(entry, what, problems)?;
     fields.allow(&keys::LAW, problems);
     let Some(chosen) = fields.one_of(|n| keys::LAW.knows(n), problems).ok()? else {

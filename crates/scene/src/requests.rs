@@ -96,7 +96,7 @@ fn reactions_of(
 }
 
 /// The named component of the joint's reaction, or all of them.
-fn components(
+pub(crate) fn components(
     joint: &Joint,
     name: Option<&str>,
     relations: &[Relation],

@@ -148,9 +148,9 @@ pub struct Sweep {
 /// A free motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// Coordinate of each actuator at the start, rad or m.
+    /// Coordinate of each actuator at the start, rad or m; of one that is led, its law's.
     pub start: Vec<f64>,
-    /// Speed of each actuator at the start, rad/s or m/s.
+    /// Speed of each actuator at the start, rad/s or m/s; of one that is led, its law's.
     pub speed: Vec<f64>,
     /// By actuator: the law it follows; none where it is free.
     pub laws: Vec<Option<Law>>,

@@ -43,19 +43,21 @@ fn table(table: &Table) -> Value {
     if !required.is_empty() {
         set(&mut schema, "required", required);
     }
-    if let Some(names) = one_of(table) {
-        let each = names.map(|name| json!({ "required": [name] }));
+    let choices = choices(table);
+    if !choices.is_empty() {
+        let each = choices.iter().map(|names| json!({ "required": names }));
         set(&mut schema, "oneOf", each.collect::<Vec<_>>());
     }
     schema
 }
 
-/// The keys of a table of which exactly one is needed; no table has two such groups.
-fn one_of(table: &Table) -> Option<impl Iterator<Item = &'static str>> {
-    let is_one = |k: &&Key| matches!(k.need, Need::OneOf(_));
-    let keys = table.keys;
-    keys.iter().find(is_one)?;
-    Some(keys.iter().filter(is_one).map(|k| k.name))
+/// The sets of keys of a table of which exactly one is needed; no table has two such groups.
+fn choices(table: &Table) -> Vec<Vec<&'static str>> {
+    let single = table.keys.iter();
+    let single = single.filter(|k| matches!(k.need, Need::OneOf(_)));
+    let mut choices: Vec<_> = single.map(|k| vec![k.name]).collect();
+    choices.extend(table.sets());
+    choices
 }
 
 fn key(key: &Key) -> Value {

@@ -101,6 +101,18 @@ impl Units {
         }
     }
 
+    /// Says so where an inertia is given, at `at`, and its unit has been left open.
+    pub(crate) fn ask_inertia(&self, at: &Span, problems: &mut Problems) {
+        if let Some(span) = &self.open {
+            problems.push(
+                Problem::new("[units] leaves the unit of inertia open")
+                    .at(span.clone(), "not an SI unit")
+                    .at(at.clone(), "in which unit?")
+                    .help("add for instance `inertia = \"kg m2\"` to [units]"),
+            );
+        }
+    }
+
     /// The units of the scene's `[units]`, SI where it says nothing.
     pub(crate) fn read(section: Option<&Entry<'_>>, problems: &mut Problems) -> Self {
         let mut units = Self::default();

@@ -12,6 +12,7 @@ use crate::names::{check, shorten};
 use crate::problem::{Problem, Problems, Span};
 use crate::units::Units;
 use dwell_geometry::{Joint, JointId, JointKind, Relation};
+use dwell_kinetostatics::Guide;
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -116,6 +117,20 @@ impl<'a> Joints<'a> {
                 .help(help),
         );
         None
+    }
+
+    /// The line along which a joint slides.
+    pub(crate) fn guide(&self, joint: JointId) -> Option<Guide> {
+        let joint = self.list.get(joint.0)?.joint.as_ref()?;
+        let axis = match joint.kind {
+            JointKind::Prismatic { axes: [axis, _] } | JointKind::Slot { axis } => axis,
+            _ => return None,
+        };
+        Some(Guide {
+            bodies: joint.bodies,
+            points: joint.points,
+            axis,
+        })
     }
 
     fn names(&self) -> impl Iterator<Item = &str> + Clone {
@@ -262,7 +277,7 @@ fn slides(kind: JointKind) -> bool {
 }
 
 /// What a scene calls the kind.
-fn word(kind: JointKind) -> &'static str {
+pub(crate) fn word(kind: JointKind) -> &'static str {
     match kind {
         JointKind::Revolute => "revolute",
         JointKind::Prismatic { .. } => "prismatic",

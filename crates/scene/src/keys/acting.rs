@@ -1,19 +1,21 @@
-//! The loads.
+//! The loads, and the friction in joints.
 
 use super::Shape::{Either, Expression, Name, Number, Pair, Table as One, TwoNames, Word};
 use super::{Key, MAGNITUDE, Shape, Table, key, table};
 
-pub(crate) static LOADS: [&Table; 7] = [
+pub(crate) static LOADS: [&Table; 9] = [
     &GRAVITY,
     &FORCE,
     &TORQUE,
+    &PUSH,
+    &SLIDE,
     &SPRING,
     &TORSION,
     &DAMPER,
     &TORSION_DAMPER,
 ];
 
-const SIZE: Shape = Either(&[Number, Expression, One(&MAGNITUDE)]);
+pub(super) const SIZE: Shape = Either(&[Number, Expression, One(&MAGNITUDE)]);
 
 /// How strong the load is: a number, an expression or a table.
 const fn size(
@@ -82,6 +84,40 @@ static TORQUE: Table = table(
             "N m",
             "The couple, counter-clockwise: a number, an expression, or a table.",
             "-3.0",
+        ),
+    ],
+);
+
+static PUSH: Table = table(
+    "push",
+    "A force between two points, along the line through them.",
+    &[
+        key(
+            "push",
+            TwoNames("body.point"),
+            "",
+            "The points.",
+            "[\"ground.A\", \"piston.P\"]",
+        ),
+        size(
+            "magnitude",
+            "N",
+            "The force, above zero where it pushes them apart: a number, an expression, or a table.",
+            "50",
+        ),
+    ],
+);
+
+static SLIDE: Table = table(
+    "slide",
+    "A force along the axis of a prismatic joint or a slot, of its first body on its second.",
+    &[
+        key("slide", Name("joint"), "", "The joint.", "\"slide\""),
+        size(
+            "magnitude",
+            "N",
+            "The force, above zero along the axis: a number, an expression, or a table.",
+            "\"-20*sign(rise.speed)\"",
         ),
     ],
 );
@@ -177,5 +213,78 @@ static TORSION_DAMPER: Table = table(
             "Its constant: a number, an expression, or a table.",
             "0.1",
         ),
+    ],
+);
+
+const COEFFICIENT: Key = key(
+    "coefficient",
+    Number,
+    "",
+    "Coefficient of dry friction, 0 or more.",
+    "0.1",
+)
+.or("no dry friction");
+
+pub(crate) static RUBBING_PIN: Table = table(
+    "[friction.<pin>]",
+    "Friction in a revolute joint: dry, with the couple coefficient × radius × |reaction| × tanh(speed/fade) against the relative speed, and viscous.",
+    &[
+        COEFFICIENT,
+        key(
+            "radius",
+            Number,
+            "length",
+            "Radius of the pin, above zero.",
+            "5",
+        )
+        .or("none; needed with a coefficient"),
+        key(
+            "fade",
+            Number,
+            "angle/s",
+            "Relative speed below which dry friction fades, above zero.",
+            "0.5",
+        )
+        .or("0.01 rad/s"),
+        key(
+            "viscous",
+            Number,
+            "N m s/rad",
+            "Viscous friction, 0 or more: the couple by the relative speed.",
+            "0.002",
+        )
+        .or("0"),
+    ],
+);
+
+pub(crate) static RUBBING_SLIDE: Table = table(
+    "[friction.<slide>]",
+    "Friction in a prismatic joint or a slot: dry, with the force coefficient × what presses on the guide × tanh(speed/fade) against the travel, and viscous.",
+    &[
+        COEFFICIENT,
+        key(
+            "guide",
+            Number,
+            "length",
+            "Length of the guide of a prismatic joint, 0 or more: at its two ends the normal reaction and the moment press. With 0 the moment does not rub.",
+            "40",
+        )
+        .or("0"),
+        key(
+            "fade",
+            Number,
+            "length/s",
+            "Speed of travel below which dry friction fades, above zero.",
+            "0.5",
+        )
+        .or("0.001 m/s"),
+        key(
+            "viscous",
+            Number,
+            "N s/m",
+            "Viscous friction, 0 or more: the force by the speed of travel.",
+            "3.0",
+        )
+        .or("0"),
     ],
 );

@@ -3,14 +3,18 @@
 //! docs/scene-format.md.
 
 mod acting;
+mod driving;
+mod free;
 mod moving;
 mod parts;
 mod root;
 
-pub(crate) use acting::LOADS;
+pub(crate) use acting::{LOADS, RUBBING_PIN, RUBBING_SLIDE};
+pub(crate) use driving::DRIVES;
+pub(crate) use free::{EVENT_KINDS, MOTION};
 pub(crate) use moving::{LAW, MAGNITUDE, PRESCRIBED, PROFILE, SINUSOID, SWEEP, TRAPEZOID};
 pub(crate) use parts::{ACTUATOR, BODY, COORDINATE, JOINTS, LAWS_OF_RELATIONS};
-pub(crate) use root::{CALIBRATION, DWELL, MOTION, REQUESTS, SCENE, SECTION, UNITS};
+pub(crate) use root::{CALIBRATION, DWELL, REQUESTS, SCENE, SECTION, UNITS};
 
 /// A table of a scene.
 #[derive(Debug)]
@@ -47,6 +51,8 @@ pub(crate) enum Need {
     Default(&'static str),
     /// Exactly one of the table's keys of this group.
     OneOf(&'static str),
+    /// All keys of exactly one of the table's sets.
+    Set(&'static str),
 }
 
 /// How the value of a key is written.
@@ -112,6 +118,12 @@ impl Key {
         self.need = Need::OneOf(group);
         self
     }
+
+    /// The same key, needed with the others of its set, where no other set is there.
+    const fn in_set(mut self, set: &'static str) -> Self {
+        self.need = Need::Set(set);
+        self
+    }
 }
 
 /// A table without keys of the scene's own.
@@ -133,6 +145,19 @@ impl Table {
 
     pub(crate) fn knows(&self, name: &str) -> bool {
         self.names().any(|n| n == name)
+    }
+
+    /// The names of each of its sets of keys, in their order.
+    pub(crate) fn sets(&self) -> Vec<Vec<&'static str>> {
+        let mut sets: Vec<(&str, Vec<&'static str>)> = Vec::new();
+        for key in self.keys {
+            let Need::Set(set) = key.need else { continue };
+            match sets.iter_mut().find(|(name, _)| *name == set) {
+                Some((_, keys)) => keys.push(key.name),
+                None => sets.push((set, vec![key.name])),
+            }
+        }
+        sets.into_iter().map(|(_, keys)| keys).collect()
     }
 
     /// The key that tells its kind among others.

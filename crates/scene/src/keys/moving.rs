@@ -27,7 +27,7 @@ pub(crate) static PRESCRIBED: Table = Table {
 };
 
 pub(crate) static LAW: Table = table(
-    "[prescribed.<actuator>]",
+    "[prescribed.<actuator>], [motion.laws.<actuator>]",
     "The law of a coordinate in time: one of these. A speed, a sine and a rise start from the coordinate in `[assembly]`.",
     &[
         key(
@@ -189,13 +189,13 @@ pub(crate) static SWEEP: Table = Table {
 };
 
 pub(crate) static MAGNITUDE: Table = table(
-    "magnitude, stiffness, constant",
+    "magnitude, stiffness, constant, voltage, speed",
     "A function through points.",
     &[
         key(
             "table",
             Rows,
-            "s, angle, length or their speeds; SI",
+            "s, angle, length or their speeds; SI, but a wanted speed in angle/s or length/s",
             "Points [x, magnitude]; a smooth curve passes through them. A run ends where x leaves them: an angle counts whole turns, so they have to go as far as it does.",
             "[[0, 1], [1, 2]]",
         ),

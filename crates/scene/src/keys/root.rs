@@ -1,12 +1,15 @@
 //! The scene itself, and the sections that hold no mechanism.
 
-use super::Shape::{Kinds, Name, Names, Number, Table as One, Tables, Text, Word};
-use super::{ACTUATOR, BODY, COORDINATE, JOINTS, LOADS, PRESCRIBED, SWEEP};
+use super::Shape::{Either, Kinds, Name, Names, Number, Table as One, Tables, Text, Word};
+use super::{
+    ACTUATOR, BODY, COORDINATE, DRIVES, JOINTS, LOADS, MOTION, PRESCRIBED, RUBBING_PIN,
+    RUBBING_SLIDE, SWEEP,
+};
 use super::{Key, Shape, Table, key, table};
 use crate::units::{ANGLE_NAMES, LENGTH_NAMES, MASS_NAMES};
 
 /// A table whose keys are all names of the scene's own.
-const fn names(name: &'static str, doc: &'static str, named: Key) -> Table {
+pub(super) const fn names(name: &'static str, doc: &'static str, named: Key) -> Table {
     Table {
         name,
         doc,
@@ -26,7 +29,7 @@ pub(crate) static SCENE: Table = table(
         key("units", One(&UNITS), "", "The units of the numbers below.", "{ length = \"mm\" }").or("SI"),
         key("bodies", One(&BODIES), "", "The rigid bodies, the ground among them.", "{ crank = { points = { A = [0, 0], B = [100, 0] } } }"),
         key("joints", One(&ALL_JOINTS), "", "What holds the bodies together.", "{ A = { revolute = [\"ground.A\", \"crank.A\"] } }"),
-        key("actuators", One(&ACTUATORS), "", "What drives the mechanism.", "{ phi = { angle = [\"ground\", \"crank\"] } }")
+        key("actuators", One(&ACTUATORS), "", "The coordinates that are imposed, or move freely.", "{ phi = { angle = [\"ground\", \"crank\"] } }")
             .or("none"),
         key("coordinates", One(&COORDINATES), "", "Measures with a name.", "{ rise = { travel = \"slide\" } }")
             .or("none"),
@@ -37,6 +40,10 @@ pub(crate) static SCENE: Table = table(
         key("sweep", One(&SWEEP), "", "The positions at which kinematics, statics and kinetostatics are evaluated where no motion is prescribed.", "{ phi = [0.0, 6.28] }")
             .or("the whole range, or one turn"),
         key("loads", One(&ALL_LOADS), "", "What acts on the mechanism from outside.", "{ weight = { gravity = [0, -9.81] } }")
+            .or("none"),
+        key("friction", One(&FRICTION), "", "The friction in the joints.", "{ A = { coefficient = 0.1, radius = 5 } }")
+            .or("none"),
+        key("drives", One(&ALL_DRIVES), "", "What drives the mechanism in a free motion.", "{ engine = { action = \"phi\", magnitude = 2.0 } }")
             .or("none"),
         key("requests", One(&REQUESTS), "", "What the results hold.", "{ paths = [\"rod.P\"] }")
             .or("everything"),
@@ -124,6 +131,30 @@ static ALL_LOADS: Table = names(
     ),
 );
 
+static FRICTION: Table = names(
+    "[friction]",
+    "One table for each joint that rubs: pins, prismatic joints and slots. Each joint of a pin of several bodies rubs as the pin's table says.",
+    key(
+        "<joint>",
+        Either(&[One(&RUBBING_PIN), One(&RUBBING_SLIDE)]),
+        "",
+        "The friction in the joint of that name.",
+        "{ coefficient = 0.1, radius = 5 }",
+    ),
+);
+
+static ALL_DRIVES: Table = names(
+    "[drives]",
+    "One table for each drive. What it drives is free: an actuator that `[motion]` leads by a law has no drive.",
+    key(
+        "<drive>",
+        Kinds(&DRIVES),
+        "",
+        "The drive of that name.",
+        "{ motor = \"phi\", stall = 0.5, idle = 14000, ratio = 20 }",
+    ),
+);
+
 pub(crate) static ASSEMBLY: Table = names(
     "[assembly]",
     "Where the mechanism is put together, which picks its branch. An actuator's coordinate is exact, a body's angle is rough (only gears mesh exactly as the angles given here say).",
@@ -145,7 +176,7 @@ pub(crate) static REQUESTS: Table = table(
             .or("all"),
         key("paths", Names("body.point", 0), "", "Points whose paths are drawn.", "[\"rod.P\"]").or("none"),
         key("dwell", One(&DWELL), "", "A dwell that is marked.", "{ body = \"rod\", band = 0.02 }").or("none"),
-        key("variables", Names("variable", 0), "", "Columns of the tables, such as `crank.angle`, `rod.P.x`, `phi.action`, `A.magnitude` or the name of a coordinate.", "[\"crank.angle\", \"rod.P.x\"]")
+        key("variables", Names("variable", 0), "", "Columns of the tables, such as `crank.angle`, `rod.P.x`, `phi.action`, `A.magnitude`, `rocker.advantage`, `coupler.pole` or the name of a coordinate.", "[\"crank.angle\", \"rod.P.x\"]")
             .or("all"),
         key("sections", Tables(&SECTION), "", "Links along which axial force, shear and bending moment are wanted.", "[{ body = \"rod\", from = \"B\", to = \"P\" }]")
             .or("none"),
@@ -174,45 +205,6 @@ pub(crate) static SECTION: Table = table(
             "\"B\"",
         ),
         key("to", Name("point"), "", "The point where it ends.", "\"P\""),
-    ],
-);
-
-/// A number for the only actuator, or one for each by its name.
-const EACH: Shape = Shape::Either(&[Number, One(&BY_ACTUATOR)]);
-
-static BY_ACTUATOR: Table = names(
-    "start, speed",
-    "A number for each actuator.",
-    key(
-        "<actuator>",
-        Number,
-        "angle or length",
-        "That of the actuator.",
-        "30",
-    ),
-);
-
-pub(crate) static MOTION: Table = table(
-    "[motion]",
-    "A free motion. A bare number is that of the only actuator.",
-    &[
-        key(
-            "start",
-            EACH,
-            "angle or length",
-            "Coordinate of each actuator at the start.",
-            "{ phi = 30 }",
-        )
-        .or("as in `[assembly]`"),
-        key(
-            "speed",
-            EACH,
-            "angle/s or length/s",
-            "Speed of each actuator at the start.",
-            "{ phi = 180 }",
-        ),
-        key("periods", Number, "", "How many periods it lasts.", "2").one_of("length"),
-        key("duration", Number, "s", "How long it lasts.", "5.0").one_of("length"),
     ],
 );
 

@@ -41,6 +41,12 @@ fn every_careless_scene_is_told_what_is_wrong() {
             MACHINE,
             0,
         ),
+        (
+            "src/tests/driven.txt",
+            include_str!("driven.txt"),
+            DRIVEN,
+            35,
+        ),
     ] {
         let (now, cases) = catalogue(text, scene);
         assert!(cases >= least, "{cases} cases in {path}");

@@ -59,10 +59,19 @@ fn value(shape: Shape) -> String {
             format!("table of a kind: {}", kinds.join(", "))
         }
         Shape::Either(shapes) => {
-            let shapes: Vec<_> = shapes.iter().map(|s| value(*s)).collect();
+            let mut shapes: Vec<_> = shapes.iter().map(|s| value(*s)).collect();
+            shapes.dedup();
             shapes.join(", or ")
         }
     }
+}
+
+/// When a key of a set may be absent.
+fn instead_of(table: &Table, key: &Key) -> String {
+    let sets = table.sets();
+    let others = sets.iter().filter(|set| !set.contains(&key.name));
+    let others: Vec<_> = others.flatten().map(|name| format!("`{name}`")).collect();
+    format!("needed, or else {}", others.join(", "))
 }
 
 /// The keys of a table as Markdown.
@@ -76,6 +85,7 @@ fn markdown(table: &Table) -> String {
             Need::Required if key.name.starts_with('<') => "",
             Need::Required => "needed",
             Need::OneOf(_) => "one of these is needed",
+            Need::Set(_) => &instead_of(table, key),
             Need::Default(default) => default,
         };
         let _ = writeln!(
@@ -195,7 +205,19 @@ fn tables_of_examples(table: &Table) -> Vec<(String, String)> {
             .collect();
         let alternative = table.keys.iter().find(|k| matches!(k.need, Need::OneOf(_)));
         match (wanted.need, alternative) {
-            (Need::OneOf(_), _) | (_, None) => {}
+            (Need::OneOf(_), _) => {}
+            // Numbers of dry friction make sense together.
+            _ if table.name.starts_with("[friction.") => {
+                let others = table.keys.iter().filter(|k| k.name != wanted.name);
+                parts.extend(others.map(written));
+            }
+            (_, None) => {
+                let sets = table.sets();
+                let own = sets.iter().find(|set| set.contains(&wanted.name));
+                let set = own.or(sets.first()).into_iter().flatten();
+                let keys = set.filter_map(|name| table.keys.iter().find(|k| k.name == *name));
+                parts.extend(keys.filter(|k| k.name != wanted.name).map(written));
+            }
             // A start is that of a sine or a rise.
             _ if wanted.name == "start" && table.name == "relation" => {
                 let rise = table.keys.iter().find(|k| k.name == "cycloidal");
@@ -226,7 +248,14 @@ fn every_example_of_a_key_is_read() {
                 let inner = inner.trim_end_matches('}');
                 format!("prescribed = {inner}, phi = {{ {law} }} }}")
             }
-            "[prescribed.<actuator>]" => {
+            // One actuator is led, another has to be free.
+            "[motion]" if inner.contains("laws") => format!(
+                "actuators.phi = {{ angle = [\"ground\", \"crank\"] }}\n\
+                 actuators.psi = {{ angle = [\"crank\", \"rod\"] }}\nmotion = {inner}"
+            ),
+            "[friction.<pin>]" => format!("friction.A = {inner}"),
+            "[friction.<slide>]" => format!("friction.slide = {inner}"),
+            "[prescribed.<actuator>], [motion.laws.<actuator>]" => {
                 format!("prescribed = {{ duration = 2.0, phi = {inner} }}")
             }
             "sinusoid" => format!("prescribed = {{ duration = 2.0, phi.sinusoid = {inner} }}"),
@@ -236,7 +265,7 @@ fn every_example_of_a_key_is_read() {
             "trapezoidal" => {
                 format!("prescribed = {{ duration = 2.0, phi.trapezoidal = {inner} }}")
             }
-            "magnitude, stiffness, constant" => {
+            "magnitude, stiffness, constant, voltage, speed" => {
                 format!("loads.other = {{ torque = \"crank\", magnitude = {inner} }}")
             }
             "dwell" => format!("requests.dwell = {inner}"),
@@ -248,6 +277,12 @@ fn every_example_of_a_key_is_read() {
             name if crate::keys::LOADS.iter().any(|t| t.name == name) => {
                 let replaced = if name == "gravity" { "weight" } else { "other" };
                 format!("loads.{replaced} = {inner}")
+            }
+            name if crate::keys::DRIVES.iter().any(|t| t.name == name) => {
+                format!("drives.other = {inner}")
+            }
+            name if crate::keys::EVENT_KINDS.iter().any(|t| t.name == name) => {
+                format!("motion = {{ speed = 1, duration = 1, events.other = {inner} }}")
             }
             _ => return None,
         })
@@ -347,7 +382,7 @@ fn refused(text: &str) -> Option<String> {
 #[test]
 fn the_schema_takes_what_the_reader_takes() {
     let mut texts = examples();
-    texts.extend([WHOLE.to_owned(), MACHINE.to_owned()]);
+    texts.extend([WHOLE, MACHINE, DRIVEN].map(str::to_owned));
     let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
     for case in std::fs::read_dir(cases).unwrap() {
         let path = case.unwrap().path().join("scene.toml");
@@ -367,6 +402,7 @@ fn the_schema_refuses_what_has_the_wrong_shape() {
     for (text, scene) in [
         (include_str!("errors.txt"), WHOLE),
         (include_str!("machine.txt"), MACHINE),
+        (include_str!("driven.txt"), DRIVEN),
     ] {
         for case in text.split("\n\n") {
             let lines = |sign: char| {

@@ -1,6 +1,7 @@
 //! Tests of the whole crate: text in, data or messages out.
 
 mod content;
+mod driven;
 mod errors;
 mod files;
 mod format;
@@ -59,6 +60,9 @@ period = 5.42
 
 /// Another one, with what the first has not: every kind of joint and load, laws and tables.
 const MACHINE: &str = include_str!("machine.toml");
+
+/// And one for what moves freely: drives, friction, led actuators, events.
+const DRIVEN: &str = include_str!("driven.toml");
 
 /// `WHOLE` with one piece of text, which it must contain once, replaced.
 fn with(old: &str, new: &str) -> String {

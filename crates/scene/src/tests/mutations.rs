@@ -21,6 +21,11 @@ fn survive(text: &str) -> bool {
                 assert!(sweep.actuator.0 < actuators && sweep.held.len() == actuators);
                 assert!(sweep.held.iter().all(|q| q.is_finite()) && sweep.speed > 0.0);
             }
+            if let Some(motion) = &scene.motion {
+                assert_eq!(motion.laws.len(), actuators);
+                let start = motion.start.iter().chain(&motion.speed);
+                assert!(start.filter(|q| q.is_finite()).count() == 2 * actuators);
+            }
             for joint in &scene.mechanism.joints {
                 if let JointKind::Relation(k) = joint.kind {
                     assert!(k < scene.mechanism.relations.len());
@@ -53,7 +58,7 @@ fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
 #[test]
 fn cut_short_anywhere() {
     let text = with("For tests.", "φ ünd ½");
-    for text in [&text, MACHINE] {
+    for text in [&text, MACHINE, DRIVEN] {
         for end in 0..=text.len() {
             survive(&String::from_utf8_lossy(&text.as_bytes()[..end]));
             survive(&String::from_utf8_lossy(&text.as_bytes()[end..]));
@@ -72,6 +77,7 @@ fn any_piece_replaced() {
     for (scene, from, strange) in [
         (WHOLE, 0, &strange[..]),
         (MACHINE, MACHINE.find("[joints]").unwrap(), &laws[..]),
+        (DRIVEN, DRIVEN.find("[loads]").unwrap(), &laws[..]),
     ] {
         let pieces: Vec<_> = pieces(scene);
         let pieces = pieces.iter().filter(|p| p.start >= from);
@@ -90,7 +96,7 @@ fn any_piece_replaced() {
 
 #[test]
 fn any_piece_twice_or_swapped_with_the_next_but_one() {
-    for scene in [WHOLE, MACHINE] {
+    for scene in [WHOLE, MACHINE, DRIVEN] {
         let pieces = pieces(scene);
         for (k, piece) in pieces.iter().enumerate() {
             let (before, this) = (&scene[..piece.start], &scene[piece.clone()]);
