@@ -1,13 +1,14 @@
 //! `dwell simulate`: the free motion of a machine in time, under its loads and drives.
 
-use crate::error::{StudyError, explain_machine};
+use crate::error::{StudyError, explain_machine, explain_model};
 use crate::motion_error::explain_motion;
 use crate::outcome::Progress;
 use crate::run::{Command, Followed, Sample, Told, Way, check_variables, loaded, write_up};
 use crate::words::digits;
+use dwell_dynamics::atlas::{Atlas, AtlasError, Chart, Journey, Site, Why};
 use dwell_dynamics::{
-    DriveKind, DynamicsError, Event, FreeTurn, Guidance, Machine, MachineWork, Method, Options,
-    Point, State, Trace, Trigger, Worker, all_loads, follow,
+    DriveKind, DynamicsError, Event, FreeTurn, Guidance, Machine, MachineWork, Method, Occurrence,
+    Options, Point, State, Statistics, Trace, Trigger, Worker, all_loads, follow,
 };
 use dwell_geometry::measure::Measured;
 use dwell_geometry::{Coordinate, Reaction, Start};
@@ -49,6 +50,8 @@ const SAMPLES: f64 = 1000.0;
 const MOST_SAMPLES: f64 = 100_000.0;
 /// Largest part of the energies exchanged that may be lost without a remark.
 const ENERGY_KEPT: f64 = 1e-6;
+/// Changes of coordinate that are told.
+const TOLD: usize = 6;
 /// A method is said to be far cheaper if it would take so many times fewer evaluations.
 const FAR_CHEAPER: f64 = 4.0;
 
@@ -65,7 +68,10 @@ pub fn simulate(
     let Some(motion) = &scene.motion else {
         return Err(no_motion(scene));
     };
-    let run = Free::new(scene, motion)?;
+    let mut driven = scene.clone();
+    let loads = all_loads(&scene.mechanism, &scene.loads, &scene.drives);
+    driven.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
+    let run = Free::new(scene, &driven, motion)?;
     let duration = run.duration()?;
     let every = accuracy.every.unwrap_or(duration / SAMPLES);
     let options = Options {
@@ -74,29 +80,21 @@ pub fn simulate(
         every: Some(every.max(duration / MOST_SAMPLES)),
         ..Options::new(accuracy.method, accuracy.relative)
     };
-    let explain = |e: &DynamicsError| explain_motion(scene, run.shown.plan(), e);
-    let start = run.start();
-    let events = run.events();
-    let trace = follow(
-        &run.machine,
-        &run.shown,
-        &start,
-        duration,
-        &options,
-        &events,
-    );
-    let trace = trace.map_err(|e| explain(&e))?;
-    let (samples, told) = run.samples(&trace).map_err(|e| explain(&e))?;
+    let explain = |e: &DynamicsError| explain_motion(&driven, run.shown.plan(), e);
+    let moved = run.follow(scene, duration, &options)?;
+    let told = run.told();
+    let samples = run.samples(&moved).map_err(|e| explain(&e))?;
     let led = motion.laws.iter().map(Option::is_some).collect();
-    let way = Way::free(run.shown.plan(), samples, told, led);
-    let mut followed = write_up(&run.scene, &run.shown, &way, Command::Simulate, progress)?;
+    let charts = moved.charts.iter().map(|c| c.shown.clone()).collect();
+    let way = Way::free(run.shown.plan(), samples, told, led, charts);
+    let mut followed = write_up(&driven, &run.shown, &way, Command::Simulate, progress)?;
     let outcome = &mut followed.outcome;
-    if !trace.occurrences.is_empty() {
+    if moved.occurrences().next().is_some() {
         let name = format!("{}-motion-events.csv", scene.name);
-        outcome.files.add(name, run.event_table(&trace).csv()?);
+        outcome.files.add(name, run.event_table(&moved).csv()?);
     }
-    outcome.summary += &run.summary(&trace, accuracy, duration);
-    if let Some(error) = &trace.failed {
+    outcome.summary += &run.summary(&moved, accuracy, duration);
+    if let Some(error) = &moved.failed {
         followed.stopped = Some(explain(error));
     }
     Ok(followed)
@@ -117,7 +115,7 @@ fn no_motion(scene: &Scene) -> StudyError {
 /// A scene ready to move.
 struct Free<'a> {
     /// The scene with the loads through which its drives act.
-    scene: Scene,
+    scene: &'a Scene,
     motion: &'a Motion,
     /// Everything that is shown of it.
     shown: Model,
@@ -125,13 +123,42 @@ struct Free<'a> {
     machine: Machine,
 }
 
+/// A motion, leg by leg.
+struct Moved {
+    /// None where there is but the mechanism's own coordinate.
+    charts: Vec<Chart>,
+    /// By leg: its chart and its trace, and the only actuator's coordinate at its samples.
+    legs: Vec<(usize, Trace)>,
+    own: Vec<Vec<[f64; 3]>>,
+    /// What is to be said of the charts.
+    changes: Vec<String>,
+    failed: Option<DynamicsError>,
+    statistics: Statistics,
+}
+
+impl Moved {
+    fn occurrences(&self) -> impl Iterator<Item = (usize, &Occurrence)> {
+        self.legs
+            .iter()
+            .flat_map(|(chart, trace)| trace.occurrences.iter().map(|o| (*chart, o)))
+    }
+
+    fn end(&self) -> f64 {
+        let last = self.legs.last().and_then(|(_, trace)| trace.steps.last());
+        last.map_or(0.0, |point| point.t)
+    }
+
+    fn steps(&self) -> impl Iterator<Item = (usize, &Point)> {
+        self.legs
+            .iter()
+            .flat_map(|(chart, trace)| trace.steps.iter().map(|p| (*chart, p)))
+    }
+}
+
 impl<'a> Free<'a> {
-    fn new(scene: &Scene, motion: &'a Motion) -> Result<Self, StudyError> {
-        let mut driven = scene.clone();
-        let loads = all_loads(&scene.mechanism, &scene.loads, &scene.drives);
-        driven.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
-        let shown = loaded(&driven)?;
-        check_variables(&driven, &shown)?;
+    fn new(scene: &Scene, driven: &'a Scene, motion: &'a Motion) -> Result<Self, StudyError> {
+        let shown = loaded(driven)?;
+        check_variables(driven, &shown)?;
         let machine = machine(scene, motion)?;
         Ok(Self {
             scene: driven,
@@ -139,6 +166,120 @@ impl<'a> Free<'a> {
             shown,
             machine,
         })
+    }
+
+    /// Follows the motion: of one freedom from chart to chart, else in its own coordinates.
+    fn follow(&self, scene: &Scene, duration: f64, options: &Options) -> Result<Moved, StudyError> {
+        let explain = |e: &DynamicsError| explain_motion(self.scene, self.shown.plan(), e);
+        let (start, events) = (self.start(), self.events());
+        if self.motion.laws.len() != 1 || self.machine.free().len() != 1 {
+            let trace = follow(
+                &self.machine,
+                &self.shown,
+                &start,
+                duration,
+                options,
+                &events,
+            );
+            let trace = trace.map_err(|e| explain(&e))?;
+            return Ok(Moved {
+                charts: Vec::new(),
+                own: Vec::new(),
+                changes: Vec::new(),
+                failed: trace.failed.clone(),
+                statistics: trace.statistics,
+                legs: vec![(0, trace)],
+            });
+        }
+        let at = Start {
+            q: scene.assembly.start.clone(),
+            rough: scene.assembly.rough.clone(),
+        };
+        let site = Site {
+            mechanism: &scene.mechanism,
+            masses: &scene.masses,
+            start: &at,
+            loads: &scene.loads,
+            drives: &scene.drives,
+            reactions: &scene.mechanism.reactions(),
+        };
+        let mut atlas = Atlas::new(site).map_err(|e| match e {
+            AtlasError::Model(model) => explain_model(scene, &model),
+            AtlasError::Machine(machine) => explain_machine(scene, machine),
+        })?;
+        let journey = atlas.follow(&start, duration, options, &events);
+        let journey = journey.map_err(|e| explain(&e))?;
+        let own = atlas.track(&journey, atlas.own());
+        let own = own.map_err(|e| explain(&e))?.samples;
+        let statistics = journey.statistics();
+        Ok(Moved {
+            changes: self.changes(&atlas, &journey),
+            charts: atlas.charts().to_vec(),
+            own,
+            failed: journey.failed,
+            statistics,
+            legs: journey
+                .legs
+                .into_iter()
+                .map(|leg| (leg.chart, leg.trace))
+                .collect(),
+        })
+    }
+
+    /// What is to be said of the changes of coordinate, and of the change points.
+    fn changes(&self, atlas: &Atlas<'_>, journey: &Journey) -> Vec<String> {
+        let mut told = Vec::new();
+        let name = |chart: usize| atlas.charts()[chart].name.clone();
+        for change in journey.changes.iter().take(TOLD) {
+            let t = digits(change.t, 6);
+            told.push(match change.why {
+                Why::Crosses { .. } => format!("t = {t} s: a change point is crossed"),
+                Why::Folds { .. } | Why::Ends => format!(
+                    "t = {t} s: followed by {} instead of {}, which folds back",
+                    name(change.to),
+                    name(change.from)
+                ),
+            });
+        }
+        if journey.changes.len() > TOLD {
+            told.push(format!(
+                "and {} more such changes",
+                journey.changes.len() - TOLD
+            ));
+        }
+        for bridge in atlas.bridges() {
+            let shared: Vec<String> = bridge
+                .not_unique
+                .iter()
+                .map(|&r| self.scene.mechanism.reaction_name(r))
+                .collect();
+            let shared = if shared.is_empty() {
+                String::new()
+            } else {
+                format!("; not unique there: {}", shared.join(", "))
+            };
+            told.push(format!(
+                "bridged within {} of {}, where {} freedoms meet{shared}",
+                digits(bridge.half, 3),
+                digits(bridge.center, 6),
+                bridge.mobility,
+            ));
+        }
+        for (q, error) in atlas.refused() {
+            told.push(format!(
+                "the change point at {} cannot be crossed: {error}",
+                digits(*q, 6)
+            ));
+        }
+        told
+    }
+
+    /// The machine of a chart.
+    fn machine<'m>(&'m self, moved: &'m Moved, chart: usize) -> &'m Machine {
+        moved
+            .charts
+            .get(chart)
+            .map_or(&self.machine, |c| &c.machine)
     }
 
     fn start(&self) -> Point {
@@ -173,7 +314,7 @@ impl<'a> Free<'a> {
             q_dot: self.motion.speed[0],
         };
         let turn = FreeTurn::new(&exact, start);
-        let turn = turn.map_err(|e| explain_motion(&self.scene, self.shown.plan(), &e))?;
+        let turn = turn.map_err(|e| explain_motion(self.scene, self.shown.plan(), &e))?;
         Ok(periods * turn.period)
     }
 
@@ -197,43 +338,57 @@ impl<'a> Free<'a> {
         self.motion.events.iter().filter_map(event).collect()
     }
 
-    /// Every sample with its accelerations, the drives' actions and the energies.
-    fn samples(&self, trace: &Trace) -> Result<(Vec<Sample>, Vec<Told>), DynamicsError> {
-        let mut work = self.machine.work();
+    /// Every sample with its accelerations, the drives' actions and the energies. Within the window of a
+    /// bridge there are no reactions to be told, and no row.
+    fn samples(&self, moved: &Moved) -> Result<Vec<Sample>, DynamicsError> {
         let mut ledger: Option<f64> = None;
-        let mut samples = Vec::with_capacity(trace.samples.len() + 1);
-        let end = trace.steps.last().filter(|end| {
-            let last = trace.samples.last();
-            last.is_some_and(|last| last.t < end.t)
-        });
-        for point in trace.samples.iter().chain(end) {
-            self.machine.evaluate(point.t, &point.y, &mut work)?;
-            samples.push(self.sample(point, &work, &mut ledger));
+        let mut samples = Vec::new();
+        for (leg, (chart, trace)) in moved.legs.iter().enumerate() {
+            let machine = self.machine(moved, *chart);
+            let mut work = machine.work();
+            for (k, point) in trace.samples.iter().enumerate() {
+                if machine.on_bridge(&point.y) {
+                    continue;
+                }
+                machine.evaluate(point.t, &point.y, &mut work)?;
+                let own = moved.own.get(leg).and_then(|leg| leg.get(k)).copied();
+                samples.push(self.sample(machine, *chart, own, point, &work, &mut ledger));
+            }
         }
         if let [only] = samples.as_slice() {
             // A motion that ends where it starts is still shown.
             samples.push(only.clone());
         }
-        Ok((samples, self.told()))
+        Ok(samples)
     }
 
-    fn sample(&self, point: &Point, work: &MachineWork, ledger: &mut Option<f64>) -> Sample {
-        let first = self.machine.first_work();
-        let [kinetic, potential] = self.machine.energy(work);
+    fn sample(
+        &self,
+        machine: &Machine,
+        chart: usize,
+        own: Option<[f64; 3]>,
+        point: &Point,
+        work: &MachineWork,
+        ledger: &mut Option<f64>,
+    ) -> Sample {
+        let first = machine.first_work();
+        let [kinetic, potential] = machine.energy(work);
         let works = &point.y[first..];
         let sum = kinetic + potential - works.iter().sum::<f64>();
         let began = *ledger.get_or_insert(sum);
         let mut told = vec![kinetic, potential];
         told.extend(works);
         told.push(sum - began);
-        told.extend(&point.y[2 * self.machine.free().len()..first]);
+        told.extend(&point.y[2 * machine.free().len()..first]);
         let count = self.scene.loads.len();
-        let drives = count - self.machine.drives()..count;
+        let drives = count - machine.drives()..count;
         Sample {
             t: point.t,
             q: work.q.clone(),
             q_dot: work.q_dot.clone(),
             q_ddot: work.q_ddot.clone(),
+            chart,
+            own,
             given: drives
                 .map(|load| (load, work.inner.loads().magnitude[load]))
                 .collect(),
@@ -292,7 +447,7 @@ impl<'a> Free<'a> {
     }
 
     /// When each event happened, and the coordinates then.
-    fn event_table(&self, trace: &Trace) -> Table {
+    fn event_table(&self, moved: &Moved) -> Table {
         let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
         let actuators = &self.scene.mechanism.actuators;
         for actuator in actuators {
@@ -307,24 +462,30 @@ impl<'a> Free<'a> {
                 format!("{unit}/s"),
             ));
         }
-        let mut work = self.machine.work();
-        let row = |o: &dwell_dynamics::Occurrence| {
+        let row = |(chart, o): (usize, &Occurrence)| {
+            let machine = self.machine(moved, chart);
+            let mut work = machine.work();
             let mut row = vec![o.at.t, (o.event + 1) as f64];
-            if self.machine.evaluate(o.at.t, &o.at.y, &mut work).is_ok() {
-                let pairs = work.q.iter().zip(&work.q_dot);
-                row.extend(pairs.flat_map(|(&q, &q_dot)| [q, q_dot]));
+            if machine.evaluate(o.at.t, &o.at.y, &mut work).is_ok() {
+                for actuator in actuators {
+                    let measured = Measured::find(&self.scene.mechanism, actuator.coordinate());
+                    let [q, q_dot, _] = measured.map_or([f64::NAN; 3], |measured| {
+                        work.inner.states().measure(measured)
+                    });
+                    row.extend([q, q_dot]);
+                }
             }
             row.resize(2 + 2 * actuators.len(), f64::NAN);
             row
         };
         Table {
             columns,
-            rows: trace.occurrences.iter().map(row).collect(),
+            rows: moved.occurrences().map(row).collect(),
         }
     }
 
-    fn summary(&self, trace: &Trace, accuracy: &Accuracy, duration: f64) -> String {
-        let end = trace.steps.last().map_or(0.0, |p| p.t);
+    fn summary(&self, moved: &Moved, accuracy: &Accuracy, duration: f64) -> String {
+        let end = moved.end();
         // Writing to a string cannot fail.
         let mut text = String::new();
         let reached = if end < duration {
@@ -340,10 +501,10 @@ impl<'a> Free<'a> {
             accuracy.absolute,
         );
         for (i, event) in self.motion.events.iter().enumerate() {
-            let times: Vec<_> = trace.occurrences.iter().filter(|o| o.event == i).collect();
+            let times: Vec<_> = moved.occurrences().filter(|(_, o)| o.event == i).collect();
             let first = times
                 .first()
-                .map(|o| format!(", first at t = {} s", digits(o.at.t, 13)));
+                .map(|(_, o)| format!(", first at t = {} s", digits(o.at.t, 13)));
             let stopped = if event.stop && !times.is_empty() {
                 ", where it ends"
             } else {
@@ -357,26 +518,31 @@ impl<'a> Free<'a> {
                 first.unwrap_or_default()
             );
         }
-        let work = trace.statistics;
+        for change in &moved.changes {
+            let _ = writeln!(text, "  {change}");
+        }
+        let work = moved.statistics;
         let _ = writeln!(
             text,
             "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations",
             work.steps, work.rejected, work.evaluations, work.jacobians, work.factorisations,
         );
-        text + &self.energy(trace) + &self.hint(trace, accuracy, end)
+        text + &self.energy(moved) + &self.hint(moved, accuracy, end)
     }
 
     /// How well the energies add up.
-    fn energy(&self, trace: &Trace) -> String {
-        let mut work = self.machine.work();
-        let first = self.machine.first_work();
+    fn energy(&self, moved: &Moved) -> String {
         let (mut began, mut largest, mut apart) = (None, 0.0_f64, 0.0_f64);
-        for point in &trace.steps {
-            if self.machine.evaluate(point.t, &point.y, &mut work).is_err() {
+        let mut works: Vec<Option<MachineWork>> = Vec::new();
+        for (chart, point) in moved.steps() {
+            let machine = self.machine(moved, chart);
+            works.resize_with(works.len().max(chart + 1), || None);
+            let work = works[chart].get_or_insert_with(|| machine.work());
+            if machine.evaluate(point.t, &point.y, work).is_err() {
                 break;
             }
-            let [kinetic, potential] = self.machine.energy(&work);
-            let sum = kinetic + potential - point.y[first..].iter().sum::<f64>();
+            let [kinetic, potential] = machine.energy(work);
+            let sum = kinetic + potential - point.y[machine.first_work()..].iter().sum::<f64>();
             let began = *began.get_or_insert(sum);
             largest = largest.max(kinetic);
             apart = apart.max((sum - began).abs());
@@ -397,19 +563,19 @@ impl<'a> Free<'a> {
 
     /// Whether another method would be far cheaper, by how long this one's steps are against what its
     /// accuracy and its stability ask for.
-    fn hint(&self, trace: &Trace, accuracy: &Accuracy, end: f64) -> String {
+    fn hint(&self, moved: &Moved, accuracy: &Accuracy, end: f64) -> String {
         let other = if accuracy.method.implicit() {
             Method::Tsit45
         } else {
             Method::Bdf
         };
-        if trace.statistics.steps < 100 || end <= 0.0 {
+        if moved.statistics.steps < 100 || end <= 0.0 || moved.legs.len() > 1 {
             return String::new();
         }
         // A tenth of the motion by the other method says what the whole would take.
         let options = Options {
             absolute: accuracy.absolute,
-            budget: trace.statistics.steps.max(100),
+            budget: moved.statistics.steps.max(100),
             ..Options::new(other, accuracy.relative)
         };
         let part = 0.1 * end;
@@ -429,14 +595,9 @@ impl<'a> Free<'a> {
         let Ok(tried) = tried else {
             return String::new();
         };
-        let before = trace
-            .steps
-            .iter()
-            .take_while(|p| p.t <= part)
-            .count()
-            .max(1);
-        let share = before as f64 / trace.steps.len() as f64;
-        let here = cost(accuracy.method, trace.statistics) * share;
+        let before = moved.steps().take_while(|(_, p)| p.t <= part).count();
+        let share = before.max(1) as f64 / moved.steps().count() as f64;
+        let here = cost(accuracy.method, moved.statistics) * share;
         let there = cost(other, tried.statistics);
         if tried.failed.is_some() || here < FAR_CHEAPER * there {
             return String::new();
@@ -466,7 +627,7 @@ pub(crate) fn machine(scene: &Scene, motion: &Motion) -> Result<Machine, StudyEr
     });
     let needed: Vec<Reaction> = frictions.flatten().collect();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &needed)
-        .map_err(|e| crate::error::explain_model(scene, &e))?;
+        .map_err(|e| explain_model(scene, &e))?;
     let guide =
         |law: &Option<dwell_laws::Law>| law.clone().map_or(Guidance::Free, Guidance::Prescribed);
     let guidance = motion.laws.iter().map(guide).collect();

@@ -209,7 +209,10 @@ impl<'a> Probe<'a> {
         let states = &self.moving;
         match quantity {
             Quantity::Time => sample.t,
-            Quantity::Drive(i, order) => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
+            Quantity::Drive(i, order) => match sample.own {
+                Some(own) => own[order],
+                None => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
+            },
             Quantity::Action(i) => self.actions.tau[i],
             Quantity::Measured(measured, order) => states.measure(measured)[order],
             // As relations and loads count it, so that columns of one angle agree.
@@ -346,7 +349,14 @@ pub(crate) fn follow(
         .filter(|c| !c.is_optional() || is_named(scene, c))
         .collect();
     way.check(scene)?;
-    let mut probe = Probe::new(scene, plan, model, command)?;
+    let charts = match way.charts() {
+        [] => std::slice::from_ref(model),
+        charts => charts,
+    };
+    let mut probes = charts
+        .iter()
+        .map(|chart| Probe::new(scene, plan, chart, command))
+        .collect::<Result<Vec<_>, _>>()?;
     let mut turns = Turns {
         last: vec![None; columns.len()],
     };
@@ -371,8 +381,9 @@ pub(crate) fn follow(
     for k in 0..way.points {
         let part = way.part(k);
         let sample = way.at(part);
+        let probe = &mut probes[sample.chart];
         let cut = before
-            .filter(|_| plan.actuators() == 1)
+            .filter(|_| plan.actuators() == 1 && way.charts().is_empty())
             .and_then(|q| is_cut_off(plan, q, sample.q[0]));
         let done = match cut {
             Some(error) => Err(error.into()),
@@ -406,7 +417,7 @@ pub(crate) fn follow(
         record.rows.push(row);
         record.frames.push(probe.frames());
         for link in &mut record.links {
-            link.take(k, &probe.ledger, model, &probe.work, &probe.acts);
+            link.take(k, &probe.ledger, probe.model, &probe.work, &probe.acts);
         }
         if matches!(command, Command::Kinetostatics | Command::Simulate) && probe.power.scale > 0.0
         {

@@ -6,6 +6,7 @@ use crate::run::Command;
 use crate::run::stop::{NO_JUMP, between};
 use crate::words::{count, digits};
 use dwell_geometry::{ActuatorId, Plan, Range};
+use dwell_kinetostatics::Model;
 use dwell_scene::{LARGEST_ANGLE, Place, Prescribed, Scene};
 use std::f64::consts::TAU;
 
@@ -25,6 +26,10 @@ pub(crate) struct Sample {
     pub(crate) q: Vec<f64>,
     pub(crate) q_dot: Vec<f64>,
     pub(crate) q_ddot: Vec<f64>,
+    /// Of a free motion: the chart it is in, and the coordinate of the only actuator with its speed and
+    /// acceleration where the chart has another.
+    pub(crate) chart: usize,
+    pub(crate) own: Option<[f64; 3]>,
     /// Of a free motion: the magnitude of each drive, by its load.
     pub(crate) given: Vec<(usize, f64)>,
     /// Of a free motion: what its integration tells, by [`Told`].
@@ -64,6 +69,8 @@ enum Kind<'a> {
         told: Vec<Told>,
         /// By actuator: whether it is led by a law.
         led: Vec<bool>,
+        /// By chart: the mechanism in its coordinate.
+        charts: Vec<Model>,
     },
     Swept {
         actuator: usize,
@@ -160,15 +167,34 @@ impl<'a> Way<'a> {
     }
 
     /// A free motion that was followed already: two samples or more.
-    pub(crate) fn free(plan: &Plan, samples: Vec<Sample>, told: Vec<Told>, led: Vec<bool>) -> Self {
+    pub(crate) fn free(
+        plan: &Plan,
+        samples: Vec<Sample>,
+        told: Vec<Told>,
+        led: Vec<bool>,
+        charts: Vec<Model>,
+    ) -> Self {
         let last = samples.last().map_or(0.0, |s| s.t);
         Self {
             points: samples.len(),
             words: format!("a free motion of {} s", digits(last, 6)),
-            kind: Kind::Free { samples, told, led },
+            kind: Kind::Free {
+                samples,
+                told,
+                led,
+                charts,
+            },
             place: Place::Motion,
             at_limits: [false; 2],
             period: plan.range().period(),
+        }
+    }
+
+    /// The models in which its positions are, by chart; none where it is that of the scene.
+    pub(crate) fn charts(&self) -> &[Model] {
+        match &self.kind {
+            Kind::Free { charts, .. } => charts,
+            Kind::Prescribed(_) | Kind::Swept { .. } => &[],
         }
     }
 
@@ -251,6 +277,8 @@ impl<'a> Way<'a> {
                     q: derivative(0),
                     q_dot: derivative(1),
                     q_ddot: derivative(2),
+                    chart: 0,
+                    own: None,
                     given: Vec::new(),
                     told: Vec::new(),
                 }
@@ -273,6 +301,8 @@ impl<'a> Way<'a> {
                     q: held.clone(),
                     q_dot: rest.clone(),
                     q_ddot: rest,
+                    chart: 0,
+                    own: None,
                     given: Vec::new(),
                     told: Vec::new(),
                 };
