@@ -10,7 +10,7 @@ use dwell_kinetostatics::{Friction, Guide, Load, LoadKind, Magnitude, Model};
 use dwell_scene::Scene;
 
 /// The machine of a scene, all coordinates free, with more loads and drives.
-fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
+pub(crate) fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
     let loads = [&scene.loads, more].concat();
     let frictions = loads.iter().filter_map(|load| match load.magnitude {
         Magnitude::Friction(f) => Some(f.reactions(&scene.mechanism)),
@@ -27,7 +27,13 @@ fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
 }
 
 /// The state at a time.
-fn at(machine: &Machine, y: &[f64], until: f64, method: Method, tolerance: f64) -> Vec<f64> {
+pub(crate) fn at(
+    machine: &Machine,
+    y: &[f64],
+    until: f64,
+    method: Method,
+    tolerance: f64,
+) -> Vec<f64> {
     let mut moving = Moving::new(machine, 0.0, y).expect("a start");
     let start = Point {
         t: 0.0,
@@ -41,7 +47,7 @@ fn at(machine: &Machine, y: &[f64], until: f64, method: Method, tolerance: f64) 
     ended.at.y
 }
 
-fn parse(text: &str) -> Scene {
+pub(crate) fn parse(text: &str) -> Scene {
     Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"))
 }
 

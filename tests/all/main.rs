@@ -21,6 +21,7 @@ mod machine;
 mod machines;
 mod mobility;
 mod motion;
+mod orbits;
 mod published;
 mod random;
 mod refusals;

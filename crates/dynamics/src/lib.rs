@@ -1,24 +1,29 @@
-//! The equation of motion of a reduced model: integration, events, energy and period.
+//! The motion of machines: integration, events, energy, period, steady cycles, equilibria, linearisation.
 
+mod conservative;
 pub mod drive;
 pub mod driver;
 pub mod equation;
 pub mod error;
+pub mod fate;
 pub mod follow;
+mod fourier;
 pub mod free;
 pub mod machine;
 pub mod options;
-pub mod quadrature;
+pub mod orbit;
 pub mod root;
+mod swing;
 pub mod system;
 
 pub use drive::{Drive, DriveError, DriveKind, Motor, Regulator};
 pub use driver::{Dense, Ended, Next, Watch, integrate};
 pub use equation::Equation;
 pub use error::DynamicsError;
+pub use fate::{Fate, fate};
 pub use follow::{Event, Occurrence, Trace, Trigger, follow};
 pub use free::{Run, State, Until, simulate};
 pub use machine::{Guidance, Machine, MachineError, MachineWork, Moving, Worker, all_loads};
 pub use options::{Method, Options, Statistics};
-pub use quadrature::FreeTurn;
+pub use orbit::Orbit;
 pub use system::{Point, System};

@@ -50,6 +50,8 @@ pub struct Machine {
     /// Number of the drives' states.
     memory: usize,
     workers: Vec<Worker>,
+    /// By free coordinate: inertia along it beside that of the bodies and rotors, kg m² or kg.
+    flywheels: Vec<f64>,
 }
 
 /// Why a machine cannot be built.
@@ -95,6 +97,7 @@ impl Machine {
         Ok(Self {
             memory: drives.iter().filter(|d| d.state.is_some()).count(),
             model,
+            flywheels: vec![0.0; free.len()],
             guidance,
             free,
             drives,
@@ -110,6 +113,18 @@ impl Machine {
     /// The free coordinates, by actuator.
     pub fn free(&self) -> &[usize] {
         &self.free
+    }
+
+    /// The same machine with a flywheel (kg m² or kg) along a free coordinate, in place of any it had there.
+    #[must_use]
+    pub fn with_flywheel(mut self, free: usize, inertia: f64) -> Self {
+        self.flywheels[free] = inertia;
+        self
+    }
+
+    /// The flywheel along a free coordinate, kg m² or kg.
+    pub fn flywheel(&self, free: usize) -> f64 {
+        self.flywheels[free]
     }
 
     /// What does work without a potential, in the order of the states.
@@ -191,6 +206,9 @@ impl Machine {
         }
         if self.drives.iter().any(|drive| drive.inertia > 0.0) {
             self.spin_up(work)?;
+        }
+        for ((unit, &i), &inertia) in work.units.iter_mut().zip(&self.free).zip(&self.flywheels) {
+            unit.tau[i] += T::lift(inertia);
         }
         for (k, &i) in self.free.iter().enumerate() {
             work.rest[k] = -work.base.tau[i];
@@ -355,14 +373,18 @@ impl Machine {
         Ok(shown.kinetostatics(t, &work.q, &work.q_dot, &work.q_ddot, all, actions)?)
     }
 
-    /// Kinetic energy with that of the rotors, and the potential of the conservative loads, J, at the
+    /// Kinetic energy with that of the rotors and flywheels, and the potential of the conservative loads, J, at the
     /// state last evaluated.
     pub fn energy(&self, work: &MachineWork<f64>) -> [f64; 2] {
         let rotors = self.drives.iter().map(|drive| {
             let [_, speed, _] = work.inner.states().measure(drive.measured);
             0.5 * drive.inertia * speed * speed
         });
-        let kinetic = self.model.kinetic(&work.inner) + rotors.sum::<f64>();
+        let wheels = self.free.iter().zip(&self.flywheels).map(|(&i, inertia)| {
+            let speed = work.q_dot[i];
+            0.5 * inertia * speed * speed
+        });
+        let kinetic = self.model.kinetic(&work.inner) + rotors.sum::<f64>() + wheels.sum::<f64>();
         let potentials = (0..self.model.loads().len())
             .filter_map(|load| self.model.potential(load, &work.inner));
         [kinetic, potentials.sum()]

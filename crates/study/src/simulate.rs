@@ -7,7 +7,7 @@ use crate::outcome::Outcome;
 use crate::prepare::Prepared;
 use crate::words::digits;
 use dwell_dynamics::{
-    DynamicsError, FreeTurn, Method, Options, Run, State, Until, simulate as integrate,
+    DynamicsError, Method, Options, Orbit, Run, State, Until, simulate as integrate,
 };
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Column, Table, png};
@@ -71,7 +71,7 @@ impl History {
         accuracy: &Accuracy,
     ) -> Result<Self, DynamicsError> {
         let model = &prepared.model;
-        let period = match FreeTurn::new(model, start) {
+        let period = match Orbit::new(model, start) {
             Ok(turn) => Some(turn.period),
             // Without a period, the motion can still be followed for a given time.
             Err(
