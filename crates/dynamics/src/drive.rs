@@ -11,7 +11,7 @@
 
 use dwell_geometry::measure::{BodyStates, Measured};
 use dwell_geometry::{Coordinate, Mechanism, Scalar};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Meter};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude, Meter, Signal};
 
 /// What acts along a coordinate s, an actuator's or another.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,6 +100,8 @@ pub(crate) struct Driven {
     pub(crate) state: Option<usize>,
     /// N² J, kg m² or kg.
     pub(crate) inertia: f64,
+    /// Whether time itself has a say in it.
+    pub(crate) timed: bool,
     meter: Meter,
     law: Law,
 }
@@ -177,19 +179,22 @@ impl Driven {
             measured,
             state,
             inertia,
+            timed: timed(magnitude),
             meter: Meter::new(mechanism, magnitude.clone())?,
             law,
         })
     }
 
-    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state.
+    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state, with
+    /// `more` of the action, voltage or speed that it is given.
     pub(crate) fn act<T: Scalar>(
         &self,
         t: f64,
         states: &BodyStates<T>,
         state: Option<T>,
+        more: T,
     ) -> (T, T) {
-        let given = self.meter.at(t, states);
+        let given = self.meter.at(t, states) + more;
         let [_, speed, _] = states.measure(self.measured);
         let zero = T::lift(0.0);
         match self.law {
@@ -216,5 +221,14 @@ impl Driven {
                 (T::lift(limit * beyond), if held { zero } else { error })
             }
         }
+    }
+}
+
+/// Whether a magnitude depends on time itself.
+pub(crate) fn timed(magnitude: &Magnitude) -> bool {
+    match magnitude {
+        Magnitude::Constant(_) | Magnitude::Friction(_) | Magnitude::Given => false,
+        Magnitude::Law(signal, _) => *signal == Signal::Time,
+        Magnitude::Expression(_, signals) => signals.contains(&Signal::Time),
     }
 }

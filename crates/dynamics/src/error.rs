@@ -122,6 +122,21 @@ pub enum DynamicsError {
         /// How far it was followed, rad or m.
         q: f64,
     },
+    /// There is no equilibrium, or no single one, where it was looked for.
+    #[error("no equilibrium: {what}")]
+    NoEquilibrium {
+        /// Why not.
+        what: &'static str,
+    },
+    /// There is no steady cycle, or none was found.
+    #[error("no steady cycle: {what}")]
+    NoCycle {
+        /// Why not.
+        what: &'static str,
+    },
+    /// The eigenvalues of a linearisation could not be found.
+    #[error("the eigenvalues of the linearised motion cannot be found")]
+    NoEigenvalues,
     /// A motion that should turn comes to rest.
     #[error("the mechanism comes to rest at q = {q} rad and does not complete the turn")]
     Stalls {

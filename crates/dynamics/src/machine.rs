@@ -13,7 +13,7 @@
 //! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; work of what has no
 //! potential], so that the energy balance is integrated with the motion.
 
-use crate::drive::{Drive, DriveError, Driven};
+use crate::drive::{Drive, DriveError, Driven, timed};
 use crate::error::DynamicsError;
 use crate::system::System;
 use dwell_geometry::{Dual, Mechanism, Scalar, small};
@@ -127,6 +127,22 @@ impl Machine {
         self.flywheels[free]
     }
 
+    /// Number of drives.
+    pub fn drives(&self) -> usize {
+        self.drives.len()
+    }
+
+    /// Whether time itself has a say in the motion, beside the state.
+    pub fn follows_time(&self) -> bool {
+        let led = self.guidance.iter().any(|guidance| match guidance {
+            Guidance::Free => false,
+            // A law that stands still at two moments is a constant to all that follows.
+            Guidance::Prescribed(law) => [0.0, 0.7].iter().any(|&t| law.at(t)[1..] != [0.0; 3]),
+        });
+        let loads = self.model.loads().iter();
+        led || self.drives.iter().any(|d| d.timed) || loads.map(|l| &l.magnitude).any(timed)
+    }
+
     /// What does work without a potential, in the order of the states.
     pub fn workers(&self) -> &[Worker] {
         &self.workers
@@ -171,6 +187,7 @@ impl Machine {
             pivots: vec![0; n],
             rest: zeros(n),
             action: zeros(self.drives.len()),
+            input: zeros(self.drives.len()),
             spin: self.model.actions(),
             memory: zeros(self.memory),
         }
@@ -192,7 +209,7 @@ impl Machine {
         self.model.enter(t, &work.q, &work.q_dot, &mut work.inner)?;
         for (d, drive) in self.drives.iter().enumerate() {
             let state = drive.state.map(|s| y[2 * n + s]);
-            let (action, rate) = drive.act(t, work.inner.states(), state);
+            let (action, rate) = drive.act(t, work.inner.states(), state, work.input[d]);
             work.action[d] = action;
             work.inner.give(drive.load, action);
             if let Some(s) = drive.state {
@@ -326,7 +343,7 @@ impl Machine {
     }
 
     /// ẏ of the state last evaluated.
-    fn rates<T: Scalar>(&self, work: &MachineWork<T>, out: &mut [T]) {
+    pub(crate) fn rates<T: Scalar>(&self, work: &MachineWork<T>, out: &mut [T]) {
         let n = self.free.len();
         for (k, &i) in self.free.iter().enumerate() {
             out[k] = work.q_dot[i];
@@ -431,6 +448,8 @@ pub struct MachineWork<T = f64> {
     pub q_ddot: Vec<T>,
     /// By drive: its action, N·m or N, without what its rotor's inertia takes.
     pub action: Vec<T>,
+    /// By drive: what it is given beside its own action, voltage or speed; zero at first.
+    pub input: Vec<T>,
     spin: Actions<T>,
     base: Actions<T>,
     units: Vec<Actions<T>>,
@@ -440,6 +459,14 @@ pub struct MachineWork<T = f64> {
     pivots: Vec<usize>,
     rest: Vec<T>,
     memory: Vec<T>,
+}
+
+impl<T> MachineWork<T> {
+    /// The actuators' actions (zero on free coordinates) and the reactions that the machine's own model
+    /// computes, of the last evaluation.
+    pub fn actions(&self) -> &Actions<T> {
+        &self.base
+    }
 }
 
 /// A machine with the working memory to integrate it, for one thread.
