@@ -6,8 +6,12 @@ default:
 
 # All checks on all cases (or those named): pictures, tables and findings in reports/
 [group('main')]
-validate *cases:
+validate *cases: && size
     cargo run --release -- validate {{ cases }}
+
+# What a pose costs against the mechanism's size, and its errors: reports/size.png
+[group('main')]
+size:
     cargo run --release -p dwell-tests --example size
 
 # All tests

@@ -1,12 +1,11 @@
-//! Every kind of joint and drive, held against the dense rows: positions close them, and the
-//! reactions and actions are those of the full equations Jᵀ[λ; τ] = M ẍ + h.
+//! Every kind of joint and drive, judged by the dense rows: poses, motion, reactions and actions.
 
 use crate::changes::Setup;
 use crate::sketch::{FourBar, Sketch};
-use dwell_geometry::rows::Rows;
-use dwell_geometry::{BodyId, Coordinate, JointKind, Relation, Vec2, vec2};
+use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Relation, Vec2, vec2};
 use dwell_kinetostatics::{Mass, Model};
 use dwell_laws::{Law, Polynomial};
+use dwell_verify::{State, judge_states};
 
 const GROUND: BodyId = Sketch::GROUND;
 
@@ -26,35 +25,6 @@ fn block(mass: f64) -> Mass {
     }
 }
 
-/// Solves the square system a x = b, row after row.
-fn solve(mut a: Vec<f64>, mut b: Vec<f64>) -> Vec<f64> {
-    let n = b.len();
-    for k in 0..n {
-        let best = (k..n)
-            .max_by(|&i, &j| a[i * n + k].abs().total_cmp(&a[j * n + k].abs()))
-            .unwrap();
-        for j in 0..n {
-            a.swap(k * n + j, best * n + j);
-        }
-        b.swap(k, best);
-        assert!(a[k * n + k].abs() > 1e-9, "a singular dense system");
-        for i in k + 1..n {
-            let ratio = a[i * n + k] / a[k * n + k];
-            for j in k..n {
-                a[i * n + j] -= ratio * a[k * n + j];
-            }
-            b[i] -= ratio * b[k];
-        }
-    }
-    for i in (0..n).rev() {
-        for j in i + 1..n {
-            b[i] -= a[i * n + j] * b[j];
-        }
-        b[i] /= a[i * n + i];
-    }
-    b
-}
-
 /// Judges the mechanism at some steps away from its start. Each step is in rad or m.
 fn judge(setup: &Setup, steps: &[f64]) {
     let Setup {
@@ -63,96 +33,53 @@ fn judge(setup: &Setup, steps: &[f64]) {
         start,
         ..
     } = setup;
-    let reactions = mechanism.reactions();
-    let model = match Model::new(mechanism, masses, start, &reactions) {
-        Ok(model) => model,
-        Err(error) => panic!("{error}"),
-    };
-    let mut rows = Rows::new(mechanism).unwrap();
-    let mut work = model.workspace::<f64>();
-    let mut actions = model.actions();
-    let n = rows.columns();
-    assert_eq!(n, rows.len(), "as many rows as coordinates");
-    let zero = vec![0.0; start.q.len()];
-    model
-        .act(&start.q, &zero, &zero, &mut work, &mut actions)
-        .unwrap();
-    let coordinates = |work: &dwell_kinetostatics::Workspace<f64>| -> Vec<f64> {
-        let frames = model.plan().body_frames(mechanism, &work.pose);
-        (0..frames.len())
-            .filter(|&b| b != mechanism.ground)
-            .flat_map(|b| frames[b])
-            .collect()
-    };
-    rows.mesh(&coordinates(&work));
-    for (s, step) in steps.iter().enumerate() {
-        let turn = |i: usize| step * (1.0 - 0.3 * i as f64);
-        let q: Vec<f64> = start
-            .q
-            .iter()
-            .enumerate()
-            .map(|(i, q)| q + turn(i))
-            .collect();
-        let q_dot: Vec<f64> = (0..q.len()).map(|i| 1.3 - 0.8 * i as f64).collect();
-        let q_ddot: Vec<f64> = (0..q.len()).map(|i| -0.7 + 1.1 * i as f64).collect();
-        if let Err(error) = model.act(&q, &q_dot, &q_ddot, &mut work, &mut actions) {
-            panic!("step {s}: {error}");
-        }
-        let x = coordinates(&work);
-        let mut imposed = vec![0.0; rows.len()];
-        imposed[reactions.len()..].copy_from_slice(&q);
-        let mut open = vec![0.0; rows.len()];
-        rows.residual(&x, &imposed, &mut open);
-        let worst = open.iter().fold(0.0_f64, |w, o| w.max(o.abs()));
-        assert!(worst < 1e-12, "step {s}: rows open by {worst:e}: {open:?}");
+    let model = Model::new(mechanism, masses, start, &mechanism.reactions());
+    let model = model.unwrap_or_else(|error| panic!("{error}"));
+    let states: Vec<State> = steps
+        .iter()
+        .map(|step| {
+            let each = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
+                (0..start.q.len()).map(|i| of(i as f64)).collect()
+            };
+            let apart = each(&|i| step * (1.0 - 0.3 * i));
+            let q = start.q.iter().zip(apart).map(|(q, by)| q + by).collect();
+            let rates = [each(&|i| 1.3 - 0.8 * i), each(&|i| -0.7 + 1.1 * i)];
+            state(&model, mechanism, q, rates)
+        })
+        .collect();
+    let rest = || vec![0.0; start.q.len()];
+    let home = state(&model, mechanism, start.q.clone(), [rest(), rest()]);
+    for finding in judge_states(mechanism, masses, &home.bodies, &states) {
+        assert!(finding.pass, "{finding:?}");
+    }
+}
 
-        let mut jacobian = vec![0.0; n * n];
-        rows.jacobian(&x, &mut jacobian);
-        let mut rates = vec![0.0; n];
-        rates[reactions.len()..].copy_from_slice(&q_dot);
-        let speed = solve(jacobian.clone(), rates);
-        let mut bend = vec![0.0; n];
-        rows.curvature(&x, &speed, &mut bend);
-        let mut rates: Vec<f64> = bend.iter().map(|b| -b).collect();
-        for (rate, q_ddot) in rates[reactions.len()..].iter_mut().zip(&q_ddot) {
-            *rate += q_ddot;
-        }
-        let acceleration = solve(jacobian.clone(), rates);
-        let mut force = vec![0.0; n];
-        let moving = (0..masses.len()).filter(|&b| b != mechanism.ground);
-        for (k, b) in moving.enumerate() {
-            let Mass {
-                mass,
-                center,
-                inertia,
-            } = masses[b];
-            let [w, a] = [speed[3 * k + 2], acceleration[3 * k + 2]];
-            let arm = center.turn(Vec2::from_angle(x[3 * k + 2]));
-            let at =
-                vec2(acceleration[3 * k], acceleration[3 * k + 1]) + arm.perp() * a - arm * (w * w);
-            force[3 * k] = mass * at.x;
-            force[3 * k + 1] = mass * at.y;
-            force[3 * k + 2] = inertia * a + arm.cross(at * mass);
-        }
-        let mut transposed = vec![0.0; n * n];
-        for i in 0..n {
-            for j in 0..n {
-                transposed[j * n + i] = jacobian[i * n + j];
-            }
-        }
-        let all = solve(transposed, force);
-        let scale = all.iter().fold(1e-3_f64, |s, v| s.max(v.abs()));
-        let got = actions.reactions.iter().chain(&actions.tau);
-        let mut wrong = Vec::new();
-        for (k, (got, want)) in got.zip(&all).enumerate() {
-            let name = reactions
-                .get(k)
-                .map_or("an actuator".to_owned(), |&r| mechanism.reaction_name(r));
-            if (got - want).abs() > 1e-10 * scale {
-                wrong.push(format!("{name} is {got}, by the dense rows {want}"));
-            }
-        }
-        assert!(wrong.is_empty(), "step {s}: {}", wrong.join("; "));
+/// What the model claims of a state of motion.
+fn state(model: &Model, mechanism: &Mechanism, q: Vec<f64>, rates: [Vec<f64>; 2]) -> State {
+    let (mut work, mut actions) = (model.workspace(), model.actions());
+    let [q_dot, q_ddot] = rates;
+    if let Err(error) = model.kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut work, &mut actions) {
+        panic!("{q:?}: {error}");
+    }
+    let bodies = model.plan().body_frames(mechanism, &work.pose);
+    let rates = |b: usize| {
+        let origin = work.states().point(BodyId(b), Vec2::ZERO);
+        let body = work.states().body(BodyId(b));
+        let (v, a) = (origin.velocity, origin.acceleration);
+        ([v.x, v.y, body.spin], [a.x, a.y, body.spin_rate])
+    };
+    let (velocity, acceleration) = (0..bodies.len()).map(rates).unzip();
+    State {
+        t: 0.0,
+        q,
+        q_dot,
+        q_ddot,
+        bodies,
+        velocity,
+        acceleration,
+        reactions: actions.reactions,
+        tau: actions.tau,
+        loads: Vec::new(),
     }
 }
 

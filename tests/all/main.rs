@@ -14,6 +14,7 @@ mod change_points;
 mod changes;
 mod cycles;
 mod derivatives;
+mod ends;
 mod equilibria;
 mod findings;
 mod invariance;

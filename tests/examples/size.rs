@@ -27,10 +27,15 @@ const CHAIN: usize = 40;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut operations, mut times) = (Vec::new(), Vec::new());
     for n in SIZES {
+        let start = Instant::now();
         let model = links::model(n);
+        let built = start.elapsed().as_secs_f64();
         operations.push([n as f64, counted::operations(&model) as f64]);
         times.push([n as f64, time(&model, n) * 1e6]);
-        println!("{n:>6} {:?} {:?}", operations.last(), times.last());
+        let [poses, spent] = [&operations, &times].map(|all| all.last().map_or(0.0, |[_, y]| *y));
+        println!(
+            "{n:>6} four-bars: built in {built:.3} s, {poses} operations and {spent:.2} µs a pose"
+        );
     }
     let figure = Figure {
         name: "size".into(),

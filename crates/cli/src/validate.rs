@@ -1,10 +1,9 @@
 //! `dwell validate`: every case, whatever becomes of the others.
 
-use crate::{as_scene_error, cases, plain};
+use crate::{as_scene_error, cases, plain, progress_bar};
 use dwell_report::Files;
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{Outcome, Step, Validation, index};
-use indicatif::{ProgressBar, ProgressStyle};
 use miette::{Report, miette};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -21,10 +20,7 @@ pub(crate) fn validate(
         .map(|case| Scene::read(case.join("scene.toml")))
         .collect();
     refuse_twins(&cases, &scenes)?;
-    let bar = ProgressBar::new(0);
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}") {
-        bar.set_style(style);
-    }
+    let bar = progress_bar();
     let one = |(scene, case): (&Result<Scene, SceneError>, &PathBuf)| {
         let scene = scene.as_ref().map_err(Clone::clone)?;
         let heard = |step: Step<'_>| {

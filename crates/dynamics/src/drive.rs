@@ -34,7 +34,7 @@ impl Drive {
         Ok(Load {
             name: self.name.clone(),
             kind: kind.ok_or("it drives a coordinate that is not there")?,
-            magnitude: Magnitude::Given,
+            magnitude: Magnitude::Given(self.kind.given().signals().to_vec()),
         })
     }
 }
@@ -48,6 +48,17 @@ pub enum DriveKind {
     Motor(Motor),
     /// A proportional and integral regulator of the coordinate's speed.
     Regulator(Regulator),
+}
+
+impl DriveKind {
+    /// What is given from outside: an action, a voltage, a wanted speed.
+    pub fn given(&self) -> &Magnitude {
+        match self {
+            Self::Action(magnitude) => magnitude,
+            Self::Motor(motor) => &motor.voltage,
+            Self::Regulator(regulator) => &regulator.speed,
+        }
+    }
 }
 
 /// A motor of direct current behind a gear, eq. (1).

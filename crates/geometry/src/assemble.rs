@@ -7,29 +7,8 @@ use crate::lower::{Measure, Tie};
 use crate::place::{Guess, turn};
 use crate::plan::{Branches, How, Kind, Plan, Pose};
 use crate::plane::Vec2;
-use crate::tall;
+use crate::ways::{SAME, Way};
 use std::f64::consts::TAU;
-
-/// One way a group closes: the value of each unknown — (cos, sin), and its counted angle, or its
-/// travel — and what says which way it is.
-struct Way {
-    values: Vec<(Vec2, f64)>,
-    /// Sign of the determinant.
-    branch: f64,
-    /// Sign of the root in a closed form.
-    side: f64,
-    /// Whether a length is negative: the same points on the line from the other end.
-    backward: bool,
-}
-
-/// Angles tried for each class, besides the rough ones, when Newton's method looks for
-/// all the ways in which a group closes.
-const TRIALS: usize = 4;
-/// Bound on the starts of one group, from the hints and from anywhere.
-const MOST_NEAR_STARTS: usize = 256;
-const MOST_STARTS: usize = 1024;
-/// Two ways closer than this (rad) are one.
-const SAME: f64 = 1e-6;
 
 impl Plan {
     /// Finds the branch of every group at the start.
@@ -39,6 +18,9 @@ impl Plan {
         pose.q.clone_from(&q);
         self.count_bodies(rough);
         for g in 0..self.groups.len() {
+            // A relation may count from a frame that is driven from what is placed already.
+            self.place_before(g, &mut pose)
+                .map_err(|e| self.refusal(g, e))?;
             self.begin(g, rough, &mut pose);
             let ways = match &self.groups[g].kind {
                 Kind::Solved(solved) if solved.how == How::Newton => {
@@ -110,7 +92,7 @@ impl Plan {
             if let Unknown::Class(class) = unknown
                 && self.counted[self.root_of(class)]
             {
-                let hint = self.hints(unknown, rough).first().copied();
+                let hint = self.hint(unknown, rough);
                 self.set_angle(class, hint.unwrap_or(0.0), pose);
             }
         }
@@ -147,7 +129,7 @@ impl Plan {
     }
 
     /// Whether a line of a group is measured from its far end.
-    fn backward(&self, g: usize, pose: &Pose<f64>) -> bool {
+    pub(crate) fn backward(&self, g: usize, pose: &Pose<f64>) -> bool {
         let is_length = |bond: usize| {
             matches!(
                 self.lowered.bonds[bond].tie,
@@ -166,176 +148,8 @@ impl Plan {
         travels || slides
     }
 
-    /// All the ways that Newton's method finds from the rough angles and a grid of others.
-    fn ways_by_newton(
-        &mut self,
-        g: usize,
-        rough: &[Option<f64>],
-        pose: &mut Pose<f64>,
-    ) -> Result<Vec<Way>, AssemblyError> {
-        let unknowns = self.groups[g].group.unknowns.clone();
-        let hints: Vec<Option<f64>> = unknowns
-            .iter()
-            .map(|&u| self.hints(u, rough).first().copied())
-            .collect();
-        // The hints first, with every other angle where they say nothing; then, whether or not
-        // they lead anywhere, a grid of others, so that the way nearest to the hints is picked among
-        // all that are found.
-        let grid = |unknowns: usize, most: usize| {
-            let count = u32::try_from(unknowns).ok();
-            let starts = count.and_then(|n| TRIALS.checked_pow(n));
-            starts.map_or(most, |s| s.min(most))
-        };
-        let untold =
-            |(u, hint): (&Unknown, &Option<f64>)| matches!(u, Unknown::Class(_)) && hint.is_none();
-        let hintless = unknowns.iter().zip(&hints).filter(|&u| untold(u)).count();
-        let near = grid(hintless, MOST_NEAR_STARTS);
-        let starts = near + grid(unknowns.len(), MOST_STARTS);
-        let mut ways: Vec<Way> = Vec::new();
-        let mut refused = None;
-        for start in 0..starts {
-            let by_hints = start < near;
-            let mut left = if by_hints { start } else { start - near };
-            let size = self.groups[g].size;
-            let guess: Vec<(Vec2, f64)> = unknowns
-                .iter()
-                .zip(&hints)
-                .map(|(&unknown, hint)| {
-                    if let (true, Some(hint)) = (by_hints, *hint) {
-                        return (Vec2::from_angle(hint), hint);
-                    }
-                    if let (true, Unknown::Slide(_)) = (by_hints, unknown) {
-                        return (Vec2::ZERO, 0.0);
-                    }
-                    let k = left % TRIALS;
-                    left /= TRIALS;
-                    // Off the axes, where many mechanisms are singular.
-                    let trial = 0.3 + TAU * k as f64 / TRIALS as f64;
-                    match unknown {
-                        Unknown::Class(_) => (Vec2::from_angle(trial), trial),
-                        Unknown::Slide(_) => (Vec2::ZERO, (trial - 3.0) * size / 6.0),
-                    }
-                })
-                .collect();
-            self.set(g, &guess, pose);
-            if by_hints {
-                self.settle_slides(g, pose);
-            }
-            match self.place_group(g, pose) {
-                Ok(()) => {
-                    self.count_near(g, &hints, pose);
-                    let values = self.values(g, pose);
-                    let Kind::Solved(solved) = &self.groups[g].kind else {
-                        break;
-                    };
-                    let branch = if solved.tall() {
-                        1.0
-                    } else {
-                        self.sign(solved, pose)
-                    };
-                    let far = |way: &Way| {
-                        let both = way.values.iter().zip(&values);
-                        both.zip(&unknowns).any(|(((a, x), (b, y)), u)| match u {
-                            Unknown::Class(_) => (*a - *b).norm() > SAME,
-                            Unknown::Slide(_) => (x - y).abs() > SAME * (size + x.abs()),
-                        })
-                    };
-                    // Of one pose with other counts of turns, the first comes from the hints.
-                    if ways.iter().all(far) {
-                        ways.push(Way {
-                            values,
-                            branch,
-                            side: 1.0,
-                            backward: self.backward(g, pose),
-                        });
-                    }
-                }
-                Err(e) if e.group() == Some(g) => {
-                    // Of all refusals the one that came nearest tells most.
-                    let open = |e: &PlaceError| match *e {
-                        PlaceError::NotClosed { residual, .. } => residual,
-                        _ => f64::INFINITY,
-                    };
-                    if refused.as_ref().is_none_or(|kept| open(&e) < open(kept)) {
-                        refused = Some(e);
-                    }
-                }
-                Err(e) => return Err(self.refusal(g, e)),
-            }
-        }
-        match (ways.is_empty(), refused) {
-            (true, Some(e)) => Err(self.refusal(g, e)),
-            _ => Ok(ways),
-        }
-    }
-
-    /// Puts a group's slides where its angles want them, by least squares: its equations are linear
-    /// in the slides.
-    fn settle_slides(&self, g: usize, pose: &mut Pose<f64>) {
-        let Kind::Solved(solved) = &self.groups[g].kind else {
-            return;
-        };
-        let unknowns = &self.groups[g].group.unknowns;
-        let slides: Vec<usize> = (0..unknowns.len())
-            .filter(|&i| matches!(unknowns[i], Unknown::Slide(_)))
-            .collect();
-        let (m, n) = (solved.rows, slides.len());
-        if n == 0 || n >= m {
-            return;
-        }
-        self.turn_group(g, pose);
-        self.residual(g, pose);
-        self.assemble_jacobian(g, solved, pose);
-        let entry = |i: usize, j: usize| pose.lu[solved.lu + i * solved.columns + slides[j]];
-        let mut matrix: Vec<f64> = (0..m * n).map(|k| entry(k / n, k % n)).collect();
-        let (mut beside, mut open) = (vec![0.0; n], pose.work[..m].to_vec());
-        if tall::factor(&mut matrix, &mut beside, m).measure < SAME {
-            return;
-        }
-        tall::solve(&matrix, &beside, m, &mut open);
-        for (&i, step) in slides.iter().zip(&open) {
-            if let Unknown::Slide(slide) = unknowns[i] {
-                pose.slide[slide] -= step * self.groups[g].scale;
-            }
-        }
-    }
-
-    /// Newton's method may have gone round: where the group closes with the turns that the hints
-    /// mean, it is left with those.
-    fn count_near(&self, g: usize, hints: &[Option<f64>], pose: &mut Pose<f64>) {
-        let found = self.values(g, pose);
-        let unknowns = &self.groups[g].group.unknowns;
-        let mut nearer = found.clone();
-        for ((value, &unknown), hint) in nearer.iter_mut().zip(unknowns).zip(hints) {
-            if let (Unknown::Class(c), Some(hint)) = (unknown, hint)
-                && self.counted[self.root_of(c)]
-            {
-                value.1 += TAU * ((hint - value.1) / TAU).round();
-            }
-        }
-        if nearer == found {
-            return;
-        }
-        self.set(g, &nearer, pose);
-        let closed = self.place_group(g, pose).is_ok();
-        let there = self.values(g, pose);
-        let same = there
-            .iter()
-            .zip(&nearer)
-            .zip(unknowns)
-            .all(|((a, b), u)| match u {
-                Unknown::Class(_) => (a.0 - b.0).norm() < SAME && (a.1 - b.1).abs() < SAME,
-                Unknown::Slide(_) => true,
-            });
-        if !(closed && same) {
-            self.set(g, &found, pose);
-            // It closed there a moment ago.
-            let _ = self.place_group(g, pose);
-        }
-    }
-
     /// The rough angles of an unknown, from all the bodies that turn with it.
-    fn hints(&self, unknown: Unknown, rough: &[Option<f64>]) -> Vec<f64> {
+    pub(crate) fn hints(&self, unknown: Unknown, rough: &[Option<f64>]) -> Vec<f64> {
         let Unknown::Class(class) = unknown else {
             return Vec::new();
         };
@@ -347,6 +161,22 @@ impl Plan {
         };
         let bodies = self.frames.attitudes.iter().zip(rough);
         bodies.enumerate().filter_map(of_body).collect()
+    }
+
+    /// The rough angle of an unknown: a body's, or for a line of centres its carrier's and the lead.
+    pub(crate) fn hint(&self, unknown: Unknown, rough: &[Option<f64>]) -> Option<f64> {
+        if let Some(&hint) = self.hints(unknown, rough).first() {
+            return Some(hint);
+        }
+        let Unknown::Class(class) = unknown else {
+            return None;
+        };
+        let &(carrier, lead) = self.beside.get(&self.root_of(class))?;
+        let beside = match self.frames.frames[carrier].class {
+            0 => 0.0,
+            of => *self.hints(Unknown::Class(of), rough).first()?,
+        };
+        Some(beside + self.driven_angle(carrier) + lead)
     }
 
     /// The angle of a frame from the first frame of its class, at the start.
@@ -397,7 +227,8 @@ impl Plan {
                 .sum()
         };
         ways.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let ambiguous = ways.len() > 1 && distance(&ways[1]) - distance(&ways[0]) < SAME;
+        let away = |way: usize| distance(&ways[way]).sqrt();
+        let ambiguous = ways.len() > 1 && away(1) - away(0) < SAME;
         let branches = self.told_apart(g, &ways);
         if ambiguous {
             return Err(AssemblyError::Ambiguous {
@@ -448,7 +279,7 @@ impl Plan {
         Branches { bodies, ways }
     }
 
-    fn refusal(&self, g: usize, error: PlaceError) -> AssemblyError {
+    pub(crate) fn refusal(&self, g: usize, error: PlaceError) -> AssemblyError {
         let g = error.group().unwrap_or(g);
         let (bodies, joints) = if g < self.groups.len() {
             (self.group_bodies(g), self.group_joints(g))
@@ -471,37 +302,6 @@ impl Plan {
                 joints,
                 gap: f64::NAN,
             },
-        }
-    }
-
-    fn values(&self, g: usize, pose: &Pose<f64>) -> Vec<(Vec2, f64)> {
-        let value = |&unknown: &Unknown| match unknown {
-            Unknown::Class(c) => {
-                let root = self.root_of(c);
-                // An angle that is not counted tells nothing that its direction does not.
-                let angle = if self.counted[root] {
-                    pose.angle[root]
-                } else {
-                    0.0
-                };
-                (pose.turn[root], angle)
-            }
-            Unknown::Slide(s) => (Vec2::ZERO, pose.slide[s]),
-        };
-        self.groups[g].group.unknowns.iter().map(value).collect()
-    }
-
-    fn set(&self, g: usize, values: &[(Vec2, f64)], pose: &mut Pose<f64>) {
-        for (&unknown, &(turn, value)) in self.groups[g].group.unknowns.iter().zip(values) {
-            match unknown {
-                Unknown::Class(c) => {
-                    pose.turn[self.root_of(c)] = turn;
-                    if self.counted[self.root_of(c)] {
-                        pose.angle[self.root_of(c)] = value;
-                    }
-                }
-                Unknown::Slide(s) => pose.slide[s] = value,
-            }
         }
     }
 }

@@ -25,6 +25,7 @@ pub mod small;
 mod solve;
 mod tall;
 pub mod tree;
+mod ways;
 
 pub use error::{AssemblyError, PlaceError, StructureError};
 pub use mechanism::{

@@ -14,14 +14,14 @@ impl Plan {
     }
 
     /// The angle of a body's frame, rad: whole turns are counted where actuators turn it from the
-    /// ground or a relation needs them, else it is in (−π, π].
+    /// ground or a relation or load needs them, else it is in (−π, π].
     pub fn body_angle(&self, body: BodyId, pose: &Pose<f64>) -> f64 {
         let counted = self.counted_angle(body.0, pose);
         counted.unwrap_or_else(|| self.body_turn(body, pose).angle())
     }
 
     /// The angle of a body's frame with its whole turns, rad, where actuators turn it from the
-    /// ground or a relation needs it.
+    /// ground or a relation or load needs it.
     pub fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
         let attitude = self.frames.attitudes[body];
         let offset = attitude.offset.angle();
@@ -31,6 +31,12 @@ impl Plan {
         }
         let angle = self.driven_turn(attitude.frame, pose)?;
         Some(angle + T::lift(offset))
+    }
+
+    /// Whether [`counted_angle`](Self::counted_angle) knows this body.
+    pub fn counts_turns(&self, body: BodyId) -> bool {
+        let frame = self.frames.attitudes[body.0].frame;
+        self.counted[frame] || self.frames.frames[frame].class == 0
     }
 
     /// The angle of a frame that actuators turn from the ground's.

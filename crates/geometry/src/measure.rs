@@ -24,7 +24,7 @@ pub struct BodyState<T = f64> {
     /// Orientation of the body's frame, (cos, sin).
     pub turn: Vec2<T>,
     /// The angle of its frame with whole turns, rad, where they are counted: where actuators turn it
-    /// from the ground, or a relation needs it.
+    /// from the ground, or a relation or a load needs it.
     pub angle: Option<T>,
     /// Angular velocity ω, rad/s.
     pub spin: T,

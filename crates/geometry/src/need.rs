@@ -93,4 +93,27 @@ impl Plan {
     pub fn skipped(&self) -> Vec<bool> {
         self.groups.iter().map(|g| g.skipped).collect()
     }
+
+    /// By body of the mechanism: whether it is placed although groups are left out.
+    pub fn placed(&self) -> Vec<bool> {
+        let mut classes = vec![true; self.frames.classes];
+        let mut slides = vec![true; self.tree.slides.len()];
+        for assur in self.groups.iter().filter(|g| g.skipped) {
+            for unknown in &assur.group.unknowns {
+                match *unknown {
+                    Unknown::Class(c) => classes[c] = false,
+                    Unknown::Slide(s) => slides[s] = false,
+                }
+            }
+        }
+        let known = |frame: usize| classes[self.frames.frames[frame].class];
+        let mut placed = vec![true; self.lowered.bodies];
+        for carry in &self.tree.carries {
+            placed[carry.body] = placed[carry.parent]
+                && known(carry.arm.frame)
+                && known(self.frames.attitudes[carry.body].frame)
+                && carry.slide.is_none_or(|(slide, _)| slides[slide]);
+        }
+        placed
+    }
 }

@@ -113,11 +113,24 @@ impl Plan {
     /// Places one group at the start, with what follows the one before it: while a branch is still
     /// to be picked, and all groups before it are placed.
     pub(crate) fn place_group(&self, group: usize, pose: &mut Pose<f64>) -> Result<(), PlaceError> {
-        let from = group
-            .checked_sub(1)
-            .map_or(0, |before| self.solve_steps[before] + 1);
-        let steps = &self.steps[from..=self.solve_steps[group]];
+        let steps = &self.steps[self.first_step(group)..=self.solve_steps[group]];
         self.place_from_here(steps, pose, Guess::Pose)
+    }
+
+    /// Turns and rotates what comes between the group before and this one.
+    pub(crate) fn place_before(
+        &self,
+        group: usize,
+        pose: &mut Pose<f64>,
+    ) -> Result<(), PlaceError> {
+        let steps = &self.steps[self.first_step(group)..self.solve_steps[group]];
+        self.place_from_here(steps, pose, Guess::Pose)
+    }
+
+    /// The step after the group before.
+    fn first_step(&self, group: usize) -> usize {
+        let before = group.checked_sub(1);
+        before.map_or(0, |before| self.solve_steps[before] + 1)
     }
 
     fn place_from_here<T: Scalar>(
@@ -148,7 +161,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Counts the whole turns of a group's classes where a relation needs them: the number that is
+    /// Counts the whole turns of a group's classes where a relation or a load needs them: the number that is
     /// nearest to the stored angle, or while a branch is followed to the last one.
     #[inline(never)]
     fn count<T: Scalar>(

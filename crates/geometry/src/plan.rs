@@ -48,7 +48,7 @@ pub struct Plan {
     /// The frames that turn with the ground but for the actuators, each after the one it is
     /// turned from.
     pub(crate) driven: Vec<Driven>,
-    /// By frame: whether its whole turns are counted, because a relation needs its angle.
+    /// By frame: whether its whole turns are counted, because a relation or a load needs its angle.
     pub(crate) counted: Vec<bool>,
     /// By body: the whole turns that it is ahead of its frame, rad.
     pub(crate) turns: Vec<f64>,
@@ -280,7 +280,7 @@ pub struct Pose<T> {
     pub q: Vec<T>,
     /// By frame: (cos, sin).
     pub turn: Vec<Vec2<T>>,
-    /// By frame: its angle with whole turns counted, rad; only where a relation needs it.
+    /// By frame: its angle with whole turns counted, rad; only where a relation or a load needs it.
     pub angle: Vec<T>,
     /// By arm: its components in ground axes, m.
     pub arm: Vec<Vec2<T>>,

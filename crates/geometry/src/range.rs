@@ -31,7 +31,8 @@ pub enum Range {
 /// Where a branch ends, and why.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct End {
-    /// The coordinate, rad or m.
+    /// The coordinate, rad or m. A range that ends at a change point stops a millionth of a turn or so
+    /// short of it, where digits begin to fail.
     pub q: f64,
     /// The group that cannot be followed any further.
     pub group: usize,
@@ -99,7 +100,7 @@ const CLEAR: f64 = 4.0;
 /// Two poses are one if they differ by less: rad, or of the lengths of a group.
 const SAME: f64 = 1e-6;
 /// Where the branch cannot be followed any further, the step is halved until it is this small, rad.
-const SMALLEST_STEP: f64 = 1e-13;
+const SMALLEST_STEP: f64 = 2e-14;
 
 impl Plan {
     /// Follows the branch from the start over the range of a single actuator, both ways, and
@@ -132,9 +133,9 @@ impl Plan {
         back.extend(ahead);
         self.store(&back);
         self.ends = [down, up];
-        let [down, up] = [down, up].map(|end| end.map(|end| end.q));
         let far = |pose: Option<&Pose<f64>>| pose.map_or(start.q[0], |p| p.q[0]);
         let (first, last) = (far(back.first()), far(back.last()));
+        let [down, up] = [down.map(|_| first), up.map(|_| last)];
         self.range = match (down, up) {
             (Some(from), Some(to)) if self.angular[0] => Range::Between(from, to),
             (Some(from), Some(to)) => Range::Stroke(from, to),
@@ -207,11 +208,19 @@ impl Plan {
                             let group = (0..margins.len())
                                 .min_by(|a, b| part(a).total_cmp(&part(b)))
                                 .unwrap_or(0);
-                            let [_, product] = size(&margins[group]);
+                            let margin = &margins[group];
+                            let change_point = met || size(margin)[1] < FALLEN * largest[group][1];
+                            // Where the determinant crosses zero, the last step is Newton's.
+                            let left = if change_point {
+                                -margin.v / margin.d
+                            } else {
+                                0.0
+                            };
+                            let near = left * direction > 0.0 && left.abs() < self.step(0);
                             return Some(End {
-                                q: pose.q[0],
+                                q: pose.q[0] + if near { left } else { 0.0 },
                                 group,
-                                change_point: met || product < FALLEN * largest[group][1],
+                                change_point,
                             });
                         }
                     }

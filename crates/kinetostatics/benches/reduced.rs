@@ -5,12 +5,14 @@
 //! The hand-written evaluators are first held against Dwell's values.
 
 mod hand_written;
+mod hand_written_four_bar;
 mod hand_written_general;
 
 use dwell_geometry::{Reaction, Start};
 use dwell_kinetostatics::{Exact, Model, Reduced};
 use dwell_scene::Scene;
 use hand_written::HandWritten;
+use hand_written_four_bar::{FourBar, SCENE, with_a_dyad};
 use hand_written_general::General;
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -77,6 +79,15 @@ fn main() {
     let near = (six_bar.scene.assembly.start[0] - 0.1, 0.2);
     let six_bar = six_bar.model(&six_bar.scene.requests.reactions);
 
+    let by_hand = FourBar::new();
+    let (bars, dyad) = (loaded(SCENE), loaded(&with_a_dyad()));
+    let lean = dyad.0.clone().only_for(&dyad.1.mechanism, &[]);
+    assert_eq!(lean.plan().skipped(), [false, true]);
+    agree_in_force(&by_hand, &[&bars.0, &dyad.0, &lean]);
+    let bare = dyad.0.without_reactions();
+    let exact = Exact::new(dyad.0.clone());
+    let exact = exact.unwrap_or_else(|| stop("four-bar", "it has several actuators"));
+
     let mut subjects = vec![
         Subject::new("single-dwell by hand, its own proportions", TURN, |q| {
             black_box(hand.at(q));
@@ -97,12 +108,98 @@ fn main() {
         inertia("class-three six-bar, m and m'/2", near, &six_bar),
     ]);
 
+    let mut forces = vec![
+        Subject::new("four-bar by hand: motion, action, reactions", TURN, |q| {
+            black_box(by_hand.at(q, 8.0, 3.0));
+        }),
+        kinetostatics("four-bar: motion, action, all reactions", &bars.0),
+        kinetostatics("… with a massless dyad that is modelled", &dyad.0),
+        kinetostatics("… with a massless dyad that is skipped", &lean),
+        reduced("m and m'/2 with the dyad modelled", &bare),
+        inertia("m and m'/2 with the dyad skipped", TURN, &exact),
+    ];
+
     for _ in 0..TURNS {
-        for subject in &mut subjects {
+        for subject in subjects.iter_mut().chain(&mut forces) {
             subject.take_turn();
         }
     }
     print(&mut subjects);
+    print_forces(&mut forces);
+}
+
+/// A mechanism under its loads with every reaction, and its scene.
+fn loaded(text: &str) -> (Model, Scene) {
+    let scene = Scene::parse("four-bar.toml", text);
+    let scene = scene.unwrap_or_else(|e| stop("four-bar", &e.to_string()));
+    let case = Case { scene };
+    let model = case.model(&case.scene.mechanism.reactions());
+    let loads = case.scene.loads.clone();
+    let model = model.model().clone();
+    let model = model.with_loads(&case.scene.mechanism, loads);
+    let model = model.unwrap_or_else(|e| stop("four-bar", &e.to_string()));
+    (model, case.scene)
+}
+
+fn kinetostatics<'a>(name: &'static str, model: &'a Model) -> Subject<'a> {
+    let (mut work, mut actions) = (model.workspace(), model.actions());
+    Subject::new(name, TURN, move |q| {
+        let done = model.kinetostatics(0.0, &[q], &[8.0], &[3.0], &mut work, &mut actions);
+        black_box(done.is_ok());
+        black_box(&actions);
+    })
+}
+
+fn reduced<'a>(name: &'static str, model: &'a Model) -> Subject<'a> {
+    let (mut work, mut out) = (model.workspace(), model.coefficients());
+    Subject::new(name, TURN, move |q| {
+        black_box(model.reduce(q, &mut work, &mut out).is_ok());
+        black_box(&out);
+    })
+}
+
+/// Holds the four-bar's forces against those by hand, and the models with and without what is skipped
+/// against each other to the last bit.
+fn agree_in_force(hand: &FourBar, models: &[&Model; 3]) {
+    let (mut largest, mut apart) = (0.0_f64, 0.0_f64);
+    for step in 0..1000 {
+        let q = (f64::from(step) * STEP).rem_euclid(TAU);
+        let truth = hand.at(q, 8.0, 3.0);
+        let found = models.map(|model| {
+            let (mut work, mut actions) = (model.workspace(), model.actions());
+            let done = model.kinetostatics(0.0, &[q], &[8.0], &[3.0], &mut work, &mut actions);
+            done.unwrap_or_else(|e| stop("four-bar", &e.to_string()));
+            let all = actions.tau.into_iter().chain(actions.reactions);
+            // A zero may have either sign.
+            all.take(9).map(|v| v + 0.0).collect::<Vec<f64>>()
+        });
+        assert_eq!(found[1], found[2], "skipping changes a bit");
+        for (truth, found) in truth.iter().zip(&found[0]) {
+            largest = largest.max(truth.abs());
+            apart = apart.max((truth - found).abs());
+        }
+    }
+    let scaled = apart / largest;
+    assert!(scaled < 1e-12, "forces differ by {scaled:e} of the largest");
+}
+
+/// The four-bar's costs, to that by hand and of each pair to the one before.
+fn print_forces(subjects: &mut [Subject<'_>]) {
+    for subject in subjects.iter_mut() {
+        subject.turns.sort_by(f64::total_cmp);
+    }
+    let hand = subjects[0].turns[0];
+    println!("\nfour-bar under weight and a couple, ns          median    least / hand");
+    for Subject { name, turns, .. } in subjects.iter() {
+        let (median, least) = (turns[turns.len() / 2], turns[0]);
+        println!("{name:45}{median:9.1}{least:9.1}{:7.2}", least / hand);
+    }
+    let saved = |with: usize| 1.0 - subjects[with + 1].turns[0] / subjects[with].turns[0];
+    println!(
+        "skipping a dyad of two saves {:.0} % of a kinetostatic pose, {:.0} % of m and m'/2",
+        100.0 * saved(2),
+        100.0 * saved(4)
+    );
 }
 
 fn print(subjects: &mut [Subject<'_>]) {

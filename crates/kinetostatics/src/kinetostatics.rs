@@ -117,14 +117,20 @@ impl Model {
     /// The same mechanism under these loads, in place of any it had. They act in
     /// [`Model::kinetostatics`] and [`Model::statics`] alone: reduced inertia knows nothing of them.
     ///
+    /// Where they feel an angle (a torsional spring, a magnitude), whole turns are counted from the
+    /// rough angles of the start, or else from within half a turn of the other body. Groups that
+    /// [`Model::only_for`] left out may come back for that.
+    ///
     /// # Errors
-    /// [`LoadError`] when a load does not fit the mechanism.
+    /// [`LoadError`] when a load does not fit the mechanism, or feels an angle whose turns cannot be
+    /// counted over the range.
     pub fn with_loads(
         mut self,
         mechanism: &Mechanism,
         loads: Vec<Load>,
     ) -> Result<Self, LoadError> {
         self.loads = Loads::find(mechanism, &self.plan, &self.masses, loads)?;
+        self.count_felt(mechanism)?;
         let missing = |load| LoadError {
             load,
             what: "the reactions that its friction depends on are not computed",

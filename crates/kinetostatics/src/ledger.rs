@@ -95,6 +95,10 @@ impl Ledger {
             let by = By::Joint(JointId(j));
             let value = |i: usize| actions.reactions[entry.components[i]];
             if let Some(relation) = &entry.relation {
+                if value(0) == 0.0 {
+                    // Where the group is left out, its law has not been evaluated.
+                    continue;
+                }
                 let slope = model.plan().relation_slope(JointId(j), &work.pose);
                 relate(relation, value(0), slope.unwrap_or(0.0), by, states, acts);
             } else {

@@ -15,6 +15,7 @@ mod reactions;
 pub mod reduced;
 mod runs;
 pub mod section;
+mod turns;
 
 pub use acts::{Act, By, LoadError, LoadState};
 pub use balance::{PowerBalance, Shaking, Wrench};

@@ -54,7 +54,8 @@ pub enum LoadKind {
     TorsionSpring {
         /// The bodies.
         bodies: [BodyId; 2],
-        /// Free angle of the second from the first, rad.
+        /// Free angle of the second from the first, rad; whole turns are those of
+        /// [`Model::with_loads`](crate::Model::with_loads).
         free: f64,
     },
     /// A damper between two points: F is its constant, N·s/m; it resists with F × d(length)/dt.
@@ -155,8 +156,20 @@ pub enum Magnitude {
     Expression(Expression, Vec<Signal>),
     /// As the joint's own reactions make it.
     Friction(Friction),
-    /// What [`Workspace::give`](crate::Workspace::give) said last: of a drive, for whoever evaluates it.
-    Given,
+    /// What [`Workspace::give`](crate::Workspace::give) said last: of a drive, for whoever evaluates it
+    /// from these signals.
+    Given(Vec<Signal>),
+}
+
+impl Magnitude {
+    /// What it depends on.
+    pub fn signals(&self) -> &[Signal] {
+        match self {
+            Self::Constant(_) | Self::Friction(_) => &[],
+            Self::Law(signal, _) => std::slice::from_ref(signal),
+            Self::Expression(_, signals) | Self::Given(signals) => signals,
+        }
+    }
 }
 
 /// What a magnitude can depend on.
@@ -184,6 +197,21 @@ impl Load {
         shaped && matches!(self.magnitude, Magnitude::Constant(_))
     }
 
+    /// The pairs of bodies whose angle it feels, with whole turns: a torsional spring's own, and those
+    /// its magnitude depends on.
+    pub fn angles(&self) -> Vec<[BodyId; 2]> {
+        let own = match self.kind {
+            LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
+            _ => None,
+        };
+        let signals = self.magnitude.signals().iter();
+        let sensed = signals.filter_map(|signal| match *signal {
+            Signal::Value(Coordinate::Angle(pair)) => Some(pair),
+            _ => None,
+        });
+        own.into_iter().chain(sensed).collect()
+    }
+
     /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those
     /// with mass, which are needed anyway.
     pub fn bodies(&self, mechanism: &Mechanism) -> Vec<BodyId> {
@@ -199,12 +227,7 @@ impl Load {
             | LoadKind::Slide(Guide { bodies, .. })
             | LoadKind::SlideDamper(Guide { bodies, .. }) => bodies.to_vec(),
         };
-        let signals = match &self.magnitude {
-            Magnitude::Constant(_) | Magnitude::Friction(_) | Magnitude::Given => &[][..],
-            Magnitude::Law(signal, _) => std::slice::from_ref(signal),
-            Magnitude::Expression(_, signals) => signals,
-        };
-        for signal in signals {
+        for signal in self.magnitude.signals() {
             let (Signal::Value(coordinate) | Signal::Speed(coordinate)) = *signal else {
                 continue;
             };

@@ -35,7 +35,7 @@ impl Loads {
         out: &mut LoadState<T>,
     ) -> Result<(), KinetostaticsError> {
         for (i, load) in self.loads.iter().enumerate() {
-            if load.magnitude == Magnitude::Given {
+            if matches!(load.magnitude, Magnitude::Given(_)) {
                 continue;
             }
             let magnitude = load
@@ -71,7 +71,7 @@ impl Magnitude {
             (Self::Law(_, law), &[x, ..]) => x.through(&law.at(x.value())),
             (Self::Law(..), []) => T::lift(f64::NAN),
             (Self::Expression(expression, _), numbers) => of_several(expression, numbers, values),
-            (Self::Friction(_) | Self::Given, _) => T::lift(0.0),
+            (Self::Friction(_) | Self::Given(_), _) => T::lift(0.0),
         }
     }
 }
@@ -89,7 +89,7 @@ impl Meter {
     /// # Errors
     /// What is wrong with it: a coordinate that the mechanism does not have, a friction.
     pub fn new(mechanism: &Mechanism, magnitude: Magnitude) -> Result<Self, &'static str> {
-        if matches!(magnitude, Magnitude::Friction(_) | Magnitude::Given) {
+        if matches!(magnitude, Magnitude::Friction(_) | Magnitude::Given(_)) {
             return Err("friction acts in joints alone, and what is given is not measured");
         }
         let senses = senses(mechanism, &magnitude)?;
@@ -138,16 +138,12 @@ pub(crate) fn senses(
     mechanism: &Mechanism,
     magnitude: &Magnitude,
 ) -> Result<Vec<Sense>, &'static str> {
-    let signals = match magnitude {
-        Magnitude::Constant(_) | Magnitude::Friction(_) | Magnitude::Given => &[],
-        Magnitude::Law(signal, _) => std::slice::from_ref(signal),
-        Magnitude::Expression(expression, signals) => {
-            if expression.variables().len() > signals.len() {
-                return Err("its expression has more variables than signals");
-            }
-            signals.as_slice()
-        }
-    };
+    let signals = magnitude.signals();
+    if let Magnitude::Expression(expression, _) = magnitude
+        && expression.variables().len() > signals.len()
+    {
+        return Err("its expression has more variables than signals");
+    }
     let unknown = "its magnitude depends on a coordinate that the mechanism does not have";
     let find = |coordinate| Measured::find(mechanism, coordinate).ok_or(unknown);
     let sense = |signal: &Signal| match *signal {

@@ -28,6 +28,8 @@ pub struct Model {
     pub(crate) masses: Vec<Mass>,
     pub(crate) loads: Loads,
     pub(crate) rubs: Vec<Rub>,
+    /// Where it was put together.
+    pub(crate) start: Start,
 }
 
 /// A carried body that has inertia.
@@ -133,10 +135,7 @@ impl Model {
         if masses.len() != mechanism.bodies.len() || !masses.iter().all(sound) {
             return Err(ModelError::Masses);
         }
-        let unknown = |r: &&Reaction| !mechanism.components(r.joint).contains(&r.component);
-        if let Some(reaction) = reactions.iter().find(unknown) {
-            return Err(ModelError::Reaction(*reaction));
-        }
+        known(mechanism, reactions)?;
         let plan = Plan::compile(mechanism, start)?;
         let moves = moving(&plan);
         let massive: Vec<Massive> = plan
@@ -182,37 +181,52 @@ impl Model {
             masses,
             loads: Loads::default(),
             rubs: Vec::new(),
+            start: start.clone(),
         })
     }
 
-    /// By group of the plan: whether inertia, a load or one of the bodies `wanted` needs it.
-    pub fn needed(&self, mechanism: &Mechanism, wanted: &[BodyId]) -> Vec<bool> {
-        let massive = self.massive.iter().map(|m| m.body);
-        let loads = self.loads().iter().flat_map(|load| load.bodies(mechanism));
-        let asked = loads.chain(wanted.iter().copied()).map(|b| b.0);
-        self.plan.needed_for(massive.chain(asked))
-    }
-
     /// The same model without the groups that no inertia, no load and none of the bodies `wanted`
-    /// needs. What remains is the same to the last bit: nothing acts on the groups left out, so
-    /// their reactions are zero.
+    /// needs; [`Plan::skipped`] tells them. What remains is the same to the last bit: nothing acts on
+    /// the groups left out, so their reactions are zero. The range stays that of the whole mechanism.
     #[must_use]
-    pub fn only_for(mut self, mechanism: &Mechanism, wanted: &[BodyId]) -> Self {
-        let needed = self.needed(mechanism, wanted);
-        self.plan = self.plan.only(&needed);
-        self
+    pub fn only_for(self, mechanism: &Mechanism, wanted: &[BodyId]) -> Self {
+        let loads = self.loads().iter().flat_map(|load| load.bodies(mechanism));
+        let asked: Vec<BodyId> = loads.chain(wanted.iter().copied()).collect();
+        self.keep(&asked)
     }
 
     /// The same mechanism for its inertia alone: no reaction, no load, and only the groups that
     /// place something with inertia.
-    pub fn inertia_alone(&self) -> Self {
+    pub(crate) fn inertia_alone(&self) -> Self {
         let mut bare = self.without_reactions();
         bare.loads = Loads::default();
         bare.rubs.clear();
-        let massive: Vec<usize> = bare.massive.iter().map(|m| m.body).collect();
-        let needed = bare.plan.needed_for(massive);
-        bare.plan = bare.plan.only(&needed);
-        bare
+        bare.keep(&[])
+    }
+
+    /// Leaves out the groups that neither inertia nor these bodies need.
+    fn keep(mut self, bodies: &[BodyId]) -> Self {
+        let massive = self.massive.iter().map(|m| m.body);
+        let needed = self
+            .plan
+            .needed_for(massive.chain(bodies.iter().map(|b| b.0)));
+        self.plan = self.plan.only(&needed);
+        self
+    }
+
+    /// The same mechanism for these reactions instead of those it was made for.
+    ///
+    /// # Errors
+    /// [`ModelError::Reaction`] for a reaction that no joint of the mechanism has.
+    pub fn for_reactions(
+        mut self,
+        mechanism: &Mechanism,
+        reactions: &[Reaction],
+    ) -> Result<Self, ModelError> {
+        known(mechanism, reactions)?;
+        self.sources = Sources::find(mechanism, &self.plan, reactions);
+        self.reactions = reactions.to_vec();
+        Ok(self)
     }
 
     /// The same mechanism with no reaction asked for.
@@ -303,6 +317,15 @@ impl Model {
             power += body.mass * center.velocity.dot(center.acceleration) + body.inertia * w * a;
         }
         (energy, power)
+    }
+}
+
+/// Refuses a reaction that no joint of the mechanism has.
+fn known(mechanism: &Mechanism, reactions: &[Reaction]) -> Result<(), ModelError> {
+    let unknown = |r: &&Reaction| !mechanism.components(r.joint).contains(&r.component);
+    match reactions.iter().find(unknown) {
+        Some(reaction) => Err(ModelError::Reaction(*reaction)),
+        None => Ok(()),
     }
 }
 

@@ -30,7 +30,47 @@ impl Law {
             Self::Expression(expression) => expression.along(&[x], 0),
         }
     }
+
+    /// Where the value jumps on the way from one number to another, which should be close: the last
+    /// number before the jump and the first after it. Only an expression can jump (`floor`, `sign`,
+    /// `step`, `if`); of several jumps it is the one that shows most. A jump of less than
+    /// 10⁻⁶ of the value is none, nor is what cannot be told from it, a slope of 10⁹ and more.
+    pub fn jump(&self, from: f64, to: f64) -> Option<[f64; 2]> {
+        let Self::Expression(_) = self else {
+            return None;
+        };
+        // What is left of a difference of values when both ends' derivatives have explained
+        // theirs: for a smooth law of the fifth order in the step, for a jump never less.
+        let unexplained = |a: f64, b: f64| {
+            let ([p, v, c, _], [q, w, d, _], h) = (self.at(a), self.at(b), b - a);
+            (q - p - 0.5 * h * (v + w) - h * h / 12.0 * (c - d)).abs()
+        };
+        let least = JUMP * self.at(from)[0].abs().max(self.at(to)[0].abs());
+        let (mut a, mut b) = (from, to);
+        // What is not a number is no jump.
+        let may_jump = unexplained(a, b) > least;
+        if !may_jump {
+            return None;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (a + b);
+            if middle == a || middle == b {
+                break;
+            }
+            if unexplained(a, middle) >= unexplained(middle, b) {
+                b = middle;
+            } else {
+                a = middle;
+            }
+        }
+        ((self.at(b)[0] - self.at(a)[0]).abs() > least).then_some([a, b])
+    }
 }
+
+/// Smallest jump, as a part of the value.
+const JUMP: f64 = 1e-6;
+/// Halvings of a step, down to the rounding of numbers of its size.
+const HALVINGS: usize = 60;
 
 #[cfg(test)]
 mod tests {
@@ -94,6 +134,39 @@ mod tests {
     fn not_a_number_stays_visible() {
         for law in laws() {
             assert!(law.at(f64::NAN).iter().all(|d| d.is_nan()), "{law:?}");
+        }
+    }
+
+    #[test]
+    fn jumps_are_found_between_neighbouring_numbers() {
+        let law = |text| Law::Expression(Expression::parse(text, &["x"]).expect("a formula"));
+        for (text, at) in [
+            ("if(x > 0.3, 2, x)", 0.3),
+            ("x + 0.001*floor(x/0.7)", 0.7),
+            ("sin(x) + sign(x - 0.9)*1e-4", 0.9),
+            ("cos(x) + 0.01*step(x - 0.123)", 0.123),
+        ] {
+            for [from, to] in [[0.0, 1.0], [1.0, 0.0]] {
+                let [a, b] = law(text).jump(from, to).expect(text);
+                // A few roundings of 1, on both sides of it.
+                assert!((a - b).abs() < 1e-15 && (a - at).abs() < 1e-15, "{text}");
+                assert!((at - a) * (at - b) <= 0.0, "{text}: {a} {b}");
+            }
+        }
+        for text in [
+            "abs(x - 0.3)",
+            "max(0, sin(20*x))",
+            "tanh(1e6*(x - 0.4))",
+            "sqrt(abs(x - 0.5))",
+            "exp(30*x)",
+            "if(x < 0.5, x^2, x - 0.25)",
+            "1e60*x",
+            "ln(x - 2)",
+        ] {
+            assert_eq!(law(text).jump(0.0, 1.0), None, "{text}");
+        }
+        for law in laws() {
+            assert_eq!(law.jump(-1.0, 3.0), None, "{law:?}");
         }
     }
 

@@ -236,8 +236,8 @@ mod tests {
             for d in [0.01, 0.1, 0.2] {
                 let [a, b] = [law.at(0.5 - d), law.at(0.5 + d)];
                 assert!((a[0] + b[0] - 2.0 * -0.3 - 1.7).abs() < 2e-15);
-                // 840 × 1.7 × 8 roundings of the time at most.
-                assert!((a[1] - b[1]).abs() < 1e-13 && (a[2] + b[2]).abs() < 1e-11);
+                // The next derivative, up to 1e2 and 1e3, times a few roundings of the time.
+                assert!((a[1] - b[1]).abs() < 1e-13 && (a[2] + b[2]).abs() < 1e-12);
             }
         }
     }

@@ -36,6 +36,12 @@ pub(crate) struct PointText<'a> {
     pub(crate) span: Span,
 }
 
+/// A point that a text names: its body, its index there, and where it is named.
+pub(crate) type NamedPoint = (BodyId, usize, Span);
+
+/// How two points are written.
+pub(crate) const TWO_POINTS: &str = "two points [\"body.point\", \"body.point\"]";
+
 /// All the bodies as read.
 #[derive(Debug, Default)]
 pub(crate) struct Bodies<'a> {
@@ -148,6 +154,26 @@ impl<'a> Bodies<'a> {
         };
         let id = self.find(body, at, problems)?;
         Some((id, self.point_of(id, point, at, problems)?))
+    }
+
+    /// The two points that a value names; `expected` says how they are written.
+    pub(crate) fn find_two_points(
+        &self,
+        value: &Value<'_>,
+        expected: &str,
+        what: Arguments<'_>,
+        problems: &mut Problems,
+    ) -> Option<[NamedPoint; 2]> {
+        let [(a, at_a), (b, at_b)] = two_strings(value, expected, what, problems)?;
+        let first = self.find_point(a, &at_a, problems);
+        let second = self.find_point(b, &at_b, problems);
+        let (first, second) = (first?, second?);
+        Some([(first.0, first.1, at_a), (second.0, second.1, at_b)])
+    }
+
+    /// Where a point is in its body's frame, m.
+    pub(crate) fn at(&self, point: &NamedPoint) -> Vec2 {
+        self.list[point.0.0].points[point.1].at
     }
 
     /// Index of the point of that name of a body.

@@ -237,9 +237,12 @@ impl<'a> Parts<'a> {
                     .map(|k| said(&m.start, k).unwrap_or(assembly.start[k]))
                     .collect(),
                 speed: actuators
+                    .clone()
                     .map(|k| said(&m.speed, k).unwrap_or(0.0))
                     .collect(),
+                laws: actuators.map(|_| None).collect(),
                 length: m.length.as_ref()?.0,
+                events: Vec::new(),
             })
         });
         let requests = Requests {
@@ -267,6 +270,7 @@ impl<'a> Parts<'a> {
             prescribed: self.prescribed.and_then(|p| p.prescribed),
             sweep: self.sweep.and_then(|s| s.sweep),
             loads: self.loads.into_iter().filter_map(|l| l.load).collect(),
+            drives: Vec::new(),
             requests,
             motion,
             calibration: self.calibration.map(|(c, _)| c),

@@ -1,8 +1,8 @@
 //! What can be measured on the mechanism, under names: the actuators' coordinates, and those of
 //! `[coordinates]`.
 
-use crate::bodies::Bodies;
-use crate::fields::{Entry, Fields, Value, coordinate, two_strings};
+use crate::bodies::{Bodies, TWO_POINTS};
+use crate::fields::{Entry, Fields, Value, coordinate};
 use crate::joints::Joints;
 use crate::keys;
 use crate::names::{check, shorten};
@@ -360,27 +360,19 @@ fn length(
 ) -> Option<([BodyId; 2], [dwell_geometry::Vec2; 2])> {
     let expected = match verb {
         "drives" => "a sliding joint, or two points [\"body.point\", \"body.point\"]",
-        _ => "two points [\"body.point\", \"body.point\"]",
+        _ => TWO_POINTS,
     };
-    let [(a, at_a), (b, at_b)] = two_strings(
-        entry.value,
-        expected,
-        format_args!("length of {what}"),
-        problems,
-    )?;
-    let first = bodies.find_point(a, &at_a, problems);
-    let second = bodies.find_point(b, &at_b, problems);
-    let (first, second) = (first?, second?);
+    let what_length = format_args!("length of {what}");
+    let [first, second] = bodies.find_two_points(entry.value, expected, what_length, problems)?;
     if first.0 == second.0 {
         let name = &bodies.list[first.0.0].name;
         problems.push(
             Problem::new(format!("{what} {verb} a length within body `{name}`"))
-                .at(at_a, "a point of this body")
-                .at(at_b, "and another of the same")
+                .at(first.2, "a point of this body")
+                .at(second.2, "and another of the same")
                 .help("a length that can change is between two different bodies"),
         );
         return None;
     }
-    let at = |(body, point): (BodyId, usize)| bodies.list[body.0].points[point].at;
-    Some(([first.0, second.0], [at(first), at(second)]))
+    Some(([first.0, second.0], [bodies.at(&first), bodies.at(&second)]))
 }

@@ -18,7 +18,7 @@ pub(crate) type Value<'a> = Spanned<DeValue<'a>>;
 const LARGEST: f64 = 1e60;
 
 /// Largest angle, rad: beyond it, less than ten digits of the position within a turn are left.
-const LARGEST_ANGLE: f64 = 1e6;
+pub const LARGEST_ANGLE: f64 = 1e6;
 
 /// How a point or a direction is written.
 pub(crate) const POINT: &str = "two numbers [x, y]";

@@ -85,10 +85,11 @@ mod value;
 mod tests;
 
 pub use error::SceneError;
+pub use fields::LARGEST_ANGLE;
 pub use place::Place;
 pub use problem::choices;
 pub use scene::{
-    Assembly, Calibration, DwellRequest, Length, Motion, NamedCoordinate, PathPoint, Prescribed,
-    Requests, Scene, Section, Sweep,
+    Assembly, Calibration, DwellRequest, EventTrigger, Length, Motion, NamedCoordinate, NamedEvent,
+    PathPoint, Prescribed, Requests, Scene, Section, Sweep,
 };
 pub use schema::schema;

@@ -1,11 +1,10 @@
 //! The loads: what acts on the mechanism from outside, where, and how strongly.
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, TWO_POINTS};
 use crate::coordinates::Measures;
 use crate::expression::expression;
 use crate::fields::{
-    Entry, Fields, POINT, Sign, angle, pair, quantity, rows, signed, string, two_strings,
-    unit_vector,
+    Entry, Fields, POINT, Sign, angle, pair, quantity, rows, signed, string, unit_vector,
 };
 use crate::keys::{self, LOADS};
 use crate::kind::kind;
@@ -33,13 +32,6 @@ pub(crate) struct LoadReader<'r> {
     units: &'r Units,
     /// The signals an expression can name, and their names.
     signals: Vec<(String, Option<Signal>)>,
-}
-
-/// A point of a body: where it is named, and in its body's frame.
-struct At {
-    body: BodyId,
-    point: Vec2,
-    span: Span,
 }
 
 impl<'r> LoadReader<'r> {
@@ -186,9 +178,10 @@ impl<'r> LoadReader<'r> {
         let what = &fields.what;
         let name = string(held.value, format_args!("force of {what}"), problems);
         let at = name.and_then(|name| {
-            let at = self.point(name, held.value.span(), problems)?;
-            self.moving(at.body, &at.span, what, problems)?;
-            Some(at)
+            let span = held.value.span();
+            let (body, k) = self.bodies.find_point(name, &span, problems)?;
+            self.moving(body, &span, what, problems)?;
+            Some((body, self.bodies.at(&(body, k, span))))
         });
         let help = "add `direction = [1, 0]`";
         let direction = fields.need("direction", &entry.key, help, problems);
@@ -198,10 +191,10 @@ impl<'r> LoadReader<'r> {
             None => Some(false),
             Some(e) => frame(e, what, problems),
         };
-        let at = at?;
+        let (body, point) = at?;
         Some(LoadKind::Force {
-            body: at.body,
-            point: at.point,
+            body,
+            point,
             direction: direction?,
             follows: follows?,
         })
@@ -235,30 +228,19 @@ impl<'r> LoadReader<'r> {
         None
     }
 
-    fn point(&self, name: &str, span: Span, problems: &mut Problems) -> Option<At> {
-        let (body, k) = self.bodies.find_point(name, &span, problems)?;
-        let point = self.bodies.list[body.0].points[k].at;
-        Some(At { body, point, span })
-    }
-
     fn two_points(
         &self,
         held: &Entry<'_>,
         fields: &Fields<'_>,
         problems: &mut Problems,
     ) -> Option<([BodyId; 2], [Vec2; 2])> {
-        let [(a, at_a), (b, at_b)] = two_strings(
-            held.value,
-            "two points [\"body.point\", \"body.point\"]",
-            format_args!("{} of {}", held.name, fields.what),
-            problems,
-        )?;
-        let first = self.point(a, at_a, problems);
-        let second = self.point(b, at_b, problems);
-        let (first, second) = (first?, second?);
-        let spans = [(first.body, first.span), (second.body, second.span)];
-        let bodies = self.different(spans, fields, problems)?;
-        Some((bodies, [first.point, second.point]))
+        let what = format_args!("{} of {}", held.name, fields.what);
+        let both = self
+            .bodies
+            .find_two_points(held.value, TWO_POINTS, what, problems)?;
+        let points = [&both[0], &both[1]].map(|end| self.bodies.at(end));
+        let bodies = self.different(both.map(|(body, _, at)| (body, at)), fields, problems)?;
+        Some((bodies, points))
     }
 
     fn two_bodies(

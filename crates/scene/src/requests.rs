@@ -215,6 +215,7 @@ fn variables_of(entry: &Entry<'_>, problems: &mut Problems) -> Vec<(String, Span
         .collect()
 }
 
+/// The links, each once.
 fn sections_of(
     entry: &Entry<'_>,
     bodies: &Bodies<'_>,
@@ -223,8 +224,16 @@ fn sections_of(
     let expected = "an array such as [{ body = \"rod\", from = \"B\", to = \"P\" }]";
     let what = format_args!("sections in [requests]");
     let values = array(entry.value, expected, what, problems);
-    let one = |value: &Value<'_>| Some((section_of(value, bodies, problems)?, value.span()));
-    values.into_iter().flatten().filter_map(one).collect()
+    let mut sections: Vec<(Section, Span)> = Vec::new();
+    for value in values.into_iter().flatten() {
+        let Some(section) = section_of(value, bodies, problems) else {
+            continue;
+        };
+        if sections.iter().all(|(known, _)| *known != section) {
+            sections.push((section, value.span()));
+        }
+    }
+    sections
 }
 
 fn section_of(value: &Value<'_>, bodies: &Bodies<'_>, problems: &mut Problems) -> Option<Section> {

@@ -4,6 +4,7 @@ use crate::error::SceneError;
 use crate::place::Places;
 use crate::units::Units;
 use crate::value::Number;
+use dwell_dynamics::Drive;
 use dwell_geometry::{ActuatorId, BodyId, Coordinate, Mechanism, Reaction, Vec2};
 use dwell_kinetostatics::{Load, Mass};
 use dwell_laws::Law;
@@ -34,10 +35,12 @@ pub struct Scene {
     pub assembly: Assembly,
     /// The prescribed motion.
     pub prescribed: Option<Prescribed>,
-    /// The positions of statics and kinematics.
+    /// The positions of kinematics, statics and kinetostatics without a prescribed motion.
     pub sweep: Option<Sweep>,
-    /// What acts on the mechanism from outside.
+    /// What acts on the mechanism from outside, and the friction in its joints.
     pub loads: Vec<Load>,
+    /// What drives it in a free motion.
+    pub drives: Vec<Drive>,
     /// What is asked for.
     pub requests: Requests,
     /// The free motion.
@@ -138,7 +141,7 @@ pub struct Sweep {
     pub held: Vec<f64>,
     /// How many positions, the ends among them: two or more.
     pub points: usize,
-    /// Speed of the swept actuator in kinematics, rad/s or m/s, above zero.
+    /// Speed of the swept actuator in kinematics and kinetostatics, rad/s or m/s, above zero.
     pub speed: f64,
 }
 
@@ -149,8 +152,36 @@ pub struct Motion {
     pub start: Vec<f64>,
     /// Speed of each actuator at the start, rad/s or m/s.
     pub speed: Vec<f64>,
+    /// By actuator: the law it follows; none where it is free.
+    pub laws: Vec<Option<Law>>,
     /// How long it lasts.
     pub length: Length,
+    /// What is looked for on the way.
+    pub events: Vec<NamedEvent>,
+}
+
+/// An event of a free motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedEvent {
+    /// The name.
+    pub name: String,
+    /// What makes it.
+    pub trigger: EventTrigger,
+    /// Whether the motion ends with it.
+    pub stop: bool,
+}
+
+/// What makes an event.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum EventTrigger {
+    /// A coordinate passes a value, rad or m.
+    Reaches(Coordinate, f64),
+    /// The speed of a coordinate changes its sign.
+    Turns(Coordinate),
+    /// A reaction passes a value, N or N·m.
+    Reaction(Reaction, f64),
+    /// A coordinate completes a whole turn from where it started.
+    WholeTurn(Coordinate),
 }
 
 /// How long a motion lasts. Above zero.
@@ -180,6 +211,17 @@ impl Scene {
         match actuator {
             Some(a) => Some(a.coordinate()),
             None => named().map(|c| c.coordinate),
+        }
+    }
+
+    /// The name of a coordinate: an actuator's, or one of `[coordinates]`; empty if it has none.
+    pub fn name_of(&self, coordinate: Coordinate) -> String {
+        let actuators = &self.mechanism.actuators;
+        let actuator = actuators.iter().find(|a| a.coordinate() == coordinate);
+        let named = || self.coordinates.iter().find(|c| c.coordinate == coordinate);
+        match actuator {
+            Some(a) => a.name.clone(),
+            None => named().map(|c| c.name.clone()).unwrap_or_default(),
         }
     }
 

@@ -203,13 +203,14 @@ fn period_of(scene: &Scene) -> Result<f64, StudyError> {
 /// `dwell calibrate`, with the path and the period of the scene's `[calibration]` where none is given.
 ///
 /// # Errors
-/// As [`find_value`]; and when neither the caller nor the scene says what is wanted.
+/// As [`find_value`]; when neither the caller nor the scene says what is wanted; when a length is
+/// driven or there are loads, which a free motion does not know.
 pub fn calibrate(
     scene: &Scene,
     path: Option<&str>,
     period: Option<f64>,
 ) -> Result<Outcome, StudyError> {
-    Prepared::new(scene)?;
+    Prepared::for_angle(scene, true)?;
     let wanted = scene.calibration.as_ref();
     let path = path.or(wanted.map(|c| c.path.as_str()));
     let period = period.or(wanted.map(|c| c.period));

@@ -9,11 +9,11 @@ use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::fmt::Write as _;
 
-/// Describes a scene: degrees of freedom, groups, branches, range, what is left out and why, and
+/// Describes a scene: degrees of freedom, groups, branches, range, what is modelled and why, and
 /// the requests. It writes no file.
 ///
 /// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be put together.
+/// [`StudyError::Scene`] when the mechanism cannot be put together, or a requested column does not exist.
 pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
     let mechanism = &scene.mechanism;
     let start = Start {
@@ -21,6 +21,7 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
         rough: scene.assembly.rough.clone(),
     };
     let model = crate::run::model(scene)?;
+    crate::run::check_variables(scene, &model)?;
     let plan = model.plan();
     let mut text = format!("{}\n", scene.title);
     // Writing to a string cannot fail.
@@ -36,7 +37,7 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
     range(mechanism, plan, &mut text);
     groups(mechanism, plan, &mut text);
     branch(mechanism, plan, &mut text);
-    left_out(scene, &model, &mut text);
+    modelled(scene, &model, &mut text);
     requests(scene, &mut text);
     if let Some(note) = &scene.note {
         let _ = writeln!(text, "  note: {note}");
@@ -120,13 +121,14 @@ fn range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
             "  {name} turns on and on; the mechanism does not come back after a few turns"
         ),
         Range::Endless => writeln!(text, "  no end of {name} was found"),
-        Range::Followed(from, to) => writeln!(
-            text,
-            "  {name} {verb} {}; no end was met, it is followed no farther",
-            both(from, to)
-        ),
-        Range::Between(from, to) | Range::Stroke(from, to) => {
-            writeln!(text, "  {name} {verb} {}", both(from, to))
+        Range::Between(from, to) | Range::Stroke(from, to) | Range::Followed(from, to) => {
+            let open = match plan.ends() {
+                [Some(_), Some(_)] => "",
+                [Some(_), None] => "; no upper end was met, it is followed no farther",
+                [None, Some(_)] => "; no lower end was met, it is followed no farther",
+                [None, None] => "; no end was met, it is followed no farther",
+            };
+            writeln!(text, "  {name} {verb} {}{open}", both(from, to))
         }
     };
     for end in plan.ends().into_iter().flatten() {
@@ -233,28 +235,57 @@ fn branch(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
     }
 }
 
-/// What a study of forces leaves out: groups that no inertia, load or request needs.
-fn left_out(scene: &Scene, model: &Model, text: &mut String) {
+/// Which groups the runs along a way model and for what, and which they and the reduced model skip.
+fn modelled(scene: &Scene, model: &Model, text: &mut String) {
     let mechanism = &scene.mechanism;
     let plan = model.plan();
-    let mut wanted: Vec<BodyId> = scene.requests.paths.iter().map(|p| p.body).collect();
-    wanted.extend(scene.requests.dwell.iter().map(|d| d.body));
-    wanted.extend(scene.requests.sections.iter().map(|s| s.body));
-    for variable in scene.requests.variables.iter().flatten() {
-        let name = variable.split('.').next();
-        let body = mechanism
-            .bodies
-            .iter()
-            .position(|b| Some(b.name.as_str()) == name);
-        wanted.extend(body.map(BodyId));
+    let group = |g: usize| match bodies(mechanism, &plan.group_bodies(g)) {
+        none if none.is_empty() => format!("{}. a line", g + 1),
+        named => format!("{}. {named}", g + 1),
+    };
+    let count = plan.group_kinds().len();
+    match crate::run::wanted(scene, model) {
+        _ if count == 0 => {}
+        None => {
+            let _ = writeln!(
+                text,
+                "  modelled along a way: every group, since no `variables` are requested"
+            );
+        }
+        Some(requested) => {
+            let massive = scene.masses.iter().enumerate();
+            let massive = massive.filter(|(_, m)| m.mass > 0.0 || m.inertia > 0.0);
+            let loaded = scene.loads.iter().flat_map(|load| load.bodies(mechanism));
+            let needs = [
+                ("inertia", plan.needed_for(massive.map(|(b, _)| b))),
+                ("loads", plan.needed_for(loaded.map(|b| b.0))),
+                ("requests", plan.needed_for(requested.iter().map(|b| b.0))),
+            ];
+            let _ = writeln!(text, "  modelled along a way, and for what:");
+            for g in 0..count {
+                let needs = needs.iter().filter(|(_, needed)| needed[g]);
+                let needs = list(needs.map(|(what, _)| *what));
+                let why = match needs.is_empty() {
+                    true => "skipped, no inertia, load or request needs it",
+                    false => &needs,
+                };
+                let _ = writeln!(text, "    {}: {why}", group(g));
+            }
+        }
     }
-    let needed = model.needed(mechanism, &wanted);
-    for (g, _) in needed.iter().enumerate().filter(|(_, needed)| !**needed) {
-        let _ = writeln!(
-            text,
-            "  left out: {}, which have no inertia, bear no load and are not requested",
-            bodies(mechanism, &plan.group_bodies(g))
-        );
+    if plan.actuators() == 1 {
+        let reacting = crate::prepare::reacting(scene);
+        let bare = Model::clone(model).with_loads(mechanism, Vec::new());
+        let skipped = bare.map(|bare| bare.only_for(mechanism, &reacting).plan().skipped());
+        let skipped = skipped.unwrap_or_default().into_iter().enumerate();
+        let skipped: Vec<String> = skipped.filter(|s| s.1).map(|(g, _)| group(g)).collect();
+        if !skipped.is_empty() {
+            let _ = writeln!(
+                text,
+                "  skipped by `reduce` and `simulate`, which no inertia or requested reaction needs: {}",
+                skipped.join("; ")
+            );
+        }
     }
     let massless: Vec<_> = plan
         .carried()

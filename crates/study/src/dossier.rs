@@ -318,14 +318,17 @@ pub(crate) fn document(
             rows: motion.rungs.iter().map(row).collect(),
         });
     }
+    illustrated(scene, pages, blocks)
+}
+
+/// A document of these blocks with the pictures behind them.
+pub(crate) fn illustrated(scene: &Scene, pages: &[Figure], mut blocks: Vec<Block>) -> Document {
     blocks.push(Block::Heading("Pictures".to_owned()));
-    for page in pages {
-        blocks.push(Block::Figure {
-            file: format!("{}/{}.png", scene.name, page.name),
-            alt: page.title.clone(),
-            caption: page.caption.clone(),
-        });
-    }
+    blocks.extend(pages.iter().map(|page| Block::Figure {
+        file: format!("{}/{}.png", scene.name, page.name),
+        alt: page.title.clone(),
+        caption: page.caption.clone(),
+    }));
     Document {
         title: scene.title.clone(),
         blocks,

@@ -1,5 +1,6 @@
 //! Errors of a study, each pointing into the scene file where one of its lines is to blame.
 
+use crate::run::broken_relation;
 use crate::words::{count, number};
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, Mechanism, StructureError};
 use dwell_kinetostatics::ModelError;
@@ -48,6 +49,24 @@ fn body_labels(bodies: &[BodyId], words: &str) -> Labels {
     bodies.iter().take(8).map(label).collect()
 }
 
+/// Where the scene says in which position it is put together.
+fn start_labels(scene: &Scene) -> Labels {
+    let written = |&a: &ActuatorId| {
+        // What is not written stands where the motion's start does.
+        scene.span(Place::Start(a)) != scene.span(Place::MotionStart(a))
+    };
+    let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
+    let mut labels: Labels = actuators
+        .filter(written)
+        .take(8)
+        .map(|a| (Place::Start(a), "at this start".to_owned()))
+        .collect();
+    if labels.is_empty() {
+        labels.push((Place::Assembly, "at this start".to_owned()));
+    }
+    labels
+}
+
 pub(crate) fn joint_labels(joints: &[JointId], words: &str) -> Labels {
     let label = |&j: &JointId| (Place::Joint(j), words.to_owned());
     joints.iter().take(8).map(label).collect()
@@ -61,12 +80,40 @@ pub(crate) fn names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
     list.join(", ")
 }
 
+/// The same; what no body of the scene does, the mechanism does.
+pub(crate) fn names_or_whole(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
+    match bodies {
+        [] => "the mechanism".to_owned(),
+        bodies => names(mechanism, bodies),
+    }
+}
+
 fn joint_names(mechanism: &Mechanism, joints: &[JointId]) -> String {
     let list: Vec<_> = joints
         .iter()
         .map(|j| format!("`{}`", mechanism.joints[j.0].name))
         .collect();
     list.join(", ")
+}
+
+/// The error of a relation's function that is not finite: `what` of it at the joint's variable `x`.
+pub(crate) fn broken(
+    scene: &Scene,
+    (joint, x, what): (JointId, f64, &str),
+    place: &str,
+) -> StudyError {
+    let label = format!("no finite {what} at x = {}", number(x));
+    scene
+        .error(
+            format!(
+                "the function of relation `{}` has no finite {what} at x = {}, {place}",
+                scene.mechanism.joints[joint.0].name,
+                number(x)
+            ),
+            Some("a relation needs its value and two derivatives everywhere".to_owned()),
+            &[(Place::Law(joint), label)],
+        )
+        .into()
 }
 
 /// Explains why no model could be made of a scene.
@@ -81,6 +128,12 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
         }
     };
     let mechanism = &scene.mechanism;
+    let start = &scene.assembly.start;
+    if !matches!(assembly, AssemblyError::Structure(_))
+        && let Some(relation) = broken_relation(mechanism, start)
+    {
+        return broken(scene, relation, "where the mechanism starts");
+    }
     match assembly {
         AssemblyError::Structure(error) => explain_structure(scene, error),
         AssemblyError::CannotClose {
@@ -89,8 +142,8 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
             gap,
         } => {
             let mut labels = joint_labels(joints, "cannot be joined");
-            labels.push((Place::Assembly, "at this start".to_owned()));
-            let names = names(mechanism, bodies);
+            labels.extend(start_labels(scene));
+            let names = names_or_whole(mechanism, bodies);
             if *gap <= BARELY * size(scene) {
                 return scene
                     .error(
@@ -128,17 +181,30 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
                 all.join(", ")
             };
             let ways: Vec<_> = choices.iter().take(6).map(way).collect();
+            let (labels, help) = if bodies.is_empty() {
+                (
+                    start_labels(scene),
+                    "they differ in where a body slides, which no rough angle tells: drive the slide \
+                     itself, or another joint"
+                        .to_owned(),
+                )
+            } else {
+                (
+                    body_labels(bodies, "its angle is open"),
+                    format!(
+                        "give a rough angle of one of them in [assembly]; the ways are: {}",
+                        ways.join("; or ")
+                    ),
+                )
+            };
             scene.error(
                 format!(
                     "{} can be assembled in {} ways, and nothing says which is meant",
-                    names(mechanism, bodies),
+                    names_or_whole(mechanism, bodies),
                     choices.len()
                 ),
-                Some(format!(
-                    "give a rough angle of one of them in [assembly]; the ways are: {}",
-                    ways.join("; or ")
-                )),
-                &body_labels(bodies, "its angle is open"),
+                Some(help),
+                &labels,
             )
         }
         AssemblyError::NotMeshing {
@@ -177,7 +243,7 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
         ),
         AssemblyError::SingularStart { bodies, joints } => {
             let mut labels = joint_labels(joints, "in line with the others");
-            labels.push((Place::Assembly, "at this start".to_owned()));
+            labels.extend(start_labels(scene));
             scene.error(
                 format!(
                     "the start is a limit position: the actuator does not determine the motion of {}",

@@ -1,6 +1,6 @@
 //! The report of a case that is judged in states alone: with loads, or several actuators.
 
-use crate::dossier::{rounded_to, verdicts};
+use crate::dossier::{illustrated, rounded_to, verdicts};
 use crate::error::StudyError;
 use crate::figures;
 use crate::outcome::{Outcome, Progress, Step};
@@ -123,7 +123,8 @@ fn snapshot(scene: &Scene, judged: &Judged) -> String {
             let tau = rounded_to(*tau, if angle { moments } else { forces });
             let _ = writeln!(text, "    {} = {q:.7}  action = {tau}", actuator.name);
         }
-        for &wanted in &scene.requests.reactions {
+        let told = scene.requests.reactions.iter();
+        for &wanted in told.filter(|r| !judged.shared.contains(r)) {
             let Some(k) = reactions.iter().position(|&r| r == wanted) else {
                 continue;
             };
@@ -170,16 +171,5 @@ fn document(
     }
     blocks.push(Block::Heading("Findings".to_owned()));
     blocks.push(Block::Findings(judged.findings.clone()));
-    blocks.push(Block::Heading("Pictures".to_owned()));
-    for page in pages {
-        blocks.push(Block::Figure {
-            file: format!("{}/{}.png", scene.name, page.name),
-            alt: page.title.clone(),
-            caption: page.caption.clone(),
-        });
-    }
-    Document {
-        title: scene.title.clone(),
-        blocks,
-    }
+    illustrated(scene, pages, blocks)
 }

@@ -2,9 +2,10 @@
 
 use crate::error::{StudyError, explain_model, not_one_actuator};
 use dwell_dynamics::State;
-use dwell_geometry::{ActuatorId, Reaction, Start};
+use dwell_geometry::{ActuatorId, BodyId, Plan, Reaction, Start};
 use dwell_kinetostatics::{Exact, Model, Reduced};
 use dwell_scene::{Place, Scene};
+use std::collections::HashSet;
 use std::f64::consts::TAU;
 
 /// A scene and the reduced model of what it requests.
@@ -12,19 +13,47 @@ use std::f64::consts::TAU;
 pub struct Prepared<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// The model, with the requested reactions in the order of the scene.
+    /// The model, with the requested reactions that the loads determine in the order of the scene.
     pub model: Exact,
 }
 
-/// A reduced model of a scene for some reactions.
-pub(crate) fn model(scene: &Scene, reactions: &[Reaction]) -> Result<Exact, StudyError> {
+/// A model of a scene for some reactions.
+fn compiled(scene: &Scene, reactions: &[Reaction]) -> Result<Model, StudyError> {
     let start = Start {
         q: scene.assembly.start.clone(),
         rough: scene.assembly.rough.clone(),
     };
-    let model = Model::new(&scene.mechanism, &scene.masses, &start, reactions)
-        .map_err(|e| explain_model(scene, &e))?;
-    Exact::new(model).ok_or_else(|| not_one_actuator(scene))
+    Model::new(&scene.mechanism, &scene.masses, &start, reactions)
+        .map_err(|e| explain_model(scene, &e))
+}
+
+/// A reduced model of a scene for some reactions.
+pub(crate) fn model(scene: &Scene, reactions: &[Reaction]) -> Result<Exact, StudyError> {
+    Exact::new(compiled(scene, reactions)?).ok_or_else(|| not_one_actuator(scene))
+}
+
+/// The requested reactions that the loads do not determine: no result of any command.
+pub(crate) fn shared(scene: &Scene, plan: &Plan) -> HashSet<Reaction> {
+    let all = scene.mechanism.reactions().into_iter().enumerate();
+    all.filter(|&(k, _)| !plan.is_unique(k))
+        .map(|(_, reaction)| reaction)
+        .filter(|reaction| scene.requests.reactions.contains(reaction))
+        .collect()
+}
+
+/// A model of a scene for the requested reactions that the loads determine.
+fn determined(scene: &Scene) -> Result<Model, StudyError> {
+    let requested = &scene.requests.reactions;
+    let model = compiled(scene, requested)?;
+    let shared = shared(scene, model.plan());
+    if shared.is_empty() {
+        return Ok(model);
+    }
+    let mut left = requested.clone();
+    left.retain(|reaction| !shared.contains(reaction));
+    model
+        .for_reactions(&scene.mechanism, &left)
+        .map_err(|e| explain_model(scene, &e))
 }
 
 impl<'a> Prepared<'a> {
@@ -34,17 +63,24 @@ impl<'a> Prepared<'a> {
     /// [`StudyError::Scene`] when the mechanism cannot be put together or does not have one
     /// degree of freedom.
     pub fn new(scene: &'a Scene) -> Result<Self, StudyError> {
-        let model = model(scene, &scene.requests.reactions)?;
+        Self::of(scene, determined(scene)?)
+    }
+
+    fn of(scene: &'a Scene, model: Model) -> Result<Self, StudyError> {
+        let model = Exact::new(model).ok_or_else(|| not_one_actuator(scene))?;
         Ok(Self { scene, model })
     }
 
-    /// Compiles what a scene requests, for those who show an angle and know no loads.
+    /// Compiles what a scene requests, and no group that neither inertia nor a requested reaction
+    /// needs, for those who show an angle and know no loads.
     ///
     /// # Errors
     /// As [`Prepared::new`]; where a length is driven, or (for a motion, which they would change)
     /// where there are loads.
     pub(crate) fn for_angle(scene: &'a Scene, motion: bool) -> Result<Self, StudyError> {
-        let prepared = Self::new(scene)?;
+        let model = determined(scene)?;
+        let lean = model.only_for(&scene.mechanism, &reacting(scene));
+        let prepared = Self::of(scene, lean)?;
         let label = |place, word: &str| [(place, word.to_owned())];
         if !prepared.model.model().plan().is_angle(0) {
             return Err(scene
@@ -74,11 +110,20 @@ impl<'a> Prepared<'a> {
         &self.scene.mechanism.actuators[0].name
     }
 
-    /// Names and units (of a force or a moment) of the requested reactions.
+    /// Names and units (of a force or a moment) of the reactions of the model.
     pub fn reactions(&self) -> Vec<(String, &'static str)> {
         let mechanism = &self.scene.mechanism;
         let named = |&r: &Reaction| (mechanism.reaction_name(r), r.component.unit());
-        self.scene.requests.reactions.iter().map(named).collect()
+        let reactions = self.model.model().reactions();
+        reactions.iter().map(named).collect()
+    }
+
+    /// What a summary says of the requested reactions that are in no table.
+    pub(crate) fn told_shared(&self) -> String {
+        let shared = shared(self.scene, self.model.model().plan());
+        let asked = self.scene.requests.reactions.iter();
+        let names = asked.filter(|r| shared.contains(r));
+        not_in_a_table(names.map(|&r| self.scene.mechanism.reaction_name(r)))
     }
 
     /// Where the free motion starts, if the scene has one.
@@ -104,4 +149,23 @@ impl<'a> Prepared<'a> {
         let at = |i: usize| from + (to - from) * i as f64 / count as f64;
         (0..=count).map(at).collect()
     }
+}
+
+/// The bodies of the joints whose reactions are requested.
+pub(crate) fn reacting(scene: &Scene) -> Vec<BodyId> {
+    let joints = scene.requests.reactions.iter();
+    let joints = joints.map(|r| &scene.mechanism.joints[r.joint.0]);
+    joints.flat_map(|joint| joint.bodies).collect()
+}
+
+/// The line of a summary that names the reactions which the loads do not determine.
+pub(crate) fn not_in_a_table(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "  in no table, because constraints that repeat each other share them: {}\n",
+        names.join(", ")
+    )
 }

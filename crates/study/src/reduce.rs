@@ -77,7 +77,8 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
     let prepared = Prepared::for_angle(scene, false)?;
     let sweep = Sweep::new(&prepared)?;
     let mut figures: Vec<Figure> = vec![figures::reduced(&prepared, &sweep)];
-    figures.extend(figures::coefficients(&prepared, &sweep));
+    let (coefficients, note) = figures::coefficients(&prepared, &sweep);
+    figures.extend(coefficients);
     let mut outcome = Outcome::default();
     let table = format!("{}-reduced.csv", scene.name);
     outcome.files.add(table, sweep.table(&prepared).csv()?);
@@ -100,9 +101,13 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
         digits(h0, 9),
         digits(h1, 9),
     );
+    if let Some(note) = note {
+        outcome.summary += &format!("  {note}\n");
+    }
     if m1 == 0.0 {
         outcome.summary +=
             "  no body with mass moves: no motion follows from this, and every reaction is zero\n";
     }
+    outcome.summary += &prepared.told_shared();
     Ok(outcome)
 }

@@ -194,5 +194,6 @@ pub fn simulate(scene: &Scene, accuracy: &Accuracy) -> Result<Outcome, StudyErro
         "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations\n",
         work.steps, work.rejected, work.evaluations, work.jacobians, work.factorisations,
     );
+    outcome.summary += &prepared.told_shared();
     Ok(outcome)
 }

@@ -3,10 +3,13 @@
 
 use crate::claims::{Ask, Claims};
 use crate::error::StudyError;
+use crate::prepare::shared;
 use crate::reference::Reference;
 use dwell_findings::Finding;
+use dwell_geometry::Reaction;
 use dwell_scene::{Prescribed, Scene};
 use dwell_verify::{State, judge_states};
+use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
@@ -29,6 +32,8 @@ pub struct Judged {
     pub motion: &'static str,
     /// The frames of all bodies along it, close to each other.
     pub frames: Vec<Vec<[f64; 3]>>,
+    /// The requested reactions that the loads do not determine: claimed, but no result.
+    pub shared: HashSet<Reaction>,
     /// The truths of states, then the reference.
     pub findings: Vec<Finding>,
 }
@@ -81,6 +86,7 @@ pub(crate) fn judge(scene: &Scene, reference: &Reference) -> Result<Judged, Stud
         drawn,
         motion,
         frames,
+        shared: shared(scene, claims.model().plan()),
         findings,
     })
 }

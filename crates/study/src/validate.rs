@@ -203,7 +203,8 @@ fn two_turns(length: Length) -> Length {
 
 fn pages(prepared: &Prepared<'_>, drawing: Figure, evidence: &Evidence) -> Vec<Figure> {
     let mut pages = vec![drawing, figures::reduced(prepared, &evidence.sweep)];
-    pages.extend(figures::coefficients(prepared, &evidence.sweep));
+    // What is left out, the caption of the last one says.
+    pages.extend(figures::coefficients(prepared, &evidence.sweep).0);
     if let Some(history) = &evidence.history {
         pages.push(figures::history(prepared, history, &Accuracy::default()));
     }

@@ -14,8 +14,9 @@
 //! ```
 //!
 //! [`verify_all`] does all of it, for one degree of freedom. [`judge_states`] holds kinetostatic
-//! states of any number of actuators, under loads, against the equations of motion, and [`rank`]
-//! says what the rows of a mechanism leave free and what they say twice.
+//! states of any number of actuators, under loads, against the equations of motion, [`judge_motion`]
+//! a free motion against the full multibody equations ([`Unreduced`]), and [`rank`] says what the
+//! rows of a mechanism leave free and what they say twice.
 //!
 //! Source: L. Jordi, E. Zayas, S. Cardona, *Reduced parameters for the dynamic study of a system
 //! of one degree of freedom*, TMT 2008; cited as (Jordi, Zayas & Cardona 2008, eq. n).
@@ -38,6 +39,7 @@ mod solve;
 mod state;
 mod subject;
 pub mod truths;
+mod unreduced;
 
 pub use all::verify_all;
 pub use bench::{Bench, Scales, Site};
@@ -52,3 +54,4 @@ pub use loads::load_acts;
 pub use rank::{Rank, Ranks, rank};
 pub use state::{BodyAct, State, judge_states};
 pub use subject::{Actions, Coefficients, Subject, SubjectError};
+pub use unreduced::{MotionSample, Unreduced, UnreducedError, judge_motion};

@@ -2,13 +2,13 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]
 
-mod common;
+mod subjects;
 
-use common::faulty::Faulty;
-use common::mechanisms::{Setup, crank_rocker, inverted_slider_crank, single_dwell};
-use common::subject::{DenseSubject, Fault};
 use dwell_geometry::Mechanism;
 use dwell_verify::{Case, Coefficients, Subject, SubjectError, verify_all};
+use subjects::dense::{DenseSubject, Fault};
+use subjects::faulty::Faulty;
+use subjects::mechanisms::{Setup, crank_rocker, inverted_slider_crank, single_dwell};
 
 /// Keys of the findings that fail, in order.
 fn failing(case: &Case<'_>, subject: &dyn Subject) -> Vec<String> {

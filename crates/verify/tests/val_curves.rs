@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]
 
-mod common;
+mod subjects;
 
-use common::mechanisms::{inverted_slider_crank, single_dwell};
 use dwell_verify::{Bench, ErrorCurve, half_dm_curve, reaction_curve};
+use subjects::mechanisms::{inverted_slider_crank, single_dwell};
 
 fn lowest(curve: &[(f64, f64)]) -> (f64, f64) {
     let lower = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);

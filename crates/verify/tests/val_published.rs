@@ -5,13 +5,13 @@
     reason = "published digits stay as published"
 )]
 
-mod common;
+mod subjects;
 
-use common::faulty::Faulty;
-use common::mechanisms::{Setup, crank_rocker, single_dwell};
 use dwell_geometry::{BodyId, vec2};
 use dwell_verify::truths::{Point, Sample, published};
 use dwell_verify::{Subject, verify_all};
+use subjects::faulty::Faulty;
+use subjects::mechanisms::{Setup, crank_rocker, single_dwell};
 
 /// Every reaction of the crank-rocker in its order: (q in degrees, m, ½m′, [a, b] of A.x … D.y).
 /// Source: independent 40-digit code, confirmed by a second one.

@@ -3,15 +3,15 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]
 
-mod common;
+mod subjects;
 
-use common::mechanisms::{
-    Setup, crank_rocker, crank_rocker_of, flywheel, inverted_slider_crank, pendulum,
-    relative_drive, single_dwell,
-};
 use dwell_geometry::{Vec2, vec2};
 use dwell_verify::{Finding, Subject, verify_all};
 use std::f64::consts::TAU;
+use subjects::mechanisms::{
+    Setup, crank_rocker, crank_rocker_of, flywheel, inverted_slider_crank, pendulum,
+    relative_drive, single_dwell,
+};
 
 fn judge(title: &str, setup: &Setup) -> Vec<Finding> {
     judge_with(title, setup, 24, &setup.subject())

@@ -251,6 +251,10 @@ fn calibrations() {
         "1",
     ];
     group.refused("at rest", &arguments);
+    // A free motion knows no loads: a value fitted without them would be another one.
+    let weight = "[loads]\nweight = { gravity = [0, -9.81] }\n[motion]";
+    group.bench.put("scene.toml", with(&[("[motion]", weight)]));
+    group.refused("under its weight", &arguments);
     group.check("calibrations");
 }
 

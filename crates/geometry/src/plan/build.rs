@@ -2,7 +2,7 @@
 
 use super::{Plan, Start};
 use crate::error::{AssemblyError, StructureError};
-use crate::mechanism::{ActuatorId, Coordinate, Drive, JointId, JointKind, Mechanism};
+use crate::mechanism::{ActuatorId, BodyId, Coordinate, Drive, JointId, JointKind, Mechanism};
 use crate::mobility::{Mobility, mobility};
 use crate::plan::Pose;
 use crate::plane::{Vec2, vec2};
@@ -23,8 +23,25 @@ impl Plan {
     /// [`AssemblyError`] when the structure is not driven by its actuators, the bodies do not
     /// reach each other, or the branch is not told.
     pub fn compile(mechanism: &Mechanism, start: &Start) -> Result<Self, AssemblyError> {
+        Self::compile_counting(mechanism, start, &[])
+    }
+
+    /// [`Plan::compile`], with the whole turns of these bodies counted from their rough angles, as
+    /// where a relation needs them: for loads that feel an angle.
+    ///
+    /// # Errors
+    /// As [`Plan::compile`].
+    pub fn compile_counting(
+        mechanism: &Mechanism,
+        start: &Start,
+        felt: &[BodyId],
+    ) -> Result<Self, AssemblyError> {
         check(mechanism, start)?;
-        let error = match Self::assembled(mechanism, start, false) {
+        if felt.iter().any(|b| b.0 >= mechanism.bodies.len()) {
+            let what = "a body that is not there";
+            return Err(StructureError::Malformed { what }.into());
+        }
+        let error = match Self::assembled(mechanism, start, felt, false) {
             Ok(mut plan) => {
                 if !plan.frames.spare.is_empty() {
                     plan.note_unique(mechanism, mobility(mechanism, start).as_ref());
@@ -40,7 +57,7 @@ impl Plan {
             ) | AssemblyError::SingularStart { .. }
         );
         match mobility(mechanism, start).filter(|_| by_rank) {
-            Some(found) => Self::despite(mechanism, start, &found, error),
+            Some(found) => Self::despite(mechanism, start, felt, &found, error),
             None => Err(error),
         }
     }
@@ -50,6 +67,7 @@ impl Plan {
     fn despite(
         mechanism: &Mechanism,
         start: &Start,
+        felt: &[BodyId],
         found: &Mobility,
         error: AssemblyError,
     ) -> Result<Self, AssemblyError> {
@@ -109,7 +127,7 @@ impl Plan {
         if !over || found.excess == 0 {
             return Err(error);
         }
-        let mut plan = Self::assembled(mechanism, start, true)?;
+        let mut plan = Self::assembled(mechanism, start, felt, true)?;
         plan.note_unique(mechanism, Some(found));
         Ok(plan)
     }
@@ -163,9 +181,10 @@ impl Plan {
     fn assembled(
         mechanism: &Mechanism,
         start: &Start,
+        felt: &[BodyId],
         repeated: bool,
     ) -> Result<Self, AssemblyError> {
-        let mut plan = Self::structure(mechanism, repeated)?;
+        let mut plan = Self::structure(mechanism, felt, repeated)?;
         plan.start.clone_from(&start.q);
         let pose = plan.assemble(&start.rough)?;
         plan.check_meshing(mechanism, &pose)?;

@@ -6,7 +6,7 @@ use crate::error::StructureError;
 use crate::frames::{Frame, Frames, Turning};
 use crate::groups::{self, Group, Parts, Unknown};
 use crate::lower::{self, Lowered};
-use crate::mechanism::{Drive, Mechanism};
+use crate::mechanism::{BodyId, Drive, Mechanism};
 use crate::plane::Vec2;
 use crate::range::Range;
 use crate::relation::Row;
@@ -16,7 +16,11 @@ use std::collections::HashMap;
 
 impl Plan {
     /// The structure alone: branches and seeds still to be found.
-    pub(super) fn structure(mechanism: &Mechanism, repeated: bool) -> Result<Self, StructureError> {
+    pub(super) fn structure(
+        mechanism: &Mechanism,
+        felt: &[BodyId],
+        repeated: bool,
+    ) -> Result<Self, StructureError> {
         let lowered = Lowered::new(mechanism);
         let frames = Frames::find(&lowered)?;
         let tree = Tree::find(&lowered, &frames)?;
@@ -43,7 +47,7 @@ impl Plan {
             }
         }
         let beside = beside(&lowered, &frames);
-        let counted = counted(&frames, &relations, &beside);
+        let counted = counted(&frames, &relations, &beside, felt);
         let all_driven = all_driven(&frames, &class_roots, &counted);
         let mut table = ArmTable::new(&frames, &class_roots, &groups, &all_driven);
         let closures: Vec<Closure> = loops.iter().map(|l| table.closure(l)).collect();
@@ -362,9 +366,19 @@ fn driven_slides(lowered: &Lowered, tree: &Tree) -> Vec<Option<usize>> {
     driven
 }
 
-/// By frame: whether it belongs to a class that a relation names.
-fn counted(frames: &Frames, relations: &[Row], beside: &HashMap<usize, (usize, f64)>) -> Vec<bool> {
+/// By frame: whether it belongs to a class that a relation names, or that turns one of the bodies
+/// whose angle is felt. What turns with the ground's class is known from the actuators already.
+fn counted(
+    frames: &Frames,
+    relations: &[Row],
+    beside: &HashMap<usize, (usize, f64)>,
+    felt: &[BodyId],
+) -> Vec<bool> {
     let mut classes = vec![false; frames.classes];
+    for body in felt {
+        let class = frames.frames[frames.attitudes[body.0].frame].class;
+        classes[class] |= class != 0;
+    }
     let named = relations.iter().flat_map(Row::frames);
     for frame in named.chain(beside.values().map(|(carrier, _)| *carrier)) {
         classes[frames.frames[frame].class] = true;

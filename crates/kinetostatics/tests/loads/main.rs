@@ -7,3 +7,4 @@ mod scenes;
 mod sections;
 mod shapes;
 mod statics;
+mod turns;

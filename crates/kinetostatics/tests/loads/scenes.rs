@@ -7,21 +7,7 @@ use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::Scene;
 use std::path::Path;
 
-/// A Scotch yoke: a prismatic joint carries a body, and bodies turn with the ground.
-const YOKE: &str = r#"
-    [bodies]
-    ground.points = { A = [0, 0], G = [0.3, 0] }
-    crank.points = { A = [0, 0], B = [0.1, 0] }
-    block = { points = { B = [0, 0] }, mass = 0.4, center = [0.01, 0.02], inertia = 2e-4 }
-    yoke = { points = { R = [0, 0] }, mass = 1.3, center = [0.05, 0.03], inertia = 4e-3 }
-    [joints]
-    A = { revolute = ["ground.A", "crank.A"] }
-    B = { revolute = ["crank.B", "block.B"] }
-    slot = { prismatic = ["yoke.R", "block.B"], axis = [0.6, 0.8] }
-    guide = { prismatic = ["ground.G", "yoke.R"], axis = [1, 0] }
-    [actuators]
-    phi = { angle = ["ground", "crank"] }
-"#;
+const YOKE: &str = include_str!("yoke.toml");
 
 /// Two degrees of freedom: a five-bar, its second actuator between two moving bodies.
 const FIVE_BAR: &str = r#"

@@ -4,8 +4,7 @@ use proptest::prelude::*;
 
 use super::Expression;
 use super::function::Function;
-
-const NAMES: [&str; 5] = ["x", "y", "phi.speed", "my-body.angle", "omega"];
+use super::tests::NAMES;
 
 /// Any expression of the language, as text.
 fn any_text() -> impl Strategy<Value = String> {

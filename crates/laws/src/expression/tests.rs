@@ -2,7 +2,7 @@ use std::f64::consts::{E, PI, TAU};
 
 use super::*;
 
-const NAMES: [&str; 5] = ["x", "y", "phi.speed", "my-body.angle", "omega"];
+pub(super) const NAMES: [&str; 5] = ["x", "y", "phi.speed", "my-body.angle", "omega"];
 
 fn parse(text: &str) -> Expression {
     Expression::parse(text, &NAMES).unwrap_or_else(|error| panic!("{text}: {error}"))

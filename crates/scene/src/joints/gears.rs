@@ -4,7 +4,7 @@ use super::pairs::{axis, two_radii};
 use crate::fields::{Entry, Fields, Sign, boolean, signed};
 use crate::problem::{Problem, Problems};
 use crate::units::Units;
-use dwell_geometry::JointKind;
+use dwell_geometry::{JointKind, Vec2};
 
 pub(super) fn gear(
     entry: &Entry<'_>,
@@ -39,32 +39,16 @@ pub(super) fn gear(
     Some(JointKind::Gear { radii, internal })
 }
 
-pub(super) fn rack(
+/// The axis and the radius of what rolls on a line, as a pinion or a wheel.
+pub(super) fn on_a_line(
     entry: &Entry<'_>,
     fields: &Fields<'_>,
     units: &Units,
     problems: &mut Problems,
-) -> Option<JointKind> {
+) -> Option<(Vec2, f64)> {
     let axis = axis(entry, fields, problems);
     let radius = radius(entry, fields, units, problems);
-    Some(JointKind::Rack {
-        axis: axis?,
-        radius: radius?,
-    })
-}
-
-pub(super) fn rolling(
-    entry: &Entry<'_>,
-    fields: &Fields<'_>,
-    units: &Units,
-    problems: &mut Problems,
-) -> Option<JointKind> {
-    let axis = axis(entry, fields, problems);
-    let radius = radius(entry, fields, units, problems);
-    Some(JointKind::Rolling {
-        axis: axis?,
-        radius: radius?,
-    })
+    Some((axis?, radius?))
 }
 
 /// A radius other than zero; its sign tells on which side of the line it is.

@@ -4,14 +4,14 @@ mod gears;
 mod pairs;
 mod relation;
 
-use crate::bodies::Bodies;
-use crate::fields::{Entry, Fields, array, string, two_strings};
+use crate::bodies::{Bodies, NamedPoint, TWO_POINTS};
+use crate::fields::{Entry, Fields, array, string};
 use crate::keys::JOINTS;
 use crate::kind::kind;
 use crate::names::{check, shorten};
 use crate::problem::{Problem, Problems, Span};
 use crate::units::Units;
-use dwell_geometry::{BodyId, Joint, JointId, JointKind, Relation};
+use dwell_geometry::{Joint, JointId, JointKind, Relation};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -39,9 +39,6 @@ pub(crate) struct Joints<'a> {
     /// Relations that wait for the coordinates to be read.
     waiting: Vec<(usize, Fields<'a>)>,
 }
-
-/// A point that a joint holds: the body, the index of its point, and where it is named.
-type End = (BodyId, usize, Span);
 
 impl<'a> Joints<'a> {
     /// Every joint, the relations by their names alone: [`Self::relate`] reads them.
@@ -187,15 +184,19 @@ impl<'a> Joints<'a> {
             self.list.push(text);
             return;
         }
-        let ends = two_ends(held, &fields, bodies, problems);
+        let ends = two_ends(held, TWO_POINTS, &fields, bodies, problems);
         let kind = match kind {
             "prismatic" => pairs::prismatic(entry, &fields, problems),
             "slot" => pairs::slot(entry, &fields, problems),
             "weld" => pairs::weld(&fields, units, problems),
             "distance" => pairs::distance(entry, &fields, units, problems),
             "gear" => gears::gear(entry, &fields, units, problems),
-            "rack" => gears::rack(entry, &fields, units, problems),
-            _ => gears::rolling(entry, &fields, units, problems),
+            _ => {
+                gears::on_a_line(entry, &fields, units, problems).map(|(axis, radius)| match kind {
+                    "rack" => JointKind::Rack { axis, radius },
+                    _ => JointKind::Rolling { axis, radius },
+                })
+            }
         };
         if let Some(ends) = ends {
             text.ends = ends.clone().map(|(_, _, at)| at);
@@ -240,11 +241,17 @@ impl<'a> Joints<'a> {
     }
 }
 
-fn between(name: &str, a: &End, b: &End, kind: JointKind, bodies: &Bodies<'_>) -> Joint {
+fn between(
+    name: &str,
+    a: &NamedPoint,
+    b: &NamedPoint,
+    kind: JointKind,
+    bodies: &Bodies<'_>,
+) -> Joint {
     Joint {
         name: name.to_owned(),
         bodies: [a.0, b.0],
-        points: [a, b].map(|end| bodies.list[end.0.0].points[end.1].at),
+        points: [a, b].map(|end| bodies.at(end)),
         kind,
     }
 }
@@ -272,20 +279,13 @@ fn word(kind: JointKind) -> &'static str {
 /// The two points that the joint's first key names.
 fn two_ends(
     held: &Entry<'_>,
+    expected: &str,
     fields: &Fields<'_>,
     bodies: &Bodies<'_>,
     problems: &mut Problems,
-) -> Option<[End; 2]> {
-    let [(a, at_a), (b, at_b)] = two_strings(
-        held.value,
-        "two points [\"body.point\", \"body.point\"]",
-        format_args!("{} of {}", held.name, fields.what),
-        problems,
-    )?;
-    let first = bodies.find_point(a, &at_a, problems);
-    let second = bodies.find_point(b, &at_b, problems);
-    let (first, second) = (first?, second?);
-    let ends = [(first.0, first.1, at_a), (second.0, second.1, at_b)];
+) -> Option<[NamedPoint; 2]> {
+    let what = format_args!("{} of {}", held.name, fields.what);
+    let ends = bodies.find_two_points(held.value, expected, what, problems)?;
     let [a, b] = &ends;
     different(a, b, fields, bodies, problems)?;
     Some(ends)
@@ -297,15 +297,15 @@ fn pin_ends(
     fields: &Fields<'_>,
     bodies: &Bodies<'_>,
     problems: &mut Problems,
-) -> Option<Vec<End>> {
+) -> Option<Vec<NamedPoint>> {
     let what = format!("{} of {}", held.name, fields.what);
-    let expected = "two points [\"body.point\", \"body.point\"]";
+    let expected = "two or more points [\"body.point\", \"body.point\"]";
     let values = array(held.value, expected, format_args!("{what}"), problems)?;
     if values.len() < 3 {
-        return two_ends(held, fields, bodies, problems).map(Vec::from);
+        return two_ends(held, expected, fields, bodies, problems).map(Vec::from);
     }
     let count = problems.count();
-    let mut ends: Vec<End> = Vec::new();
+    let mut ends: Vec<NamedPoint> = Vec::new();
     for value in values {
         let Some(name) = string(value, format_args!("{what}"), problems) else {
             continue;
@@ -327,8 +327,8 @@ fn pin_ends(
 
 /// A joint is between two bodies: says so if it is not.
 fn different(
-    a: &End,
-    b: &End,
+    a: &NamedPoint,
+    b: &NamedPoint,
     fields: &Fields<'_>,
     bodies: &Bodies<'_>,
     problems: &mut Problems,

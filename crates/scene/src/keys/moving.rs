@@ -1,7 +1,7 @@
 //! Prescribed motions, sweeps, and the laws they are made of.
 
 use super::Shape::{Count, Either, Expression, Number, Pair, Rows, Table as One};
-use super::{Shape, Table, key, table};
+use super::{Key, Shape, Table, key, table};
 
 pub(crate) static PRESCRIBED: Table = Table {
     name: "[prescribed]",
@@ -119,49 +119,36 @@ pub(crate) static SINUSOID: Table = table(
     ],
 );
 
+const RISE: Key = key("rise", Number, "angle or length", "How far it goes.", "1.0");
+const DURATION: Key = key(
+    "duration",
+    Number,
+    "s, angle or length",
+    "How long the rise takes, above zero: in time, or of a relation's other coordinate.",
+    "0.5",
+);
+const DELAY: Key = key(
+    "delay",
+    Number,
+    "s, angle or length",
+    "How long it rests before.",
+    "0.1",
+)
+.or("0");
+
 pub(crate) static PROFILE: Table = table(
     "polynomial345, polynomial4567, cycloidal",
     "From rest to rest; at rest before and after.",
-    &[
-        key("rise", Number, "angle or length", "How far it goes.", "1.0"),
-        key(
-            "duration",
-            Number,
-            "s, angle or length",
-            "How long the rise takes, above zero: in time, or of a relation's other coordinate.",
-            "0.5",
-        ),
-        key(
-            "delay",
-            Number,
-            "s, angle or length",
-            "How long it rests before.",
-            "0.1",
-        )
-        .or("0"),
-    ],
+    &[RISE, DURATION, DELAY],
 );
 
 pub(crate) static TRAPEZOID: Table = table(
     "trapezoidal",
     "From rest to rest, the speed rising, staying and falling; at rest before and after.",
     &[
-        key("rise", Number, "angle or length", "How far it goes.", "1.0"),
-        key(
-            "duration",
-            Number,
-            "s, angle or length",
-            "How long the rise takes, above zero: in time, or of a relation's other coordinate.",
-            "0.5",
-        ),
-        key(
-            "delay",
-            Number,
-            "s, angle or length",
-            "How long it rests before.",
-            "0.1",
-        )
-        .or("0"),
+        RISE,
+        DURATION,
+        DELAY,
         key(
             "ramp",
             Number,
@@ -177,14 +164,14 @@ const SWEPT: Shape = Either(&[Number, Pair]);
 
 pub(crate) static SWEEP: Table = Table {
     name: "[sweep]",
-    doc: "The positions at which statics and kinematics are evaluated where no motion is prescribed: one actuator is swept, the others are held.",
+    doc: "The positions at which kinematics, statics and kinetostatics are evaluated where no motion is prescribed: one actuator is swept at constant speed, the others are held.",
     keys: &[
         key("points", Count, "", "How many positions.", "181").or("361"),
         key(
             "speed",
             Number,
             "angle/s or length/s",
-            "Speed of the swept actuator in kinematics, above zero.",
+            "Speed of the swept actuator in kinematics and kinetostatics, above zero; statics is at rest.",
             "2.0",
         )
         .or("1 rad/s or 1 m/s"),
@@ -209,7 +196,7 @@ pub(crate) static MAGNITUDE: Table = table(
             "table",
             Rows,
             "s, angle, length or their speeds; SI",
-            "Points [x, magnitude]; a smooth curve passes through them.",
+            "Points [x, magnitude]; a smooth curve passes through them. A run ends where x leaves them: an angle counts whole turns, so they have to go as far as it does.",
             "[[0, 1], [1, 2]]",
         ),
         key(

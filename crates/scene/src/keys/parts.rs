@@ -129,7 +129,7 @@ static WELD: Table = table(
 
 static GEAR: Table = table(
     "gear",
-    "Two gears; other joints keep their centres at their distance. They mesh as assembled. Reaction: `tooth`.",
+    "Two gears; other joints keep their centres at their distance, which has to be that of the radii to 0.2 %. They mesh as assembled. Reaction: `tooth`.",
     &[
         held("gear", "The centres.", "[\"crank.A\", \"wheel.C\"]"),
         key(
@@ -152,7 +152,7 @@ static GEAR: Table = table(
 
 static RACK: Table = table(
     "rack",
-    "A straight rack (first body) and a pinion (second). Reaction: `tooth`.",
+    "A straight rack (first body) and a pinion (second); other joints keep the centre at its distance from the pitch line, which has to be the radius to 0.2 %. Reaction: `tooth`.",
     &[
         held(
             "rack",
@@ -240,7 +240,7 @@ static RELATION: Table = table(
             "table",
             Rows,
             "angle or length",
-            "Points [x, y] of the function; a smooth curve passes through them.",
+            "Points [x, y] of the function; a smooth curve passes through them, and goes on along its end tangents.",
             "[[0, 0], [90, 10], [180, 12]]",
         )
         .one_of("law"),

@@ -34,7 +34,7 @@ pub(crate) static SCENE: Table = table(
             .or("all 0, nothing rough"),
         key("prescribed", One(&PRESCRIBED), "", "A prescribed motion: each actuator's coordinate as a function of time.", "{ duration = 2.0, phi = { speed = 10.0 } }")
             .or("none"),
-        key("sweep", One(&SWEEP), "", "The positions at which statics and kinematics are evaluated where no motion is prescribed.", "{ phi = [0.0, 6.28] }")
+        key("sweep", One(&SWEEP), "", "The positions at which kinematics, statics and kinetostatics are evaluated where no motion is prescribed.", "{ phi = [0.0, 6.28] }")
             .or("the whole range, or one turn"),
         key("loads", One(&ALL_LOADS), "", "What acts on the mechanism from outside.", "{ weight = { gravity = [0, -9.81] } }")
             .or("none"),

@@ -397,6 +397,11 @@ fn requests() {
         (ROD, [Vec2::ZERO, mm(120.0, 0.0)])
     );
     assert_eq!(section.names, ["P", "Q"]);
+    // Asked for twice it is still one; from the other end it is another.
+    let once = "{ body = \"rod\", from = \"P\", to = \"Q\" }";
+    let back = "{ body = \"rod\", from = \"Q\", to = \"P\" }";
+    let twice = MACHINE.replace(once, &format!("{once}, {back}, {once}"));
+    assert_eq!(parse(&twice).unwrap().requests.sections.len(), 2);
 }
 
 #[test]

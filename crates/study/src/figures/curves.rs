@@ -1,6 +1,6 @@
 //! The reduced parameters over the range.
 
-use super::{coordinate_label, range_caption, symbol};
+use super::{coordinate_label, drawn, range_caption, symbol, tell};
 use crate::prepare::Prepared;
 use crate::reduce::Sweep;
 use dwell_geometry::Range;
@@ -64,19 +64,26 @@ pub(crate) fn reduced(prepared: &Prepared<'_>, sweep: &Sweep) -> Figure {
 }
 
 /// a and b of the requested reactions, forces and moments apart, a few to a figure.
-pub(crate) fn coefficients(prepared: &Prepared<'_>, sweep: &Sweep) -> Vec<Figure> {
+/// With what has to be said if not all are drawn.
+pub(crate) fn coefficients(
+    prepared: &Prepared<'_>,
+    sweep: &Sweep,
+) -> (Vec<Figure>, Option<String>) {
     let reactions = prepared.reactions();
-    let mut figures = Vec::new();
+    let mut pages: Vec<(Vec<usize>, &str)> = Vec::new();
     for unit in ["N", "N m"] {
         let of_unit: Vec<usize> = (0..reactions.len())
             .filter(|&k| reactions[k].1 == unit)
             .collect();
-        for some in of_unit.chunks(TOGETHER) {
-            let more = figures.len();
-            figures.push(one(prepared, sweep, some, unit, more));
-        }
+        pages.extend(of_unit.chunks(TOGETHER).map(|some| (some.to_vec(), unit)));
     }
-    figures
+    let (drawn, note) = drawn(prepared.scene, pages.len());
+    let pages = pages.iter().take(drawn).enumerate();
+    let figure =
+        |(k, (some, unit)): (usize, &(Vec<usize>, &str))| one(prepared, sweep, some, unit, k);
+    let mut figures: Vec<Figure> = pages.map(figure).collect();
+    tell(&mut figures, note.as_deref());
+    (figures, note)
 }
 
 fn one(prepared: &Prepared<'_>, sweep: &Sweep, some: &[usize], unit: &str, more: usize) -> Figure {

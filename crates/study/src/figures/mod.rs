@@ -16,19 +16,46 @@ pub(crate) use curves::{coefficients, reduced};
 pub(crate) use digits::digits;
 pub(crate) use mechanism::{Dwell, mechanism};
 pub(crate) use motion::history;
-pub(crate) use skeleton::Frame;
+pub(crate) use skeleton::{Frame, size};
 pub(crate) use states::{actions, drawing};
 pub(crate) use steps::steps;
 
 use crate::prepare::Prepared;
-use dwell_kinetostatics::Reduced;
+use dwell_report::Figure;
 use dwell_scene::Scene;
+
+/// Most pictures of reactions where none was asked for by name.
+pub(crate) const PAGES: usize = 8;
+
+/// How many of so many pictures of reactions are drawn, and what is said of the others: those that
+/// were asked for are all drawn.
+pub(crate) fn drawn(scene: &Scene, pages: usize) -> (usize, Option<String>) {
+    let named = scene.requests.reactions.len() < scene.mechanism.reactions().len();
+    if named || pages <= PAGES {
+        return (pages, None);
+    }
+    let note = format!(
+        "of {pages} pictures of reactions only the first {PAGES} are drawn: `reactions` in [requests] \
+         names those that are wanted"
+    );
+    (PAGES, Some(note))
+}
+
+/// Adds a note to the foot of the last of some figures.
+pub(crate) fn tell(figures: &mut [Figure], note: Option<&str>) {
+    if let (Some(last), Some(note)) = (figures.last_mut(), note) {
+        last.caption += &format!(" Note: {note}.");
+    }
+}
 
 /// The foot of a figure over the range, which says why curves may leave it.
 pub(crate) fn range_caption(prepared: &Prepared<'_>, words: &str) -> String {
-    let limits = match prepared.model.range().limits() {
-        None => "",
-        Some(_) => " Towards the limit positions at both ends everything grows without bound.",
+    let limits = match prepared.model.model().plan().ends() {
+        [None, None] => "",
+        [Some(_), Some(_)] => {
+            " Towards the limit positions at both ends everything grows without bound."
+        }
+        _ => " Towards the limit position everything grows without bound.",
     };
     caption(prepared, &format!("{words}{limits}"))
 }
@@ -81,5 +108,28 @@ pub(crate) fn coordinate_label(prepared: &Prepared<'_>) -> String {
             "angle {symbol} of {turned} from {}",
             mechanism.body_name(bodies[0])
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn named_reactions_are_all_drawn_and_too_many_others_are_not() {
+        let scene = |requests: &str| {
+            let text = format!(
+                "[bodies.ground]\npoints = {{ A = [0, 0] }}\n[bodies.crank]\npoints = {{ A = [0, 0] }}\n\
+                 [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"] }}\n[actuators]\n\
+                 phi = {{ angle = [\"ground\", \"crank\"] }}\n{requests}"
+            );
+            Scene::parse("crank.toml", &text).expect("a scene")
+        };
+        assert_eq!(drawn(&scene(""), PAGES), (PAGES, None));
+        let (pages, note) = drawn(&scene(""), 176);
+        assert_eq!(pages, PAGES);
+        assert!(note.expect("a note").starts_with("of 176 pictures"));
+        let named = scene("[requests]\nreactions = [\"A.x\"]");
+        assert_eq!(drawn(&named, 176), (176, None));
     }
 }

@@ -21,6 +21,8 @@ pub(crate) struct Skeleton<'a> {
     size: f64,
     /// By joint: how far its second point goes along its axis over all positions, m.
     travels: Vec<Option<[f64; 2]>>,
+    /// By body: whether it is drawn.
+    shown: Vec<bool>,
 }
 
 /// How a body is drawn.
@@ -63,7 +65,20 @@ impl<'a> Skeleton<'a> {
             scene,
             size: size(scene),
             travels: scene.mechanism.joints.iter().map(travel).collect(),
+            shown: vec![true; scene.mechanism.bodies.len()],
         }
+    }
+
+    /// Only these bodies, and what joins them.
+    pub(crate) fn showing(mut self, bodies: &[bool]) -> Self {
+        for (shown, &body) in self.shown.iter_mut().zip(bodies) {
+            *shown = body;
+        }
+        self
+    }
+
+    fn shows(&self, bodies: [BodyId; 2]) -> bool {
+        bodies.iter().all(|b| self.shown[b.0])
     }
 
     /// All bodies, then all joints, in one position; words only where nothing is lightened.
@@ -90,6 +105,9 @@ impl<'a> Skeleton<'a> {
     fn behind(&self, frames: &[Frame], lightness: f64, shapes: &mut Vec<Shape>) {
         let mechanism = &self.scene.mechanism;
         for (j, (joint, travel)) in mechanism.joints.iter().zip(&self.travels).enumerate() {
+            if !self.shows(joint.bodies) {
+                continue;
+            }
             let [one, two] = joint.bodies;
             let pen = |body, width| Pen::new(self.color(body), width).lightness(lightness);
             let at = [0, 1].map(|i| place(frames, joint.bodies[i].0, joint.points[i]));
@@ -135,7 +153,7 @@ impl<'a> Skeleton<'a> {
             }
         }
         for actuator in &mechanism.actuators {
-            if let Drive::Length(points) = actuator.drive {
+            if let (Drive::Length(points), true) = (actuator.drive, self.shows(actuator.bodies)) {
                 let [a, b] = [0, 1].map(|i| place(frames, actuator.bodies[i].0, points[i]));
                 let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
                 let pen = |width| Pen::new(Paint::Grey, width).lightness(lightness);
@@ -220,7 +238,8 @@ impl<'a> Skeleton<'a> {
 
     fn bodies(&self, frames: &[Frame], lightness: f64, shapes: &mut Vec<Shape>) {
         let mechanism = &self.scene.mechanism;
-        for body in (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground) {
+        let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
+        for body in moving.filter(|&b| self.shown[b]) {
             let pen = Pen::new(self.color(BodyId(body)), 6.0).lightness(lightness);
             let at = |points: &[Vec2]| points.iter().map(|p| place(frames, body, *p)).collect();
             let shape = match self.outline(body) {
@@ -253,7 +272,7 @@ impl<'a> Skeleton<'a> {
                 None => labels.push((at, name.to_owned(), side)),
             }
         };
-        for joint in &mechanism.joints {
+        for joint in mechanism.joints.iter().filter(|j| self.shows(j.bodies)) {
             let on_ground = joint.bodies.iter().any(|b| b.0 == mechanism.ground);
             let ends = [0, 1].map(|i| place(frames, joint.bodies[i].0, joint.points[i]));
             match joint.kind {
@@ -400,7 +419,7 @@ fn coil(a: Vec2, b: Vec2, half: f64) -> Vec<[f64; 2]> {
 }
 
 /// The mean length of the bodies that have one, m.
-fn size(scene: &Scene) -> f64 {
+pub(crate) fn size(scene: &Scene) -> f64 {
     let extent = |points: &Vec<(String, Vec2)>| {
         let all = points
             .iter()

@@ -2,8 +2,9 @@
 
 use crate::run::Command;
 use crate::run::dyads::{Dyad, dyads};
+use crate::run::select::stands_for;
 use dwell_geometry::measure::Measured;
-use dwell_geometry::{BodyId, Component, Drive, JointId, JointKind, Plan, Vec2};
+use dwell_geometry::{BodyId, Component, Drive, JointId, JointKind, Plan, Reaction, Vec2};
 use dwell_kinetostatics::{LoadKind, Model};
 use dwell_scene::Scene;
 
@@ -17,6 +18,10 @@ pub(crate) enum Quantity {
     Angle(BodyId, usize),
     /// dθ/dq of a body.
     Ratio(BodyId),
+    /// dq/dθ of a body, dq/ds of a point along its path.
+    Advantage(BodyId, Option<Vec2>),
+    /// x and y of where a body has no velocity (order 1) or no acceleration (order 2).
+    Pole(BodyId, usize, usize),
     /// x, y, then their speeds, then their accelerations.
     Point(BodyId, Vec2, usize),
     Transmission(Dyad),
@@ -52,7 +57,54 @@ pub(crate) struct Column {
     pub(crate) meaning: String,
 }
 
+impl Quantity {
+    /// The bodies that it is measured on: where they are not placed, it has no value.
+    pub(crate) fn bodies(self, scene: &Scene, reactions: &[Reaction]) -> Vec<BodyId> {
+        let joint = |j: JointId| scene.mechanism.joints[j.0].bodies.to_vec();
+        match self {
+            Self::Measured(
+                Measured::Angle(bodies)
+                | Measured::Travel { bodies, .. }
+                | Measured::Length { bodies, .. },
+                _,
+            ) => bodies.to_vec(),
+            Self::Angle(body, _)
+            | Self::Ratio(body)
+            | Self::Advantage(body, _)
+            | Self::Pole(body, ..)
+            | Self::Point(body, ..) => vec![body],
+            Self::Transmission(dyad) => dyad.bodies().to_vec(),
+            Self::Reaction(k) => joint(reactions[k].joint),
+            Self::ForceIn(j, ..) | Self::Magnitude(j) | Self::Direction(j) => joint(j),
+            // What the actuators and the loads act on is placed anyway, or does not move them.
+            Self::Time
+            | Self::Drive(..)
+            | Self::Action(_)
+            | Self::Frame(_)
+            | Self::Balance(_)
+            | Self::Load(_)
+            | Self::LoadPower(_) => Vec::new(),
+        }
+    }
+}
+
 impl Column {
+    /// Whether a name asks for it: its own, or the first part of it. What has no value in some
+    /// positions is told only where it is meant: a body's name does not ask for its pole.
+    pub(crate) fn answers_to(&self, name: &str) -> bool {
+        let last = match self.quantity {
+            Quantity::Advantage(..) => 0,
+            Quantity::Pole(..) => ".x".len(),
+            _ => self.name.len(),
+        };
+        stands_for(name, &self.name) && name.len() + last >= self.name.len()
+    }
+
+    /// Whether it is told only where it is asked for.
+    pub(crate) fn is_optional(&self) -> bool {
+        matches!(self.quantity, Quantity::Advantage(..) | Quantity::Pole(..))
+    }
+
     /// Whether it is an angle that is followed over whole turns.
     pub(crate) fn unwraps(&self) -> bool {
         matches!(
@@ -71,7 +123,8 @@ impl Column {
             | Quantity::Measured(_, order)
             | Quantity::Angle(_, order) => order == 0 || moves,
             Quantity::Point(_, _, k) => k < 2 || moves,
-            Quantity::Ratio(_) | Quantity::Transmission(_) => true,
+            Quantity::Ratio(_) | Quantity::Advantage(..) | Quantity::Transmission(_) => true,
+            Quantity::Pole(..) => moves,
             Quantity::Action(_)
             | Quantity::Reaction(_)
             | Quantity::ForceIn(..)
@@ -213,12 +266,58 @@ impl Columns {
                 let meaning = format!("change of its angle with {q}: the velocity ratio");
                 self.add(format!("{name}.ratio"), unit, Quantity::Ratio(id), meaning);
             }
+            self.leverage(scene, plan, id);
             for (point, at) in &scene.points[b] {
                 let parts = ["x", "y", "vx", "vy", "ax", "ay"];
                 for (k, part) in parts.into_iter().enumerate() {
                     let name = format!("{name}.{point}.{part}");
                     self.add(name, LENGTH[k / 2], Quantity::Point(id, *at, k), "");
                 }
+            }
+        }
+    }
+
+    /// What is told on request: mechanical advantage of a body and its points, and its poles.
+    fn leverage(&mut self, scene: &Scene, plan: &Plan, body: BodyId) {
+        let name = scene.mechanism.body_name(body);
+        let points = &scene.points[body.0];
+        if plan.actuators() == 1 {
+            let action = format!("{}.action", scene.mechanism.actuators[0].name);
+            let [turns, travels] = if plan.is_angle(0) {
+                ["", "1/m"]
+            } else {
+                ["m", ""]
+            };
+            let meaning = format!(
+                "couple of {name} on what resists it, for each unit of {action} and without inertia and other \
+                 loads: dq/dθ; empty where {name} does not turn"
+            );
+            let quantity = Quantity::Advantage(body, None);
+            self.add(format!("{name}.advantage"), turns, quantity, meaning);
+            for (point, at) in points {
+                let meaning = format!(
+                    "force on what resists {point} along its path, for each unit of {action} and without inertia \
+                     and other loads: dq/ds; empty where it stands still"
+                );
+                let quantity = Quantity::Advantage(body, Some(*at));
+                let name = format!("{name}.{point}.advantage");
+                self.add(name, travels, quantity, meaning);
+            }
+        }
+        for (order, pole, what) in [
+            (1, "pole", "velocity"),
+            (2, "acceleration-pole", "acceleration"),
+        ] {
+            // A point of that name is what its name says.
+            if points.iter().any(|(point, _)| point == pole) {
+                continue;
+            }
+            for (axis, letter) in ["x", "y"].into_iter().enumerate() {
+                let meaning = format!(
+                    "where {name} has no {what}, in the ground's frame; empty where it does not turn"
+                );
+                let quantity = Quantity::Pole(body, order, axis);
+                self.add(format!("{name}.{pole}.{letter}"), "m", quantity, meaning);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! What a run says in words: its summary, and the page that gathers peaks, meanings and pictures.
 
+use crate::prepare::not_in_a_table;
 use crate::run::Command;
 use crate::run::columns::Quantity;
 use crate::run::peaks::{self, Peak};
@@ -136,18 +137,27 @@ impl<'a> Document<'a> {
         }
         text += &self.balance();
         text += &self.shared();
+        text += &self.absent();
         text
     }
 
     /// The reactions that are in no table, because the loads do not determine them.
     fn shared(&self) -> String {
-        if self.command == Command::Kinematics || self.record.shared.is_empty() {
+        if self.command == Command::Kinematics {
             return String::new();
         }
-        format!(
-            "  in no table, because constraints that repeat each other share them: {}\n",
-            self.record.shared.join(", ")
-        )
+        not_in_a_table(self.record.shared.iter().cloned())
+    }
+
+    /// The bodies that are not modelled.
+    fn absent(&self) -> String {
+        match self.record.absent(self.scene) {
+            none if none.is_empty() => String::new(),
+            bodies => format!(
+                "  not modelled, because no inertia, load or request needs them: {}\n",
+                bodies.join(", ")
+            ),
+        }
     }
 
     fn balance(&self) -> String {
@@ -170,6 +180,13 @@ impl<'a> Document<'a> {
         }
         if !self.balance().is_empty() {
             blocks.push(Block::Text(format!("{}.", self.balance().trim())));
+        }
+        for told in [self.shared(), self.absent()] {
+            if !told.is_empty() {
+                let told = told.trim();
+                let (first, rest) = told.split_at(1);
+                blocks.push(Block::Text(format!("{}{rest}.", first.to_uppercase())));
+            }
         }
         for figure in figures {
             blocks.push(Block::Figure {

@@ -29,11 +29,20 @@ impl Dyad {
         a.cross(b).abs().atan2(a.dot(b))
     }
 
+    /// Its two bodies.
+    pub(crate) fn bodies(&self) -> [BodyId; 2] {
+        self.lines.map(|line| match line {
+            Line::Bar(body, _) | Line::Normal(body, _) => body,
+        })
+    }
+
     pub(crate) fn meaning(&self) -> &'static str {
         let slides = self.lines.iter().any(|l| matches!(l, Line::Normal(..)));
         match slides {
             false => "transmission angle: between the lines of the two bodies at their pin",
-            true => "transmission angle: between the rod and the normal of the slide",
+            true => {
+                "transmission angle: between the rod and the normal of the slide; what it lacks of 90° is the pressure angle"
+            }
         }
     }
 }

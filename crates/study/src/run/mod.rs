@@ -4,18 +4,22 @@
 mod columns;
 mod document;
 mod dyads;
+mod leverage;
 mod link;
+mod need;
 mod peaks;
 mod record;
-pub(crate) use record::model;
 mod select;
 mod stop;
+mod watch;
 mod way;
 
 pub(crate) use columns::{Column, Quantity};
 pub(crate) use link::Link;
-pub(crate) use record::Record;
-pub(crate) use select::stands_for;
+pub(crate) use need::wanted;
+pub(crate) use record::{Record, model};
+pub(crate) use select::{check as check_variables, is_named};
+pub(crate) use watch::broken_relation;
 pub(crate) use way::Way;
 
 use crate::error::StudyError;
@@ -102,7 +106,7 @@ pub fn run(
             .files
             .add(file("-envelope"), link.envelope_table().csv()?);
     }
-    let pictures = figures::run(scene, &record, &way, command);
+    let (pictures, left_out) = figures::run(scene, &record, &way, command);
     let total = parts + pictures.len() + 1;
     let drawn = draw(&pictures, total, progress)?;
     for (figure, bytes) in pictures.iter().zip(drawn) {
@@ -121,6 +125,9 @@ pub fn run(
         .files
         .add(name(".md"), document.markdown(&pictures, &file));
     outcome.summary = document.summary();
+    if let Some(note) = left_out {
+        outcome.summary += &format!("  {note}\n");
+    }
     Ok(Followed { outcome, stopped })
 }
 

@@ -23,7 +23,11 @@ impl Peak {
 pub(crate) fn peaks(columns: &[Column], chosen: &[usize], rows: &[Vec<f64>]) -> Vec<Peak> {
     let mut units: Vec<&str> = Vec::new();
     let peak = |&k: &usize| {
-        let values = || rows.iter().enumerate().map(|(i, row)| (row[k], i));
+        // An empty cell is no extreme.
+        let values = || {
+            let rows = rows.iter().enumerate().map(|(i, row)| (row[k], i));
+            rows.filter(|(value, _)| !value.is_nan())
+        };
         // The first of equals.
         let low = values().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
         let high = values().reduce(|a, b| if b.0 > a.0 { b } else { a })?;

@@ -1,16 +1,20 @@
 //! A mechanism followed along its way: the table, and what sections and drawings need of each position.
 
 use crate::error::{StudyError, explain_model};
-use crate::figures::Frame;
+use crate::figures::{Frame, size};
 use crate::run::Command;
 use crate::run::columns::{Column, Columns, Quantity, Term};
+use crate::run::leverage::Pace;
 use crate::run::link::Link;
-use crate::run::stop::{Stop, is_cut_off};
+use crate::run::need::lean;
+use crate::run::select::is_named;
+use crate::run::stop::{End, Stop, is_cut_off};
+use crate::run::watch::Watch;
 use crate::run::way::{Sample, Way};
 use dwell_geometry::measure::{BodyStates, Measured};
-use dwell_geometry::{BodyId, Motion, Plan, Start, Vec2};
+use dwell_geometry::{BodyId, Motion, Plan, Pose, Start, Vec2};
 use dwell_kinetostatics::{
-    Act, Actions, By, KinetostaticsError, Ledger, LoadKind, Model, PowerBalance, Workspace, Wrench,
+    Act, Actions, By, Ledger, LoadKind, Model, PowerBalance, Workspace, Wrench,
 };
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
@@ -29,8 +33,19 @@ pub(crate) struct Record {
     pub(crate) residual: f64,
     /// The reactions that the loads do not determine.
     pub(crate) shared: Vec<String>,
+    /// By body: whether it is modelled.
+    pub(crate) placed: Vec<bool>,
     /// Where and why the way ended early.
     pub(crate) stop: Option<Stop>,
+}
+
+impl Record {
+    /// The bodies that are not modelled, because nothing needs them.
+    pub(crate) fn absent(&self, scene: &Scene) -> Vec<String> {
+        let bodies = scene.mechanism.bodies.iter().zip(&self.placed);
+        let absent = bodies.filter(|(_, placed)| !**placed);
+        absent.map(|(body, _)| body.name.clone()).collect()
+    }
 }
 
 /// The model of a scene under its loads, with every reaction.
@@ -58,6 +73,8 @@ struct Probe<'a> {
     model: &'a Model,
     ledger: Ledger,
     command: Command,
+    /// With several actuators, the whole mechanism: it ends the way where any of its groups does.
+    whole: Option<(&'a Plan, Pose<f64>)>,
     work: Workspace<f64>,
     actions: Actions<f64>,
     acts: Vec<Act>,
@@ -66,21 +83,35 @@ struct Probe<'a> {
     moving: BodyStates,
     /// The bodies at unit speed of a single actuator.
     unit: BodyStates,
+    /// Of a body, m, and how fast the bodies are: at unit speed of a single actuator, and on the way.
+    size: f64,
+    pace: [Pace; 2],
     powers: Vec<f64>,
     /// By joint: the force on its second body, N.
     forces: Vec<Vec2>,
     shaking: Wrench,
     power: PowerBalance,
+    watch: Watch<'a>,
 }
 
 impl<'a> Probe<'a> {
-    fn new(scene: &'a Scene, model: &'a Model, command: Command) -> Result<Self, StudyError> {
+    fn new(
+        scene: &'a Scene,
+        whole: &'a Plan,
+        model: &'a Model,
+        command: Command,
+    ) -> Result<Self, StudyError> {
+        let some = model.plan().skipped().contains(&true);
+        let followed = some && whole.actuators() > 1;
         let ledger = Ledger::new(&scene.mechanism, model).map_err(|e| explain_model(scene, &e))?;
         Ok(Self {
             ledger,
             scene,
             model,
             command,
+            whole: followed.then(|| (whole, whole.pose())),
+            size: size(scene),
+            pace: [Pace::default(); 2],
             work: model.workspace(),
             actions: model.actions(),
             acts: Vec::new(),
@@ -91,10 +122,11 @@ impl<'a> Probe<'a> {
             forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
             shaking: Wrench::default(),
             power: PowerBalance::default(),
+            watch: Watch::new(scene),
         })
     }
 
-    fn evaluate(&mut self, sample: &Sample, timed: bool) -> Result<(), KinetostaticsError> {
+    fn evaluate(&mut self, sample: &Sample, timed: bool) -> Result<(), End> {
         let plan = self.model.plan();
         let Sample {
             t,
@@ -102,18 +134,24 @@ impl<'a> Probe<'a> {
             q_dot,
             q_ddot,
         } = sample;
+        if let Some((whole, pose)) = &mut self.whole {
+            whole.place(q, pose)?;
+        }
         let (work, actions) = (&mut self.work, &mut self.actions);
+        // Without a time loads stand at their beginning.
+        let t = if timed { *t } else { 0.0 };
         match self.command {
             Command::Kinematics => plan.place(q, &mut work.pose)?,
-            // Without a time loads stand at their beginning.
-            Command::Statics => {
-                let t = if timed { *t } else { 0.0 };
-                self.model.statics(t, q, work, actions)?;
-            }
+            Command::Statics => self.model.statics(t, q, work, actions)?,
             Command::Kinetostatics => {
                 self.model
-                    .kinetostatics(*t, q, q_dot, q_ddot, work, actions)?;
+                    .kinetostatics(t, q, q_dot, q_ddot, work, actions)?;
             }
+        }
+        if self.command != Command::Kinematics
+            && let Some(fault) = self.watch.off_table(t, work.states())
+        {
+            return Err(End::Fault(fault));
         }
         if plan.actuators() == 1 {
             plan.speeds(&work.pose, &[1.0], &mut self.motion);
@@ -122,6 +160,10 @@ impl<'a> Probe<'a> {
         plan.speeds(&work.pose, q_dot, &mut self.motion);
         plan.accelerations(&work.pose, q_ddot, &mut self.motion);
         self.moving.fill(plan, &work.pose, &self.motion);
+        self.pace = [&self.unit, &self.moving].map(|states| Pace::of(states, self.size));
+        if let Some(fault) = self.watch.jump(&self.moving) {
+            return Err(End::Fault(fault));
+        }
         if self.command != Command::Kinematics {
             self.account();
         }
@@ -157,10 +199,24 @@ impl<'a> Probe<'a> {
             Quantity::Drive(i, order) => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
             Quantity::Action(i) => self.actions.tau[i],
             Quantity::Measured(measured, order) => states.measure(measured)[order],
-            Quantity::Angle(body, 0) => states.body(body).turn.angle(),
+            // As relations and loads count it, so that columns of one angle agree.
+            Quantity::Angle(body, 0) => {
+                let ground = BodyId(self.scene.mechanism.ground);
+                states.angle([ground, body])[0]
+            }
             Quantity::Angle(body, 1) => states.body(body).spin,
             Quantity::Angle(body, _) => states.body(body).spin_rate,
             Quantity::Ratio(body) => self.unit.body(body).spin,
+            Quantity::Advantage(body, point) => self.pace[0].advantage(&self.unit, body, point),
+            Quantity::Pole(body, order, axis) => {
+                let pole = match order {
+                    // Where a single actuator rests, the body still has its pole.
+                    1 if self.model.plan().actuators() == 1 => self.pace[0].pole(&self.unit, body),
+                    1 => self.pace[1].pole(states, body),
+                    _ => self.pace[1].acceleration_pole(states, body),
+                };
+                if axis == 0 { pole.x } else { pole.y }
+            }
             Quantity::Point(body, at, k) => {
                 let point = states.point(body, at);
                 let vector = [point.position, point.velocity, point.acceleration][k / 2];
@@ -247,20 +303,28 @@ impl Turns {
 /// [`StudyError::Scene`] when not even the first position can be reached.
 pub(crate) fn follow(
     scene: &Scene,
-    model: &Model,
+    whole: &Model,
     way: &Way<'_>,
     command: Command,
     heard: &dyn Fn(usize),
 ) -> Result<Record, StudyError> {
-    let plan: &Plan = model.plan();
+    // The way and its end are those of the whole mechanism, whatever of it is modelled.
+    let plan: &Plan = whole.plan();
+    let model = &lean(scene, whole);
+    let placed = model.plan().placed();
+    let is_placed = |column: &Column| {
+        let bodies = column.quantity.bodies(scene, model.reactions());
+        bodies.iter().all(|b| placed[b.0])
+    };
     // A sweep of statics has no time.
     let timed = way.swept().is_none() || command != Command::Statics;
     let columns: Vec<Column> = Columns::all(scene, model, timed)
         .into_iter()
-        .filter(|c| c.is_of(command))
+        .filter(|c| c.is_of(command) && is_placed(c))
+        .filter(|c| !c.is_optional() || is_named(scene, c))
         .collect();
     way.check(scene)?;
-    let mut probe = Probe::new(scene, model, command)?;
+    let mut probe = Probe::new(scene, plan, model, command)?;
     let mut turns = Turns {
         last: vec![None; columns.len()],
     };
@@ -278,6 +342,7 @@ pub(crate) fn follow(
             .filter(|&k| !model.plan().is_unique(k))
             .map(|k| scene.mechanism.reaction_name(model.reactions()[k]))
             .collect(),
+        placed,
         stop: None,
     };
     let mut before: Option<f64> = None;

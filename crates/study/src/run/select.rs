@@ -22,7 +22,7 @@ pub(crate) fn check(scene: &Scene, model: &Model) -> Result<(), StudyError> {
     };
     let columns = Columns::all(scene, model, true);
     for (k, name) in variables.iter().enumerate() {
-        if columns.iter().any(|c| stands_for(name, &c.name)) {
+        if columns.iter().any(|c| c.answers_to(name)) {
             continue;
         }
         if let Some(error) = shared(scene, model, k, name) {
@@ -91,12 +91,18 @@ fn near(name: &str, columns: &[Column]) -> String {
     }
 }
 
+/// Whether a column is asked for by a name.
+pub(crate) fn is_named(scene: &Scene, column: &Column) -> bool {
+    let names = scene.requests.variables.iter().flatten();
+    names.into_iter().any(|n| column.answers_to(n))
+}
+
 /// The places of the columns that go into the tables: those asked for, behind the time and the
 /// actuators' coordinates.
 pub(crate) fn chosen(scene: &Scene, columns: &[Column]) -> Vec<usize> {
     let wanted = |column: &Column| match (&scene.requests.variables, column.quantity) {
         (None, _) | (_, Quantity::Time | Quantity::Drive(_, 0)) => true,
-        (Some(names), _) => names.iter().any(|n| stands_for(n, &column.name)),
+        (Some(_), _) => is_named(scene, column),
     };
     (0..columns.len())
         .filter(|&k| wanted(&columns[k]))

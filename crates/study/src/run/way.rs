@@ -3,9 +3,10 @@
 
 use crate::error::StudyError;
 use crate::run::Command;
+use crate::run::stop::{NO_JUMP, between};
 use crate::words::{count, digits};
 use dwell_geometry::{ActuatorId, Plan, Range};
-use dwell_scene::{Place, Prescribed, Scene};
+use dwell_scene::{LARGEST_ANGLE, Place, Prescribed, Scene};
 use std::f64::consts::TAU;
 
 /// Positions where neither the scene nor the command says how many.
@@ -139,28 +140,54 @@ impl<'a> Way<'a> {
         })
     }
 
-    /// Refuses a law that has no finite value, speed or acceleration at one of the points.
+    /// Refuses a law that has no finite value, speed or acceleration at one of the points, turns
+    /// too far to keep its digits, or jumps between two points.
     pub(crate) fn check(&self, scene: &Scene) -> Result<(), StudyError> {
+        let Kind::Prescribed(prescribed) = &self.kind else {
+            return Ok(());
+        };
+        let actuators = &scene.mechanism.actuators;
+        let mut before: Option<f64> = None;
         for k in 0..self.points {
-            let sample = self.at(self.part(k));
-            let rates = [&sample.q, &sample.q_dot, &sample.q_ddot];
-            for (values, what) in rates.into_iter().zip(["value", "speed", "acceleration"]) {
-                let Some(a) = values.iter().position(|v| !v.is_finite()) else {
-                    continue;
+            let t = self.part(k) * prescribed.duration;
+            for (a, (actuator, law)) in actuators.iter().zip(&prescribed.laws).enumerate() {
+                let refuse = |what: String, help: &str, label: String| {
+                    let message = format!("the law of `{}` {what}", actuator.name);
+                    let labels = [(Place::Motor(ActuatorId(a)), label)];
+                    Err(scene.error(message, Some(help.to_owned()), &labels).into())
                 };
-                let name = &scene.mechanism.actuators[a].name;
-                let labels = [(Place::Motor(ActuatorId(a)), format!("no finite {what}"))];
-                return Err(scene
-                    .error(
+                let at = law.at(t);
+                let names = ["value", "speed", "acceleration"];
+                if let Some(order) = at[..3].iter().position(|v| !v.is_finite()) {
+                    let what = format!("no finite {}", names[order]);
+                    return refuse(
+                        format!("has {what} at t = {} s", digits(t, 6)),
+                        "a motion needs its value and two derivatives everywhere",
+                        what,
+                    );
+                }
+                if actuator.coordinate().is_angle() && at[0].abs() > LARGEST_ANGLE {
+                    return refuse(
                         format!(
-                            "the law of `{name}` has no finite {what} at t = {} s",
-                            digits(sample.t, 6)
+                            "is more than {LARGEST_ANGLE:e} rad at t = {} s",
+                            digits(t, 6)
                         ),
-                        Some("a motion needs its value and two derivatives everywhere".to_owned()),
-                        &labels,
-                    )
-                    .into());
+                        "so large an angle has lost its last digits: end the motion before, or check \
+                         the numbers",
+                        "too many turns".to_owned(),
+                    );
+                }
+                if let Some([from, to]) = before.and_then(|before| law.jump(before, t)) {
+                    let time = between(from, to);
+                    let [p, q] = [from, to].map(|t| digits(law.at(t)[0], 6));
+                    return refuse(
+                        format!("jumps at t = {time} s, from {p} to {q}"),
+                        NO_JUMP,
+                        format!("jumps at t = {time} s"),
+                    );
+                }
             }
+            before = Some(t);
         }
         Ok(())
     }
@@ -235,14 +262,14 @@ fn ends(scene: &Scene, plan: &Plan) -> Ends {
             between(from + margin, to - margin, [true; 2], "the range")
         }
         Range::Stroke(from, to) => {
-            // An end that is only as far as it was followed lies many sizes away.
-            let far = 4.0 * reach(scene);
-            let near = [start - from < far, to - start < far];
-            let low = if near[0] { from } else { start - around };
-            let high = if near[1] { to } else { start + around };
+            // An end that was not met is only as far as it was followed.
+            let met = plan.ends().map(|end| end.is_some());
+            let around = if plan.is_angle(0) { TAU } else { around };
+            let low = if met[0] { from } else { start - around };
+            let high = if met[1] { to } else { start + around };
             let margin = MARGIN * (high - low);
-            let cut = |near: bool| if near { margin } else { 0.0 };
-            between(low + cut(near[0]), high - cut(near[1]), near, "the range")
+            let cut = |met: bool| if met { margin } else { 0.0 };
+            between(low + cut(met[0]), high - cut(met[1]), met, "the range")
         }
         Range::Endless | Range::Followed(..) if plan.is_angle(0) => {
             between(start, start + TAU, [false; 2], "one turn")

@@ -1,7 +1,7 @@
 //! Ways that end early, and scenes that do not say their way.
 
 use crate::table::{Table, WEIGHTS, case, file, follow, scene};
-use dwell_study::{Command, StudyError, run, silent};
+use dwell_study::{Command, StudyError, check, run, silent};
 
 /// Crank 0.3, coupler 0.2, rocker 0.25 on a base of 0.4 m.
 fn limited(sweep: &str) -> String {
@@ -65,6 +65,130 @@ fn a_sweep_does_not_jump_over_what_it_cannot_pass() {
     assert_eq!(table.column("phi"), [1.0]);
 }
 
+/// A follower lifted by 10 mm a radian, under a force.
+const LIFT: &str = r#"
+[bodies.ground]
+points = { O = [0, 0] }
+[bodies.cam]
+points = { O = [0, 0] }
+[bodies.follower]
+points = { P = [0, 0] }
+mass = 1
+center = "P"
+[joints]
+O = { revolute = ["ground.O", "cam.O"] }
+slide = { prismatic = ["ground.O", "follower.P"], axis = [0, 1] }
+lift = { relation = ["rise", "phi"], expression = "0.01*x" }
+[actuators]
+phi = { angle = ["ground", "cam"] }
+[coordinates]
+rise = { travel = "slide" }
+[loads]
+push = { force = "follower.P", direction = [0, 1], magnitude = 1 }
+[prescribed]
+duration = 5
+phi = { speed = 1.0 }
+"#;
+
+/// With some of it changed: how many of 51 positions are reached, and what is said of the next,
+/// with the text it points at.
+fn changed(old: &str, new: &str) -> (usize, String, String) {
+    let scene = scene(&LIFT.replace(old, new));
+    let told = |error: &StudyError| match error {
+        StudyError::Scene(e) => (e.message.clone(), e.labelled()[0].0.to_owned()),
+        other => panic!("{other}"),
+    };
+    match run(&scene, Command::Kinetostatics, Some(51), &silent) {
+        Err(error) => {
+            let (message, at) = told(&error);
+            (0, message, at)
+        }
+        Ok(followed) => {
+            let table = Table::parse(&file(&followed, "-kinetostatics.csv"));
+            let (message, at) = followed.stopped.as_ref().map(told).unwrap_or_default();
+            (table.column("t").len(), message, at)
+        }
+    }
+}
+
+#[test]
+fn a_way_ends_where_a_load_leaves_its_table() {
+    let table = "{ table = [[0, 1], [2, 2], [3, 1]], of = \"phi\" }";
+    let (reached, message, at) = changed("magnitude = 1", &format!("magnitude = {table}"));
+    // Positions are 0.1 rad apart, the thirty-first at 3 rad, the end of the table.
+    assert_eq!((reached, at.as_str()), (31, table));
+    assert_eq!(
+        message,
+        "the table of load `push` goes from 0 rad (0°) to 3 rad (171.887°), and phi is 3.1 rad \
+         (177.617°) soon after t = 3 s, phi = 3 rad (171.887°)"
+    );
+    let late = "{ table = [[1, 1], [9, 2]] }";
+    let (reached, message, at) = changed("magnitude = 1", &format!("magnitude = {late}"));
+    assert_eq!((reached, at.as_str()), (0, late));
+    assert_eq!(
+        message,
+        "the table of load `push` goes from 1 s to 9 s, and t is 0 s at the first position, \
+         t = 0 s, phi = 0 rad (0°)"
+    );
+    let whole = "magnitude = { table = [[0, 1], [5, 2]], of = \"phi\" }";
+    assert_eq!(changed("magnitude = 1", whole).0, 51);
+}
+
+#[test]
+fn a_way_ends_where_a_relation_jumps_or_is_not_finite() {
+    let relation = |text: &str| changed("\"0.01*x\"", &format!("\"{text}\""));
+    let (reached, message, at) = relation("0.01*x + if(x > 3.05, 1, 0)");
+    assert_eq!(
+        (reached, at.as_str()),
+        (31, "expression = \"0.01*x + if(x > 3.05, 1, 0)\"")
+    );
+    assert_eq!(
+        message,
+        "the function of relation `lift` jumps soon after t = 3 s, phi = 3 rad (171.887°), where its \
+         variable passes x = 3.05"
+    );
+    let (reached, message, at) = relation("sqrt(3.05 - x)");
+    assert_eq!(
+        (reached, at.as_str()),
+        (31, "expression = \"sqrt(3.05 - x)\"")
+    );
+    assert_eq!(
+        message,
+        "the function of relation `lift` has no finite value at x = 3.05, soon after t = 3.05 s, \
+         phi = 3.05 rad (174.752°)"
+    );
+    let (_, message, at) = relation("sqrt(x)");
+    assert_eq!(at, "expression = \"sqrt(x)\"");
+    assert_eq!(
+        message,
+        "the function of relation `lift` has no finite slope at x = 0, where the mechanism starts"
+    );
+    // A bend is no jump.
+    assert_eq!(relation("0.01*abs(x - 3.05)").0, 51);
+}
+
+#[test]
+fn a_law_that_jumps_or_turns_too_far_is_refused() {
+    let law = |text: &str| changed("speed = 1.0", &format!("expression = \"{text}\""));
+    for (text, words) in [
+        (
+            "t + floor(t/3.05)",
+            "jumps at t = 3.05 s, from 3.05 to 4.05",
+        ),
+        (
+            "1 - 0.001*sign(t - 0.1)",
+            "jumps at t = 0.1 s, from 1.001 to 1",
+        ),
+        ("3e5*t", "is more than 1e6 rad at t = 3.4 s"),
+    ] {
+        let expected = (0, format!("the law of `phi` {words}"), "phi".to_owned());
+        assert_eq!(law(text), expected);
+    }
+    for text in ["1.9e5*t", "if(t < 2, t^2, 4*t - 4)", "max(t, 2*t - 3)"] {
+        assert_eq!(law(text).0, 51, "{text}");
+    }
+}
+
 #[test]
 fn without_ends_a_sweep_fills_the_range_but_for_a_thousandth() {
     let followed = follow(&scene(&limited("")), Command::Kinematics, 21);
@@ -74,6 +198,71 @@ fn without_ends_a_sweep_fills_the_range_but_for_a_thousandth() {
         // The ends of the range are found by halving, to about 1e-13.
         assert!((at - end * 0.998).abs() < 1e-9, "{at} {end}");
     }
+}
+
+/// A rod that slides in an arm leads a slider on a line 0.1 m above the arm's pivot: pushed out, it
+/// never comes to an end.
+const RAM: &str = r#"
+[bodies.ground]
+points = { A = [0, 0], S = [0, 0.1] }
+[bodies.arm]
+points = { A = [0, 0] }
+[bodies.rod]
+points = { P = [0, 0] }
+[bodies.slider]
+points = { P = [0, 0] }
+mass = 1
+center = "P"
+[joints]
+A = { revolute = ["ground.A", "arm.A"] }
+T = { prismatic = ["arm.A", "rod.P"], axis = [1, 0] }
+P = { revolute = ["rod.P", "slider.P"] }
+S = { prismatic = ["ground.S", "slider.P"], axis = [1, 0] }
+[actuators]
+d = { length = "T" }
+[assembly]
+d = 0.2
+arm = 0.5
+[sweep]
+"#;
+
+#[test]
+fn where_the_search_gave_up_is_no_end_of_the_mechanism() {
+    let told = check(&scene(RAM)).unwrap().summary;
+    assert!(
+        told.contains("m; no upper end was met, it is followed no farther"),
+        "{told}"
+    );
+    let swept = follow(&scene(RAM), Command::Statics, 11);
+    assert!(swept.stopped.is_none());
+    let d = Table::parse(&file(&swept, "-statics.csv")).column("d");
+    // From its one end, a thousandth left out, to a part of its size beyond the start: the ends are
+    // found to about 1e-13.
+    let (low, high) = (0.1, 0.2 + 0.25 * 0.1);
+    assert!(
+        (d[0] - low - 1e-3 * (high - low)).abs() < 1e-9 && d[10] == high,
+        "{d:?}"
+    );
+    let far = follow(&scene(&format!("{RAM}d = [10, 100]")), Command::Statics, 11);
+    let Some(StudyError::Scene(error)) = far.stopped else {
+        panic!("it was followed without end");
+    };
+    assert!(
+        error
+            .message
+            .contains("no end was met before, and no position is known beyond"),
+        "{}",
+        error.message
+    );
+}
+
+#[test]
+fn check_knows_which_columns_there_are() {
+    let text = WEIGHTS.replace("[requests]", "[requests]\nvariables = [\"rocker.angel\"]");
+    let Err(StudyError::Scene(error)) = check(&scene(&text)) else {
+        panic!("there is no such column");
+    };
+    assert_eq!(error.message, "there is no column `rocker.angel`");
 }
 
 #[test]

@@ -4,5 +4,7 @@
 
 mod ends;
 mod forces;
+mod leverage;
 mod motion;
+mod need;
 mod table;

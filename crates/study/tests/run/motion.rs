@@ -121,3 +121,13 @@ fn the_transmission_angle_closes_a_triangle() {
         assert!((transmission.sin() - rod.cos().abs()).abs() < 1e-14);
     }
 }
+
+/// The angle of a body is that of the coordinate that drives it, with its whole turns.
+#[test]
+fn a_driven_body_counts_as_its_coordinate_does() {
+    let mut scene = case("rolling-wheel");
+    scene.requests.variables = None;
+    let table = table(&scene, Command::Kinetostatics, 7);
+    let (phi, wheel) = (table.column("phi"), table.column("wheel.angle"));
+    assert!(phi[0] == -6.0 && phi == wheel, "{phi:?} {wheel:?}");
+}

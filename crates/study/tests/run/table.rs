@@ -18,7 +18,11 @@ impl Table {
     pub(crate) fn parse(text: &str) -> Self {
         let mut lines = text.lines();
         let name = |cell: &str| cell.split(" [").next().unwrap().to_owned();
-        let row = |line: &str| line.split(',').map(|v| v.parse().unwrap()).collect();
+        let cell = |v: &str| match v {
+            "" => f64::NAN,
+            v => v.parse().unwrap(),
+        };
+        let row = |line: &str| line.split(',').map(cell).collect();
         Self {
             names: lines.next().unwrap().split(',').map(name).collect(),
             rows: lines.map(row).collect(),

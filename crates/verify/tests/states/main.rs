@@ -6,6 +6,8 @@
     reason = "a test, its producer of states too"
 )]
 
+#[path = "../subjects/gauss.rs"]
+mod gauss;
 mod mechanisms;
 mod plain;
 mod setup;

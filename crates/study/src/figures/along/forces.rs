@@ -1,7 +1,7 @@
 //! Actions, reactions, power and inner forces.
 
 use super::{Sheet, TOGETHER};
-use crate::figures::symbol;
+use crate::figures::{drawn, symbol, tell};
 use crate::run::{Command, Link, Quantity};
 use dwell_geometry::JointId;
 use dwell_report::{Axis, Chart, Figure, Paint, Panel, Series, Stroke};
@@ -28,7 +28,8 @@ impl Sheet<'_> {
     }
 
     /// Forces of the joints by their magnitudes, or the one component they have; then the couples.
-    pub(super) fn reactions(&self) -> Vec<Figure> {
+    /// With what has to be said if not all are drawn.
+    pub(super) fn reactions(&self) -> (Vec<Figure>, Option<String>) {
         let asked = |joint: &JointId| {
             self.scene
                 .requests
@@ -76,8 +77,9 @@ impl Sheet<'_> {
         );
         group("Couples", "couple", self.named(&single("N m"), ""));
         // Three panels fill a page.
-        let pages = panels.chunks(3).enumerate();
-        pages
+        let (drawn, note) = drawn(self.scene, panels.len().div_ceil(3));
+        let pages = panels.chunks(3).take(drawn).enumerate();
+        let mut figures: Vec<Figure> = pages
             .map(|(i, panels)| {
                 let name = match i {
                     0 => "g-reactions".to_owned(),
@@ -86,7 +88,9 @@ impl Sheet<'_> {
                 let words = "The action of each joint's first body on its second.";
                 self.figure(name, "Joint reactions".to_owned(), words, panels.to_vec())
             })
-            .collect()
+            .collect();
+        tell(&mut figures, note.as_deref());
+        (figures, note)
     }
 
     pub(super) fn frame(&self) -> Option<Figure> {

@@ -5,7 +5,7 @@ mod motion;
 
 use super::skeleton::{Frame, Skeleton, place};
 use super::{foot, symbol};
-use crate::run::{Column, Command, Quantity, Record, Way, stands_for};
+use crate::run::{Column, Command, Quantity, Record, Way, is_named};
 use crate::words::digits;
 use dwell_report::{
     Animation, Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Scale, Series, Shape, Stroke,
@@ -37,8 +37,13 @@ struct Sheet<'a> {
     limits: [bool; 2],
 }
 
-/// The pictures of a run but for the film.
-pub(crate) fn run(scene: &Scene, record: &Record, way: &Way<'_>, command: Command) -> Vec<Figure> {
+/// The pictures of a run but for the film, and what has to be said if some are left out.
+pub(crate) fn run(
+    scene: &Scene,
+    record: &Record,
+    way: &Way<'_>,
+    command: Command,
+) -> (Vec<Figure>, Option<String>) {
     let sheet = Sheet::new(scene, record, way, command);
     let mut figures = vec![sheet.mechanism(last_drawn(record, way.period))];
     figures.extend(sheet.angles());
@@ -46,17 +51,18 @@ pub(crate) fn run(scene: &Scene, record: &Record, way: &Way<'_>, command: Comman
     figures.extend(sheet.lengths());
     figures.extend(sheet.transmission());
     figures.extend(sheet.actions());
-    figures.extend(sheet.reactions());
+    let (reactions, note) = sheet.reactions();
+    figures.extend(reactions);
     figures.extend(sheet.frame());
     figures.extend(sheet.power());
     figures.extend(record.links.iter().filter_map(|link| sheet.link(link)));
-    figures
+    (figures, note)
 }
 
 /// The mechanism in motion, with the paths that were asked for.
 pub(crate) fn film(scene: &Scene, record: &Record, way: &Way<'_>) -> Animation {
     let sheet = Sheet::new(scene, record, way, Command::Kinematics);
-    let skeleton = Skeleton::new(scene, &record.frames);
+    let skeleton = Skeleton::new(scene, &record.frames).showing(&record.placed);
     let last = last_drawn(record, way.period);
     let count = FRAMES.min(last + 1);
     // Over a whole turn the last position is the first again.
@@ -247,8 +253,7 @@ impl<'a> Sheet<'a> {
 
     /// Whether a column was asked for by name.
     fn is_wanted(&self, column: &Column) -> bool {
-        let names = self.scene.requests.variables.iter().flatten();
-        names.into_iter().any(|n| stands_for(n, &column.name))
+        is_named(self.scene, column)
     }
 
     /// Columns in their order, by what they hold.
@@ -282,7 +287,7 @@ impl<'a> Sheet<'a> {
 
     /// The mechanism in several positions up to the `last`th.
     fn mechanism(&self, last: usize) -> Figure {
-        let skeleton = Skeleton::new(self.scene, &self.record.frames);
+        let skeleton = Skeleton::new(self.scene, &self.record.frames).showing(&self.record.placed);
         let frames = &self.record.frames[..=last];
         let mut shapes = Vec::new();
         let drawn = if closes(frames) { DRAWN } else { DRAWN - 1 };
@@ -298,7 +303,18 @@ impl<'a> Sheet<'a> {
         if let Some(first) = frames.first() {
             skeleton.draw(first, 0.0, &mut shapes);
         }
-        let words = format!("Drawn in full at {}, lighter further on.", self.told(0));
+        let absent = self.record.absent(self.scene);
+        let absent = match absent.is_empty() {
+            true => String::new(),
+            false => format!(
+                " Not modelled, as nothing needs them: {}.",
+                absent.join(", ")
+            ),
+        };
+        let words = format!(
+            "Drawn in full at {}, lighter further on.{absent}",
+            self.told(0)
+        );
         Figure {
             name: "a-mechanism".to_owned(),
             title: self.scene.title.clone(),

@@ -1,6 +1,6 @@
 //! The mechanisms of the tests.
 
-use super::subject::DenseSubject;
+use super::dense::DenseSubject;
 use dwell_geometry::{Actuator, Body, BodyId, Drive, Joint, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
 use dwell_verify::{Case, Range, spread};

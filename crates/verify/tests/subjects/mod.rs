@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test binary uses its part")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]
 
+pub(crate) mod dense;
 pub(crate) mod faulty;
+mod gauss;
 pub(crate) mod mechanisms;
-pub(crate) mod subject;
