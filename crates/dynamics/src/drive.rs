@@ -11,7 +11,7 @@
 
 use dwell_geometry::measure::{BodyStates, Measured};
 use dwell_geometry::{Coordinate, Mechanism, Scalar};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Meter, Signal};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude, Meter};
 
 /// What acts along a coordinate s, an actuator's or another.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,8 +111,6 @@ pub(crate) struct Driven {
     pub(crate) state: Option<usize>,
     /// N² J, kg m² or kg.
     pub(crate) inertia: f64,
-    /// Whether time itself has a say in it.
-    pub(crate) timed: bool,
     meter: Meter,
     law: Law,
 }
@@ -190,7 +188,6 @@ impl Driven {
             measured,
             state,
             inertia,
-            timed: timed(magnitude),
             meter: Meter::new(mechanism, magnitude.clone())?,
             law,
         })
@@ -232,14 +229,5 @@ impl Driven {
                 (T::lift(limit * beyond), if held { zero } else { error })
             }
         }
-    }
-}
-
-/// Whether a magnitude depends on time itself.
-pub(crate) fn timed(magnitude: &Magnitude) -> bool {
-    match magnitude {
-        Magnitude::Constant(_) | Magnitude::Friction(_) | Magnitude::Given => false,
-        Magnitude::Law(signal, _) => *signal == Signal::Time,
-        Magnitude::Expression(_, signals) => signals.contains(&Signal::Time),
     }
 }

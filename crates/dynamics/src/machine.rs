@@ -13,11 +13,11 @@
 //! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; work of what has no
 //! potential], so that the energy balance is integrated with the motion.
 
-use crate::drive::{Drive, DriveError, Driven, timed};
+use crate::drive::{Drive, DriveError, Driven};
 use crate::error::DynamicsError;
 use crate::system::System;
 use dwell_geometry::{Dual, Mechanism, Scalar, small};
-use dwell_kinetostatics::{Actions, By, Load, LoadError, Model, Workspace};
+use dwell_kinetostatics::{Actions, By, Load, LoadError, Model, Signal, Workspace};
 use dwell_laws::Law;
 
 /// How a coordinate moves.
@@ -139,8 +139,9 @@ impl Machine {
             // A law that stands still at two moments is a constant to all that follows.
             Guidance::Prescribed(law) => [0.0, 0.7].iter().any(|&t| law.at(t)[1..] != [0.0; 3]),
         });
-        let loads = self.model.loads().iter();
-        led || self.drives.iter().any(|d| d.timed) || loads.map(|l| &l.magnitude).any(timed)
+        // Those of the drives are among them.
+        let mut loads = self.model.loads().iter();
+        led || loads.any(|load| load.magnitude.signals().contains(&Signal::Time))
     }
 
     /// What does work without a potential, in the order of the states.
