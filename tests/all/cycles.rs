@@ -3,7 +3,7 @@
 use crate::machine::{at, machine, parse};
 use crate::world::scene;
 use dwell_dynamics::{
-    Drive, DriveKind, DynamicsError, Machine, Method, Motor, Options, Regulator, flywheel,
+    Drive, DriveKind, DynamicsError, Machine, Method, Motor, Options, Regulator, flywheel, run_up,
     steady_cycle,
 };
 use dwell_kinetostatics::Magnitude;
@@ -121,8 +121,11 @@ fn motors_against_a_constant_torque() {
 
     let l = 0.3;
     let coil = machine(&scene, &[], &[drive(&scene, motor(l))]);
-    let mut guess = coil.start(&[0.0], &[60.0]);
-    guess[2] = 4.0;
+    let guess = run_up(&coil, &coil.start(&[0.0], &[0.0]), 2, &FINE).expect("a start from rest");
+    assert!(
+        (guess[0] - 2.0 * TAU).abs() < 1e-12 && guess[1] > 0.0,
+        "{guess:?}"
+    );
     let cycle = steady_cycle(&coil, &guess, &FINE).expect("a cycle");
     assert!(
         (cycle.mean_speed / speed - 1.0).abs() < 1e-10,
@@ -311,12 +314,47 @@ fn a_press_against_a_long_simulation() {
         let mut from = guess.clone();
         (from[0], from[1]) = (there[0], 1.1 * there[1]);
         let cycle = steady_cycle(&machine, &from, &FINE).expect("a cycle");
-        for i in 1..machine.first_work() {
-            let error = cycle.start[i] / there[i] - 1.0;
-            assert!(error.abs() < 1e-9, "{i}: {error:e}");
+        let same = cycle.start.iter().zip(&there).take(machine.first_work());
+        for (found, simulated) in same.skip(1) {
+            let error = found / simulated - 1.0;
+            assert!(error.abs() < 1e-9, "{found}: {error:e}");
         }
         assert!(cycle.works.iter().sum::<f64>().abs() < 1e-8);
     }
+}
+
+/// What a turn makes of a disturbance, by differences of turns simulated over time.
+#[test]
+fn multipliers_agree_with_differences() {
+    let scene = scene("slider-crank");
+    let machine = machine(&scene, &[], &[drive(&scene, motor(0.02))]);
+    let near = run_up(&machine, &machine.start(&[0.5], &[150.0]), 2, &FINE).expect("a start");
+    assert!((near[0] - 0.5 - 2.0 * TAU).abs() < 1e-12, "{}", near[0]);
+    let cycle = steady_cycle(&machine, &near, &FINE).expect("a cycle");
+    let h = 1e-3;
+    let mut columns = [[0.0; 2]; 2];
+    for (j, column) in columns.iter_mut().enumerate() {
+        let after = |times: f64| {
+            let mut start = cycle.start.clone();
+            start[j + 1] += times * h;
+            run_up(&machine, &start, 1, &FINE).expect("a turn")
+        };
+        let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(after);
+        for (i, slope) in column.iter_mut().enumerate() {
+            let i = i + 1;
+            *slope = (8.0 * (c[i] - b[i]) - (d[i] - a[i])) / (12.0 * h);
+        }
+    }
+    let [[a, c], [b, d]] = columns;
+    let [[one, _], [two, _]] = cycle.multipliers[..] else {
+        panic!("{:?}", cycle.multipliers)
+    };
+    println!("{columns:?} {:?}", cycle.multipliers);
+    // The integration's error of 1e-10 rad/s over h.
+    assert!((a + d - one - two).abs() < 1e-6, "{columns:?}");
+    assert!((a * d - b * c - one * two).abs() < 1e-6, "{columns:?}");
+    // Both are real here, and what disturbs the current disturbs the speed.
+    assert!(b.abs() > 0.01 && cycle.multipliers[0][1] == 0.0);
 }
 
 #[test]

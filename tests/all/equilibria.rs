@@ -252,6 +252,9 @@ fn linearised_inputs_and_outputs_agree_with_differences() {
     assert_eq!(values.len(), rows.len());
     assert_eq!(values, plain);
     assert!(linear.c.len() == 4 + 4 + 2 && linear.d[0].len() == 2);
+    // The voltage over the inductance; the regulator's share at once.
+    assert_eq!(linear.b[4..], [[20.0, 0.0], [0.0, 1.0]]);
+    assert_eq!(linear.d[8..], [[0.0, 0.0], [0.0, 0.4]]);
     for j in 0..states + 2 {
         let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|times| at(j, times));
         for (i, row) in rows.iter().enumerate() {

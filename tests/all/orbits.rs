@@ -2,7 +2,11 @@
 
 use crate::machine::{at, machine, parse};
 use crate::world::{model_for, scene};
-use dwell_dynamics::{DynamicsError, Fate, Machine, Method, Orbit, State, fate};
+use dwell_dynamics::{
+    DynamicsError, Fate, Machine, Method, Orbit, Stability, State, equilibria, fate,
+};
+use dwell_geometry::vec2;
+use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const G: f64 = 9.81;
@@ -35,7 +39,7 @@ fn amplitude(u: f64, k: f64) -> f64 {
         b = (last * b).sqrt();
     }
     let n = a.len() - 1;
-    let mut phi = (1_u32 << n) as f64 * a[n] * u;
+    let mut phi = f64::from(1_u32 << n) * a[n] * u;
     for i in (1..=n).rev() {
         phi = 0.5 * (phi + (c[i] / a[i] * phi.sin()).asin());
     }
@@ -230,12 +234,7 @@ fn a_heavy_crank_rocker() {
     let free = Orbit::new(&model, from(PI / 3.0, 10.0)).expect("a period");
     // Independent 40 digits: 0.7314883837332249723 s.
     assert!((free.period / 0.731_488_383_733_225 - 1.0).abs() < 4e-15);
-    let heavy = parse(
-        "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.bar]\npoints = { A = [0, 0] }\nmass = 1.0\n\
-         center = \"A\"\n[joints]\nA = { revolute = [\"ground.A\", \"bar.A\"] }\n[actuators.p]\n\
-         angle = [\"ground\", \"bar\"]\n[loads]\nweight = { gravity = [0, -9.81] }\n",
-    );
-    scene.loads = heavy.loads;
+    scene.loads = weight();
     let machine = machine(&scene, &[], &[]);
     for (speed, turns) in [
         (10.0, true),
@@ -265,5 +264,53 @@ fn a_heavy_crank_rocker() {
             );
             assert!((end[1] - exact.q_dot).abs() < 1e-9, "{speed} {part}");
         }
+    }
+}
+
+/// Gravity for a scene that has none.
+fn weight() -> Vec<Load> {
+    vec![Load {
+        name: "weight".into(),
+        kind: LoadKind::Gravity {
+            direction: vec2(0.0, -1.0),
+        },
+        magnitude: Magnitude::Constant(G),
+    }]
+}
+
+/// A heavy six-bar that turns only between two limit positions: at its lowest it swings with its natural
+/// frequency; pushed harder it reaches one of them.
+#[test]
+fn a_swing_within_limits() {
+    let mut scene = scene("class-three-six-bar");
+    scene.loads = weight();
+    let machine = machine(&scene, &[], &[]);
+    let (low, to) = machine.model().plan().range().limits().expect("limits");
+    let found = equilibria(&machine, [low + 1e-3, to - 1e-3]).expect("equilibria");
+    let rest = found
+        .iter()
+        .find(|e| e.stability == Stability::Centre)
+        .expect("a lowest position");
+    let q = rest.y[0];
+    let natural = TAU / rest.modes()[0].frequency;
+    let swing = |away: f64| {
+        Orbit::loaded(&machine, from(q + away, 0.0))
+            .expect("an orbit")
+            .period
+    };
+    // The period of a small swing grows with the square of its width.
+    let [wide, narrow] = [2e-4, 1e-4].map(swing);
+    let limit = narrow - (wide - narrow) / 3.0;
+    println!("{:e}", limit / natural - 1.0);
+    assert!((limit / natural - 1.0).abs() < 1e-9, "{limit} {natural}");
+    let orbit = Orbit::loaded(&machine, from(q + 0.1, 0.0)).expect("an orbit");
+    let y = machine.start(&[q + 0.1], &[0.0]);
+    let end = at(&machine, &y, orbit.period, Method::Tsit45, 1e-13);
+    assert!((end[0] - q - 0.1).abs() < 1e-11, "{:e}", end[0] - q - 0.1);
+    for (speed, end) in [(1e3, to), (-1e3, low)] {
+        let Ok(Fate::Ends { at }) = fate(&machine, from(q, speed)) else {
+            panic!("reaches its limit")
+        };
+        assert!((at - end).abs() < 1e-12);
     }
 }

@@ -11,6 +11,7 @@
 //! for; its sensitivity is integrated with it, and Newton's method (3) converges quadratically. The
 //! eigenvalues of S are the Floquet multipliers: what is left of a disturbance after a turn.
 
+use crate::along::Along;
 use crate::driver::{Dense, Next, integrate};
 use crate::error::DynamicsError;
 use crate::linear::eigenvalues;
@@ -37,9 +38,6 @@ const STALLED: f64 = 0.1;
 const LOOKS: usize = 4;
 /// Samples of a cycle.
 const SAMPLES: usize = 360;
-/// Trials for the inertia of a flywheel, and how near its fluctuation must come.
-const MOST_TRIALS: usize = 40;
-const NEAR: f64 = 1e-9;
 
 /// A steady cycle.
 #[derive(Debug, Clone, PartialEq)]
@@ -73,15 +71,6 @@ impl Cycle {
     pub fn stable(&self) -> bool {
         self.multipliers.iter().all(|[re, im]| re.hypot(*im) < 1.0)
     }
-}
-
-/// A flywheel for a wanted fluctuation.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Flywheel {
-    /// Moment of inertia to be added along the coordinate, kg m²; zero where none is needed.
-    pub inertia: f64,
-    /// The cycle with it.
-    pub cycle: Cycle,
 }
 
 /// The steady cycle of a machine of one free angle, from a state near it: its coordinate is where the
@@ -134,65 +123,51 @@ pub fn steady_cycle(
     })
 }
 
-/// The flywheel that keeps the coefficient of fluctuation of a machine's steady cycle to `wanted`.
+/// The state after some whole turns from a start, at rest or not: a guess for [`steady_cycle`].
 ///
 /// # Errors
-/// As [`steady_cycle`].
-pub fn flywheel(
+/// As of [`Machine::evaluate`] and [`integrate`]: a budget of steps among them, where it never gets round.
+pub fn run_up(
     machine: &Machine,
-    guess: &[f64],
-    wanted: f64,
+    start: &[f64],
+    turns: u32,
     options: &Options,
-) -> Result<Flywheel, DynamicsError> {
-    if !(wanted.is_finite() && wanted > 0.0) {
-        return Err(DynamicsError::BadOption {
-            what: "the coefficient of fluctuation",
-            must: "positive number",
-            value: wanted,
-        });
-    }
-    let own = machine.flywheel(0);
-    let mut guess = guess.to_vec();
-    let mut with = |inertia: f64| -> Result<Cycle, DynamicsError> {
-        let heavier = machine.clone().with_flywheel(0, own + inertia);
-        let cycle = steady_cycle(&heavier, &guess, options)?;
-        guess.clone_from(&cycle.start);
-        Ok(cycle)
-    };
-    let cycle = with(0.0)?;
-    if cycle.fluctuation <= wanted {
-        return Ok(Flywheel {
-            inertia: 0.0,
-            cycle,
-        });
-    }
-    // The inverse of the fluctuation is nearly a straight line over the inertia.
-    let off = |cycle: &Cycle| wanted / cycle.fluctuation - 1.0;
-    let mut before = (0.0, off(&cycle));
-    let mut work = machine.work();
-    machine.evaluate(0.0, &cycle.start, &mut work)?;
-    let [kinetic, _] = machine.energy(&work);
-    let mean = 2.0 * kinetic / cycle.start[1].powi(2);
-    let mut inertia = mean * (cycle.fluctuation / wanted - 1.0);
-    for _ in 0..MOST_TRIALS {
-        let cycle = with(inertia)?;
-        let now = (inertia, off(&cycle));
-        if now.1.abs() <= NEAR {
-            return Ok(Flywheel { inertia, cycle });
+) -> Result<Vec<f64>, DynamicsError> {
+    let mut moving = Moving::new(machine, 0.0, start)?;
+    let from = start[0];
+    let way = TAU * f64::from(turns);
+    let mut reached = start.to_vec();
+    let mut watch = |before: &Point, now: &Point, dense: Dense<'_>| {
+        if (now.y[0] - from).abs() < way {
+            return Ok(Next::GoOn);
         }
-        let slope = (now.1 - before.1) / (now.0 - before.0);
-        let next = now.0 - now.1 / slope;
-        // Where the line misleads, half as much or twice.
-        inertia = if next.is_finite() {
-            next.clamp(0.5 * now.0, 4.0 * now.0)
-        } else {
-            2.0 * now.0
+        reached.clone_from(&now.y);
+        let off = |t: f64| -> Result<f64, DynamicsError> {
+            if t < now.t {
+                dense(t, &mut reached)?;
+            } else {
+                reached.clone_from(&now.y);
+            }
+            Ok((reached[0] - from).abs() - way)
         };
-        before = now;
+        if let Some(t) = root::zero(off, before.t, now.t)?
+            && t < now.t
+        {
+            dense(t, &mut reached)?;
+        }
+        Ok(Next::Stop)
+    };
+    let start = Point {
+        t: 0.0,
+        y: start.to_vec(),
+    };
+    let ended = integrate(&mut moving, &start, None, options, &mut watch)?;
+    if let Some(error) = ended.failed {
+        return Err(error);
     }
-    Err(DynamicsError::NoCycle {
-        what: "no flywheel gives this coefficient of fluctuation",
-    })
+    // The works are those of a cycle to come.
+    reached[machine.first_work()..].fill(0.0);
+    Ok(reached)
 }
 
 /// One cycle from z.
@@ -204,15 +179,15 @@ struct Lap {
 }
 
 /// A machine that turns.
-struct Turning<'m> {
-    machine: &'m Machine,
+pub(crate) struct Turning<'m> {
+    pub(crate) machine: &'m Machine,
     options: Options,
     /// Where a cycle begins, rad.
-    from: f64,
+    pub(crate) from: f64,
     /// +1 or −1.
-    way: f64,
+    pub(crate) way: f64,
     /// A cycle, rad.
-    turn: f64,
+    pub(crate) turn: f64,
 }
 
 impl<'m> Turning<'m> {
@@ -243,7 +218,7 @@ impl<'m> Turning<'m> {
     }
 
     /// Number of unknowns.
-    fn unknowns(&self) -> usize {
+    pub(crate) fn unknowns(&self) -> usize {
         self.machine.first_work() - 1
     }
 
@@ -296,7 +271,7 @@ impl<'m> Turning<'m> {
         let mut step: Vec<f64> = z.iter().zip(&lap.z).map(|(z, after)| z - after).collect();
         let mut pivots = vec![0; n];
         let factored = small::factor(&mut matrix, &mut pivots);
-        if !(factored.measure > 0.0) {
+        if factored.sign == 0.0 || factored.measure == 0.0 {
             return Err(DynamicsError::NoCycle {
                 what: "nothing brings the machine back to any one speed",
             });
@@ -306,7 +281,7 @@ impl<'m> Turning<'m> {
     }
 
     /// The state of the machine at a way from the start.
-    fn state(&self, along: f64, x: &[f64]) -> Point {
+    pub(crate) fn state(&self, along: f64, x: &[f64]) -> Point {
         let mut y = x[..self.machine.states()].to_vec();
         let t = y[0];
         y[0] = self.from + self.way * along;
@@ -418,121 +393,4 @@ fn repeats(machine: &Machine, y: &[f64]) -> Result<Option<f64>, DynamicsError> {
         }
     }
     Ok(None)
-}
-
-/// The machine over the way of its coordinate: time takes the coordinate's place among the states, and
-/// the columns of S follow them.
-struct Along<'t, 'm> {
-    turning: &'t Turning<'m>,
-    moving: Moving<'m>,
-    /// Columns of S that are carried.
-    columns: usize,
-    y: Vec<f64>,
-    rates: Vec<f64>,
-    jacobian: Vec<f64>,
-}
-
-impl<'t, 'm> Along<'t, 'm> {
-    fn new(turning: &'t Turning<'m>, x: &[f64], columns: usize) -> Result<Self, DynamicsError> {
-        let n = turning.machine.states();
-        let moving = Moving::new(turning.machine, 0.0, &turning.state(0.0, x).y)?;
-        Ok(Self {
-            turning,
-            moving,
-            columns,
-            y: vec![0.0; n],
-            rates: vec![0.0; n],
-            jacobian: vec![0.0; n * n],
-        })
-    }
-
-    /// ẏ at a way, and 1/|q̇|.
-    fn evaluate(&mut self, along: f64, x: &[f64]) -> Result<f64, DynamicsError> {
-        let Turning { from, way, .. } = *self.turning;
-        self.y.copy_from_slice(&x[..self.rates.len()]);
-        self.y[0] = from + way * along;
-        let speed = way * self.y[1];
-        if !(speed > 0.0) {
-            return Err(DynamicsError::Stalls { q: self.y[0] });
-        }
-        self.moving.rates(x[0], &self.y, &mut self.rates)?;
-        // dt/dt, where the coordinate's rate stood.
-        self.rates[0] = 1.0;
-        Ok(1.0 / speed)
-    }
-
-    /// ∂(ẋ/|q̇|)/∂x of the machine's states, row by row, and 1/|q̇|.
-    fn slope(&mut self, along: f64, x: &[f64]) -> Result<f64, DynamicsError> {
-        let slow = self.evaluate(along, x)?;
-        let n = self.rates.len();
-        self.moving.jacobian(x[0], &self.y, &mut self.jacobian)?;
-        for (i, row) in self.jacobian.chunks_exact_mut(n).enumerate() {
-            if i == 0 {
-                row.fill(0.0);
-            }
-            // The coordinate is no state here, and nothing depends on time.
-            row[0] = 0.0;
-            row[1] -= self.rates[i] * slow * self.turning.way;
-            row.iter_mut().for_each(|entry| *entry *= slow);
-        }
-        Ok(slow)
-    }
-}
-
-impl System for Along<'_, '_> {
-    fn size(&self) -> usize {
-        self.rates.len() + self.columns * self.turning.unknowns()
-    }
-
-    fn rates(&mut self, along: f64, x: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        let n = self.rates.len();
-        let slow = if self.columns > 0 {
-            let slow = self.slope(along, x)?;
-            let unknowns = self.turning.unknowns();
-            let (s, ds) = (&x[n..], &mut out[n..]);
-            for i in 0..unknowns {
-                for j in 0..unknowns {
-                    let terms = (0..unknowns)
-                        .map(|k| self.jacobian[(i + 1) * n + k + 1] * s[k * unknowns + j]);
-                    ds[i * unknowns + j] = terms.sum();
-                }
-            }
-            slow
-        } else {
-            self.evaluate(along, x)?
-        };
-        for (out, rate) in out.iter_mut().zip(&self.rates) {
-            *out = rate * slow;
-        }
-        Ok(())
-    }
-
-    /// Without what S itself would have to be differentiated for: implicit methods then take some steps
-    /// of their Newton's method more.
-    fn jacobian(&mut self, along: f64, x: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        self.slope(along, x)?;
-        let (n, size, unknowns) = (self.rates.len(), self.size(), self.turning.unknowns());
-        out.fill(0.0);
-        for i in 0..n {
-            out[i * size..i * size + n].copy_from_slice(&self.jacobian[i * n..(i + 1) * n]);
-        }
-        for j in 0..self.columns {
-            for i in 0..unknowns {
-                for k in 0..unknowns {
-                    let [row, column] = [i, k].map(|r| n + r * unknowns + j);
-                    out[row * size + column] = self.jacobian[(i + 1) * n + k + 1];
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn weight(&self, state: usize) -> f64 {
-        match state {
-            // A time is measured by a turn's.
-            0 => self.turning.turn / self.moving.work.q_dot[self.turning.machine.free()[0]].abs(),
-            state if state < self.rates.len() => self.moving.weight(state),
-            _ => 1.0,
-        }
-    }
 }

@@ -162,10 +162,9 @@ impl Driven {
         let (magnitude, law, inertia, state) = match &drive.kind {
             DriveKind::Action(magnitude) => (magnitude, Law::Action, 0.0, None),
             DriveKind::Motor(m) => {
-                if !not_negative(&[m.inductance, m.inertia, m.resistance])
-                    || !(m.constant.is_finite() && m.ratio.is_finite())
-                    || m.resistance == 0.0
-                {
+                let finite = m.constant.is_finite() && m.ratio.is_finite();
+                let positive = not_negative(&[m.inductance, m.inertia, m.resistance]);
+                if !(finite && positive) || m.resistance == 0.0 {
                     return Err("a motor needs a resistance above zero, no number below zero");
                 }
                 let law = Law::Motor([m.constant * m.ratio, m.resistance, m.inductance]);

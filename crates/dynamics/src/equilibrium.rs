@@ -16,6 +16,8 @@ const MOST_STEPS: usize = 100;
 const MOST_HALVINGS: usize = 40;
 /// Most that a coordinate is moved in a step, rad (or m): an angle further on is another place.
 const MOST_MOVED: f64 = 0.5;
+/// A step this small, relatively, that comes no nearer is rounding.
+const NEAR: f64 = 1e-9;
 /// A force below this part of the largest is none.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// A real part below this part of the largest eigenvalue is none.
@@ -126,29 +128,7 @@ pub fn equilibria(
             what: "every position is one",
         });
     }
-    let mut zeros = Vec::new();
-    zeros.extend((seen[0].1 == 0.0).then_some(from));
-    for pair in seen.windows(2) {
-        let [before, now] = [pair[0], pair[1]];
-        if now.1 == 0.0 {
-            zeros.push(now.0);
-        } else if before.1 * now.1 < 0.0 {
-            zeros.extend(root::zero(|q| rest.acceleration(q), before.0, now.0)?);
-        } else if before.1 * before.2 < 0.0 && now.1 * now.2 > 0.0 {
-            // It comes nearer to zero, and goes away from it again.
-            let slope = |q: f64| rest.acceleration(q).and_then(|_| rest.slope());
-            let Some(nearest) = root::zero(slope, before.0, now.0)? else {
-                continue;
-            };
-            let least = rest.acceleration(nearest)?;
-            if least.abs() <= ROUNDING * size {
-                zeros.push(nearest);
-            } else if least * now.1 < 0.0 {
-                zeros.extend(root::zero(|q| rest.acceleration(q), before.0, nearest)?);
-                zeros.extend(root::zero(|q| rest.acceleration(q), nearest, now.0)?);
-            }
-        }
-    }
+    let mut zeros = rest.zeros(&seen, size)?;
     let turns = (to - from) / TAU;
     let ends = [zeros.first(), zeros.last()] == [Some(&from), Some(&to)];
     if ends && turns == turns.round() && machine.model().plan().range().period().is_some() {
@@ -257,6 +237,34 @@ impl<'m> Rest<'m> {
         Ok(self.jacobian[n] + more)
     }
 
+    /// The zeros of q̈ between (q, q̈, dq̈/dq) at many q; `size` is the largest q̈.
+    fn zeros(&mut self, seen: &[(f64, f64, f64)], size: f64) -> Result<Vec<f64>, DynamicsError> {
+        let mut zeros = Vec::new();
+        zeros.extend((seen[0].1 == 0.0).then_some(seen[0].0));
+        for pair in seen.windows(2) {
+            let [before, now] = [pair[0], pair[1]];
+            if now.1 == 0.0 {
+                zeros.push(now.0);
+            } else if before.1 * now.1 < 0.0 {
+                zeros.extend(root::zero(|q| self.acceleration(q), before.0, now.0)?);
+            } else if before.1 * before.2 < 0.0 && now.1 * now.2 > 0.0 {
+                // It comes nearer to zero, and goes away from it again.
+                let slope = |q: f64| self.acceleration(q).and_then(|_| self.slope());
+                let Some(nearest) = root::zero(slope, before.0, now.0)? else {
+                    continue;
+                };
+                let least = self.acceleration(nearest)?;
+                if least.abs() <= ROUNDING * size {
+                    zeros.push(nearest);
+                } else if least * now.1 < 0.0 {
+                    zeros.extend(root::zero(|q| self.acceleration(q), before.0, nearest)?);
+                    zeros.extend(root::zero(|q| self.acceleration(q), nearest, now.0)?);
+                }
+            }
+        }
+        Ok(zeros)
+    }
+
     /// Solves with a block of the Jacobian in place.
     fn divide(
         &self,
@@ -269,7 +277,8 @@ impl<'m> Rest<'m> {
         let mut block: Vec<f64> = rows.iter().flat_map(entry).collect();
         let mut pivots = vec![0; rows.len()];
         let factored = small::factor(&mut block, &mut pivots);
-        if !rows.is_empty() && !(factored.measure > SINGULAR) {
+        let regular = factored.sign != 0.0 && factored.measure > SINGULAR;
+        if !(rows.is_empty() || regular) {
             return Err(DynamicsError::NoEquilibrium {
                 what: "the linear equations for it have no single solution, as with a drive that integrates",
             });
@@ -280,55 +289,49 @@ impl<'m> Rest<'m> {
 
     /// Newton's method: some rates to zero, by some states.
     fn solve(&mut self, rows: &[usize], columns: &[usize]) -> Result<(), DynamicsError> {
-        let size = |rest: &Self| {
-            rows.iter()
-                .map(|&i| rest.rates[i].powi(2))
-                .sum::<f64>()
-                .sqrt()
+        let size = |rates: &[f64]| {
+            let squares = rows.iter().map(|&i| rates[i] * rates[i]);
+            squares.sum::<f64>().sqrt()
         };
         let n = self.machine.free().len();
         self.rates()?;
-        let mut left = size(self);
+        let mut left = size(&self.rates);
         for _ in 0..MOST_STEPS {
             self.differentiate()?;
             let mut step: Vec<f64> = rows.iter().map(|&i| -self.rates[i]).collect();
             self.divide(rows, columns, &mut step)?;
             let from = self.y.clone();
-            let small = |factor: f64, y: &[f64]| {
-                let mut both = columns.iter().zip(&step);
-                both.all(|(&j, step)| {
-                    (factor * step).abs() <= 4.0 * f64::EPSILON * y[j].abs().max(1e-3)
-                })
+            let largest = |of: &dyn Fn(usize, f64) -> f64| {
+                let both = columns.iter().zip(&step);
+                both.fold(0.0_f64, |most, (&j, &step)| most.max(of(j, step)))
             };
-            let coordinates = columns.iter().zip(&step).filter(|(j, _)| **j < n);
-            let moved = coordinates.map(|(_, s)| s.abs()).fold(0.0, f64::max);
+            let relative = largest(&|j, step| step.abs() / from[j].abs().max(1.0));
+            let moved = largest(&|j, step| if j < n { step.abs() } else { 0.0 });
             let mut factor = (MOST_MOVED / moved).min(1.0);
+            let mut nearer = false;
             for _ in 0..MOST_HALVINGS {
                 for (&j, step) in columns.iter().zip(&step) {
                     self.y[j] = from[j] + factor * step;
                 }
-                if self.rates().is_ok() && size(self) < left {
+                nearer = self.rates().is_ok() && size(&self.rates) < left;
+                if nearer {
                     break;
                 }
                 factor *= 0.5;
             }
-            let now = size(self);
-            if left == 0.0 || !(now < left) || small(1.0, &self.y) {
-                // No nearer: rounding if the whole step was small, else a dead end.
-                let near = columns.iter().zip(&step);
-                let done = near
-                    .map(|(&j, s)| s.abs() / from[j].abs().max(1.0))
-                    .fold(0.0, f64::max);
-                if !(now < left) {
-                    self.y = from;
-                    self.rates()?;
-                }
-                if done <= 1e-9 {
+            if !nearer {
+                // Rounding if the whole step was small, else a dead end.
+                self.y = from;
+                self.rates()?;
+                if relative <= NEAR {
                     return Ok(());
                 }
                 break;
             }
-            left = now;
+            left = size(&self.rates);
+            if relative <= 4.0 * f64::EPSILON {
+                return Ok(());
+            }
         }
         Err(DynamicsError::NoEquilibrium {
             what: "Newton's method finds none from there",

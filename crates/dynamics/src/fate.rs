@@ -180,6 +180,16 @@ impl<'a> Flight<'a> {
         Ok((self.kinetic + gained, held.force))
     }
 
+    /// The first step, what the next grow by, and how many there are.
+    fn stride(&self, ends: Option<(f64, f64)>, period: Option<f64>) -> (f64, f64, usize) {
+        match (ends, period) {
+            (Some((from, to)), _) => ((to - from) / STEPS as f64, 1.0, STEPS),
+            (None, Some(period)) => (period / STEPS as f64, 1.0, STEPS),
+            (None, None) if self.field.turns() => (TAU / STEPS as f64, 1.0, MOST_TURNS * STEPS),
+            (None, None) => (FIRST_STEP * (1.0 + self.q.abs()), GROWTH, MOST_STEPS),
+        }
+    }
+
     /// Walks to one side until something is met.
     fn walk(
         &mut self,
@@ -188,18 +198,7 @@ impl<'a> Flight<'a> {
         period: Option<f64>,
     ) -> Result<Met, DynamicsError> {
         let end = ends.map(|(from, to)| if way > 0.0 { to } else { from });
-        let mut step = match (ends, period) {
-            (Some((from, to)), _) => (to - from) / STEPS as f64,
-            (None, Some(period)) => period / STEPS as f64,
-            (None, None) if self.field.turns() => TAU / STEPS as f64,
-            (None, None) => FIRST_STEP * (1.0 + self.q.abs()),
-        };
-        let grows = ends.is_none() && !self.field.turns();
-        let most = match (ends, period) {
-            (None, None) if grows => MOST_STEPS,
-            (None, None) => MOST_TURNS * STEPS,
-            _ => STEPS,
-        };
+        let (mut step, growth, most) = self.stride(ends, period);
         let mut before = (self.q, self.kinetic, self.start.force * way);
         let (mut top, mut spare) = (self.q, self.kinetic);
         for k in 1..=most {
@@ -239,9 +238,7 @@ impl<'a> Flight<'a> {
                 return Ok(Met::End(end));
             }
             before = now;
-            if grows {
-                step *= GROWTH;
-            }
+            step *= growth;
         }
         Ok(match period {
             Some(_) => Met::Nothing { top, spare },

@@ -307,7 +307,8 @@ impl Machine {
         let diagonal = matrix.first().map_or(1.0, |m| m.value());
         let factored = small::factor(matrix, pivots);
         let inertia = factored.sign > 0.0 && factored.measure > 0.0;
-        if !self.free.is_empty() && !(inertia && diagonal > 0.0 && diagonal.is_finite()) {
+        let resists = inertia && diagonal > 0.0 && diagonal.is_finite();
+        if !(self.free.is_empty() || resists) {
             return Err(DynamicsError::NoInertia {
                 q: work.q[self.free[0]].value(),
                 m: diagonal,

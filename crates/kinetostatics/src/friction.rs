@@ -43,7 +43,8 @@ impl Friction {
             return Err("it rubs in a joint that is not there");
         };
         let numbers = [self.coefficient, self.size];
-        if !numbers.iter().all(|n| n.is_finite() && *n >= 0.0) || !(self.fade > 0.0) {
+        let fades = self.fade > 0.0;
+        if !(fades && numbers.iter().all(|n| n.is_finite() && *n >= 0.0)) {
             return Err("a coefficient, size or speed of friction that makes no sense");
         }
         let fits = match (joint.kind, kind) {
