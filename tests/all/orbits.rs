@@ -301,7 +301,6 @@ fn a_swing_within_limits() {
     // The period of a small swing grows with the square of its width.
     let [wide, narrow] = [2e-4, 1e-4].map(swing);
     let limit = narrow - (wide - narrow) / 3.0;
-    println!("{:e}", limit / natural - 1.0);
     assert!((limit / natural - 1.0).abs() < 1e-9, "{limit} {natural}");
     let orbit = Orbit::loaded(&machine, from(q + 0.1, 0.0)).expect("an orbit");
     let y = machine.start(&[q + 0.1], &[0.0]);
