@@ -222,6 +222,9 @@ spring = { spring = ["ground.W", "block.P"], stiffness = 50.0, free = 1.25 }
                 .time_at(0.25 - 0.3 * size)
                 .is_some_and(|t| t < orbit.period)
         );
+        // It was on the same side until then.
+        let side = |t: f64| orbit.at(t).q > 0.25 - 0.3 * size;
+        assert!((0..100).all(|i| side(t * f64::from(i) / 100.0) == side(0.0)));
         assert_eq!(orbit.time_at(0.25 + 1.01 * size), None);
     }
 }
