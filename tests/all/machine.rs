@@ -10,7 +10,7 @@ use dwell_kinetostatics::{Friction, Guide, Load, LoadKind, Magnitude, Model};
 use dwell_scene::Scene;
 
 /// The machine of a scene, all coordinates free, with more loads and drives.
-fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
+pub(crate) fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
     let loads = [&scene.loads, more].concat();
     let frictions = loads.iter().filter_map(|load| match load.magnitude {
         Magnitude::Friction(f) => Some(f.reactions(&scene.mechanism)),
@@ -27,7 +27,13 @@ fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
 }
 
 /// The state at a time.
-fn at(machine: &Machine, y: &[f64], until: f64, method: Method, tolerance: f64) -> Vec<f64> {
+pub(crate) fn at(
+    machine: &Machine,
+    y: &[f64],
+    until: f64,
+    method: Method,
+    tolerance: f64,
+) -> Vec<f64> {
     let mut moving = Moving::new(machine, 0.0, y).expect("a start");
     let start = Point {
         t: 0.0,
@@ -41,7 +47,7 @@ fn at(machine: &Machine, y: &[f64], until: f64, method: Method, tolerance: f64) 
     ended.at.y
 }
 
-fn parse(text: &str) -> Scene {
+pub(crate) fn parse(text: &str) -> Scene {
     Scene::parse("scene.toml", text).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
@@ -83,7 +89,7 @@ fn val_squeezer() {
     }
 }
 
-const DOUBLE: &str = r#"
+pub(crate) const DOUBLE: &str = r#"
 [bodies.ground]
 points = { A = [0, 0] }
 [bodies.one]
@@ -145,10 +151,8 @@ fn a_double_pendulum_by_hand() {
     assert!((after - before).abs() < 1e-10, "{before} {after}");
 }
 
-/// The Jacobian from dual numbers against central differences of the rates, with every kind of load and
-/// drive at once.
-#[test]
-fn jacobians_agree_with_differences() {
+/// A double pendulum with every kind of load and drive at once, and a state of it.
+pub(crate) fn everything() -> (Machine, Vec<f64>) {
     let text = DOUBLE.to_owned()
         + r#"
 spring = { spring = ["ground.A", "two.B"], stiffness = "40 + 5*sin(p)*q.speed", free = 0.1 }
@@ -193,9 +197,17 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
         },
     ];
     let machine = machine(&scene, &[rub("rub-a", 0), rub("rub-b", 1)], &drives);
-    let n = machine.states();
     let mut y = machine.start(&[0.4, -0.3], &[1.7, -1.2]);
     (y[4], y[5]) = (2.0, 0.3);
+    (machine, y)
+}
+
+/// The Jacobian from dual numbers against central differences of the rates, with every kind of load and
+/// drive at once.
+#[test]
+fn jacobians_agree_with_differences() {
+    let (machine, y) = everything();
+    let n = machine.states();
     let mut moving = Moving::new(&machine, 0.0, &y).expect("a start");
     let mut jacobian = vec![0.0; n * n];
     moving.jacobian(0.0, &y, &mut jacobian).expect("a Jacobian");

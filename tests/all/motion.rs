@@ -1,7 +1,7 @@
 //! Free motion: energy, period, time history and the integrators' guard.
 
 use crate::world::{model_for, scene};
-use dwell_dynamics::{DynamicsError, Equation, FreeTurn, Method, Options, State, Until, simulate};
+use dwell_dynamics::{DynamicsError, Equation, Method, Options, Orbit, State, Until, simulate};
 use dwell_geometry::PlaceError;
 use dwell_kinetostatics::{Exact, Reduced};
 
@@ -18,7 +18,7 @@ fn single_dwell() -> Exact {
 #[test]
 fn val_period_of_the_single_dwell() {
     let model = single_dwell();
-    let turn = FreeTurn::new(&model, START).expect("a period");
+    let turn = Orbit::new(&model, START).expect("a period");
     // 50-digit arithmetic: 5.4196626770642718779 s.
     assert!((turn.period - 5.419_662_677_064_272).abs() < 1e-13 * turn.period);
     for (method, within) in [(Method::Bdf, 1e-9), (Method::Tsit45, 1e-11)] {
@@ -33,13 +33,13 @@ fn val_period_of_the_single_dwell() {
 #[test]
 fn the_way_back_takes_as_long() {
     let model = single_dwell();
-    let forward = FreeTurn::new(&model, State { q: 1.0, ..START }).expect("a period");
+    let forward = Orbit::new(&model, State { q: 1.0, ..START }).expect("a period");
     let back = State {
         q: 1.0,
         q_dot: -1.0,
         ..START
     };
-    let backward = FreeTurn::new(&model, back).expect("a period");
+    let backward = Orbit::new(&model, back).expect("a period");
     assert!((forward.period - backward.period).abs() < 1e-14 * forward.period);
     let run = simulate(
         &model,
@@ -49,11 +49,8 @@ fn the_way_back_takes_as_long() {
     );
     let run = run.expect("a run");
     assert!((run.turns[1].t - 2.0 * backward.period).abs() < 1e-10);
-    let mut work = model.work();
-    let there = forward.at(1.5, &model, &mut work).expect("a state");
-    let whole = backward
-        .at(backward.period - 1.5, &model, &mut work)
-        .expect("a state");
+    let there = forward.at(1.5);
+    let whole = backward.at(backward.period - 1.5);
     // A turn forwards and the rest of a turn backwards meet a turn apart.
     assert!((there.q - whole.q - std::f64::consts::TAU).abs() < 1e-12);
     assert!((there.q_dot + whole.q_dot).abs() < 1e-12);
@@ -63,20 +60,19 @@ fn the_way_back_takes_as_long() {
 #[test]
 fn history_by_quadrature_is_the_integrated_one() {
     let model = single_dwell();
-    let turn = FreeTurn::new(&model, START).expect("a period");
+    let turn = Orbit::new(&model, START).expect("a period");
     let mut options = Options::new(Method::Tsit45, 1e-13);
     options.every = Some(0.01);
     let run = simulate(&model, START, Until::Time(12.0), &options).expect("a run");
     assert_eq!(run.samples.len(), 1201);
-    let mut work = model.work();
     for step in &run.steps {
-        let exact = turn.at(step.t, &model, &mut work).expect("a state");
+        let exact = turn.at(step.t);
         assert!((exact.q - step.q).abs() < 1e-11 && (exact.q_dot - step.q_dot).abs() < 1e-11);
-        assert!((turn.time_at(step.q) - step.t).abs() < 1e-11);
+        assert!((turn.time_at(step.q).expect("a time") - step.t).abs() < 1e-11);
     }
     // The dense output is poorer than the steps, but not by much.
     for sample in &run.samples {
-        let exact = turn.at(sample.t, &model, &mut work).expect("a state");
+        let exact = turn.at(sample.t);
         assert!((exact.q - sample.q).abs() < 1e-10, "{sample:?}");
     }
 }

@@ -162,10 +162,9 @@ impl Driven {
         let (magnitude, law, inertia, state) = match &drive.kind {
             DriveKind::Action(magnitude) => (magnitude, Law::Action, 0.0, None),
             DriveKind::Motor(m) => {
-                if !not_negative(&[m.inductance, m.inertia, m.resistance])
-                    || !(m.constant.is_finite() && m.ratio.is_finite())
-                    || m.resistance == 0.0
-                {
+                let finite = m.constant.is_finite() && m.ratio.is_finite();
+                let positive = not_negative(&[m.inductance, m.inertia, m.resistance]);
+                if !(finite && positive) || m.resistance == 0.0 {
                     return Err("a motor needs a resistance above zero, no number below zero");
                 }
                 let law = Law::Motor([m.constant * m.ratio, m.resistance, m.inductance]);
@@ -193,14 +192,16 @@ impl Driven {
         })
     }
 
-    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state.
+    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state, with
+    /// `more` of the action, voltage or speed that it is given.
     pub(crate) fn act<T: Scalar>(
         &self,
         t: f64,
         states: &BodyStates<T>,
         state: Option<T>,
+        more: T,
     ) -> (T, T) {
-        let given = self.meter.at(t, states);
+        let given = self.meter.at(t, states) + more;
         let [_, speed, _] = states.measure(self.measured);
         let zero = T::lift(0.0);
         match self.law {

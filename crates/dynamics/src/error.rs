@@ -102,9 +102,50 @@ pub enum DynamicsError {
         /// Upper limit, rad.
         to: f64,
     },
-    /// The quadrature over a turn did not converge.
+    /// Something takes or gives energy, or there is not one freedom: energy alone does not tell the motion.
+    #[error("the motion does not follow from its energy: {what}")]
+    NotConservative {
+        /// What it is.
+        what: &'static str,
+    },
+    /// The motion has just the energy of an unstable equilibrium, which it nears for ever.
     #[error(
-        "{points} points do not resolve the inertia over a turn (left: {left:.1e} of the period)"
+        "the motion has just the energy to creep up to the unstable equilibrium at q = {q}: it has no period"
+    )]
+    Creeps {
+        /// The equilibrium, rad or m.
+        q: f64,
+    },
+    /// The motion neither turns back nor repeats itself.
+    #[error("the motion goes on past q = {q} and neither turns back nor repeats itself")]
+    GoesOn {
+        /// How far it was followed, rad or m.
+        q: f64,
+    },
+    /// There is no equilibrium, or no single one, where it was looked for.
+    #[error("no equilibrium: {what}")]
+    NoEquilibrium {
+        /// Why not.
+        what: &'static str,
+    },
+    /// There is no steady cycle, or none was found.
+    #[error("no steady cycle: {what}")]
+    NoCycle {
+        /// Why not.
+        what: &'static str,
+    },
+    /// The eigenvalues of a linearisation could not be found.
+    #[error("the eigenvalues of the linearised motion cannot be found")]
+    NoEigenvalues,
+    /// A motion that should turn comes to rest.
+    #[error("the mechanism comes to rest at q = {q} rad and does not complete the turn")]
+    Stalls {
+        /// Where, rad.
+        q: f64,
+    },
+    /// The quadrature over a period did not converge.
+    #[error(
+        "{points} points do not resolve the motion over a period (left: {left:.1e} of the period)"
     )]
     NotResolved {
         /// Number of points tried last.

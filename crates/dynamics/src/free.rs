@@ -1,12 +1,12 @@
 //! The free motion of a mechanism of one degree of freedom without loads.
 
+use crate::conservative::limits;
 use crate::driver::{Dense, Next, integrate};
 use crate::equation::Equation;
 use crate::error::DynamicsError;
 use crate::options::{Options, Statistics};
 use crate::root;
 use crate::system::{Point, System};
-use dwell_geometry::{PlaceError, Range};
 use dwell_kinetostatics::Reduced;
 use std::f64::consts::TAU;
 
@@ -145,19 +145,6 @@ impl<R: Reduced> System for Equation<'_, R> {
         out.copy_from_slice(&[0.0, 1.0, row[0], row[1]]);
         Ok(())
     }
-}
-
-/// The ends of the range, in the turn in which the motion starts; none if the coordinate turns
-/// fully.
-fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>, DynamicsError> {
-    let Some((from, to)) = range.limits() else {
-        return Ok(None);
-    };
-    let turns = TAU * ((q - from) / TAU).floor();
-    if q > to + turns {
-        return Err(PlaceError::OutOfRange { q, from, to }.into());
-    }
-    Ok(Some((from + turns, to + turns)))
 }
 
 /// Locates the whole turns passed in a step, in the direction of the start's speed. They are

@@ -18,7 +18,7 @@ use crate::drive::{Drive, DriveError, Driven};
 use crate::error::DynamicsError;
 use crate::system::System;
 use dwell_geometry::{Dual, Mechanism, Scalar, small};
-use dwell_kinetostatics::{Actions, By, Load, LoadError, Model, Workspace};
+use dwell_kinetostatics::{Actions, By, Load, LoadError, Model, Signal, Workspace};
 use dwell_laws::Law;
 
 /// How a coordinate moves.
@@ -53,6 +53,8 @@ pub struct Machine {
     workers: Vec<Worker>,
     /// Where it crosses change points.
     pub(crate) bridges: Vec<Span>,
+    /// By free coordinate: inertia along it beside that of the bodies and rotors, kg m² or kg.
+    flywheels: Vec<f64>,
 }
 
 /// Why a machine cannot be built.
@@ -98,6 +100,7 @@ impl Machine {
         Ok(Self {
             memory: drives.iter().filter(|d| d.state.is_some()).count(),
             model,
+            flywheels: vec![0.0; free.len()],
             guidance,
             free,
             drives,
@@ -116,9 +119,33 @@ impl Machine {
         &self.free
     }
 
+    /// The same machine with a flywheel (kg m² or kg) along a free coordinate, in place of any it had there.
+    #[must_use]
+    pub fn with_flywheel(mut self, free: usize, inertia: f64) -> Self {
+        self.flywheels[free] = inertia;
+        self
+    }
+
+    /// The flywheel along a free coordinate, kg m² or kg.
+    pub fn flywheel(&self, free: usize) -> f64 {
+        self.flywheels[free]
+    }
+
     /// Number of drives.
     pub fn drives(&self) -> usize {
         self.drives.len()
+    }
+
+    /// Whether time itself has a say in the motion, beside the state.
+    pub fn follows_time(&self) -> bool {
+        let led = self.guidance.iter().any(|guidance| match guidance {
+            Guidance::Free => false,
+            // A law that stands still at two moments is a constant to all that follows.
+            Guidance::Prescribed(law) => [0.0, 0.7].iter().any(|&t| law.at(t)[1..] != [0.0; 3]),
+        });
+        // Those of the drives are among them.
+        let mut loads = self.model.loads().iter();
+        led || loads.any(|load| load.magnitude.signals().contains(&Signal::Time))
     }
 
     /// What does work without a potential, in the order of the states.
@@ -165,6 +192,7 @@ impl Machine {
             pivots: vec![0; n],
             rest: zeros(n),
             action: zeros(self.drives.len()),
+            input: zeros(self.drives.len()),
             spin: self.model.actions(),
             memory: zeros(self.memory),
             crossing: None,
@@ -197,6 +225,9 @@ impl Machine {
         if self.drives.iter().any(|drive| drive.inertia > 0.0) {
             self.spin_up(work)?;
         }
+        for ((unit, &i), &inertia) in work.units.iter_mut().zip(&self.free).zip(&self.flywheels) {
+            unit.tau[i] += T::lift(inertia);
+        }
         for (k, &i) in self.free.iter().enumerate() {
             work.rest[k] = -work.base.tau[i];
             for (column, unit) in work.units.iter().enumerate() {
@@ -211,7 +242,7 @@ impl Machine {
     pub(crate) fn drive<T: Scalar>(&self, t: f64, memory: &[T], work: &mut MachineWork<T>) {
         for (d, drive) in self.drives.iter().enumerate() {
             let state = drive.state.map(|s| memory[s]);
-            let (action, rate) = drive.act(t, work.inner.states(), state);
+            let (action, rate) = drive.act(t, work.inner.states(), state, work.input[d]);
             work.action[d] = action;
             work.inner.give(drive.load, action);
             if let Some(s) = drive.state {
@@ -294,7 +325,8 @@ impl Machine {
         let diagonal = matrix.first().map_or(1.0, |m| m.value());
         let factored = small::factor(matrix, pivots);
         let inertia = factored.sign > 0.0 && factored.measure > 0.0;
-        if !self.free.is_empty() && !(inertia && diagonal > 0.0 && diagonal.is_finite()) {
+        let resists = inertia && diagonal > 0.0 && diagonal.is_finite();
+        if !(self.free.is_empty() || resists) {
             return Err(DynamicsError::NoInertia {
                 q: work.q[self.free[0]].value(),
                 m: diagonal,
@@ -331,7 +363,7 @@ impl Machine {
     }
 
     /// ẏ of the state last evaluated.
-    fn rates<T: Scalar>(&self, work: &MachineWork<T>, out: &mut [T]) {
+    pub(crate) fn rates<T: Scalar>(&self, work: &MachineWork<T>, out: &mut [T]) {
         let n = self.free.len();
         for (k, &i) in self.free.iter().enumerate() {
             out[k] = work.q_dot[i];
@@ -382,14 +414,18 @@ impl Machine {
         Ok(shown.kinetostatics(t, &work.q, &work.q_dot, &work.q_ddot, all, actions)?)
     }
 
-    /// Kinetic energy with that of the rotors, and the potential of the conservative loads, J, at the
+    /// Kinetic energy with that of the rotors and flywheels, and the potential of the conservative loads, J, at the
     /// state last evaluated.
     pub fn energy(&self, work: &MachineWork<f64>) -> [f64; 2] {
         let rotors = self.drives.iter().map(|drive| {
             let [_, speed, _] = work.inner.states().measure(drive.measured);
             0.5 * drive.inertia * speed * speed
         });
-        let kinetic = self.model.kinetic(&work.inner) + rotors.sum::<f64>();
+        let wheels = self.free.iter().zip(&self.flywheels).map(|(&i, inertia)| {
+            let speed = work.q_dot[i];
+            0.5 * inertia * speed * speed
+        });
+        let kinetic = self.model.kinetic(&work.inner) + rotors.sum::<f64>() + wheels.sum::<f64>();
         let potentials = (0..self.model.loads().len())
             .filter_map(|load| self.model.potential(load, &work.inner));
         [kinetic, potentials.sum()]
@@ -436,6 +472,8 @@ pub struct MachineWork<T = f64> {
     pub q_ddot: Vec<T>,
     /// By drive: its action, N·m or N, without what its rotor's inertia takes.
     pub action: Vec<T>,
+    /// By drive: what it is given beside its own action, voltage or speed; zero at first.
+    pub input: Vec<T>,
     spin: Actions<T>,
     base: Actions<T>,
     units: Vec<Actions<T>>,
@@ -446,6 +484,14 @@ pub struct MachineWork<T = f64> {
     rest: Vec<T>,
     memory: Vec<T>,
     pub(crate) crossing: Option<Box<CrossWork<T>>>,
+}
+
+impl<T> MachineWork<T> {
+    /// The actuators' actions (zero on free coordinates) and the reactions that the machine's own model
+    /// computes, of the last evaluation.
+    pub fn actions(&self) -> &Actions<T> {
+        &self.base
+    }
 }
 
 /// A machine with the working memory to integrate it, for one thread.

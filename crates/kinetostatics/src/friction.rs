@@ -20,6 +20,8 @@ use dwell_geometry::{Component, JointKind, Mechanism, Reaction, Scalar, small};
 const MOST_STEPS: usize = 60;
 /// A change of the frictions below this part of them is none.
 const SETTLED: f64 = 4.0 * f64::EPSILON;
+/// Below this part it is none if it falls no further: next to where it jams, rounding is amplified.
+const STUCK: f64 = 1e-6;
 
 /// A friction with what it needs of the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,7 +43,8 @@ impl Friction {
             return Err("it rubs in a joint that is not there");
         };
         let numbers = [self.coefficient, self.size];
-        if !numbers.iter().all(|n| n.is_finite() && *n >= 0.0) || !(self.fade > 0.0) {
+        let fades = self.fade > 0.0;
+        if !(fades && numbers.iter().all(|n| n.is_finite() && *n >= 0.0)) {
             return Err("a coefficient, size or speed of friction that makes no sense");
         }
         let fits = match (joint.kind, kind) {
@@ -187,7 +190,7 @@ impl Model {
             *grip = speed.through(&[tanh, slope, 0.0, 0.0]) * T::lift(rub.friction.coefficient);
         }
         rubbing.force.fill(T::lift(0.0));
-        let mut settled = 0;
+        let (mut settled, mut last) = (0, f64::INFINITY);
         for _ in 0..MOST_STEPS {
             let mut size = 0.0_f64;
             for (j, rub) in self.rubs.iter().enumerate() {
@@ -221,7 +224,9 @@ impl Model {
                 change = change.max(step.value().abs());
             }
             // One step past convergence: it makes the derivative of a dual number exact.
-            settled += usize::from(change <= SETTLED * size);
+            let stuck = change <= STUCK * size && change > 0.5 * last;
+            settled += usize::from(change <= SETTLED * size || stuck);
+            last = change;
             if settled == 2 {
                 for (rub, force) in self.rubs.iter().zip(&rubbing.force) {
                     loaded.loads.magnitude[rub.load] = *force;

@@ -5,7 +5,7 @@ use crate::motion_error::explain_motion;
 use crate::outcome::Outcome;
 use crate::prepare::{Prepared, model};
 use crate::words::{digits, number};
-use dwell_dynamics::{FreeTurn, root};
+use dwell_dynamics::{Orbit, root};
 use dwell_scene::{Place, Scene};
 
 /// A calibrated value.
@@ -195,8 +195,8 @@ fn period_of(scene: &Scene) -> Result<f64, StudyError> {
         q: motion.start[0],
         q_dot: motion.speed[0],
     };
-    let turn = FreeTurn::new(&exact, start)
-        .map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
+    let turn =
+        Orbit::new(&exact, start).map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
     Ok(turn.period)
 }
 

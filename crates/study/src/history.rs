@@ -4,7 +4,7 @@ use crate::error::StudyError;
 use crate::motion_error::explain_motion;
 use crate::prepare::Prepared;
 use crate::simulate::Accuracy;
-use dwell_dynamics::{DynamicsError, FreeTurn, Options, Run, State, Until, simulate as integrate};
+use dwell_dynamics::{DynamicsError, Options, Orbit, Run, State, Until, simulate as integrate};
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Column, Table};
 use dwell_scene::Length;
@@ -43,7 +43,7 @@ impl History {
         accuracy: &Accuracy,
     ) -> Result<Self, DynamicsError> {
         let model = &prepared.model;
-        let period = match FreeTurn::new(model, start) {
+        let period = match Orbit::new(model, start) {
             Ok(turn) => Some(turn.period),
             // Without a period, the motion can still be followed for a given time.
             Err(

@@ -7,12 +7,12 @@ use crate::run::{Command, Followed, Sample, Told, Way, check_variables, loaded, 
 use crate::words::digits;
 use dwell_dynamics::atlas::{Atlas, AtlasError, Chart, Journey, Site, Why};
 use dwell_dynamics::{
-    DriveKind, DynamicsError, Event, FreeTurn, Guidance, Machine, MachineWork, Method, Occurrence,
-    Options, Point, State, Statistics, Trace, Trigger, Worker, all_loads, follow,
+    DriveKind, DynamicsError, Event, Fate, Guidance, Machine, MachineWork, Method, Occurrence,
+    Options, Orbit, Point, State, Statistics, Trace, Trigger, Worker, all_loads, fate, follow,
 };
 use dwell_geometry::measure::Measured;
 use dwell_geometry::{Coordinate, Reaction, Start};
-use dwell_kinetostatics::{Exact, Magnitude, Model};
+use dwell_kinetostatics::{Magnitude, Model};
 use dwell_report::{Column, Table};
 use dwell_scene::{EventTrigger, Length, Motion, Place, Scene};
 use std::fmt::Write as _;
@@ -295,27 +295,61 @@ impl<'a> Free<'a> {
             Length::Duration(duration) => return Ok(duration),
             Length::Periods(periods) => periods,
         };
-        let label = [(Place::Length, "a period is needed".to_owned())];
-        let unknown = || {
-            self.scene.error(
-                "only a free motion without loads and drives has a period that is known beforehand"
-                    .to_owned(),
-                Some("give a `duration` in s".to_owned()),
-                &label,
-            )
-        };
-        if !self.scene.loads.is_empty() || self.machine.free().len() != 1 {
-            return Err(unknown().into());
+        match Orbit::loaded(&self.machine, self.state()) {
+            Ok(orbit) => Ok(periods * orbit.period),
+            Err(DynamicsError::NotConservative { .. }) => {
+                let label = [(Place::Length, "a period is needed".to_owned())];
+                let help = "give a `duration` in s".to_owned();
+                let message =
+                    "no period is known beforehand where loads or drives give or take energy";
+                let error = self.scene.error(message.to_owned(), Some(help), &label);
+                Err(error.into())
+            }
+            Err(e) => Err(explain_motion(self.scene, self.shown.plan(), &e)),
         }
-        let exact = Exact::new(self.machine.model().clone()).ok_or_else(unknown)?;
-        let start = State {
+    }
+
+    /// The start in the only free coordinate.
+    fn state(&self) -> State {
+        let first = self.machine.free().first().copied().unwrap_or(0);
+        State {
             t: 0.0,
-            q: self.motion.start[0],
-            q_dot: self.motion.speed[0],
+            q: self.motion.start[first],
+            q_dot: self.motion.speed[first],
+        }
+    }
+
+    /// What becomes of a conservative motion of one freedom, by its energy alone.
+    fn fate(&self) -> String {
+        let led = self.motion.laws.iter().any(Option::is_some);
+        if led || self.machine.free().len() != 1 || !self.scene.drives.is_empty() {
+            return String::new();
+        }
+        let name = &self.scene.mechanism.actuators[0].name;
+        let angle = self.shown.plan().is_angle(0);
+        let unit = if angle { "rad" } else { "m" };
+        let period = || match Orbit::loaded(&self.machine, self.state()) {
+            Ok(orbit) => format!("; period {} s by quadrature", digits(orbit.period, 13)),
+            Err(_) => String::new(),
         };
-        let turn = FreeTurn::new(&exact, start);
-        let turn = turn.map_err(|e| explain_motion(self.scene, self.shown.plan(), &e))?;
-        Ok(periods * turn.period)
+        match fate(&self.machine, self.state()) {
+            Ok(Fate::Turns { spare, .. }) => format!(
+                "  by its energy it passes its highest potential, with {} J to spare{}\n",
+                digits(spare, 6),
+                period()
+            ),
+            Ok(Fate::Swings { between: [a, b] }) => format!(
+                "  by its energy it swings between {name} = {} and {} {unit}{}\n",
+                digits(a, 10),
+                digits(b, 10),
+                period()
+            ),
+            Ok(Fate::Creeps { to }) => format!(
+                "  by its energy it creeps towards {name} = {} {unit} and does not arrive\n",
+                digits(to, 10)
+            ),
+            _ => String::new(),
+        }
     }
 
     /// What is looked for: the scene's events, in their order.
@@ -527,7 +561,7 @@ impl<'a> Free<'a> {
             "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations",
             work.steps, work.rejected, work.evaluations, work.jacobians, work.factorisations,
         );
-        text + &self.energy(moved) + &self.hint(moved, accuracy, end)
+        text + &self.fate() + &self.energy(moved) + &self.hint(moved, accuracy, end)
     }
 
     /// How well the energies add up.

@@ -3,7 +3,7 @@
 //! of tolerances from which cost can be read against error.
 
 use dwell_dynamics::{
-    DynamicsError, Equation, FreeTurn, Method, Options, Run, State, Until, simulate,
+    DynamicsError, Equation, Method, Options, Orbit, Run, State, Until, simulate,
 };
 use dwell_findings::Finding;
 use dwell_kinetostatics::{Coefficients, Reduced};
@@ -59,7 +59,7 @@ pub struct Rung {
 #[derive(Debug, Clone)]
 pub struct FreeMotion {
     /// The motion by quadrature.
-    pub turn: FreeTurn,
+    pub turn: Orbit,
     /// The ladder, by method and then from the coarsest tolerance to the finest.
     pub rungs: Vec<Rung>,
     /// Fitted slope of log drift over log tolerance, BDF.
@@ -76,7 +76,7 @@ pub fn free_motion<R: Reduced>(
     model: &R,
     case: &FreeMotionCase,
 ) -> Result<FreeMotion, DynamicsError> {
-    let turn = FreeTurn::new(model, case.start)?;
+    let turn = Orbit::new(model, case.start)?;
     let scales = Scales::new(model, case, &turn)?;
     let tasks: Vec<(Method, i32)> = [Method::Bdf, Method::Tsit45]
         .into_iter()
@@ -117,13 +117,13 @@ impl Scales {
     fn new<R: Reduced>(
         model: &R,
         case: &FreeMotionCase,
-        turn: &FreeTurn,
+        turn: &Orbit,
     ) -> Result<Self, DynamicsError> {
         let mut eye = Eye::new(model);
         let (mut speed, mut largest) = (0.0_f64, vec![0.0_f64; case.reactions.len()]);
         for i in 0..COMPARED {
             let t = case.start.t + turn.period * i as f64 / COMPARED as f64;
-            let state = turn.at(t, model, &mut eye.work)?;
+            let state = turn.at(t);
             speed = speed.max(state.q_dot.abs());
             for (most, value) in largest.iter_mut().zip(eye.reactions(state)?) {
                 *most = most.max(value.abs());
@@ -192,7 +192,7 @@ impl<'a, R: Reduced> Eye<'a, R> {
 fn rung<R: Reduced>(
     model: &R,
     case: &FreeMotionCase,
-    turn: &FreeTurn,
+    turn: &Orbit,
     scales: &Scales,
     method: Method,
     power: i32,
@@ -222,7 +222,7 @@ fn rung<R: Reduced>(
     let mut reaction_error = 0.0_f64;
     if model.reactions() > 0 {
         for state in run.steps.iter().step_by(run.steps.len() / COMPARED + 1) {
-            let exact = turn.at(state.t, model, &mut eye.work)?;
+            let exact = turn.at(state.t);
             reaction_error = reaction_error.max(eye.apart(*state, exact, scales)?.0);
         }
     }
@@ -240,14 +240,14 @@ fn rung<R: Reduced>(
 }
 
 /// |time of the first whole turn − period|, s.
-fn first_turn_error(run: &Run, case: &FreeMotionCase, turn: &FreeTurn) -> f64 {
+fn first_turn_error(run: &Run, case: &FreeMotionCase, turn: &Orbit) -> f64 {
     run.turns
         .first()
         .map_or(f64::NAN, |s| (s.t - case.start.t - turn.period).abs())
 }
 
 /// The quadrature against a reference value, where there is one.
-fn quadrature(case: &FreeMotionCase, turn: &FreeTurn) -> Option<Finding> {
+fn quadrature(case: &FreeMotionCase, turn: &Orbit) -> Option<Finding> {
     let (reference, source) = case.period.as_ref()?;
     let difference = (turn.period - reference).abs();
     let relative = difference / turn.period;
@@ -290,7 +290,7 @@ fn allowed(method: Method) -> ([f64; 2], &'static str) {
 fn judge<R: Reduced>(
     model: &R,
     case: &FreeMotionCase,
-    turn: &FreeTurn,
+    turn: &Orbit,
     scales: &Scales,
     rung: &Rung,
     run: &Run,
@@ -429,14 +429,14 @@ fn convergence(slope: f64) -> Finding {
 fn jacobian<R: Reduced>(
     model: &R,
     case: &FreeMotionCase,
-    turn: &FreeTurn,
+    turn: &Orbit,
 ) -> Result<Finding, DynamicsError> {
     let mut work = model.work();
     let (mut worst, mut largest) = ((0.0_f64, 0.0), 0.0_f64);
     const POSITIONS: usize = 48;
     for i in 0..POSITIONS {
         let t = case.start.t + turn.period * (i as f64 + 0.37) / POSITIONS as f64;
-        let q = turn.at(t, model, &mut work)?.q;
+        let q = turn.at(t).q;
         let at = model.curvature(q, &mut work)?;
         let exact = at.half_ddm;
         let mut slope = |h: f64| -> Result<f64, DynamicsError> {

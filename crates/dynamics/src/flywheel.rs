@@ -1,0 +1,80 @@
+//! The flywheel that a machine needs to run evenly. The inverse of the coefficient of fluctuation is nearly
+//! a straight line over the inertia, δ ≈ ΔE / (J ω²), so that few cycles are solved for.
+
+use crate::cycle::{Cycle, steady_cycle};
+use crate::error::DynamicsError;
+use crate::machine::Machine;
+use crate::options::Options;
+
+/// Trials for the inertia, and how near the fluctuation must come.
+const MOST_TRIALS: usize = 40;
+const NEAR: f64 = 1e-9;
+
+/// A flywheel for a wanted fluctuation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Flywheel {
+    /// Moment of inertia to be added along the coordinate, kg m²; zero where none is needed.
+    pub inertia: f64,
+    /// The cycle with it.
+    pub cycle: Cycle,
+}
+
+/// The flywheel that keeps the coefficient of fluctuation of a machine's steady cycle to `wanted`.
+///
+/// # Errors
+/// As [`steady_cycle`].
+pub fn flywheel(
+    machine: &Machine,
+    guess: &[f64],
+    wanted: f64,
+    options: &Options,
+) -> Result<Flywheel, DynamicsError> {
+    if !(wanted.is_finite() && wanted > 0.0) {
+        return Err(DynamicsError::BadOption {
+            what: "the coefficient of fluctuation",
+            must: "positive number",
+            value: wanted,
+        });
+    }
+    let own = machine.flywheel(0);
+    let mut guess = guess.to_vec();
+    let mut with = |inertia: f64| -> Result<Cycle, DynamicsError> {
+        let heavier = machine.clone().with_flywheel(0, own + inertia);
+        let cycle = steady_cycle(&heavier, &guess, options)?;
+        guess.clone_from(&cycle.start);
+        Ok(cycle)
+    };
+    let cycle = with(0.0)?;
+    if cycle.fluctuation <= wanted {
+        return Ok(Flywheel {
+            inertia: 0.0,
+            cycle,
+        });
+    }
+    let off = |cycle: &Cycle| wanted / cycle.fluctuation - 1.0;
+    let mut before = (0.0, off(&cycle));
+    let mut work = machine.work();
+    machine.evaluate(0.0, &cycle.start, &mut work)?;
+    let [kinetic, _] = machine.energy(&work);
+    let mean = 2.0 * kinetic / cycle.start[1].powi(2);
+    let mut inertia = mean * (cycle.fluctuation / wanted - 1.0);
+    for _ in 0..MOST_TRIALS {
+        let cycle = with(inertia)?;
+        let now = (inertia, off(&cycle));
+        if now.1.abs() <= NEAR {
+            return Ok(Flywheel { inertia, cycle });
+        }
+        let slope = (now.1 - before.1) / (now.0 - before.0);
+        let next = now.0 - now.1 / slope;
+        // Where the line misleads, half as much or twice.
+        inertia = if next.is_finite() {
+            next.clamp(0.5 * now.0, 4.0 * now.0)
+        } else {
+            2.0 * now.0
+        };
+        before = now;
+    }
+    Err(DynamicsError::NoCycle {
+        what: "no flywheel gives this coefficient of fluctuation",
+    })
+}
