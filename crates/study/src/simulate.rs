@@ -82,6 +82,9 @@ pub fn simulate(
     };
     let explain = |e: &DynamicsError| explain_motion(&driven, run.shown.plan(), e);
     let moved = run.follow(scene, duration, &options)?;
+    if let Some(error) = moved.failed.as_ref().filter(|_| moved.end() == 0.0) {
+        return Err(explain(error));
+    }
     let told = run.told();
     let samples = run.samples(&moved).map_err(|e| explain(&e))?;
     let led = motion.laws.iter().map(Option::is_some).collect();

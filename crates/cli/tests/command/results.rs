@@ -38,7 +38,8 @@ fn reduce_writes_a_table_with_units_and_pictures() {
         [
             "single-dwell-b-reduced.png",
             "single-dwell-c-reaction.png",
-            "single-dwell-reduced.csv"
+            "single-dwell-reduced.csv",
+            "single-dwell-reduced.npz"
         ]
     );
     assert_eq!(
@@ -56,20 +57,35 @@ fn simulate_writes_a_table_with_units_and_a_picture() {
         let scene = case("single-dwell");
         let run = bench.run(&["simulate", &scene, "--out", "o", "--method", method]);
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-        assert_eq!(
-            bench.files("o"),
-            ["single-dwell-d-motion.png", "single-dwell-motion.csv"]
-        );
-        assert_eq!(
-            first_line(&bench, "o/single-dwell-motion.csv"),
-            "t [s],phi [rad],phi_dot [rad/s],phi_ddot [rad/s2],energy [J],slide.normal [N]"
-        );
+        let files = bench.files("o");
+        for file in [
+            "d-coordinates.png",
+            "j-energy.png",
+            "k-phase.png",
+            "mechanism.gif",
+            "peaks.csv",
+        ] {
+            let file = format!("single-dwell-motion-{file}");
+            assert!(files.contains(&file), "{file} is not in {files:?}");
+        }
+        let header = first_line(&bench, "o/single-dwell-motion.csv");
+        let expected = "t [s],phi [rad],phi.speed [rad/s],phi.acceleration [rad/s2],";
+        assert!(header.starts_with(expected), "{header}");
+        for column in [
+            "slide.normal [N]",
+            "energy.kinetic [J]",
+            "energy.balance [J]",
+        ] {
+            assert!(header.contains(column), "{header}");
+        }
         assert!(
-            run.out.contains("by quadrature 5.419662677064 s"),
-            "{}",
-            run.out
+            !header.contains("phi.action"),
+            "nothing acts through a free actuator: {header}"
         );
-        assert!(run.out.contains("energy 0.45508678"), "{}", run.out);
+        let period = "period 5.419662677064 s by quadrature";
+        assert!(run.out.contains(period), "{}", run.out);
+        let kept = "of the largest kinetic energy, 0.455087 J";
+        assert!(run.out.contains(kept), "{}", run.out);
     }
 }
 
@@ -232,7 +248,7 @@ fn a_reader_that_has_seen_enough_is_no_error() {
         .read_to_string(&mut said)
         .unwrap();
     assert_eq!((child.wait().unwrap().code(), said.as_str()), (Some(0), ""));
-    assert_eq!(bench.files("o").len(), 3);
+    assert_eq!(bench.files("o").len(), 4);
 }
 
 #[test]
@@ -267,18 +283,20 @@ fn odd_motions_are_told_as_they_are() {
     ];
     let out = told(with(&rest), &["simulate", "scene.toml"]);
     assert!(out.contains("it stays at rest: nothing moves it"), "{out}");
-    // The duration that is suggested where a motion runs into a limit position.
-    let before = LIMITED.map(|(old, new)| (old, new.replace("= 2", "= 0.065")));
-    let before = before.each_ref().map(|(old, new)| (*old, new.as_str()));
-    let out = told(with(&before), &["simulate", "scene.toml"]);
-    assert!(out.contains("from t = 0 to 0.065 s"), "{out}");
+    // A coordinate that folds back at its dead point: another carries the motion through.
+    let out = told(
+        with(&LIMITED),
+        &["simulate", "scene.toml", "--method", "tsit45"],
+    );
+    assert!(out.contains("which folds back"), "{out}");
+    assert!(out.contains("  2 s by Tsit45"), "{out}");
     // A hundred thousand turns on, the same motion.
     let turned = [("start = 1.0", "start = 628319.5307179587")];
     let out = told(with(&turned), &["simulate", "scene.toml"]);
-    assert!(out.contains("by quadrature 0.75506323"), "{out}");
+    assert!(out.contains("period 0.75506323"), "{out}");
     let fast = [("speed = 10.0", "speed = 1e30")];
     let out = told(with(&fast), &["simulate", "scene.toml"]);
-    assert!(out.contains("from t = 0 to 1.510126e-29 s"), "{out}");
+    assert!(out.contains("  1.510126e-29 s by BDF"), "{out}");
     let slack = ["simulate", "scene.toml", "--rtol", "1e-3"];
     let out = told(with(&[]), &slack);
     assert!(out.contains("take a smaller --rtol"), "{out}");
