@@ -1,21 +1,24 @@
 //! `dwell simulate`: the free motion of a machine in time, under its loads and drives.
 
+mod rows;
+mod words;
+
+pub(crate) use rows::{BALANCE, KINETIC, POTENTIAL};
+
 use crate::error::{StudyError, explain_machine, explain_model};
 use crate::motion_error::explain_motion;
 use crate::outcome::Progress;
-use crate::run::{Command, Followed, Sample, Told, Way, check_variables, loaded, write_up};
+use crate::run::{Command, Followed, Way, check_variables, loaded, write_up};
 use crate::words::digits;
 use dwell_dynamics::atlas::{Atlas, AtlasError, Chart, Journey, Site, Why};
 use dwell_dynamics::{
-    DriveKind, DynamicsError, Event, Fate, Guidance, Machine, MachineWork, Method, Occurrence,
-    Options, Orbit, Point, State, Statistics, Trace, Trigger, Worker, all_loads, fate, follow,
+    DynamicsError, Event, Guidance, Machine, Method, Occurrence, Options, Orbit, Point, State,
+    Statistics, Trace, Trigger, all_loads, follow,
 };
 use dwell_geometry::measure::Measured;
 use dwell_geometry::{Coordinate, Reaction, Start};
 use dwell_kinetostatics::{Magnitude, Model};
-use dwell_report::{Column, Table};
 use dwell_scene::{EventTrigger, Length, Motion, Place, Scene};
-use std::fmt::Write as _;
 
 /// What the user trades for speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,12 +51,8 @@ impl Default for Accuracy {
 const SAMPLES: f64 = 1000.0;
 /// Most samples of a motion.
 const MOST_SAMPLES: f64 = 100_000.0;
-/// Largest part of the energies exchanged that may be lost without a remark.
-const ENERGY_KEPT: f64 = 1e-6;
 /// Changes of coordinate that are told.
 const TOLD: usize = 6;
-/// A method is said to be far cheaper if it would take so many times fewer evaluations.
-const FAR_CHEAPER: f64 = 4.0;
 
 /// The free motion of a scene.
 ///
@@ -322,39 +321,6 @@ impl<'a> Free<'a> {
         }
     }
 
-    /// What becomes of a conservative motion of one freedom, by its energy alone.
-    fn fate(&self) -> String {
-        let led = self.motion.laws.iter().any(Option::is_some);
-        if led || self.machine.free().len() != 1 || !self.scene.drives.is_empty() {
-            return String::new();
-        }
-        let name = &self.scene.mechanism.actuators[0].name;
-        let angle = self.shown.plan().is_angle(0);
-        let unit = if angle { "rad" } else { "m" };
-        let period = || match Orbit::loaded(&self.machine, self.state()) {
-            Ok(orbit) => format!("; period {} s by quadrature", digits(orbit.period, 13)),
-            Err(_) => String::new(),
-        };
-        match fate(&self.machine, self.state()) {
-            Ok(Fate::Turns { spare, .. }) => format!(
-                "  by its energy it passes its highest potential, with {} J to spare{}\n",
-                digits(spare, 6),
-                period()
-            ),
-            Ok(Fate::Swings { between: [a, b] }) => format!(
-                "  by its energy it swings between {name} = {} and {} {unit}{}\n",
-                digits(a, 10),
-                digits(b, 10),
-                period()
-            ),
-            Ok(Fate::Creeps { to }) => format!(
-                "  by its energy it creeps towards {name} = {} {unit} and does not arrive\n",
-                digits(to, 10)
-            ),
-            _ => String::new(),
-        }
-    }
-
     /// What is looked for: the scene's events, in their order.
     fn events(&self) -> Vec<Event> {
         let mechanism = &self.scene.mechanism;
@@ -374,283 +340,7 @@ impl<'a> Free<'a> {
         };
         self.motion.events.iter().filter_map(event).collect()
     }
-
-    /// Every sample with its accelerations, the drives' actions and the energies. Within the window of a
-    /// bridge there are no reactions to be told, and no row.
-    fn samples(&self, moved: &Moved) -> Result<Vec<Sample>, DynamicsError> {
-        let mut ledger: Option<f64> = None;
-        let mut samples = Vec::new();
-        for (leg, (chart, trace)) in moved.legs.iter().enumerate() {
-            let machine = self.machine(moved, *chart);
-            let mut work = machine.work();
-            for (k, point) in trace.samples.iter().enumerate() {
-                if machine.on_bridge(&point.y) {
-                    continue;
-                }
-                machine.evaluate(point.t, &point.y, &mut work)?;
-                let own = moved.own.get(leg).and_then(|leg| leg.get(k)).copied();
-                samples.push(self.sample(machine, *chart, own, point, &work, &mut ledger));
-            }
-        }
-        if let [only] = samples.as_slice() {
-            // A motion that ends where it starts is still shown.
-            samples.push(only.clone());
-        }
-        Ok(samples)
-    }
-
-    fn sample(
-        &self,
-        machine: &Machine,
-        chart: usize,
-        own: Option<[f64; 3]>,
-        point: &Point,
-        work: &MachineWork,
-        ledger: &mut Option<f64>,
-    ) -> Sample {
-        let first = machine.first_work();
-        let [kinetic, potential] = machine.energy(work);
-        let works = &point.y[first..];
-        let sum = kinetic + potential - works.iter().sum::<f64>();
-        let began = *ledger.get_or_insert(sum);
-        let mut told = vec![kinetic, potential];
-        told.extend(works);
-        told.push(sum - began);
-        told.extend(&point.y[2 * machine.free().len()..first]);
-        let count = self.scene.loads.len();
-        let drives = count - machine.drives()..count;
-        Sample {
-            t: point.t,
-            q: work.q.clone(),
-            q_dot: work.q_dot.clone(),
-            q_ddot: work.q_ddot.clone(),
-            chart,
-            own,
-            given: drives
-                .map(|load| (load, work.inner.loads().magnitude[load]))
-                .collect(),
-            told,
-        }
-    }
-
-    /// The names of what [`Free::sample`] tells.
-    fn told(&self) -> Vec<Told> {
-        let told = |name: String, unit, meaning: &str| Told {
-            name,
-            unit,
-            meaning: meaning.to_owned(),
-        };
-        let mut all = vec![
-            told(KINETIC.into(), "J", "of all bodies and rotors"),
-            told(
-                POTENTIAL.into(),
-                "J",
-                "of gravity, springs and constant forces",
-            ),
-        ];
-        for worker in self.machine.workers() {
-            let name = self.worker(*worker);
-            all.push(told(format!("{name}.work"), "J", "done since the start"));
-        }
-        let meaning =
-            "kinetic + potential − work, less its value at the start: the integration's error";
-        all.push(told(BALANCE.into(), "J", meaning));
-        for drive in &self.scene.drives {
-            match &drive.kind {
-                DriveKind::Motor(motor) if motor.inductance > 0.0 => {
-                    all.push(told(format!("{}.current", drive.name), "A", ""));
-                }
-                DriveKind::Regulator(regulator) if regulator.integral > 0.0 => {
-                    let unit = if drive.coordinate.is_angle() {
-                        "rad"
-                    } else {
-                        "m"
-                    };
-                    let meaning = "of the regulator's error";
-                    all.push(told(format!("{}.integral", drive.name), unit, meaning));
-                }
-                _ => {}
-            }
-        }
-        all
-    }
-
-    fn worker(&self, worker: Worker) -> String {
-        match worker {
-            Worker::Load(load) => self.scene.loads[load].name.clone(),
-            Worker::Drive(drive) => self.scene.drives[drive].name.clone(),
-            Worker::Prescribed(actuator) => self.scene.mechanism.actuators[actuator].name.clone(),
-        }
-    }
-
-    /// When each event happened, and the coordinates then.
-    fn event_table(&self, moved: &Moved) -> Table {
-        let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
-        let actuators = &self.scene.mechanism.actuators;
-        for actuator in actuators {
-            let unit = if actuator.coordinate().is_angle() {
-                "rad"
-            } else {
-                "m"
-            };
-            columns.push(Column::new(actuator.name.clone(), unit));
-            columns.push(Column::new(
-                format!("{}.speed", actuator.name),
-                format!("{unit}/s"),
-            ));
-        }
-        let row = |(chart, o): (usize, &Occurrence)| {
-            let machine = self.machine(moved, chart);
-            let mut work = machine.work();
-            let mut row = vec![o.at.t, (o.event + 1) as f64];
-            if machine.evaluate(o.at.t, &o.at.y, &mut work).is_ok() {
-                for actuator in actuators {
-                    let measured = Measured::find(&self.scene.mechanism, actuator.coordinate());
-                    let [q, q_dot, _] = measured.map_or([f64::NAN; 3], |measured| {
-                        work.inner.states().measure(measured)
-                    });
-                    row.extend([q, q_dot]);
-                }
-            }
-            row.resize(2 + 2 * actuators.len(), f64::NAN);
-            row
-        };
-        Table {
-            columns,
-            rows: moved.occurrences().map(row).collect(),
-        }
-    }
-
-    fn summary(&self, moved: &Moved, accuracy: &Accuracy, duration: f64) -> String {
-        let end = moved.end();
-        // Writing to a string cannot fail.
-        let mut text = String::new();
-        let reached = if end < duration {
-            format!("{} of {} s", digits(end, 7), digits(duration, 7))
-        } else {
-            format!("{} s", digits(end, 7))
-        };
-        let _ = writeln!(
-            text,
-            "  {reached} by {} at relative {:e} and absolute {:e}",
-            accuracy.method.name(),
-            accuracy.relative,
-            accuracy.absolute,
-        );
-        for (i, event) in self.motion.events.iter().enumerate() {
-            let times: Vec<_> = moved.occurrences().filter(|(_, o)| o.event == i).collect();
-            let first = times
-                .first()
-                .map(|(_, o)| format!(", first at t = {} s", digits(o.at.t, 13)));
-            let stopped = if event.stop && !times.is_empty() {
-                ", where it ends"
-            } else {
-                ""
-            };
-            let _ = writeln!(
-                text,
-                "  {}: {} times{}{stopped}",
-                event.name,
-                times.len(),
-                first.unwrap_or_default()
-            );
-        }
-        for change in &moved.changes {
-            let _ = writeln!(text, "  {change}");
-        }
-        let work = moved.statistics;
-        let _ = writeln!(
-            text,
-            "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations",
-            work.steps, work.rejected, work.evaluations, work.jacobians, work.factorisations,
-        );
-        text + &self.fate() + &self.energy(moved) + &self.hint(moved, accuracy, end)
-    }
-
-    /// How well the energies add up.
-    fn energy(&self, moved: &Moved) -> String {
-        let (mut began, mut largest, mut apart) = (None, 0.0_f64, 0.0_f64);
-        let mut works: Vec<Option<MachineWork>> = Vec::new();
-        for (chart, point) in moved.steps() {
-            let machine = self.machine(moved, chart);
-            works.resize_with(works.len().max(chart + 1), || None);
-            let work = works[chart].get_or_insert_with(|| machine.work());
-            if machine.evaluate(point.t, &point.y, work).is_err() {
-                break;
-            }
-            let [kinetic, potential] = machine.energy(work);
-            let sum = kinetic + potential - point.y[machine.first_work()..].iter().sum::<f64>();
-            let began = *began.get_or_insert(sum);
-            largest = largest.max(kinetic);
-            apart = apart.max((sum - began).abs());
-        }
-        if largest == 0.0 {
-            return "  it stays at rest: nothing moves it\n".to_owned();
-        }
-        let lost = apart / largest;
-        let kinetic = digits(largest, 6);
-        let mut text = format!(
-            "  energy balance kept to {lost:.1e} of the largest kinetic energy, {kinetic} J\n"
-        );
-        if lost > ENERGY_KEPT {
-            text += "  that is much: take a smaller --rtol\n";
-        }
-        text
-    }
-
-    /// Whether another method would be far cheaper, by how long this one's steps are against what its
-    /// accuracy and its stability ask for.
-    fn hint(&self, moved: &Moved, accuracy: &Accuracy, end: f64) -> String {
-        let other = if accuracy.method.implicit() {
-            Method::Tsit45
-        } else {
-            Method::Bdf
-        };
-        if moved.statistics.steps < 100 || end <= 0.0 || moved.legs.len() > 1 {
-            return String::new();
-        }
-        // A tenth of the motion by the other method says what the whole would take.
-        let options = Options {
-            absolute: accuracy.absolute,
-            budget: moved.statistics.steps.max(100),
-            ..Options::new(other, accuracy.relative)
-        };
-        let part = 0.1 * end;
-        let tried = follow(
-            &self.machine,
-            &self.shown,
-            &self.start(),
-            part,
-            &options,
-            &[],
-        );
-        let cost = |method: Method, work: dwell_dynamics::Statistics| {
-            // A Jacobian takes two evaluations in dual numbers for each free coordinate.
-            let columns = 4 * self.machine.free().len() * usize::from(method.implicit());
-            (work.evaluations + columns * work.jacobians) as f64
-        };
-        let Ok(tried) = tried else {
-            return String::new();
-        };
-        let before = moved.steps().take_while(|(_, p)| p.t <= part).count();
-        let share = before.max(1) as f64 / moved.steps().count() as f64;
-        let here = cost(accuracy.method, moved.statistics) * share;
-        let there = cost(other, tried.statistics);
-        if tried.failed.is_some() || here < FAR_CHEAPER * there {
-            return String::new();
-        }
-        format!(
-            "  hint: --method {} would take about {:.0} times fewer evaluations\n",
-            other.name().to_lowercase(),
-            here / there
-        )
-    }
 }
-
-/// Names of the energies' columns.
-pub(crate) const KINETIC: &str = "energy.kinetic";
-pub(crate) const POTENTIAL: &str = "energy.potential";
-pub(crate) const BALANCE: &str = "energy.balance";
 
 /// The machine of a scene: what its motion needs, and no other reaction.
 pub(crate) fn machine(scene: &Scene, motion: &Motion) -> Result<Machine, StudyError> {
