@@ -64,10 +64,7 @@ pub(crate) struct Sample {
 impl Setup {
     /// A scene's mechanism as it is.
     pub(crate) fn of(scene: &Scene) -> Self {
-        let start = Start {
-            q: scene.assembly.start.clone(),
-            rough: scene.assembly.rough.clone(),
-        };
+        let start = scene.assembly.to_start();
         Self::new(scene.mechanism.clone(), scene.masses.clone(), start)
     }
 

@@ -121,8 +121,14 @@ impl<'a> Parts<'a> {
             unjoined(&bodies, &joints, problems);
         }
         let assembly = section(&fields, "assembly", false, problems);
-        let assembly_text =
-            AssemblyText::read(assembly.as_ref(), &bodies, &actuators, &units, problems);
+        let assembly_text = AssemblyText::read(
+            assembly.as_ref(),
+            &bodies,
+            &joints,
+            &actuators,
+            &units,
+            problems,
+        );
         let motion = section(&fields, "motion", false, problems);
         let motion_text = motion
             .as_ref()
@@ -223,12 +229,8 @@ impl<'a> Parts<'a> {
         let coordinates = coordinates.collect();
         let assembly = Assembly {
             start: self.start,
-            rough: self
-                .assembly
-                .rough
-                .iter()
-                .map(|r| r.as_ref().map(|r| r.0))
-                .collect(),
+            rough: values(&self.assembly.rough),
+            joints: values(&self.assembly.joints),
         };
         let motion = self.motion.as_ref().and_then(|m| {
             Some(Motion {
@@ -337,6 +339,11 @@ impl<'a> Parts<'a> {
             calibration: self.calibration.as_ref().map(|c| c.1.clone()),
         }
     }
+}
+
+/// What is said, without where.
+fn values(said: &[Option<(f64, Span)>]) -> Vec<Option<f64>> {
+    said.iter().map(|s| s.as_ref().map(|s| s.0)).collect()
 }
 
 /// What is said of the k-th actuator.

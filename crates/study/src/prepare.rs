@@ -2,7 +2,7 @@
 
 use crate::error::{StudyError, explain_model, not_one_actuator};
 use dwell_dynamics::State;
-use dwell_geometry::{ActuatorId, BodyId, Plan, Reaction, Start};
+use dwell_geometry::{ActuatorId, BodyId, Plan, Reaction};
 use dwell_kinetostatics::{Exact, Model, Reduced};
 use dwell_scene::{Place, Scene};
 use std::collections::HashSet;
@@ -19,10 +19,7 @@ pub struct Prepared<'a> {
 
 /// A model of a scene for some reactions.
 fn compiled(scene: &Scene, reactions: &[Reaction]) -> Result<Model, StudyError> {
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     Model::new(&scene.mechanism, &scene.masses, &start, reactions)
         .map_err(|e| explain_model(scene, &e))
 }

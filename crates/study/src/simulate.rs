@@ -10,7 +10,7 @@ use dwell_dynamics::{
     Point, State, Trace, Trigger, Worker, all_loads, follow,
 };
 use dwell_geometry::measure::Measured;
-use dwell_geometry::{Coordinate, Reaction, Start};
+use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::{Exact, Magnitude, Model};
 use dwell_report::{Column, Table};
 use dwell_scene::{EventTrigger, Length, Motion, Place, Scene};
@@ -456,10 +456,7 @@ pub(crate) const BALANCE: &str = "energy.balance";
 
 /// The machine of a scene: what its motion needs, and no other reaction.
 pub(crate) fn machine(scene: &Scene, motion: &Motion) -> Result<Machine, StudyError> {
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     let frictions = scene.loads.iter().filter_map(|load| match load.magnitude {
         Magnitude::Friction(friction) => Some(friction.reactions(&scene.mechanism)),
         _ => None,

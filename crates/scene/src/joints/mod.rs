@@ -262,7 +262,7 @@ fn slides(kind: JointKind) -> bool {
 }
 
 /// What a scene calls the kind.
-fn word(kind: JointKind) -> &'static str {
+pub(crate) fn word(kind: JointKind) -> &'static str {
     match kind {
         JointKind::Revolute => "revolute",
         JointKind::Prismatic { .. } => "prismatic",
