@@ -156,6 +156,7 @@ impl Setup {
         mechanism.joints = permuted(&mechanism.joints, &joints);
         self.masses = permuted(&self.masses, &bodies);
         self.start.rough = permuted(&self.start.rough, &bodies);
+        self.start.joints = permuted(&self.start.joints, &joints);
         mechanism.ground = bodies[mechanism.ground];
         let pairs = mechanism.joints.iter_mut().map(|j| &mut j.bodies);
         for pair in pairs.chain(mechanism.actuators.iter_mut().map(|a| &mut a.bodies)) {

@@ -29,4 +29,5 @@ mod repeatability;
 mod scaling;
 mod sketch;
 mod slides;
+mod told;
 mod world;
