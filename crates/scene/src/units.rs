@@ -35,7 +35,7 @@ impl Unit {
     }
 
     /// A number in SI as one of this unit.
-    pub(crate) fn from_si(&self, si: f64) -> f64 {
+    pub(crate) fn written(&self, si: f64) -> f64 {
         si * self.over / self.times
     }
 }

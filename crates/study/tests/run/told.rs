@@ -93,7 +93,7 @@ fn nothing_can_be_told_of_a_pin() {
     );
     let error = dwell_scene::Scene::parse("test.toml", &format!("{text}pin = 3\n")).unwrap_err();
     assert!(error.message.contains("`pin`"), "{}", error.message);
-    let help = error.help.clone().unwrap();
+    let help = error.help.unwrap();
     assert!(
         help.contains("`right`") && !help.contains("`pin`"),
         "{help}"
