@@ -64,10 +64,7 @@ pub(crate) struct Sample {
 impl Setup {
     /// A scene's mechanism as it is.
     pub(crate) fn of(scene: &Scene) -> Self {
-        let start = Start {
-            q: scene.assembly.start.clone(),
-            rough: scene.assembly.rough.clone(),
-        };
+        let start = scene.assembly.to_start();
         Self::new(scene.mechanism.clone(), scene.masses.clone(), start)
     }
 
@@ -159,6 +156,7 @@ impl Setup {
         mechanism.joints = permuted(&mechanism.joints, &joints);
         self.masses = permuted(&self.masses, &bodies);
         self.start.rough = permuted(&self.start.rough, &bodies);
+        self.start.joints = permuted(&self.start.joints, &joints);
         mechanism.ground = bodies[mechanism.ground];
         let pairs = mechanism.joints.iter_mut().map(|j| &mut j.bodies);
         for pair in pairs.chain(mechanism.actuators.iter_mut().map(|a| &mut a.bodies)) {

@@ -5,7 +5,6 @@ use dwell_dynamics::{
     Dense, Drive, DriveKind, Guidance, Machine, Method, Motor, Moving, Next, Options, Point,
     Regulator, System, integrate,
 };
-use dwell_geometry::Start;
 use dwell_kinetostatics::{Friction, Guide, Load, LoadKind, Magnitude, Model};
 use dwell_scene::Scene;
 
@@ -16,10 +15,7 @@ pub(crate) fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine
         Magnitude::Friction(f) => Some(f.reactions(&scene.mechanism)),
         _ => None,
     });
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     let needed: Vec<_> = frictions.flatten().collect();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &needed).expect("a model");
     let free = vec![Guidance::Free; model.plan().actuators()];
@@ -362,10 +358,7 @@ fn reactions_are_the_sum_of_their_channels() {
         "watt-six-bar",
     ] {
         let scene = scene(case);
-        let start = Start {
-            q: scene.assembly.start.clone(),
-            rough: scene.assembly.rough.clone(),
-        };
+        let start = scene.assembly.to_start();
         let all = scene.mechanism.reactions();
         let bare = Model::new(&scene.mechanism, &scene.masses, &start, &all).expect("a model");
         let mut empty = (bare.workspace::<f64>(), bare.actions::<f64>());

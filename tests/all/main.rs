@@ -32,4 +32,5 @@ mod repeatability;
 mod scaling;
 mod sketch;
 mod slides;
+mod told;
 mod world;

@@ -210,7 +210,10 @@ fn an_ambiguous_assembly_lists_its_choices() {
     let bars = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
     let setup = bars.sketch.setup(&[1.0]);
     let error = refusal(&setup);
-    let AssemblyError::Ambiguous { bodies, choices } = error else {
+    let AssemblyError::Ambiguous {
+        bodies, choices, ..
+    } = error
+    else {
         panic!("{error:?}");
     };
     assert_eq!(bodies, [bars.coupler, bars.rocker]);
@@ -230,7 +233,10 @@ fn an_ambiguous_class_three_group_lists_its_choices() {
     let mut setup = Setup::of(&scene("class-three-six-bar"));
     setup.start.rough.fill(None);
     let error = refusal(&setup);
-    let AssemblyError::Ambiguous { bodies, choices } = error else {
+    let AssemblyError::Ambiguous {
+        bodies, choices, ..
+    } = error
+    else {
         panic!("{error:?}");
     };
     assert_eq!((bodies.len(), choices.len()), (4, 2));

@@ -109,6 +109,7 @@ impl Sketch {
         let start = Start {
             q: q.to_vec(),
             rough: self.rough.clone(),
+            ..Start::default()
         };
         Setup::new(self.mechanism.clone(), self.masses.clone(), start)
     }

@@ -1,6 +1,6 @@
 //! Where the cases are, and how a scene becomes a model.
 
-use dwell_geometry::{Reaction, Start};
+use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Exact, Model};
 use dwell_scene::Scene;
 use std::path::{Path, PathBuf};
@@ -23,10 +23,7 @@ pub(crate) fn model(scene: &Scene) -> Exact {
 
 /// A scene's model with some reactions.
 pub(crate) fn model_for(scene: &Scene, reactions: &[Reaction]) -> Exact {
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, reactions)
         .unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     Exact::new(model).expect("one actuator")

@@ -26,8 +26,9 @@ use crate::system::Point;
 use candidates::{Candidate, actuator, candidates, size};
 use counting::angles_used;
 use crossing::Crossing;
-use dwell_geometry::measure::BodyStates;
-use dwell_geometry::{BodyId, Coordinate, Mechanism, Reaction, Start};
+use dwell_geometry::measure::{BodyStates, Measured};
+use dwell_geometry::mechanism::Told;
+use dwell_geometry::{BodyId, Coordinate, Joint, JointId, Mechanism, Reaction, Start};
 use dwell_kinetostatics::{Load, Magnitude, Mass, Model, ModelError};
 use guard::{Guard, Turning};
 pub use journey::{Change, Journey, Leg, Tracked, Why};
@@ -373,7 +374,13 @@ impl<'s> Atlas<'s> {
             ..self.site.mechanism.clone()
         };
         let (mechanism, rough) = self.counting(mechanism, &states);
-        let start = Start { q: vec![q], rough };
+        let mut joints = told(self.site.mechanism, &states);
+        joints.resize(mechanism.joints.len(), None);
+        let start = Start {
+            q: vec![q],
+            rough,
+            joints,
+        };
         let chart = self.build(&mechanism, &start).ok()?;
         if !self.agrees(&chart, &there, &states) {
             return None;
@@ -402,4 +409,20 @@ impl<'s> Atlas<'s> {
         bodies.all(|b| (own.body(b).turn - states.body(b).turn).norm() < SAME)
             && angles_used(&self.site).into_iter().all(alike)
     }
+}
+
+/// What the bodies tell of each joint: its travel, or the direction of its line.
+fn told(mechanism: &Mechanism, states: &BodyStates) -> Vec<Option<f64>> {
+    let joints = mechanism.joints.iter().enumerate();
+    let of = |(j, joint): (usize, &Joint)| match joint.kind.told()? {
+        Told::Travel => {
+            let travel = Measured::find(mechanism, Coordinate::Travel(JointId(j)))?;
+            Some(states.measure(travel)[0])
+        }
+        Told::Direction => {
+            let line = states.separation(joint.bodies, joint.points).direction?;
+            Some(line.angle())
+        }
+    };
+    joints.map(of).collect()
 }

@@ -1,18 +1,17 @@
-//! Putting the mechanism together at the start, on the branch that the rough angles pick.
+//! Putting the mechanism together at the start, on the branch that is picked by what is known roughly.
 
 use crate::error::{AssemblyError, PlaceError};
-use crate::frames::{Attitude, Turning};
 use crate::groups::Unknown;
 use crate::lower::{Measure, Tie};
 use crate::place::{Guess, turn};
-use crate::plan::{Branches, How, Kind, Plan, Pose};
-use crate::plane::Vec2;
+use crate::plan::{How, Kind, Plan, Pose};
+use crate::rough::Rough;
 use crate::ways::{SAME, Way};
 use std::f64::consts::TAU;
 
 impl Plan {
     /// Finds the branch of every group at the start.
-    pub(crate) fn assemble(&mut self, rough: &[Option<f64>]) -> Result<Pose<f64>, AssemblyError> {
+    pub(crate) fn assemble(&mut self, rough: &Rough) -> Result<Pose<f64>, AssemblyError> {
         let mut pose = self.pose();
         let q = self.start.clone();
         pose.q.clone_from(&q);
@@ -47,7 +46,7 @@ impl Plan {
     }
 
     /// Bodies that turn together may be whole turns apart: each is counted from its own rough angle.
-    fn count_bodies(&mut self, rough: &[Option<f64>]) {
+    fn count_bodies(&mut self, rough: &Rough) {
         let mut turns = vec![0.0; self.lowered.bodies];
         for class in 0..self.frames.classes {
             if !self.counted[self.class_roots[class]] {
@@ -55,7 +54,7 @@ impl Plan {
             }
             let apart = |b: usize| {
                 let attitude = self.frames.attitudes[b];
-                let angle = rough.get(b).copied().flatten()?;
+                let angle = rough.angles[b]?;
                 Some(angle - attitude.offset.angle() - self.driven_angle(attitude.frame))
             };
             let members = &self.frames.members[class];
@@ -87,7 +86,7 @@ impl Plan {
 
     /// Before a group is placed for the first time: turns are counted from the rough angles, and
     /// gears mesh as they are given.
-    fn begin(&mut self, g: usize, rough: &[Option<f64>], pose: &mut Pose<f64>) {
+    fn begin(&mut self, g: usize, rough: &Rough, pose: &mut Pose<f64>) {
         for unknown in self.groups[g].group.unknowns.clone() {
             if let Unknown::Class(class) = unknown
                 && self.counted[self.root_of(class)]
@@ -124,6 +123,7 @@ impl Plan {
             values: self.values(g, pose),
             branch,
             side,
+            travels: self.travels(g, pose),
             backward: self.backward(g, pose),
         })
     }
@@ -148,135 +148,37 @@ impl Plan {
         travels || slides
     }
 
-    /// The rough angles of an unknown, from all the bodies that turn with it.
-    pub(crate) fn hints(&self, unknown: Unknown, rough: &[Option<f64>]) -> Vec<f64> {
-        let Unknown::Class(class) = unknown else {
-            return Vec::new();
-        };
-        let of_body = |(b, (attitude, angle)): (usize, (&Attitude, &Option<f64>))| {
-            let frame = &self.frames.frames[attitude.frame];
-            let angle = (*angle)? - self.turns.get(b).copied().unwrap_or(0.0);
-            (frame.class == class)
-                .then(|| angle - attitude.offset.angle() - self.driven_angle(attitude.frame))
-        };
-        let bodies = self.frames.attitudes.iter().zip(rough);
-        bodies.enumerate().filter_map(of_body).collect()
-    }
-
-    /// The rough angle of an unknown: a body's, or for a line of centres its carrier's and the lead.
-    pub(crate) fn hint(&self, unknown: Unknown, rough: &[Option<f64>]) -> Option<f64> {
-        if let Some(&hint) = self.hints(unknown, rough).first() {
-            return Some(hint);
-        }
-        let Unknown::Class(class) = unknown else {
-            return None;
-        };
-        let &(carrier, lead) = self.beside.get(&self.root_of(class))?;
-        let beside = match self.frames.frames[carrier].class {
-            0 => 0.0,
-            of => *self.hints(Unknown::Class(of), rough).first()?,
-        };
-        Some(beside + self.driven_angle(carrier) + lead)
-    }
-
-    /// The angle of a frame from the first frame of its class, at the start.
-    fn driven_angle(&self, mut frame: usize) -> f64 {
-        let mut angle = 0.0;
-        while let Turning::Driven {
-            parent,
-            actuator,
-            sign,
-        } = self.frames.frames[frame].turning
-        {
-            angle += sign * self.start[actuator];
-            frame = parent;
-        }
-        angle
-    }
-
-    /// Of several ways, the one nearest to the rough angles.
-    fn pick(
-        &mut self,
-        g: usize,
-        mut ways: Vec<Way>,
-        rough: &[Option<f64>],
-    ) -> Result<Way, AssemblyError> {
+    /// Of several ways, the one nearest to what is known roughly.
+    fn pick(&mut self, g: usize, mut ways: Vec<Way>, rough: &Rough) -> Result<Way, AssemblyError> {
         // A line is measured from its first point, unless nothing else is possible.
         if ways.iter().any(|way| !way.backward) {
             ways.retain(|way| !way.backward);
         }
-        let unknowns = &self.groups[g].group.unknowns;
-        let distance = |way: &Way| -> f64 {
-            unknowns
-                .iter()
-                .zip(&way.values)
-                .flat_map(|(&u, &(value, angle))| {
-                    let counted = matches!(u, Unknown::Class(c) if self.counted[self.root_of(c)]);
-                    let hints = self.hints(u, rough).into_iter();
-                    hints.map(move |hint| {
-                        // Where turns count, the rough angle says which one is meant.
-                        let apart = value - Vec2::from_angle(hint);
-                        let turned = angle - hint;
-                        if counted {
-                            turned * turned
-                        } else {
-                            apart.dot(apart)
-                        }
-                    })
-                })
-                .sum()
-        };
-        ways.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let away = |way: usize| distance(&ways[way]).sqrt();
-        let ambiguous = ways.len() > 1 && away(1) - away(0) < SAME;
-        let branches = self.told_apart(g, &ways);
-        if ambiguous {
+        let apart: Vec<f64> = ways.iter().map(|way| self.astray(g, way, rough)).collect();
+        let least = apart.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut order: Vec<usize> = (0..ways.len()).collect();
+        order.sort_by(|&a, &b| apart[a].total_cmp(&apart[b]));
+        let in_order =
+            |picked: &[usize]| -> Vec<&Way> { picked.iter().map(|&k| &ways[k]).collect() };
+        let nearest = order.partition_point(|&k| apart[k] - least < SAME);
+        if nearest > 1 {
+            let open = self.told_apart(g, &in_order(&order[..nearest]), rough);
             return Err(AssemblyError::Ambiguous {
-                bodies: branches.bodies,
-                choices: branches.ways,
+                bodies: open.bodies,
+                joints: open.joints,
+                choices: open.ways,
             });
         }
+        let branches = self.told_apart(g, &in_order(&order), rough);
         self.branches.push(branches);
-        ways.into_iter()
-            .next()
+        let first = order.first().copied();
+        first
+            .map(|first| ways.swap_remove(first))
             .ok_or_else(|| AssemblyError::CannotClose {
                 bodies: self.group_bodies(g),
                 joints: self.group_joints(g),
                 gap: f64::NAN,
             })
-    }
-
-    /// The bodies whose angles tell some ways apart, and those angles.
-    fn told_apart(&self, g: usize, ways: &[Way]) -> Branches {
-        let unknowns = &self.groups[g].group.unknowns;
-        let bodies: Vec<_> = self
-            .group_bodies(g)
-            .into_iter()
-            .filter(|b| {
-                let frame = self.frames.attitudes[b.0].frame;
-                unknowns
-                    .iter()
-                    .any(|&u| matches!(u, Unknown::Class(c) if self.root_of(c) == frame))
-            })
-            .collect();
-        let angle = |way: &Way, body: usize| {
-            let attitude = self.frames.attitudes[body];
-            unknowns
-                .iter()
-                .zip(&way.values)
-                .find_map(|(&u, (value, _))| match u {
-                    Unknown::Class(c) if self.root_of(c) == attitude.frame => {
-                        Some(value.turn(attitude.offset).angle())
-                    }
-                    _ => None,
-                })
-                .unwrap_or(f64::NAN)
-        };
-        let ways = ways
-            .iter()
-            .map(|way| bodies.iter().map(|b| angle(way, b.0)).collect())
-            .collect();
-        Branches { bodies, ways }
     }
 
     pub(crate) fn refusal(&self, g: usize, error: PlaceError) -> AssemblyError {

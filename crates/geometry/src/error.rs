@@ -61,11 +61,14 @@ pub enum AssemblyError {
         gap: f64,
     },
     /// Several ways to assemble, and nothing says which.
-    #[error("{} ways to assemble, and no rough angle that tells them apart", choices.len())]
+    #[error("{} ways to assemble, and nothing rough that tells them apart", choices.len())]
     Ambiguous {
-        /// Bodies of the group.
+        /// The bodies whose angles tell them apart.
         bodies: Vec<BodyId>,
-        /// For each way, the angle (rad) of each of `bodies`.
+        /// The joints that do where no body does, by their travels or directions.
+        joints: Vec<JointId>,
+        /// For each way that may be meant, the angle (rad) of each of `bodies`, and the travel (m)
+        /// or direction (rad) of each of `joints`.
         choices: Vec<Vec<f64>>,
     },
     /// Joints hold bodies twice, and not in the same way.

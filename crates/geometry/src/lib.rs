@@ -18,6 +18,7 @@ pub mod plan;
 pub mod plane;
 pub mod range;
 mod relation;
+mod rough;
 pub mod rows;
 pub mod scalar;
 mod seeds;
@@ -30,7 +31,7 @@ mod ways;
 pub use error::{AssemblyError, PlaceError, StructureError};
 pub use mechanism::{
     Actuator, ActuatorId, Body, BodyId, Component, Coordinate, Drive, Joint, JointId, JointKind,
-    Mechanism, Reaction, Relation,
+    Mechanism, Reaction, Relation, Told,
 };
 pub use motion::{Balance, Motion};
 pub use plan::{Plan, Pose, Start};

@@ -227,7 +227,25 @@ impl Component {
     }
 }
 
+/// What a rough number tells of a joint at the start ([`Start::joints`](crate::Start::joints)).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Told {
+    /// The travel t·(P₂ − P₁) of a prismatic joint or a slot, m.
+    Travel,
+    /// The angle of the line from P₁ to P₂ of a distance, rad.
+    Direction,
+}
+
 impl JointKind {
+    /// What a rough number can tell of such a joint at the start, if anything.
+    pub fn told(self) -> Option<Told> {
+        match self {
+            Self::Prismatic { .. } | Self::Slot { .. } => Some(Told::Travel),
+            Self::Distance { .. } => Some(Told::Direction),
+            _ => None,
+        }
+    }
+
     /// The components of the reaction, in the order of the constraint rows.
     pub fn components(self, relations: &[Relation]) -> &'static [Component] {
         use Component::{Axial, Force, Moment, Normal, Tangent, Tooth, X, Y};

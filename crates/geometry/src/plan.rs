@@ -19,12 +19,16 @@ use crate::tree::{Arm, Tree};
 use std::collections::HashMap;
 
 /// How and where the mechanism is put together.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Start {
     /// The coordinate of each actuator at assembly, rad or m.
     pub q: Vec<f64>,
     /// Rough angle of each body, where one is given, rad: picks the assembly branch.
     pub rough: Vec<Option<f64>>,
+    /// What is known roughly of each joint, where it is: picks the branch too, where the angles of the
+    /// bodies do not. The travel of a prismatic joint or a slot, m, or the direction of a distance,
+    /// rad ([`Told`](crate::mechanism::Told)). Empty where nothing is known of any joint.
+    pub joints: Vec<Option<f64>>,
 }
 
 /// A mechanism compiled for evaluation.
@@ -69,16 +73,20 @@ pub struct Plan {
     pub(crate) home: Option<Box<Pose<f64>>>,
     /// By reaction of the mechanism: whether the loads determine it; empty where they determine all.
     pub(crate) unique: Vec<bool>,
-    /// By group: the ways in which it closes at the start, as the angles of its bodies.
+    /// By group: the ways in which it closes at the start.
     pub(crate) branches: Vec<Branches>,
 }
 
 /// The ways in which a group closes at the start.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Branches {
-    /// The bodies that tell them apart.
+    /// The bodies whose angles tell them apart.
     pub bodies: Vec<BodyId>,
-    /// For each way, the angle of each of `bodies`, rad; the one that was picked comes first.
+    /// The joints that do where no body does: [`JointKind::told`](crate::mechanism::JointKind::told)
+    /// says by what.
+    pub joints: Vec<JointId>,
+    /// For each way, the angle of each of `bodies`, rad, and the travel or direction of each of
+    /// `joints`, m or rad; the way that was picked comes first.
     pub ways: Vec<Vec<f64>>,
 }
 

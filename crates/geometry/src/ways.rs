@@ -1,10 +1,11 @@
-//! The ways in which a group closes that has no closed form: Newton's method from the rough angles, and
-//! from anywhere.
+//! The ways in which a group closes that has no closed form: Newton's method from what is known roughly,
+//! and from anywhere.
 
 use crate::error::{AssemblyError, PlaceError};
 use crate::groups::Unknown;
 use crate::plan::{Kind, Plan, Pose};
 use crate::plane::Vec2;
+use crate::rough::Rough;
 use crate::tall;
 use std::f64::consts::TAU;
 
@@ -12,6 +13,8 @@ use std::f64::consts::TAU;
 /// travel — and what says which way it is.
 pub(crate) struct Way {
     pub(crate) values: Vec<(Vec2, f64)>,
+    /// By bond: the travel of each slide, m.
+    pub(crate) travels: Vec<(usize, f64)>,
     /// Sign of the determinant.
     pub(crate) branch: f64,
     /// Sign of the root in a closed form.
@@ -94,7 +97,7 @@ impl Plan {
     pub(crate) fn ways_by_newton(
         &mut self,
         g: usize,
-        rough: &[Option<f64>],
+        rough: &Rough,
         pose: &mut Pose<f64>,
     ) -> Result<Vec<Way>, AssemblyError> {
         let unknowns = self.groups[g].group.unknowns.clone();
@@ -141,8 +144,8 @@ impl Plan {
         }
     }
 
-    /// Puts a group's classes to their hints and to trial angles where there is none. Slides are at
-    /// trials too, unless hints will settle them.
+    /// Puts a group's unknowns to their hints, and its classes to trial angles where there is none.
+    /// Slides are at trials too, unless hints will settle them.
     fn guess(
         &self,
         g: usize,
@@ -157,7 +160,10 @@ impl Plan {
                 let angle = hint.unwrap_or_else(|| trials.angle());
                 (Vec2::from_angle(angle), angle)
             }
-            Unknown::Slide(_) if hints.is_some() => (Vec2::ZERO, 0.0),
+            Unknown::Slide(_) if hints.is_some() => {
+                let hint = hints.and_then(|hints| hints[i]);
+                (Vec2::ZERO, hint.unwrap_or(0.0))
+            }
             Unknown::Slide(_) => (Vec2::ZERO, (trials.angle() - 3.0) * size / 6.0),
         };
         let unknowns = self.groups[g].group.unknowns.iter().enumerate();
@@ -173,6 +179,7 @@ impl Plan {
         };
         Way {
             values: self.values(g, pose),
+            travels: self.travels(g, pose),
             branch,
             side: 1.0,
             backward: self.backward(g, pose),
@@ -189,7 +196,7 @@ impl Plan {
         })
     }
 
-    /// Puts what hints leave open — slides, and lines that are no bodies — where the hinted angles
+    /// Puts what hints leave open — slides, and lines that are no bodies — where the hints
     /// want it, by least squares (Gauss and Newton): started with it anywhere, the whole group would
     /// run away from the hints. The equations are linear in slides: without lines, one step does.
     fn settle(&self, g: usize, hints: &[Option<f64>], pose: &mut Pose<f64>) {

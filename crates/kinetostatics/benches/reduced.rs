@@ -8,7 +8,7 @@ mod hand_written;
 mod hand_written_four_bar;
 mod hand_written_general;
 
-use dwell_geometry::{Reaction, Start};
+use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Exact, Model, Reduced};
 use dwell_scene::Scene;
 use hand_written::HandWritten;
@@ -234,10 +234,7 @@ impl Case {
         let Scene {
             mechanism, masses, ..
         } = &self.scene;
-        let start = Start {
-            q: self.scene.assembly.start.clone(),
-            rough: self.scene.assembly.rough.clone(),
-        };
+        let start = self.scene.assembly.to_start();
         let model = Model::new(mechanism, masses, &start, reactions);
         let exact = model.map(Exact::new).map_err(|e| e.to_string());
         match exact {

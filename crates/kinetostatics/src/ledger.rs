@@ -316,6 +316,7 @@ mod tests {
         let start = Start {
             q: vec![0.3, -0.8],
             rough: vec![None; 3],
+            ..Start::default()
         };
         let plan = Plan::compile(&mechanism, &start).unwrap();
         let (mut pose, mut motion) = (plan.pose(), plan.motion());

@@ -2,7 +2,7 @@
 #![allow(clippy::expect_used, reason = "a test")]
 
 use allocation_counter::measure;
-use dwell_geometry::{BodyId, Coordinate, Start, vec2};
+use dwell_geometry::{BodyId, Coordinate, vec2};
 use dwell_kinetostatics::{
     Exact, Ledger, Load, LoadKind, Magnitude, Model, Reduced, Shaking, Signal,
 };
@@ -20,10 +20,7 @@ fn case(name: &str) -> Scene {
 
 /// A scene's model with every reaction.
 fn model(scene: &Scene) -> Exact {
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     let reactions = scene.mechanism.reactions();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &reactions);
     Exact::new(model.expect("it assembles")).expect("one actuator")

@@ -126,8 +126,14 @@ impl<'a> Parts<'a> {
             unjoined(&bodies, &joints, problems);
         }
         let assembly = section(&fields, "assembly", false, problems);
-        let assembly_text =
-            AssemblyText::read(assembly.as_ref(), &bodies, &actuators, &units, problems);
+        let assembly_text = AssemblyText::read(
+            assembly.as_ref(),
+            &bodies,
+            &joints,
+            &actuators,
+            &units,
+            problems,
+        );
         let motion = section(&fields, "motion", false, problems);
         let moved = ["loads", "drives"]
             .iter()

@@ -5,7 +5,7 @@ use crate::place::Places;
 use crate::units::Units;
 use crate::value::Number;
 use dwell_dynamics::Drive;
-use dwell_geometry::{ActuatorId, BodyId, Coordinate, Mechanism, Reaction, Vec2};
+use dwell_geometry::{ActuatorId, BodyId, Coordinate, Mechanism, Reaction, Start, Vec2};
 use dwell_kinetostatics::{Load, Mass};
 use dwell_laws::Law;
 use miette::NamedSource;
@@ -61,6 +61,19 @@ pub struct Assembly {
     pub start: Vec<f64>,
     /// Rough angle of each body, rad, where the scene gives one.
     pub rough: Vec<Option<f64>>,
+    /// Rough travel, m, or direction, rad, of each joint, where the scene gives one.
+    pub joints: Vec<Option<f64>>,
+}
+
+impl Assembly {
+    /// The same as a plan takes it.
+    pub fn to_start(&self) -> Start {
+        Start {
+            q: self.start.clone(),
+            rough: self.rough.clone(),
+            joints: self.joints.clone(),
+        }
+    }
 }
 
 /// What the scene asks for.

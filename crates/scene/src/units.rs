@@ -33,6 +33,11 @@ impl Unit {
     pub(crate) fn si(&self, value: f64) -> f64 {
         value * self.times / self.over
     }
+
+    /// A number in SI as one of this unit.
+    pub(crate) fn written(&self, si: f64) -> f64 {
+        si * self.over / self.times
+    }
 }
 
 /// (name, times, over). All the factors are exact: the inch is 25.4 mm (1959), the pound

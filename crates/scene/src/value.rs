@@ -56,6 +56,12 @@ impl Scene {
         }
     }
 
+    /// A length, m, or an angle, rad, as the file would write it: in the scene's unit, and that unit.
+    pub fn written(&self, si: f64, is_angle: bool) -> (f64, &str) {
+        let unit = self.units.of(is_angle);
+        (unit.written(si), &unit.name)
+    }
+
     /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
     ///
     /// The number is replaced in the text and the text read again: whatever follows from the

@@ -4,7 +4,8 @@ use crate::error::StudyError;
 use crate::outcome::Outcome;
 use crate::words::{count, number};
 use dwell_geometry::mobility::mobility;
-use dwell_geometry::{BodyId, End, Mechanism, Plan, Range, Start};
+use dwell_geometry::plan::Branches;
+use dwell_geometry::{BodyId, End, Mechanism, Plan, Range, Start, Told};
 use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::fmt::Write as _;
@@ -16,10 +17,7 @@ use std::fmt::Write as _;
 /// [`StudyError::Scene`] when the mechanism cannot be put together, or a requested column does not exist.
 pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
     let mechanism = &scene.mechanism;
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     let model = crate::run::model(scene)?;
     crate::run::check_variables(scene, &model)?;
     let plan = model.plan();
@@ -179,25 +177,39 @@ fn groups(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
             count(size, "unknown"),
         );
         let branches = &plan.branches()[g];
-        if branches.ways.len() > 1 && !branches.bodies.is_empty() {
+        if branches.ways.len() > 1 {
             for (k, way) in branches.ways.iter().enumerate() {
-                let angles = branches.bodies.iter().zip(way);
-                let angles: Vec<_> = angles
-                    .map(|(b, angle)| format!("{} = {:.4}", mechanism.body_name(*b), angle + 0.0))
-                    .collect();
-                let _ = writeln!(
-                    text,
-                    "       {} {} rad",
-                    if k == 0 {
-                        "on the branch"
-                    } else {
-                        "it could close at"
-                    },
-                    angles.join(", ")
-                );
+                let which = if k == 0 {
+                    "on the branch"
+                } else {
+                    "it could close at"
+                };
+                let _ = writeln!(text, "       {which} {}", told(mechanism, branches, way));
             }
         }
     }
+}
+
+/// What tells a way of a group from the others.
+fn told(mechanism: &Mechanism, branches: &Branches, way: &[f64]) -> String {
+    let angles = branches.bodies.iter().zip(way);
+    let angles: Vec<_> = angles
+        .map(|(b, angle)| format!("{} = {:.4}", mechanism.body_name(*b), angle + 0.0))
+        .collect();
+    let mut told = Vec::new();
+    if !angles.is_empty() {
+        told.push(format!("{} rad", angles.join(", ")));
+    }
+    let values = way.iter().skip(branches.bodies.len());
+    for (joint, value) in branches.joints.iter().zip(values) {
+        let joint = &mechanism.joints[joint.0];
+        let unit = match joint.kind.told() {
+            Some(Told::Direction) => "rad",
+            _ => "m",
+        };
+        told.push(format!("{} = {:.4} {unit}", joint.name, value + 0.0));
+    }
+    told.join(", ")
 }
 
 /// The angles of all bodies at the start.

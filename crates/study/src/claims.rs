@@ -2,7 +2,7 @@
 
 use crate::error::{StudyError, explain_model};
 use crate::motion_error::explain_place;
-use dwell_geometry::{ActuatorId, BodyId, Start, Vec2};
+use dwell_geometry::{ActuatorId, BodyId, Vec2};
 use dwell_kinetostatics::{Actions, KinetostaticsError, Model, Workspace};
 use dwell_scene::{Place, Scene};
 use dwell_verify::{State, load_acts};
@@ -52,10 +52,7 @@ impl<'a> Claims<'a> {
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be put together or a load does not fit.
     pub(crate) fn new(scene: &'a Scene) -> Result<Self, StudyError> {
-        let start = Start {
-            q: scene.assembly.start.clone(),
-            rough: scene.assembly.rough.clone(),
-        };
+        let start = scene.assembly.to_start();
         let mechanism = &scene.mechanism;
         let model = Model::new(mechanism, &scene.masses, &start, &mechanism.reactions())
             .map_err(|e| explain_model(scene, &e))?

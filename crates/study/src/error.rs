@@ -1,5 +1,6 @@
 //! Errors of a study, each pointing into the scene file where one of its lines is to blame.
 
+use crate::ambiguous::ambiguous;
 use crate::run::broken_relation;
 use crate::words::{count, number};
 use dwell_dynamics::MachineError;
@@ -45,13 +46,13 @@ fn size(scene: &Scene) -> f64 {
     points.fold(0.0, |m, (_, at)| m.max(at.x.abs()).max(at.y.abs()))
 }
 
-fn body_labels(bodies: &[BodyId], words: &str) -> Labels {
+pub(crate) fn body_labels(bodies: &[BodyId], words: &str) -> Labels {
     let label = |&b: &BodyId| (Place::Body(b), words.to_owned());
     bodies.iter().take(8).map(label).collect()
 }
 
 /// Where the scene says in which position it is put together.
-fn start_labels(scene: &Scene) -> Labels {
+pub(crate) fn start_labels(scene: &Scene) -> Labels {
     let written = |&a: &ActuatorId| {
         // What is not written stands where the motion's start does.
         scene.span(Place::Start(a)) != scene.span(Place::MotionStart(a))
@@ -172,42 +173,11 @@ pub(crate) fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
                 &labels,
             )
         }
-        AssemblyError::Ambiguous { bodies, choices } => {
-            let way = |angles: &Vec<f64>| {
-                let angle = |(b, a): (&BodyId, &f64)| {
-                    let degrees = a.to_degrees();
-                    format!("{} {a:.3} rad ({degrees:.1}°)", mechanism.body_name(*b))
-                };
-                let all: Vec<_> = bodies.iter().zip(angles).map(angle).collect();
-                all.join(", ")
-            };
-            let ways: Vec<_> = choices.iter().take(6).map(way).collect();
-            let (labels, help) = if bodies.is_empty() {
-                (
-                    start_labels(scene),
-                    "they differ in where a body slides, which no rough angle tells: drive the slide \
-                     itself, or another joint"
-                        .to_owned(),
-                )
-            } else {
-                (
-                    body_labels(bodies, "its angle is open"),
-                    format!(
-                        "give a rough angle of one of them in [assembly]; the ways are: {}",
-                        ways.join("; or ")
-                    ),
-                )
-            };
-            scene.error(
-                format!(
-                    "{} can be assembled in {} ways, and nothing says which is meant",
-                    names_or_whole(mechanism, bodies),
-                    choices.len()
-                ),
-                Some(help),
-                &labels,
-            )
-        }
+        AssemblyError::Ambiguous {
+            bodies,
+            joints,
+            choices,
+        } => ambiguous(scene, bodies, joints, choices),
         AssemblyError::NotMeshing {
             joint,
             distance,

@@ -11,6 +11,7 @@
 //! [`run()`] is all of `kinematics`, `statics` and `kinetostatics`: they follow the same way through a scene
 //! and differ in the columns that they compute.
 
+mod ambiguous;
 mod calibrate;
 mod channels;
 mod check;

@@ -2,7 +2,7 @@
 
 use crate::error::{StudyError, explain_model, not_one_actuator};
 use dwell_dynamics::State;
-use dwell_geometry::{ActuatorId, BodyId, Plan, Reaction, Start};
+use dwell_geometry::{ActuatorId, BodyId, Plan, Reaction};
 use dwell_kinetostatics::{Exact, Model, Reduced};
 use dwell_scene::{Place, Scene};
 use std::collections::HashSet;
@@ -19,10 +19,7 @@ pub struct Prepared<'a> {
 
 /// A model of a scene for some reactions.
 fn compiled(scene: &Scene, reactions: &[Reaction]) -> Result<Model, StudyError> {
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     Model::new(&scene.mechanism, &scene.masses, &start, reactions)
         .map_err(|e| explain_model(scene, &e))
 }
@@ -85,9 +82,9 @@ impl<'a> Prepared<'a> {
         if !prepared.model.model().plan().is_angle(0) {
             return Err(scene
                 .error(
-                    "the reduced model of a driven length cannot be shown yet".to_owned(),
+                    "the reduced model is shown for driven angles alone".to_owned(),
                     Some(
-                        "`dwell kinetostatics` knows driven lengths; or drive an angle".to_owned(),
+                        "`dwell simulate` and `kinetostatics` know driven lengths; or drive an angle".to_owned(),
                     ),
                     &label(Place::Actuator(ActuatorId(0)), "drives a length"),
                 )
@@ -96,8 +93,8 @@ impl<'a> Prepared<'a> {
         if motion && !scene.loads.is_empty() {
             return Err(scene
                 .error(
-                    "loads do not act in a free motion yet".to_owned(),
-                    Some("`dwell kinetostatics` knows loads, along a prescribed motion".to_owned()),
+                    "a value is fitted to the period of a motion without loads".to_owned(),
+                    Some("leave the loads out, or try values with `dwell simulate`".to_owned()),
                     &label(Place::Load(0), "this load would be left out"),
                 )
                 .into());

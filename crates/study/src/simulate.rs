@@ -16,7 +16,7 @@ use dwell_dynamics::{
     Statistics, Trace, Trigger, all_loads, follow,
 };
 use dwell_geometry::measure::Measured;
-use dwell_geometry::{Coordinate, Reaction, Start};
+use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::{Magnitude, Model};
 use dwell_scene::{EventTrigger, Length, Motion, Place, Scene};
 
@@ -193,10 +193,7 @@ impl<'a> Free<'a> {
                 legs: vec![(0, trace)],
             });
         }
-        let at = Start {
-            q: scene.assembly.start.clone(),
-            rough: scene.assembly.rough.clone(),
-        };
+        let at = scene.assembly.to_start();
         let site = Site {
             mechanism: &scene.mechanism,
             masses: &scene.masses,
@@ -344,10 +341,7 @@ impl<'a> Free<'a> {
 
 /// The machine of a scene: what its motion needs, and no other reaction.
 pub(crate) fn machine(scene: &Scene, motion: &Motion) -> Result<Machine, StudyError> {
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     let frictions = scene.loads.iter().filter_map(|load| match load.magnitude {
         Magnitude::Friction(friction) => Some(friction.reactions(&scene.mechanism)),
         _ => None,

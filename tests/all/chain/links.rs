@@ -58,6 +58,7 @@ pub(crate) fn model(n: usize) -> Model {
     let start = Start {
         q: vec![FRAC_PI_2],
         rough: (0..chain.bodies.len()).map(upright).collect(),
+        ..Start::default()
     };
     let gravity = Load {
         name: "gravity".into(),

@@ -245,6 +245,7 @@ impl Standing {
             start: Start {
                 q,
                 rough: vec![None; n],
+                ..Start::default()
             },
             frames: vec![[0.0; 3]; n],
             down: vec2(0.0, -1.0).turn(whole),

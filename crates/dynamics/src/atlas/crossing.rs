@@ -174,6 +174,7 @@ impl Atlas<'_> {
         let start = Start {
             q: vec![q],
             rough: angles.iter().map(|&a| Some(a)).collect(),
+            joints: Vec::new(),
         };
         let built = self.build(&mechanism, &start);
         let built = built.map_err(|_| BridgeError::NotBehind)?;

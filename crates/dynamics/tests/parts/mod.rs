@@ -163,6 +163,7 @@ impl Setup {
             start: Start {
                 q: vec![q],
                 rough: rough.iter().map(|&angle| Some(angle)).collect(),
+                joints: Vec::new(),
             },
             loads: Vec::new(),
             drives: Vec::new(),

@@ -56,6 +56,7 @@ fn plan(mechanism: &Mechanism) -> Plan {
     let start = Start {
         q: vec![0.3],
         rough: vec![None, None, Some(-0.6), None],
+        ..Start::default()
     };
     Plan::compile(mechanism, &start).unwrap()
 }

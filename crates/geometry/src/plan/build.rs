@@ -6,6 +6,7 @@ use crate::mechanism::{ActuatorId, BodyId, Coordinate, Drive, JointId, JointKind
 use crate::mobility::{Mobility, mobility};
 use crate::plan::Pose;
 use crate::plane::{Vec2, vec2};
+use crate::rough::Rough;
 
 /// Constraints too many that stay open by less than this part of the mechanism's size were meant to
 /// repeat each other; if they stay open by more, there are simply too many.
@@ -186,7 +187,7 @@ impl Plan {
     ) -> Result<Self, AssemblyError> {
         let mut plan = Self::structure(mechanism, felt, repeated)?;
         plan.start.clone_from(&start.q);
-        let pose = plan.assemble(&start.rough)?;
+        let pose = plan.assemble(&Rough::new(mechanism, &plan.lowered, start))?;
         plan.check_meshing(mechanism, &pose)?;
         plan.follow(&pose)?;
         plan.home = Some(Box::new(pose));
@@ -228,12 +229,18 @@ fn check(mechanism: &Mechanism, start: &Start) -> Result<(), StructureError> {
             .actuators
             .iter()
             .any(|a| matches!(a.drive, Drive::Travel(joint) if !travels(joint)))
+        || (start.joints.iter().zip(&mechanism.joints))
+            .any(|(rough, joint)| rough.is_some() && joint.kind.told().is_none())
     {
         "a coordinate that is not there"
     } else if start.q.len() != mechanism.actuators.len() || start.rough.len() != bodies {
         "the start needs a coordinate for each actuator and a place for each body"
-    } else if !start.q.iter().all(|q| q.is_finite()) || !start.rough.iter().all(finite) {
-        "an angle that is not a finite number"
+    } else if ![0, mechanism.joints.len()].contains(&start.joints.len()) {
+        "the start tells of each joint or of none"
+    } else if !start.q.iter().all(|q| q.is_finite())
+        || !start.rough.iter().chain(&start.joints).all(finite)
+    {
+        "an angle or a length that is not a finite number"
     } else {
         return Ok(());
     };

@@ -63,6 +63,7 @@ fn machine<const J: usize>(
         start: Start {
             q: vec![q],
             rough: at.collect(),
+            ..Start::default()
         },
     }
 }

@@ -1,7 +1,7 @@
 //! Mechanisms under loads of every kind.
 
 use crate::machines::{self, Machine};
-use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Start, Vec2, vec2};
+use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{Actions, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace};
 use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::Scene;
@@ -63,10 +63,7 @@ pub(crate) struct Case {
 
 impl Case {
     pub(crate) fn of(scene: &Scene, loads: impl FnOnce(&Mechanism) -> Vec<Load>) -> Self {
-        let start = Start {
-            q: scene.assembly.start.clone(),
-            rough: scene.assembly.rough.clone(),
-        };
+        let start = scene.assembly.to_start();
         let machine = Machine {
             name: "",
             mechanism: scene.mechanism.clone(),

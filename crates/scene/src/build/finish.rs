@@ -43,12 +43,8 @@ impl Parts<'_> {
         let coordinates = coordinates.collect();
         let assembly = Assembly {
             start: self.start,
-            rough: self
-                .assembly
-                .rough
-                .iter()
-                .map(|r| r.as_ref().map(|r| r.0))
-                .collect(),
+            rough: values(&self.assembly.rough),
+            joints: values(&self.assembly.joints),
         };
         let motion = self.motion.and_then(|m| motion_of(m, &assembly.start));
         let requests = Requests {
@@ -199,4 +195,9 @@ fn one_line(text: &str) -> String {
 fn printable(text: &str) -> String {
     let shown = |c: char| if c.is_control() && c != '\n' { ' ' } else { c };
     text.chars().map(shown).collect()
+}
+
+/// What is said, without where.
+fn values(said: &[Option<(f64, Span)>]) -> Vec<Option<f64>> {
+    said.iter().map(|s| s.as_ref().map(|s| s.0)).collect()
 }

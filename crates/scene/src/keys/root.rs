@@ -157,15 +157,15 @@ static ALL_DRIVES: Table = names(
 
 pub(crate) static ASSEMBLY: Table = names(
     "[assembly]",
-    "Where the mechanism is put together, which picks its branch. An actuator's coordinate is exact, a body's angle is rough (only gears mesh exactly as the angles given here say).",
+    "Where the mechanism is put together, which picks its branch. An actuator's coordinate is exact, a body's angle is rough (only gears mesh exactly as the angles given here say), and so is what is said of a joint: the travel of a prismatic joint or a slot, the direction of a distance. Of several ways, the one nearest to all that is said is picked. A name that is a body's and a joint's means the body.",
     key(
-        "<actuator or body>",
+        "<actuator, body or joint>",
         Number,
         "angle or length",
-        "The actuator's coordinate at the start, or the rough angle of the body.",
+        "The actuator's coordinate at the start, the rough angle of the body, or the rough travel or direction of the joint.",
         "90",
     )
-    .or("0 for an actuator that drives no distance of two points; unknown for a body"),
+    .or("0 for an actuator that drives no distance of two points; unknown for a body or a joint"),
 );
 
 pub(crate) static REQUESTS: Table = table(

@@ -12,7 +12,7 @@ use crate::run::stop::{End, Stop, is_cut_off};
 use crate::run::watch::Watch;
 use crate::run::way::{Sample, Way};
 use dwell_geometry::measure::{BodyStates, Measured};
-use dwell_geometry::{BodyId, Motion, Plan, Pose, Start, Vec2};
+use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
 use dwell_kinetostatics::{
     Act, Actions, By, Ledger, LoadKind, Model, PowerBalance, Workspace, Wrench,
 };
@@ -53,10 +53,7 @@ impl Record {
 /// # Errors
 /// [`StudyError::Scene`] when the mechanism cannot be put together or a load does not fit it.
 pub(crate) fn model(scene: &Scene) -> Result<Model, StudyError> {
-    let start = Start {
-        q: scene.assembly.start.clone(),
-        rough: scene.assembly.rough.clone(),
-    };
+    let start = scene.assembly.to_start();
     let reactions = scene.mechanism.reactions();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &reactions)
         .map_err(|e| explain_model(scene, &e))?;

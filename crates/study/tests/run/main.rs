@@ -8,3 +8,4 @@ mod leverage;
 mod motion;
 mod need;
 mod table;
+mod told;

@@ -5,7 +5,7 @@ use crate::plant::{GROUND, Plant};
 use crate::setup::Setup;
 use dwell_dynamics::{DriveKind, Motor};
 use dwell_findings::all_pass;
-use dwell_geometry::{Actuator, BodyId, Coordinate, JointKind, Vec2, vec2};
+use dwell_geometry::{Actuator, BodyId, Coordinate, Joint, JointKind, Vec2, vec2};
 use dwell_kinetostatics::Magnitude;
 use dwell_laws::{Law, Polynomial};
 
@@ -19,7 +19,8 @@ fn let_go(setup: &Setup, led: usize) -> Plant {
     for (i, (kind, magnitude)) in setup.loads.iter().enumerate() {
         plant.constant(&format!("load {i}"), *kind, *magnitude);
     }
-    bars_for_distances(&mut plant, setup);
+    // Two bars may close in two ways that turn no body.
+    plant.told = told_distances(setup);
     // The last motion is at the start itself.
     let [q, _, _] = setup.motions.last().unwrap();
     let speeds = [0.5, -0.3];
@@ -34,28 +35,17 @@ fn let_go(setup: &Setup, led: usize) -> Plant {
     plant
 }
 
-/// A distance has no angle by which its branch could be told; a bar without mass has.
-fn bars_for_distances(plant: &mut Plant, setup: &Setup) {
-    for (j, joint) in setup.mechanism.joints.iter().enumerate() {
-        let JointKind::Distance { length } = joint.kind else {
-            continue;
-        };
+/// The directions of the distances.
+fn told_distances(setup: &Setup) -> Vec<Option<f64>> {
+    let direction = |joint: &Joint| {
         let [one, two] = [0, 1].map(|i| {
             let [x, y, angle] = setup.start[joint.bodies[i].0];
             vec2(x, y) + joint.points[i].turn(Vec2::from_angle(angle))
         });
-        let bar = plant.body("bar", 0.0, [0.0; 2], 0.0, Some((two - one).angle()));
-        let first = &mut plant.mechanism.joints[j];
-        first.kind = JointKind::Revolute;
-        first.bodies[1] = bar;
-        first.points[1] = Vec2::ZERO;
-        let end = joint.points[1];
-        plant.pin(
-            "end",
-            (bar, [length, 0.0]),
-            (joint.bodies[1], [end.x, end.y]),
-        );
-    }
+        let told = matches!(joint.kind, JointKind::Distance { .. });
+        told.then(|| (two - one).angle())
+    };
+    setup.mechanism.joints.iter().map(direction).collect()
 }
 
 fn motor() -> DriveKind {

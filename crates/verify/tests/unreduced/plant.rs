@@ -24,6 +24,8 @@ pub(crate) struct Plant {
     pub(crate) mechanism: Mechanism,
     pub(crate) masses: Vec<Mass>,
     pub(crate) rough: Vec<Option<f64>>,
+    /// What is known roughly of each joint; empty where nothing is.
+    pub(crate) told: Vec<Option<f64>>,
     pub(crate) loads: Vec<Load>,
     guidance: Vec<Guidance>,
     pub(crate) drives: Vec<Driving>,
@@ -171,6 +173,7 @@ impl Plant {
         let start = Start {
             q: self.q.clone(),
             rough: self.rough.clone(),
+            joints: self.told.clone(),
         };
         let reactions = self.mechanism.reactions();
         let model = Model::new(&self.mechanism, &self.masses, &start, &reactions).unwrap();
