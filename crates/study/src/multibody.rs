@@ -2,6 +2,7 @@
 
 use crate::error::{StudyError, explain_machine, explain_model};
 use crate::motion_error::explain_motion;
+use crate::reference::{Reached, Reference};
 use crate::simulate::{Free, Moved};
 use dwell_dynamics::{
     DynamicsError, Guidance, Machine, MachineError, Method, Options, Orbit, Point, all_loads,
@@ -40,6 +41,11 @@ pub struct FreeRun {
 /// # Errors
 /// [`StudyError::Scene`] when the scene cannot be put together or its start cannot be evaluated.
 pub fn free_run(scene: &Scene) -> Result<Option<FreeRun>, StudyError> {
+    followed(scene, None)
+}
+
+/// The same, or until a time.
+fn followed(scene: &Scene, until: Option<f64>) -> Result<Option<FreeRun>, StudyError> {
     let Some(motion) = &scene.motion else {
         return Ok(None);
     };
@@ -50,6 +56,7 @@ pub fn free_run(scene: &Scene) -> Result<Option<FreeRun>, StudyError> {
     let period = Orbit::loaded(&free.machine, free.state()).ok();
     let period = period.filter(|_| free.machine.free().len() == 1 && motion.laws.len() == 1);
     let duration = match (motion.length, period) {
+        _ if until.is_some() => until.unwrap_or_default(),
         (Length::Periods(n), Some(orbit)) => n.min(PERIODS) * orbit.period,
         (Length::Duration(d), Some(orbit)) => d.min(PERIODS * orbit.period),
         (_, None) => free.duration()?,
@@ -186,7 +193,100 @@ impl<'a> Eye<'a> {
     }
 }
 
+/// The findings of a scene's motion: the multibody equations, then what is known of it.
+///
+/// # Errors
+/// As [`free_run`]; [`StudyError::Reference`] where a name is none of the scene's.
+pub(crate) fn judged(
+    scene: &Scene,
+    reference: &Reference,
+) -> Result<(Option<FreeRun>, Vec<Finding>), StudyError> {
+    let Some(run) = free_run(scene)? else {
+        return Ok((None, Vec::new()));
+    };
+    let mut findings = run.judge(scene);
+    for known in &reference.motion {
+        if let Some(run) = followed(scene, Some(known.t))? {
+            findings.push(run.reaches(scene, known, &reference.source)?);
+        }
+    }
+    Ok((Some(run), findings))
+}
+
 impl FreeRun {
+    /// The values of the last step by name, each with its unit.
+    fn last(&self, scene: &Scene) -> Vec<(String, &'static str, f64)> {
+        let (Some(step), Some(coordinates)) = (self.steps.last(), self.coordinates.last()) else {
+            return Vec::new();
+        };
+        let mut all = Vec::new();
+        for (actuator, [q, speed]) in scene.mechanism.actuators.iter().zip(coordinates) {
+            let [unit, of_speed] = match actuator.coordinate().is_angle() {
+                true => ["rad", "rad/s"],
+                false => ["m", "m/s"],
+            };
+            all.push((actuator.name.clone(), unit, *q));
+            all.push((format!("{}.speed", actuator.name), of_speed, *speed));
+        }
+        let reactions = scene.mechanism.reactions();
+        let named = reactions.iter().zip(&step.reactions).map(|(&r, value)| {
+            let name = scene.mechanism.reaction_name(r);
+            (name, r.component.unit(), *value)
+        });
+        all.extend(named);
+        all
+    }
+
+    /// Holds the last step against what is known of it.
+    fn reaches(
+        &self,
+        scene: &Scene,
+        known: &Reached,
+        source: &str,
+    ) -> Result<Finding, StudyError> {
+        let all = self.last(scene);
+        let mut found = Vec::new();
+        for (name, wanted) in &known.values {
+            let Some((_, unit, value)) = all.iter().find(|(own, ..)| own == name) else {
+                return Err(StudyError::Reference {
+                    path: format!("{}: free_motion", scene.name),
+                    reason: format!("`{name}` is no actuator, speed or reaction"),
+                });
+            };
+            found.push((name, *unit, *value, *wanted));
+        }
+        let scale = |unit: &str| {
+            let alike = found.iter().filter(|(_, own, ..)| *own == unit);
+            alike.fold(0.0_f64, |most, (.., wanted)| most.max(wanted.abs()))
+        };
+        let mut finding = Finding {
+            key: "published-motion".into(),
+            truth: "published values".into(),
+            compared: format!("the state that is reached with its published values ({source})"),
+            over: format!("{} values at t = {} s", found.len(), known.t),
+            absolute: 0.0,
+            unit: String::new(),
+            relative: 0.0,
+            scale: "the largest published value of the unit".into(),
+            worst: "none".into(),
+            tolerance: known.relative,
+            why: known.reason.clone(),
+            pass: false,
+        };
+        for (name, unit, value, wanted) in &found {
+            let absolute = (value - wanted).abs();
+            let relative = absolute / scale(unit);
+            // What is not a number is the worst there is.
+            if !(relative < finding.relative) && !finding.relative.is_nan() {
+                (finding.absolute, finding.relative) = (absolute, relative);
+                (finding.unit, finding.worst) = ((*unit).to_owned(), (*name).clone());
+            }
+        }
+        finding.pass =
+            self.stopped.is_none() && !found.is_empty() && finding.relative <= known.relative;
+        Ok(finding)
+    }
+
     /// Holds the run against the multibody equations of a scene: its own, but for deliberate faults.
     pub fn judge(&self, scene: &Scene) -> Vec<Finding> {
         let last = self.steps.len().saturating_sub(1);

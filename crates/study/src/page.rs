@@ -3,7 +3,7 @@
 use crate::dossier::{illustrated, rounded_to, verdicts};
 use crate::error::StudyError;
 use crate::figures;
-use crate::multibody::{FreeRun, free_run};
+use crate::multibody::{self, FreeRun};
 use crate::outcome::{Outcome, Progress, Step};
 use crate::reference::Reference;
 use crate::states::{self, Judged};
@@ -44,15 +44,11 @@ pub(crate) fn of_states(
             done: what,
         });
     };
-    let (judged, run) = rayon::join(
+    let (judged, motion) = rayon::join(
         || states::judge(scene, reference),
-        || {
-            let run = free_run(scene)?;
-            let findings = run.as_ref().map(|run| run.judge(scene));
-            Ok::<_, StudyError>((run, findings.unwrap_or_default()))
-        },
+        || multibody::judged(scene, reference),
     );
-    let (mut judged, (run, of_motion)) = (judged?, run?);
+    let (mut judged, (run, of_motion)) = (judged?, motion?);
     judged.findings.extend(of_motion);
     done("states");
     let mut pages = vec![

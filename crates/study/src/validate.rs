@@ -6,7 +6,7 @@ use crate::error::StudyError;
 use crate::figures::{self, Dwell};
 use crate::history::History;
 use crate::motion_error::explain_motion;
-use crate::multibody::free_run;
+use crate::multibody;
 use crate::outcome::{Outcome, Progress, Step};
 use crate::page;
 use crate::prepare::Prepared;
@@ -89,9 +89,7 @@ pub fn validate(
     let judged = states::judge(scene, &reference)?;
     findings.extend(judged.findings);
     done("states");
-    if let Some(run) = free_run(scene)? {
-        findings.extend(run.judge(scene));
-    }
+    findings.extend(multibody::judged(scene, &reference)?.1);
     let (drawing, dwell) = figures::mechanism(&prepared)?;
     let evidence = Evidence {
         findings,

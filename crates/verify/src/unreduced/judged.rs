@@ -67,7 +67,7 @@ impl<'a> Kind<'a> {
         {
             let reading = Reading {
                 difference: claimed - truth,
-                scale: scale.min(self.most).max(self.least),
+                scale: scale.max(self.least).min(self.most),
                 own: 0.0,
                 unit: self.unit,
             };
@@ -161,12 +161,13 @@ impl Unreduced {
                 angles.read(one[2] - from[2], other[2] - from[2], t, name);
             }
         }
-        // Frames that all turn about their origins go nowhere.
-        lengths.least = angles.largest().min(1.0) * self.frames.size;
+        // Frames that all turn about their origins go nowhere, and those of slides do not turn.
+        let size = self.frames.size;
+        (lengths.least, angles.least) = (angles.largest().min(1.0) * size, lengths.largest() / size);
         finding(
             "motion-poses",
             "the frames of all bodies with those of the multibody equations",
-            "the longest way from the start, or what the turns move at an arm of the size; angles the largest turn or 1 rad",
+            "the longest way from the start, angles the largest turn or 1 rad; each at least the other by the size",
             CLOSE,
             pairs.len(),
             &[lengths, angles],
@@ -184,11 +185,12 @@ impl Unreduced {
                 angles.read(one[2], other[2], t, name);
             }
         }
-        lengths.least = angles.largest() * self.frames.size;
+        let size = self.frames.size;
+        (lengths.least, angles.least) = (angles.largest() * size, lengths.largest() / size);
         finding(
             "motion-velocities",
             "the velocities of all bodies with those of the multibody equations",
-            "the largest of the kind in the run, of lengths at least what the spins move at an arm of the size",
+            "the largest of the kind in the run, at least that of the other by the size",
             CLOSE,
             pairs.len(),
             &[lengths, angles],
