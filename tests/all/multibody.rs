@@ -23,7 +23,14 @@ const DYNAMIC: [&str; 12] = [
     "whitworth",             // a regulator
 ];
 /// Of them, those over which energy is given or taken.
-const DRIVEN: [&str; 6] = ["andrews", "boom", "five-bar", "four-bar", "slider-crank-friction", "whitworth"];
+const DRIVEN: [&str; 6] = [
+    "andrews",
+    "boom",
+    "five-bar",
+    "four-bar",
+    "slider-crank-friction",
+    "whitworth",
+];
 
 const KEYS: [&str; 5] = [
     "motion-poses",
@@ -61,11 +68,18 @@ fn val_every_motion_by_the_multibody_equations() {
         assert_eq!(keys, KEYS, "{case}");
         for finding in &findings {
             // What is promised of every motion, whatever tolerance its findings have.
-            let promised = if finding.key == "motion-energy" { 1e-9 } else { 1e-8 };
+            let promised = if finding.key == "motion-energy" {
+                1e-9
+            } else {
+                1e-8
+            };
             assert!(finding.pass, "{case}: {finding:?}");
             assert!(finding.relative <= promised, "{case}: {finding:?}");
         }
-        let work = run.steps.iter().fold(0.0_f64, |most, s| most.max(s.work.abs()));
+        let work = run
+            .steps
+            .iter()
+            .fold(0.0_f64, |most, s| most.max(s.work.abs()));
         assert_eq!(work > 0.1, DRIVEN.contains(&case), "{case}: {work} J");
     }
 }
@@ -79,7 +93,9 @@ fn a_mass_off_by_a_hundred_thousandth_is_found_in_every_motion() {
         let ground = right.mechanism.ground;
         let mass = |b: &usize| right.masses[*b].mass;
         let moving = (0..right.masses.len()).filter(|&b| b != ground);
-        let heaviest = moving.max_by(|a, b| mass(a).total_cmp(&mass(b))).expect("a body");
+        let heaviest = moving
+            .max_by(|a, b| mass(a).total_cmp(&mass(b)))
+            .expect("a body");
         let mut wrong = right.clone();
         // Both: the mass of a wheel about its own centre has no effect without weight.
         wrong.masses[heaviest].mass *= 1.0 + 1e-5;
@@ -93,10 +109,18 @@ fn a_mass_off_by_a_hundred_thousandth_is_found_in_every_motion() {
 fn what_moves_a_machine_is_judged_too() {
     type Change = fn(&str) -> String;
     let changes: [(&str, Change); 4] = [
-        ("boom", |text| text.replace("1.5e4*dig.speed", "1.50001e4*dig.speed")),
-        ("four-bar", |text| text.replace("inductance = 0.002", "inductance = 0.00200001")),
-        ("slider-crank-friction", |text| text.replace("coefficient = 0.1,", "coefficient = 0.10001,")),
-        ("whitworth", |text| text.replace("integral = 200", "integral = 200.01")),
+        ("boom", |text| {
+            text.replace("1.5e4*dig.speed", "1.50001e4*dig.speed")
+        }),
+        ("four-bar", |text| {
+            text.replace("inductance = 0.002", "inductance = 0.00200001")
+        }),
+        ("slider-crank-friction", |text| {
+            text.replace("coefficient = 0.1,", "coefficient = 0.10001,")
+        }),
+        ("whitworth", |text| {
+            text.replace("integral = 200", "integral = 200.01")
+        }),
     ];
     for (case, change) in changes {
         let right = scene(case);
@@ -115,7 +139,11 @@ fn val_squeezer_multipliers() {
     let scene = scene("andrews");
     let began = Instant::now();
     let run = run(&scene);
-    println!("followed in {:.3} s, {} steps", began.elapsed().as_secs_f64(), run.steps.len() - 1);
+    println!(
+        "followed in {:.3} s, {} steps",
+        began.elapsed().as_secs_f64(),
+        run.steps.len() - 1
+    );
     let last = run.steps.last().expect("an end");
     assert_eq!(last.t, 0.03);
     let wanted = [
@@ -138,5 +166,8 @@ fn val_squeezer_multipliers() {
     let [beta, speed] = run.coordinates.last().expect("an end")[0];
     // The integration's error, of a motion of sixteen radians.
     assert!((beta - 15.810_771_195_153_707).abs() < 1e-9, "{beta}");
-    assert!((speed / 1_139.920_302_259_106 - 1.0).abs() < 1e-8, "{speed}");
+    assert!(
+        (speed / 1_139.920_302_259_106 - 1.0).abs() < 1e-8,
+        "{speed}"
+    );
 }

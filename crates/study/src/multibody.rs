@@ -238,12 +238,7 @@ impl FreeRun {
     }
 
     /// Holds the last step against what is known of it.
-    fn reaches(
-        &self,
-        scene: &Scene,
-        known: &Reached,
-        source: &str,
-    ) -> Result<Finding, StudyError> {
+    fn reaches(&self, scene: &Scene, known: &Reached, source: &str) -> Result<Finding, StudyError> {
         let all = self.last(scene);
         let mut found = Vec::new();
         for (name, wanted) in &known.values {

@@ -160,7 +160,12 @@ fn ended(scene: &Scene, run: &FreeRun) -> String {
         return String::new();
     };
     let mut text = format!("free motion, t = {}\n", rounded_to(last.t, last.t));
-    let actuators = scene.mechanism.actuators.iter().zip(coordinates).enumerate();
+    let actuators = scene
+        .mechanism
+        .actuators
+        .iter()
+        .zip(coordinates)
+        .enumerate();
     for (k, (actuator, [q, speed])) in actuators {
         let all = run.coordinates.iter();
         let fastest = all.fold(0.0_f64, |most, at| most.max(at[k][1].abs()));

@@ -156,7 +156,11 @@ impl Moved {
 }
 
 impl<'a> Free<'a> {
-    pub(crate) fn new(scene: &Scene, driven: &'a Scene, motion: &'a Motion) -> Result<Self, StudyError> {
+    pub(crate) fn new(
+        scene: &Scene,
+        driven: &'a Scene,
+        motion: &'a Motion,
+    ) -> Result<Self, StudyError> {
         let shown = loaded(driven)?;
         check_variables(driven, &shown)?;
         let machine = machine(scene, motion)?;
@@ -169,7 +173,12 @@ impl<'a> Free<'a> {
     }
 
     /// Follows the motion: of one freedom from chart to chart, else in its own coordinates.
-    pub(crate) fn follow(&self, scene: &Scene, duration: f64, options: &Options) -> Result<Moved, StudyError> {
+    pub(crate) fn follow(
+        &self,
+        scene: &Scene,
+        duration: f64,
+        options: &Options,
+    ) -> Result<Moved, StudyError> {
         let explain = |e: &DynamicsError| explain_motion(self.scene, self.shown.plan(), e);
         let (start, events) = (self.start(), self.events());
         if self.motion.laws.len() != 1 || self.machine.free().len() != 1 {

@@ -163,7 +163,8 @@ impl Unreduced {
         }
         // Frames that all turn about their origins go nowhere, and those of slides do not turn.
         let size = self.frames.size;
-        (lengths.least, angles.least) = (angles.largest().min(1.0) * size, lengths.largest() / size);
+        (lengths.least, angles.least) =
+            (angles.largest().min(1.0) * size, lengths.largest() / size);
         finding(
             "motion-poses",
             "the frames of all bodies with those of the multibody equations",
