@@ -281,6 +281,34 @@ fn a_reference_value_off_by_a_billionth_is_found() {
     }
 }
 
+/// A published state of a motion is put off by a little more than its tolerance.
+#[test]
+fn a_published_motion_that_is_put_off_is_found() {
+    for (case, name, off) in [
+        ("andrews", "beta", 2e-9),
+        ("andrews", "E-k3.x", 2e-9),
+        ("double-pendulum", "q.speed", 2e-9),
+        ("n-four-bar-a02", "phi", 2e-10),
+        ("pendulum-a01", "A.x", 2e-10),
+    ] {
+        let changed = Changed::new(case, |reference| {
+            let values = &mut reference["free_motion"]["states"][0]["values"];
+            let off = number(&values[name]) * (1.0 + off);
+            values[name] = Value::from(format!("{off:e}"));
+        });
+        let done = validate(&scene(case), &changed.0, &silent).expect("findings");
+        let findings = done.outcome.findings;
+        assert_eq!(failed(&findings), ["published-motion"], "{case}, {name}");
+        let finding = findings.iter().find(|f| !f.pass).expect("it");
+        assert_eq!(finding.worst, name);
+    }
+    let changed = Changed::new("andrews", |reference| {
+        reference["free_motion"]["states"][0]["values"]["gamma"] = Value::from("1.0");
+    });
+    let error = validate(&scene("andrews"), &changed.0, &silent).expect_err("no such name");
+    assert!(error.to_string().contains("`gamma`"), "{error}");
+}
+
 #[test]
 fn a_name_that_is_nothing_fails_and_is_told() {
     for name in [

@@ -2,7 +2,7 @@
 
 use super::{foot, symbol};
 use crate::multibody::FreeRun;
-use dwell_report::{Axis, Chart, Figure, Panel, Series};
+use dwell_report::{Axis, Chart, Figure, Panel, Series, Stroke};
 use dwell_scene::Scene;
 
 /// Most points of a curve: there are thousands of steps.
@@ -46,7 +46,8 @@ pub(crate) fn energies(scene: &Scene, run: &FreeRun) -> Figure {
     let lines = vec![
         Series::line("kinetic", curve(&|k| run.steps[k].kinetic)),
         Series::line("potential", curve(&|k| run.steps[k].potential - began)),
-        Series::line("work", curve(&|k| run.steps[k].work)),
+        // Often the same curve as another.
+        Series::line("work", curve(&|k| run.steps[k].work)).stroke(Stroke::Dashed),
     ];
     let energy = Axis::new("energy", "J");
     panels.push(chart("Energies".to_owned(), energy, lines));
