@@ -14,6 +14,14 @@ use std::sync::atomic::{AtomicU32, Ordering};
 /// The case whose joints repeat each other.
 const REPEATED: &str = "parallelogram-three-cranks";
 
+/// Cases whose references hold no states: the first two are of the reduced model, the others of motions.
+const WITHOUT_STATES: [&str; 4] = [
+    "crank-rocker",
+    "single-dwell",
+    "double-pendulum",
+    "slider-crank-friction",
+];
+
 /// Relative difference that every reference must be met to.
 const PROMISED: f64 = 1e-12;
 
@@ -70,8 +78,7 @@ fn val_every_case_in_states_and_by_its_reference() {
             let finding = judged.findings.iter().find(|f| f.key == key).expect("it");
             assert!(finding.relative <= PROMISED, "{case}: {finding:?}");
         }
-        // The first two cases have references of the reduced model alone.
-        if !["crank-rocker", "single-dwell"].contains(&case.as_str()) {
+        if !WITHOUT_STATES.contains(&case.as_str()) {
             for kind in [
                 "positions",
                 "velocities",
@@ -272,6 +279,34 @@ fn a_reference_value_off_by_a_billionth_is_found() {
         let finding = findings.iter().find(|f| f.key == key).expect("it");
         assert!(finding.worst.starts_with(name), "{finding:?}");
     }
+}
+
+/// A published state of a motion is put off by a little more than its tolerance.
+#[test]
+fn a_published_motion_that_is_put_off_is_found() {
+    for (case, name, off) in [
+        ("andrews", "beta", 2e-9),
+        ("andrews", "E-k3.x", 2e-9),
+        ("double-pendulum", "q.speed", 2e-9),
+        ("n-four-bar-a02", "phi", 2e-10),
+        ("pendulum-a01", "A.x", 2e-10),
+    ] {
+        let changed = Changed::new(case, |reference| {
+            let values = &mut reference["free_motion"]["states"][0]["values"];
+            let off = number(&values[name]) * (1.0 + off);
+            values[name] = Value::from(format!("{off:e}"));
+        });
+        let done = validate(&scene(case), &changed.0, &silent).expect("findings");
+        let findings = done.outcome.findings;
+        assert_eq!(failed(&findings), ["published-motion"], "{case}, {name}");
+        let finding = findings.iter().find(|f| !f.pass).expect("it");
+        assert_eq!(finding.worst, name);
+    }
+    let changed = Changed::new("andrews", |reference| {
+        reference["free_motion"]["states"][0]["values"]["gamma"] = Value::from("1.0");
+    });
+    let error = validate(&scene("andrews"), &changed.0, &silent).expect_err("no such name");
+    assert!(error.to_string().contains("`gamma`"), "{error}");
 }
 
 #[test]

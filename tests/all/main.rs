@@ -24,6 +24,7 @@ mod machine;
 mod machines;
 mod mobility;
 mod motion;
+mod multibody;
 mod orbits;
 mod published;
 mod random;

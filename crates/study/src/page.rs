@@ -3,6 +3,7 @@
 use crate::dossier::{illustrated, rounded_to, verdicts};
 use crate::error::StudyError;
 use crate::figures;
+use crate::multibody::{self, FreeRun};
 use crate::outcome::{Outcome, Progress, Step};
 use crate::reference::Reference;
 use crate::states::{self, Judged};
@@ -43,13 +44,19 @@ pub(crate) fn of_states(
             done: what,
         });
     };
-    let judged = states::judge(scene, reference)?;
+    let (judged, motion) = rayon::join(
+        || states::judge(scene, reference),
+        || multibody::judged(scene, reference),
+    );
+    let (mut judged, (run, of_motion)) = (judged?, motion?);
+    judged.findings.extend(of_motion);
     done("states");
-    let pages = [
+    let mut pages = vec![
         figures::drawing(scene, &judged),
         figures::actions(scene, &judged),
-        figures::digits(scene, &judged.findings),
     ];
+    pages.extend(run.as_ref().map(|run| figures::energies(scene, run)));
+    pages.push(figures::digits(scene, &judged.findings));
     let pictures: Vec<Vec<u8>> = pages.par_iter().map(png).collect::<Result<_, _>>()?;
     done("pictures");
     let mut files = Files::new();
@@ -57,7 +64,7 @@ pub(crate) fn of_states(
     for (page, picture) in pages.iter().zip(pictures) {
         files.add(format!("{name}/{}.png", page.name), picture);
     }
-    let snapshot = snapshot(scene, &judged);
+    let snapshot = snapshot(scene, &judged, run.as_ref());
     files.add(format!("{name}.txt"), snapshot.clone());
     let numbers = Numbers {
         title: &scene.title,
@@ -84,7 +91,7 @@ pub(crate) fn of_states(
 }
 
 /// The text that every machine reproduces: a few states to the digits that are stable, and verdicts.
-fn snapshot(scene: &Scene, judged: &Judged) -> String {
+fn snapshot(scene: &Scene, judged: &Judged, run: Option<&FreeRun>) -> String {
     let mechanism = &scene.mechanism;
     let reactions = mechanism.reactions();
     let drawn = &judged.states[..judged.drawn];
@@ -136,10 +143,34 @@ fn snapshot(scene: &Scene, judged: &Judged) -> String {
             let _ = writeln!(text, "    {} = {value}", mechanism.reaction_name(wanted));
         }
     }
+    if let Some(run) = run {
+        text += &ended(scene, run);
+    }
     text.push('\n');
     for f in &judged.findings {
         let verdict = if f.pass { "pass" } else { "FAIL" };
         let _ = writeln!(text, "{verdict}  {}  [{}]", f.key, f.truth);
+    }
+    text
+}
+
+/// Where the free motion ends, to the digits that are stable.
+fn ended(scene: &Scene, run: &FreeRun) -> String {
+    let (Some(last), Some(coordinates)) = (run.steps.last(), run.coordinates.last()) else {
+        return String::new();
+    };
+    let mut text = format!("free motion, t = {}\n", rounded_to(last.t, last.t));
+    let actuators = scene
+        .mechanism
+        .actuators
+        .iter()
+        .zip(coordinates)
+        .enumerate();
+    for (k, (actuator, [q, speed])) in actuators {
+        let all = run.coordinates.iter();
+        let fastest = all.fold(0.0_f64, |most, at| most.max(at[k][1].abs()));
+        let speed = rounded_to(*speed, fastest);
+        let _ = writeln!(text, "    {} = {q:.7}  speed = {speed}", actuator.name);
     }
     text
 }

@@ -21,9 +21,24 @@ pub(crate) struct Reference {
     pub(crate) samples: Vec<Sample>,
     /// Period of the free motion, s.
     pub(crate) period: Option<f64>,
+    /// States along the free motion.
+    pub(crate) motion: Vec<Reached>,
     /// Values of states of motion, computed and published.
     pub(crate) states: Option<Table>,
     pub(crate) published: Option<Table>,
+}
+
+/// What is known of a free motion at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Reached {
+    /// Time, s.
+    pub(crate) t: f64,
+    /// By name of an actuator, its speed (`phi.speed`) or a reaction: the value.
+    pub(crate) values: Vec<(String, f64)>,
+    /// Largest difference, as a part of the largest value of the kind.
+    pub(crate) relative: f64,
+    /// Why so much.
+    pub(crate) reason: String,
 }
 
 /// What a reference file holds. The words are for people, and so are numbers of other quantities.
@@ -93,16 +108,12 @@ impl Reference {
                 read.map_err(|e| format!("published: {e}"))?
             }
         };
-        let period = match &value["free_motion"] {
-            Value::Null => None,
-            motion => {
-                object(motion, "`free_motion`")?;
-                let period = number(motion, "period_s").map_err(|e| format!("free_motion: {e}"))?;
-                if scene.motion.is_none() {
-                    return Err("there is a `free_motion`, but no [motion] in the scene".to_owned());
-                }
-                Some(period)
+        let (period, motion) = match &value["free_motion"] {
+            Value::Null => (None, Vec::new()),
+            _ if scene.motion.is_none() => {
+                return Err("there is a `free_motion`, but no [motion] in the scene".to_owned());
             }
+            motion => free_motion(motion).map_err(|e| format!("free_motion: {e}"))?,
         };
         Ok(Self {
             source: value["source"]
@@ -112,10 +123,39 @@ impl Reference {
             computed: value["computed"].as_str().map(str::to_owned),
             samples,
             period,
+            motion,
             states,
             published,
         })
     }
+}
+
+/// The period of a free motion, s, and states along it.
+fn free_motion(value: &Value) -> Result<(Option<f64>, Vec<Reached>), String> {
+    object(value, "it")?;
+    let period = optional(value, "period_s")?;
+    let states = list(value, "states")?;
+    if period.is_none() && states.is_empty() {
+        return Err("neither `period_s` nor `states` is given".to_owned());
+    }
+    let state = |state: &Value| {
+        let values = object(&state["values"], "`values`")?;
+        let known = |(name, value): (&String, &Value)| {
+            let number = parse(value).ok_or_else(|| format!("`{name}` is not a number: {value}"));
+            Ok::<_, String>((name.clone(), number?))
+        };
+        Ok(Reached {
+            t: number(state, "t")?,
+            values: values.iter().map(known).collect::<Result<_, String>>()?,
+            relative: number(value, "relative")?,
+            reason: value["reason"].as_str().unwrap_or("as given").to_owned(),
+        })
+    };
+    let states = states.iter().enumerate().map(|(k, s)| {
+        let read: Result<Reached, String> = state(s);
+        read.map_err(|e| format!("states[{k}]: {e}"))
+    });
+    Ok((period, states.collect::<Result<_, _>>()?))
 }
 
 /// The entries of a key that may be absent.

@@ -115,26 +115,26 @@ fn no_motion(scene: &Scene) -> StudyError {
 }
 
 /// A scene ready to move.
-struct Free<'a> {
+pub(crate) struct Free<'a> {
     /// The scene with the loads through which its drives act.
     scene: &'a Scene,
     motion: &'a Motion,
     /// Everything that is shown of it.
     shown: Model,
     /// What moves.
-    machine: Machine,
+    pub(crate) machine: Machine,
 }
 
 /// A motion, leg by leg.
-struct Moved {
+pub(crate) struct Moved {
     /// None where there is but the mechanism's own coordinate.
-    charts: Vec<Chart>,
+    pub(crate) charts: Vec<Chart>,
     /// By leg: its chart and its trace, and the only actuator's coordinate at its samples.
-    legs: Vec<(usize, Trace)>,
+    pub(crate) legs: Vec<(usize, Trace)>,
     own: Vec<Vec<[f64; 3]>>,
     /// What is to be said of the charts.
     changes: Vec<String>,
-    failed: Option<DynamicsError>,
+    pub(crate) failed: Option<DynamicsError>,
     statistics: Statistics,
 }
 
@@ -158,7 +158,11 @@ impl Moved {
 }
 
 impl<'a> Free<'a> {
-    fn new(scene: &Scene, driven: &'a Scene, motion: &'a Motion) -> Result<Self, StudyError> {
+    pub(crate) fn new(
+        scene: &Scene,
+        driven: &'a Scene,
+        motion: &'a Motion,
+    ) -> Result<Self, StudyError> {
         let shown = loaded(driven)?;
         check_variables(driven, &shown)?;
         let machine = machine(scene, motion)?;
@@ -171,7 +175,12 @@ impl<'a> Free<'a> {
     }
 
     /// Follows the motion: of one freedom from chart to chart, else in its own coordinates.
-    fn follow(&self, scene: &Scene, duration: f64, options: &Options) -> Result<Moved, StudyError> {
+    pub(crate) fn follow(
+        &self,
+        scene: &Scene,
+        duration: f64,
+        options: &Options,
+    ) -> Result<Moved, StudyError> {
         let explain = |e: &DynamicsError| explain_motion(self.scene, self.shown.plan(), e);
         let (start, events) = (self.start(), self.events());
         if self.motion.laws.len() != 1 || self.machine.free().len() != 1 {
@@ -289,7 +298,7 @@ impl<'a> Free<'a> {
     }
 
     /// How long the motion lasts, s.
-    fn duration(&self) -> Result<f64, StudyError> {
+    pub(crate) fn duration(&self) -> Result<f64, StudyError> {
         let periods = match self.motion.length {
             Length::Duration(duration) => return Ok(duration),
             Length::Periods(periods) => periods,
@@ -309,7 +318,7 @@ impl<'a> Free<'a> {
     }
 
     /// The start in the only free coordinate.
-    fn state(&self) -> State {
+    pub(crate) fn state(&self) -> State {
         let first = self.machine.free().first().copied().unwrap_or(0);
         State {
             t: 0.0,

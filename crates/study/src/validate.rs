@@ -6,6 +6,7 @@ use crate::error::StudyError;
 use crate::figures::{self, Dwell};
 use crate::history::History;
 use crate::motion_error::explain_motion;
+use crate::multibody;
 use crate::outcome::{Outcome, Progress, Step};
 use crate::page;
 use crate::prepare::Prepared;
@@ -64,8 +65,10 @@ pub fn validate(
     progress: Progress<'_>,
 ) -> Result<Validation, StudyError> {
     let reference = Reference::read(folder, scene)?;
-    // The reduced model knows nothing of loads.
-    if scene.mechanism.actuators.len() != 1 || !scene.loads.is_empty() {
+    // The reduced model knows nothing of loads, drives and laws.
+    let led = |motion: &dwell_scene::Motion| motion.laws.iter().any(Option::is_some);
+    let moved = !scene.loads.is_empty() || !scene.drives.is_empty();
+    if scene.mechanism.actuators.len() != 1 || moved || scene.motion.as_ref().is_some_and(led) {
         return page::of_states(scene, &reference, progress);
     }
     let prepared = Prepared::new(scene)?;
@@ -86,6 +89,7 @@ pub fn validate(
     let judged = states::judge(scene, &reference)?;
     findings.extend(judged.findings);
     done("states");
+    findings.extend(multibody::judged(scene, &reference)?.1);
     let (drawing, dwell) = figures::mechanism(&prepared)?;
     let evidence = Evidence {
         findings,

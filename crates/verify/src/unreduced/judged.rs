@@ -57,13 +57,17 @@ impl<'a> Kind<'a> {
         self.places.push((t, name));
     }
 
+    fn largest(&self) -> f64 {
+        self.truth.iter().fold(0.0_f64, |most, v| most.max(v.abs()))
+    }
+
     fn judge(&self, worst: &mut Worst) {
-        let scale = self.truth.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
+        let scale = self.largest();
         for ((claimed, truth), (t, name)) in self.claimed.iter().zip(&self.truth).zip(&self.places)
         {
             let reading = Reading {
                 difference: claimed - truth,
-                scale: scale.min(self.most).max(self.least),
+                scale: scale.max(self.least).min(self.most),
                 own: 0.0,
                 unit: self.unit,
             };
@@ -157,10 +161,14 @@ impl Unreduced {
                 angles.read(one[2] - from[2], other[2] - from[2], t, name);
             }
         }
+        // Frames that all turn about their origins go nowhere, and those of slides do not turn.
+        let size = self.frames.size;
+        (lengths.least, angles.least) =
+            (angles.largest().min(1.0) * size, lengths.largest() / size);
         finding(
             "motion-poses",
             "the frames of all bodies with those of the multibody equations",
-            "the longest way from the start, angles the largest turn or 1 rad",
+            "the longest way from the start, angles the largest turn or 1 rad; each at least the other by the size",
             CLOSE,
             pairs.len(),
             &[lengths, angles],
@@ -178,10 +186,12 @@ impl Unreduced {
                 angles.read(one[2], other[2], t, name);
             }
         }
+        let size = self.frames.size;
+        (lengths.least, angles.least) = (angles.largest() * size, lengths.largest() / size);
         finding(
             "motion-velocities",
             "the velocities of all bodies with those of the multibody equations",
-            "the largest of the kind in the run",
+            "the largest of the kind in the run, at least that of the other by the size",
             CLOSE,
             pairs.len(),
             &[lengths, angles],
@@ -209,11 +219,7 @@ impl Unreduced {
             }
         }
         // Moments that all vanish are small beside what the forces do at an arm of the size.
-        let arm = forces
-            .truth
-            .iter()
-            .fold(0.0_f64, |most, f| most.max(f.abs()));
-        moments.least = arm * self.frames.size;
+        moments.least = forces.largest() * self.frames.size;
         finding(
             "motion-reactions",
             "the reactions with the multipliers of the multibody equations",
