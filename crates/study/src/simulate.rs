@@ -159,7 +159,7 @@ impl<'a> Free<'a> {
     fn new(scene: &Scene, driven: &'a Scene, motion: &'a Motion) -> Result<Self, StudyError> {
         let shown = loaded(driven)?;
         check_variables(driven, &shown)?;
-        let machine = machine(scene, motion)?;
+        let machine = machine(scene, motion, &[])?;
         Ok(Self {
             scene: driven,
             motion,
@@ -649,8 +649,12 @@ pub(crate) const KINETIC: &str = "energy.kinetic";
 pub(crate) const POTENTIAL: &str = "energy.potential";
 pub(crate) const BALANCE: &str = "energy.balance";
 
-/// The machine of a scene: what its motion needs, and no other reaction.
-pub(crate) fn machine(scene: &Scene, motion: &Motion) -> Result<Machine, StudyError> {
+/// The machine of a scene: some reactions and what its motion needs, and no other.
+pub(crate) fn machine(
+    scene: &Scene,
+    motion: &Motion,
+    reactions: &[Reaction],
+) -> Result<Machine, StudyError> {
     let start = Start {
         q: scene.assembly.start.clone(),
         rough: scene.assembly.rough.clone(),
@@ -659,7 +663,12 @@ pub(crate) fn machine(scene: &Scene, motion: &Motion) -> Result<Machine, StudyEr
         Magnitude::Friction(friction) => Some(friction.reactions(&scene.mechanism)),
         _ => None,
     });
-    let needed: Vec<Reaction> = frictions.flatten().collect();
+    let mut needed = reactions.to_vec();
+    for reaction in frictions.flatten() {
+        if !needed.contains(&reaction) {
+            needed.push(reaction);
+        }
+    }
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &needed)
         .map_err(|e| explain_model(scene, &e))?;
     let guide =
