@@ -138,6 +138,15 @@ impl Named {
 
     /// The four matrices with the names of their rows and columns.
     fn parts<'a>(&'a self, linear: &'a Linear) -> [Part<'a>; 4] {
+        [
+            ("A", &self.states, &self.states, &linear.a),
+            ("B", &self.states, &self.inputs, &linear.b),
+            ("C", &self.outputs, &self.states, &linear.c),
+            ("D", &self.outputs, &self.inputs, &linear.d),
+        ]
+    }
+
+    fn arrays(&self, linear: &Linear, state: &[f64]) -> Vec<(&'static str, Array)> {
         let matrix = |(name, _, columns, rows): (&'static str, _, &[Column], &[Vec<f64>])| {
             let rows = rows.to_vec();
             let columns = columns.len();
