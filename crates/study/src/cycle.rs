@@ -17,6 +17,8 @@ use std::fmt::Write as _;
 
 /// Turns from the start to the guess.
 const RUN_UP: u32 = 3;
+/// Tolerance of the way there.
+const GUESS: f64 = 1e-6;
 /// Most steps of an integration: a machine that has not got round by then never does.
 const BUDGET: usize = 100_000;
 
@@ -39,15 +41,25 @@ pub fn cycle(
         ..Options::new(accuracy.method, accuracy.relative)
     };
     let machine = &driven.machine;
-    let guess = run_up(machine, &driven.start(), RUN_UP, &options);
+    // A guess need not be exact, and from rest a coarse one starts more easily.
+    let coarse = Options {
+        absolute: options.absolute.max(GUESS),
+        relative: options.relative.max(GUESS),
+        ..options
+    };
+    let guess = run_up(machine, &driven.start(), RUN_UP, &coarse);
     let guess = guess.map_err(|e| never_round(&driven, &e))?;
     let explain = |e: DynamicsError| driven.explain(&e);
-    let steady = steady_cycle(machine, &guess, &options).map_err(explain)?;
+    let steady = from_zero(steady_cycle(machine, &guess, &options).map_err(explain)?);
     let even = match fluctuation {
         None => None,
         Some(wanted) => {
             let even = flywheel(machine, &steady.start, wanted, &options);
-            Some(even.map_err(explain)?)
+            let even = even.map_err(explain)?;
+            Some(Flywheel {
+                cycle: from_zero(even.cycle),
+                ..even
+            })
         }
     };
     let mut outcome = Outcome::default();
@@ -79,9 +91,30 @@ pub fn cycle(
     Ok(outcome)
 }
 
+/// The same cycle in the first round of the coordinate.
+fn from_zero(mut cycle: Cycle) -> Cycle {
+    let past = cycle.turn * (cycle.start[0] / cycle.turn).floor();
+    cycle.start[0] -= past;
+    for point in &mut cycle.samples {
+        point.y[0] -= past;
+    }
+    for extreme in [&mut cycle.slowest, &mut cycle.fastest] {
+        extreme[0] = (extreme[0] - past).rem_euclid(cycle.turn);
+    }
+    cycle
+}
+
 /// Refuses a machine whose coordinate does not turn.
 fn turns(driven: &Driven<'_>) -> Result<(), StudyError> {
     let free = driven.machine.free();
+    if driven.machine.workers().is_empty() {
+        return Err(driven.refused(
+            "nothing drives the machine: what neither gains nor loses energy goes on at any speed"
+                .to_owned(),
+            "add a drive, as in `[drives]`; `dwell simulate` shows the free motion and its period",
+            &[driven.began("of this motion")],
+        ));
+    }
     let label = |i: usize, words: &str| (Place::Actuator(ActuatorId(i)), words.to_owned());
     if free.len() != 1 {
         let labels: Vec<_> = free.iter().take(8).map(|&i| label(i, "free")).collect();
@@ -130,7 +163,7 @@ fn never_round(driven: &Driven<'_>, error: &DynamicsError) -> StudyError {
         ),
         "a drive has to carry it over its hardest place, or a start be fast enough; `dwell simulate` \
          shows how it moves",
-        &[(Place::Motion, "from here".to_owned())],
+        &[driven.began("from here")],
     )
 }
 
@@ -248,7 +281,7 @@ fn evened(driven: &Driven<'_>, wanted: f64, even: &Flywheel) -> String {
 }
 
 /// A complex number.
-pub(crate) fn complex([re, im]: [f64; 2], count: usize) -> String {
+fn complex([re, im]: [f64; 2], count: usize) -> String {
     if im == 0.0 {
         digits(re, count)
     } else {

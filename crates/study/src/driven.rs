@@ -64,6 +64,11 @@ impl<'a> Driven<'a> {
         error.into()
     }
 
+    /// Where the scene says how it starts.
+    pub(crate) fn began(&self, words: &str) -> (Place, String) {
+        (began(self.scene), words.to_owned())
+    }
+
     /// Refuses what changes with time itself.
     pub(crate) fn timeless(&self, wanted: &str) -> Result<(), StudyError> {
         if !self.machine.follows_time() {
@@ -145,6 +150,14 @@ impl<'a> Driven<'a> {
             Worker::Drive(drive) => self.scene.drives[drive].name.clone(),
             Worker::Prescribed(actuator) => self.name(actuator).to_owned(),
         }
+    }
+}
+
+/// Where a scene says how it starts to move: without `[motion]`, where it is put together.
+pub(crate) fn began(scene: &Scene) -> Place {
+    match scene.motion {
+        Some(_) => Place::Motion,
+        None => Place::Start(ActuatorId(0)),
     }
 }
 

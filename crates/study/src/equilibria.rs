@@ -1,6 +1,5 @@
 //! `dwell equilibria`: where a machine stays at rest, and how it moves near there.
 
-use crate::cycle::complex;
 use crate::driven::Driven;
 use crate::error::StudyError;
 use crate::figures;
@@ -9,7 +8,7 @@ use crate::words::{count, digits};
 use dwell_dynamics::{Equilibrium, Stability, at_rest, equilibria as over, equilibrium_near};
 use dwell_report::{Column, Table, png};
 use dwell_scene::Scene;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// What is left out of a range at each of its ends, where the mechanism no longer determines itself.
 const MARGIN: f64 = 1e-3;
@@ -204,10 +203,11 @@ pub(crate) fn eigenvalues(values: &[[f64; 2]]) -> String {
             0.0 => format!("    eigenvalue {} 1/s\n", digits(re, 9)),
             im if im < 0.0 => String::new(),
             _ => format!(
-                "    eigenvalues {} 1/s and its conjugate: {} rad/s = {} Hz, damping ratio {}\n",
-                complex([re, im], 9),
+                "    eigenvalues {} ± {}i 1/s: {} rad/s = {} Hz, damping ratio {}\n",
+                digits(re, 9),
+                digits(im, 9),
                 digits(size, 9),
-                digits(size / (2.0 * PI), 9),
+                digits(size / TAU, 9),
                 digits(if re == 0.0 { 0.0 } else { -re / size }, 6)
             ),
         }

@@ -30,36 +30,34 @@ pub(crate) fn cycle(
     };
     let axis = Axis::new(format!("d{name}/dt"), "rad/s");
     let mean = steady.mean_speed;
-    let (axis, acceleration) = if steady.fluctuation.abs() < EVEN {
+    let is_even = steady.fluctuation.abs() < EVEN;
+    let axis = if is_even {
         let margin = 0.01 * mean.abs();
-        let around = axis.within(mean - margin, mean + margin);
-        (
-            around,
-            Axis::new(format!("d²{name}/dt²"), "rad/s²").within(-1.0, 1.0),
-        )
+        axis.within(mean - margin, mean + margin)
     } else {
-        (axis, Axis::new(format!("d²{name}/dt²"), "rad/s²"))
+        axis
     };
-    let panels = vec![
-        Panel::from(Chart {
-            title: "Speed over the coordinate".to_owned(),
-            x: Axis::degrees(name),
-            y: axis.clone(),
-            series: both(|row| [row[1].to_degrees(), row[2]]),
-            marks: vec![Mark::Horizontal {
-                at: mean,
-                label: format!("mean {mean:.5} rad/s"),
-            }],
-            ..Chart::default()
-        }),
-        Panel::from(Chart {
+    let mut panels = vec![Panel::from(Chart {
+        title: "Speed over the coordinate".to_owned(),
+        x: Axis::degrees(name.clone()),
+        y: axis.clone(),
+        series: both(|row| [row[1].to_degrees(), row[2]]),
+        marks: vec![Mark::Horizontal {
+            at: mean,
+            label: format!("mean {mean:.5} rad/s"),
+        }],
+        ..Chart::default()
+    })];
+    // Of an even speed it is a point.
+    if !is_even {
+        panels.push(Panel::from(Chart {
             title: "Phase: acceleration over speed".to_owned(),
             x: axis,
-            y: acceleration,
+            y: Axis::new(format!("d²{name}/dt²"), "rad/s²"),
             series: both(|row| [row[2], row[3]]),
             ..Chart::default()
-        }),
-    ];
+        }));
+    }
     let stable = if steady.stable() {
         "Stable"
     } else {
