@@ -70,6 +70,24 @@ fn run(options: Options) -> Result<bool, Report> {
             let simulate = |heard: Progress<'_>| dwell_study::simulate(&scene, &accuracy, heard);
             followed(simulate, &mut stopped)?
         }
+        Command::Cycle {
+            scene,
+            fluctuation,
+            method,
+            rtol,
+        } => {
+            let accuracy = Accuracy {
+                method: (*method).into(),
+                relative: *rtol,
+                absolute: *rtol,
+                ..Accuracy::default()
+            };
+            told(dwell_study::cycle(&read(scene)?, &accuracy, *fluctuation))?
+        }
+        Command::Equilibria { scene } => told(dwell_study::equilibria(&read(scene)?))?,
+        Command::Linearise { scene, at } => {
+            told(dwell_study::linearise(&read(scene)?, (*at).into()))?
+        }
         Command::Kinematics(along) => follow(along, Run::Kinematics, &mut stopped)?,
         Command::Statics(along) => follow(along, Run::Statics, &mut stopped)?,
         Command::Kinetostatics(along) => follow(along, Run::Kinetostatics, &mut stopped)?,

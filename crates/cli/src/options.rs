@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use dwell_dynamics::Method;
+use dwell_study::About;
 use std::path::PathBuf;
 
 /// The reduced-parameter dynamics of mechanisms, checked.
@@ -46,6 +47,33 @@ pub(crate) enum Command {
         /// Time between the samples of the table, s (a thousandth of the motion, if absent)
         #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
         every: Option<f64>,
+    },
+    /// The steady cycle of a driven machine, and the flywheel for a wanted evenness
+    Cycle {
+        /// The scene file
+        scene: PathBuf,
+        /// Wanted coefficient of fluctuation, such as 0.02: tells the flywheel it takes
+        #[arg(long, value_parser = fraction, value_name = "RATIO", allow_hyphen_values = true)]
+        fluctuation: Option<f64>,
+        /// The integrator
+        #[arg(long, value_enum, default_value_t = MethodName::Bdf)]
+        method: MethodName,
+        /// Relative and absolute tolerance
+        #[arg(long, default_value = "1e-10", value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
+        rtol: f64,
+    },
+    /// Where a machine stays at rest, with stability and natural frequencies
+    Equilibria {
+        /// The scene file
+        scene: PathBuf,
+    },
+    /// Small motions about an equilibrium: the matrices A, B, C and D, and eigenvalues
+    Linearise {
+        /// The scene file
+        scene: PathBuf,
+        /// About which state
+        #[arg(long, value_enum, default_value_t = AboutName::Equilibrium)]
+        at: AboutName,
     },
     /// Positions, speeds and accelerations along the prescribed motion, the sweep or the range
     Kinematics(Along),
@@ -105,6 +133,33 @@ impl From<MethodName> for Method {
             MethodName::TrBdf2 => Self::TrBdf2,
             MethodName::Tsit45 => Self::Tsit45,
         }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum AboutName {
+    /// The equilibrium next to the start
+    Equilibrium,
+    /// The start of [motion], or else of the assembly at rest
+    Start,
+}
+
+impl From<AboutName> for About {
+    fn from(name: AboutName) -> Self {
+        match name {
+            AboutName::Equilibrium => Self::Equilibrium,
+            AboutName::Start => Self::Start,
+        }
+    }
+}
+
+/// A coefficient of fluctuation that makes sense: a machine of more than 2 would turn back.
+fn fraction(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value > 0.0 && value < 2.0 {
+        Ok(value)
+    } else {
+        Err("expected a number between 0 and 2".to_owned())
     }
 }
 

@@ -142,6 +142,34 @@ pub fn equilibria(
     Ok(found)
 }
 
+/// What a machine of one free coordinate has at rest at each of some coordinates, the drives settled: the
+/// generalised force, N·m or N, and the potential, J.
+///
+/// # Errors
+/// As of [`equilibria`].
+pub fn at_rest(machine: &Machine, coordinates: &[f64]) -> Result<Vec<[f64; 2]>, DynamicsError> {
+    let mut rest = Rest::new(machine)?;
+    if machine.free().len() != 1 {
+        return Err(DynamicsError::NoEquilibrium {
+            what: "only one freedom has a single force over its coordinate",
+        });
+    }
+    let mut work = machine.work();
+    let mut found = Vec::with_capacity(coordinates.len());
+    for &q in coordinates {
+        let acceleration = rest.acceleration(q)?;
+        let mut moving = rest.y.clone();
+        machine.evaluate(0.0, &moving, &mut work)?;
+        let [still, potential] = machine.energy(&work);
+        moving[1] = 1.0;
+        machine.evaluate(0.0, &moving, &mut work)?;
+        // Led coordinates stand still here, so that all kinetic energy is that of the free one.
+        let inertia = 2.0 * (machine.energy(&work)[0] - still);
+        found.push([inertia * acceleration, potential]);
+    }
+    Ok(found)
+}
+
 /// The equilibrium that Newton's method finds from a state, whatever the number of free coordinates.
 ///
 /// # Errors

@@ -29,7 +29,7 @@ pub use cycle::{Cycle, run_up, steady_cycle};
 pub use drive::{Drive, DriveError, DriveKind, Motor, Regulator};
 pub use driver::{Dense, Ended, Next, Watch, integrate};
 pub use equation::Equation;
-pub use equilibrium::{Equilibrium, Mode, Stability, equilibria, equilibrium_near};
+pub use equilibrium::{Equilibrium, Mode, Stability, at_rest, equilibria, equilibrium_near};
 pub use error::DynamicsError;
 pub use fate::{Fate, fate};
 pub use flywheel::{Flywheel, flywheel};

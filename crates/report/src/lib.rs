@@ -5,6 +5,7 @@
 //! - [`Figure`] (charts, stacks of charts and drawings on one page) → [`png()`]
 //! - [`Animation`] (drawings one after another) → [`Animation::gif`]
 //! - [`Table`] → [`Table::csv`] to read, [`Table::npz`] to compute with: both give back every bit
+//! - named matrices → [`npz()`]
 //! - [`Document`] (a study in words, tables, figures and findings) → [`Document::markdown`]
 //! - anything serialisable → [`json()`], which never turns a NaN into `null`
 //! - findings → [`stable`], the text that every machine reproduces
@@ -68,6 +69,7 @@ pub use figure::{Axis, Chart, Figure, Mark, Paint, Panel, Scale, Series, Stroke}
 pub use files::Files;
 pub use json::json;
 pub use markdown::{Block, Document, stable};
+pub use npz::{Array, npz};
 pub use png::png;
 pub use shape::{Drawing, Pen, Shape, Side};
 pub use table::{Column, Table};

@@ -13,6 +13,62 @@ const UNITS: &str = "units";
 /// The data of an array begin at a multiple of this.
 const ALIGNMENT: usize = 64;
 
+/// An array of an archive.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Array {
+    /// Rows of so many columns each.
+    Matrix {
+        /// Number of columns.
+        columns: usize,
+        /// The rows.
+        rows: Vec<Vec<f64>>,
+    },
+    /// Words, one behind another.
+    Words(Vec<String>),
+}
+
+/// Named arrays as a NumPy archive (`.npz`): matrices are `<f8` of shape (rows, columns), words `<U`. Names become
+/// keys as those of [`Table::npz`].
+///
+/// # Errors
+///
+/// [`ReportError::Row`] if a row of a matrix has not its number of columns; [`ReportError::Npz`] if the archive refuses.
+pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, array) in arrays {
+        let bytes = match array {
+            Array::Words(list) => words(list),
+            Array::Matrix { columns, rows } => {
+                if let Some(row) = rows.iter().position(|row| row.len() != *columns) {
+                    return Err(ReportError::Row {
+                        row,
+                        found: rows[row].len(),
+                        expected: *columns,
+                    });
+                }
+                let mut array = header("<f8", &format!("({}, {columns})", rows.len()));
+                let values = rows.iter().flatten();
+                values.for_each(|v| array.extend(v.to_le_bytes()));
+                array
+            }
+        };
+        store(&mut archive, &file_name(name), &bytes)?;
+    }
+    Ok(archive.finish()?.into_inner())
+}
+
+fn store(
+    archive: &mut ZipWriter<Cursor<Vec<u8>>>,
+    key: &str,
+    array: &[u8],
+) -> Result<(), ReportError> {
+    archive.start_file(format!("{key}.npy"), options())?;
+    archive
+        .write_all(array)
+        .map_err(zip::result::ZipError::Io)?;
+    Ok(())
+}
+
 impl Table {
     /// The table as a NumPy archive (`.npz`, arrays of format 1.0): what `numpy.load` gives back bit for bit.
     ///
@@ -32,13 +88,7 @@ impl Table {
         let keys = self.keys();
         let units: Vec<&str> = self.columns.iter().map(|c| c.unit.as_str()).collect();
         let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-        let mut add = |key: &str, array: Vec<u8>| -> Result<(), ReportError> {
-            archive.start_file(format!("{key}.npy"), options())?;
-            archive
-                .write_all(&array)
-                .map_err(zip::result::ZipError::Io)?;
-            Ok(())
-        };
+        let mut add = |key: &str, array: Vec<u8>| store(&mut archive, key, &array);
         for (place, key) in keys.iter().enumerate() {
             add(key, numbers(self.rows.iter().map(|row| row[place])))?;
         }
@@ -91,7 +141,7 @@ fn options() -> SimpleFileOptions {
 }
 
 fn numbers(values: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
-    let mut array = header("<f8", values.len());
+    let mut array = header("<f8", &format!("({},)", values.len()));
     array.reserve_exact(8 * values.len());
     values.for_each(|v| array.extend(v.to_le_bytes()));
     array
@@ -101,7 +151,7 @@ fn numbers(values: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
 fn words(words: &[impl AsRef<str>]) -> Vec<u8> {
     let width = words.iter().map(|w| w.as_ref().chars().count()).max();
     let width = width.unwrap_or(0).max(1);
-    let mut array = header(&format!("<U{width}"), words.len());
+    let mut array = header(&format!("<U{width}"), &format!("({},)", words.len()));
     for word in words {
         let end = array.len() + 4 * width;
         word.as_ref()
@@ -112,11 +162,11 @@ fn words(words: &[impl AsRef<str>]) -> Vec<u8> {
     array
 }
 
-/// What stands before the data of an array of one dimension, padded with blanks.
+/// What stands before the data of an array, padded with blanks.
 ///
 /// Source: NumPy Enhancement Proposal 1, "A simple file format for NumPy arrays", format version 1.0.
-fn header(kind: &str, count: usize) -> Vec<u8> {
-    let mut words = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({count},), }}");
+fn header(kind: &str, shape: &str) -> Vec<u8> {
+    let mut words = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
     let before = b"\x93NUMPY\x01\x00".len() + 2;
     let whole = (before + words.len() + 1).next_multiple_of(ALIGNMENT);
     while before + words.len() + 1 < whole {
@@ -136,6 +186,57 @@ mod tests {
     use crate::table::Column;
     use std::io::Read as _;
     use zip::ZipArchive;
+
+    #[test]
+    fn a_matrix_is_stored_row_by_row_with_its_shape() {
+        let rows = vec![vec![1.0, 2.0, 3.0], vec![4.0, 5.0, -0.0]];
+        let matrix = |columns, rows| super::Array::Matrix { columns, rows };
+        let none = matrix(0, vec![Vec::new(); 2]);
+        let states = super::Array::Words(vec!["phi".to_owned()]);
+        let bytes = npz(&[
+            ("A", matrix(3, rows.clone())),
+            ("B", none),
+            ("states", states),
+        ]);
+        let mut archive = ZipArchive::new(Cursor::new(bytes.unwrap())).unwrap();
+        let mut read = |name: &str| {
+            let mut bytes = Vec::new();
+            archive
+                .by_name(name)
+                .unwrap()
+                .read_to_end(&mut bytes)
+                .unwrap();
+            let end = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
+            assert_eq!(end % 64, 0);
+            (
+                String::from_utf8(bytes[10..end].to_vec()).unwrap(),
+                bytes[end..].to_vec(),
+            )
+        };
+        let (header, data) = read("A.npy");
+        assert!(header.contains("'shape': (2, 3)"), "{header}");
+        let all: Vec<u8> = rows
+            .iter()
+            .flatten()
+            .flat_map(|v| v.to_le_bytes())
+            .collect();
+        assert_eq!(data, all);
+        let (header, data) = read("B.npy");
+        assert!(
+            header.contains("'shape': (2, 0)") && data.is_empty(),
+            "{header}"
+        );
+        assert!(read("states.npy").0.contains("'shape': (1,)"));
+        let short = npz(&[("A", matrix(3, vec![vec![1.0]]))]);
+        assert!(matches!(
+            short,
+            Err(ReportError::Row {
+                row: 0,
+                found: 1,
+                expected: 3
+            })
+        ));
+    }
 
     /// An array read back by the rules of its format: kind, length and data.
     struct Array {
@@ -292,7 +393,7 @@ mod tests {
     #[test]
     fn headers_of_any_length_are_aligned() {
         for count in (0..25).map(|digits| 10_usize.saturating_pow(digits)) {
-            let header = header("<f8", count);
+            let header = header("<f8", &format!("({count},)"));
             assert_eq!(header.len() % 64, 0);
             assert_eq!(usize::from(header[8]), header.len() - 10);
         }

@@ -5,6 +5,7 @@
 //!       └─ Prepared (the model of what the scene requests) ───────────┼─ check, reduce, simulate,
 //!                                                                     │  calibrate, validate
 //!                                                                     └→ Outcome: words, files, findings
+//! Scene ── Driven (the machine: loads, drives, what is free) ── cycle, equilibria, linearise
 //! Scene ── Model under its loads ── Way (prescribed, swept or the range) ── Record ── run
 //! ```
 //!
@@ -16,12 +17,16 @@ mod calibrate;
 mod channels;
 mod check;
 mod claims;
+mod cycle;
 mod dossier;
+mod driven;
+mod equilibria;
 mod error;
 mod figures;
 
 mod history;
 mod index;
+mod linearise;
 mod motion_error;
 mod multibody;
 mod outcome;
@@ -39,8 +44,11 @@ mod words;
 
 pub use calibrate::{Calibrated, calibrate, find_value};
 pub use check::check;
+pub use cycle::cycle;
+pub use equilibria::equilibria;
 pub use error::StudyError;
 pub use index::{Verdict, index};
+pub use linearise::{About, linearise};
 pub use multibody::{FreeRun, free_run};
 pub use outcome::{Outcome, Progress, Step, silent};
 pub use prepare::Prepared;

@@ -1,5 +1,6 @@
 //! Why a motion or a position of a scene failed, with its lines of the file.
 
+use crate::driven::began;
 use crate::error::{Labels, StudyError, joint_labels, names};
 use crate::words::{digits, number};
 use dwell_dynamics::DynamicsError;
@@ -138,6 +139,36 @@ pub(crate) fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) 
             "check the speed and the inertias",
             Place::Motion,
             "this motion",
+        ),
+        DynamicsError::NoCycle { what } => motion(
+            format!("there is no steady cycle of {phi}: {what}"),
+            "a cycle needs a drive that keeps it going and loads that are the same after some turns; \
+             `dwell simulate` shows how it moves",
+            began(scene),
+            "of this motion",
+        ),
+        DynamicsError::Stalls { q } => motion(
+            format!(
+                "the mechanism comes to rest at {phi} = {} rad and does not complete the turn",
+                number(*q)
+            ),
+            "a stronger drive or a flywheel carries it over its hardest place",
+            began(scene),
+            "of this motion",
+        ),
+        DynamicsError::NoEquilibrium { what } => motion(
+            format!("no equilibrium is found: {what}"),
+            "loads have to hold each other somewhere near the start; `dwell linearise --at start` needs \
+             no equilibrium",
+            began(scene),
+            "near this start",
+        ),
+        DynamicsError::NoEigenvalues => motion(
+            "the linearised motion has coefficients that are not finite, and so no eigenvalues"
+                .to_owned(),
+            "an expression of a load or a drive may have an infinite slope there, as a root at zero",
+            began(scene),
+            "near this start",
         ),
         other => motion(
             other.to_string(),

@@ -9,7 +9,7 @@ use dwell_dynamics::{
 };
 use dwell_findings::Finding;
 use dwell_geometry::measure::Measured;
-use dwell_geometry::{BodyId, Start, Vec2};
+use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{Actions, Model, Workspace};
 use dwell_scene::{Length, Scene};
 use dwell_verify::{MotionSample, Unreduced, UnreducedError, judge_motion};
@@ -71,10 +71,7 @@ fn followed(scene: &Scene, until: Option<f64>) -> Result<Option<FreeRun>, StudyE
 
 /// The model with all loads and reactions.
 fn shown(driven: &Scene) -> Result<Model, StudyError> {
-    let start = Start {
-        q: driven.assembly.start.clone(),
-        rough: driven.assembly.rough.clone(),
-    };
+    let start = driven.assembly.to_start();
     let mechanism = &driven.mechanism;
     Model::new(mechanism, &driven.masses, &start, &mechanism.reactions())
         .map_err(|e| explain_model(driven, &e))?

@@ -165,7 +165,7 @@ impl<'a> Free<'a> {
     ) -> Result<Self, StudyError> {
         let shown = loaded(driven)?;
         check_variables(driven, &shown)?;
-        let machine = machine(scene, motion)?;
+        let machine = machine(scene, motion, &[])?;
         Ok(Self {
             scene: driven,
             motion,
@@ -348,14 +348,23 @@ impl<'a> Free<'a> {
     }
 }
 
-/// The machine of a scene: what its motion needs, and no other reaction.
-pub(crate) fn machine(scene: &Scene, motion: &Motion) -> Result<Machine, StudyError> {
+/// The machine of a scene: some reactions and what its motion needs, and no other.
+pub(crate) fn machine(
+    scene: &Scene,
+    motion: &Motion,
+    reactions: &[Reaction],
+) -> Result<Machine, StudyError> {
     let start = scene.assembly.to_start();
     let frictions = scene.loads.iter().filter_map(|load| match load.magnitude {
         Magnitude::Friction(friction) => Some(friction.reactions(&scene.mechanism)),
         _ => None,
     });
-    let needed: Vec<Reaction> = frictions.flatten().collect();
+    let mut needed = reactions.to_vec();
+    for reaction in frictions.flatten() {
+        if !needed.contains(&reaction) {
+            needed.push(reaction);
+        }
+    }
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &needed)
         .map_err(|e| explain_model(scene, &e))?;
     let guide =

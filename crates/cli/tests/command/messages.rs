@@ -320,6 +320,50 @@ fn validations() {
 }
 
 #[test]
+fn machines() {
+    let mut group = Group::new();
+    group.scene("nothing drives it", "cycle", with(&[]));
+    let drive = |change: &str, engine: &str| format!("{change}\n[drives]\nengine = {{ {engine} }}");
+    let action = "action = \"phi\", magnitude = 2.0";
+    let limited = [LIMITED[0], LIMITED[1], LIMITED[2]];
+    let text = drive("duration = 2", action);
+    let limited: Vec<_> = limited
+        .into_iter()
+        .chain([("periods = 2", text.as_str())])
+        .collect();
+    group.scene("a crank that does not turn", "cycle", with(&limited));
+    let text = drive("duration = 2", "action = \"phi\", magnitude = \"2 + t\"");
+    group.scene(
+        "a drive that follows time",
+        "cycle",
+        with(&[("periods = 2", &text)]),
+    );
+    group.scene(
+        "an equilibrium in time",
+        "equilibria",
+        with(&[("periods = 2", &text)]),
+    );
+    group.scene("no force at all", "equilibria", with(&[]));
+    let text = drive("duration = 2", action);
+    group.scene(
+        "a force that never ends",
+        "linearise",
+        with(&[("periods = 2", &text)]),
+    );
+    group.scene(
+        "a drive that nothing holds",
+        "cycle",
+        with(&[("periods = 2", &text)]),
+    );
+    group.bench.put("scene.toml", with(&[]));
+    for ratio in ["0", "-0.1", "3", "much"] {
+        let arguments = ["cycle", "scene.toml", "--fluctuation", ratio];
+        group.refused("a wrong fluctuation", &arguments);
+    }
+    group.check("machines");
+}
+
+#[test]
 fn arguments() {
     let mut group = Group::new();
     group.bench.put("scene.toml", with(&[]));

@@ -89,6 +89,85 @@ fn simulate_writes_a_table_with_units_and_a_picture() {
     }
 }
 
+/// The four-bar with a motor, its weight and a damper.
+fn driven() -> String {
+    let driven = "duration = 2\n[loads]\nweight = { gravity = [0, -9.81] }\n\
+        press = { torsion-damper = [\"ground\", \"rocker\"], constant = 0.4 }\n[drives]\n\
+        engine = { motor = \"phi\", voltage = 24, constant = 0.05, resistance = 0.4, ratio = 10 }";
+    with(&[("periods = 2", driven)])
+}
+
+#[test]
+fn cycle_tells_the_steady_cycle_and_its_flywheel() {
+    let bench = Bench::new();
+    bench.put("driven.toml", driven());
+    let arguments = [
+        "cycle",
+        "driven.toml",
+        "--fluctuation",
+        "0.02",
+        "--out",
+        "o",
+    ];
+    let run = bench.run(&arguments);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert_eq!(
+        bench.files("o"),
+        [
+            "driven-cycle-flywheel.csv",
+            "driven-cycle-flywheel.npz",
+            "driven-cycle-work.csv",
+            "driven-cycle.csv",
+            "driven-cycle.npz",
+            "driven-cycle.png"
+        ]
+    );
+    assert_eq!(
+        first_line(&bench, "o/driven-cycle.csv"),
+        "t [s],phi [rad],phi.speed [rad/s],phi.acceleration [rad/s2],press.work [J],engine.work [J]"
+    );
+    for words in [
+        "mean speed",
+        "stable: ",
+        "work of engine",
+        "for a fluctuation of 0.02: a flywheel of",
+    ] {
+        assert!(run.out.contains(words), "{words}: {}", run.out);
+    }
+}
+
+#[test]
+fn equilibria_and_linearise_need_no_motion() {
+    let bench = Bench::new();
+    let hung = with(&[(
+        "[motion]\nstart = 1.0\nspeed = 10.0\nperiods = 2",
+        "[loads]\nweight = { gravity = [0, -9.81] }",
+    )]);
+    bench.put("hung.toml", hung);
+    let run = bench.run(&["equilibria", "hung.toml", "--out", "o"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("2 equilibria of phi"), "{}", run.out);
+    assert!(run.out.contains("unstable") && run.out.contains("swings on"));
+    let run = bench.run(&["linearise", "hung.toml", "--out", "o"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(
+        run.out
+            .contains("outputs: phi (rad), phi.speed (rad/s), A.x (N)"),
+        "{}",
+        run.out
+    );
+    assert_eq!(
+        bench.files("o"),
+        [
+            "hung-equilibria.csv",
+            "hung-equilibria.png",
+            "hung-linear.csv",
+            "hung-linear.md",
+            "hung-linear.npz"
+        ]
+    );
+}
+
 #[test]
 fn calibrate_finds_the_inertia_of_the_single_dwell() {
     let bench = Bench::new();

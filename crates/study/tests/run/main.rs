@@ -5,6 +5,7 @@
 mod ends;
 mod forces;
 mod leverage;
+mod machines;
 mod motion;
 mod need;
 mod table;
