@@ -269,7 +269,7 @@ impl FreeRun {
             let absolute = (value - wanted).abs();
             let relative = absolute / scale(unit);
             // What is not a number is the worst there is.
-            if !(relative < finding.relative) && !finding.relative.is_nan() {
+            if relative >= finding.relative || relative.is_nan() {
                 (finding.absolute, finding.relative) = (absolute, relative);
                 (finding.unit, finding.worst) = ((*unit).to_owned(), (*name).clone());
             }
