@@ -393,7 +393,7 @@ mod tests {
     #[test]
     fn headers_of_any_length_are_aligned() {
         for count in (0..25).map(|digits| 10_usize.saturating_pow(digits)) {
-            let header = header("<f8", count);
+            let header = header("<f8", &format!("({count},)"));
             assert_eq!(header.len() % 64, 0);
             assert_eq!(usize::from(header[8]), header.len() - 10);
         }
