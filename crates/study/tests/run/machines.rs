@@ -82,7 +82,7 @@ fn a_pendulum_hangs_and_stands_and_swings_with_the_root_of_its_moments() {
         1.0 - FRAC_PI_2,
         1e-14,
     );
-    let frequency = (2.0 * 9.81 * 0.3 / (0.05 + 2.0 * 0.3 * 0.3) as f64).sqrt();
+    let frequency = f64::sqrt(2.0 * 9.81 * 0.3 / (0.05 + 2.0 * 0.3 * 0.3));
     near(
         column(table, "mode 1 frequency [rad/s]")[0],
         frequency,
@@ -104,7 +104,7 @@ fn a_damped_pendulum_tells_its_damping_ratio() {
     let outcome = equilibria(&scene(&damped)).unwrap();
     let table = text(&outcome, "equilibria.csv");
     let inertia = 0.05 + 2.0 * 0.3 * 0.3;
-    let frequency = (2.0 * 9.81 * 0.3 / inertia as f64).sqrt();
+    let frequency = f64::sqrt(2.0 * 9.81 * 0.3 / inertia);
     assert_eq!(column(table, "stable"), [1.0, -1.0]);
     let ratio = 0.7 / (2.0 * inertia * frequency);
     near(column(table, "mode 1 damping ratio")[0], ratio, 1e-13);
