@@ -155,11 +155,20 @@ fn reduce_leaves_out_reactions_that_are_not_unique() {
     };
     let (all, told) = reduced(r#""A", "P", "C", "G.y""#);
     assert_eq!(
-        all.names,
+        all.names[..9],
         [
             "phi", "m", "half_dm", "P.x a", "P.x b", "P.y a", "P.y b", "G.y a", "G.y b"
         ]
     );
+    // Then what the weight gives the coordinate, and these three.
+    let channels = [
+        "V",
+        "weight w",
+        "P.x c weight",
+        "P.y c weight",
+        "G.y c weight",
+    ];
+    assert_eq!(all.names[9..], channels);
     assert!(told.contains("share them: A.x, A.y, C.x, C.y\n"), "{told}");
     let (alone, told) = reduced(r#""G.y""#);
     assert!(!told.contains("share"), "{told}");
