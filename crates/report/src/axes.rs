@@ -204,7 +204,8 @@ pub(crate) fn side(
         let text = Type::new(words.size, look.color, Align::Middle);
         // A plot that gave way to a legend is not in the middle of its cell, and in a stack the next cell is near.
         let half = 0.5 * width(line, words.size, false) + LABEL_GAP;
-        let middle = plot.centre()[1].min(cell.y1 - half).max(cell.y0 + half);
+        let highest = cell.y0 + look.top + half;
+        let middle = plot.centre()[1].min(cell.y1 - half).max(highest);
         canvas.text_upwards(line, [left + baseline, middle], text)?;
     }
     Ok(())
@@ -217,6 +218,8 @@ pub(crate) struct Side<'a> {
     pub(crate) right: bool,
     /// Room for the label upwards.
     pub(crate) room: f64,
+    /// What it must leave free at the top of its cell: a title reaches to the right.
+    pub(crate) top: f64,
 }
 
 /// Draws the title of a panel.

@@ -144,6 +144,7 @@ impl<'a> Sheet<'a> {
         let (height, room) = (cell.inside(insets).height(), self.room_up(cell));
         insets.left = axes::side_room(&chart.y, &axes::ticks_up(&self.y, height), room);
         if let (Some(axis), Some(span)) = (&chart.y2, &self.y2) {
+            let room = room - insets.top;
             insets.right = axes::side_room(axis, &axes::ticks_up(span, height), room);
         }
         if let Some(ends) = labels::at_ends(chart, &self.looks, &self.frame(cell.inside(insets))) {
@@ -207,12 +208,14 @@ impl<'a> Sheet<'a> {
             color: color(false),
             right: false,
             room: self.room_up(cell),
+            top: 0.0,
         };
         axes::side(canvas, frame, cell, &chart.y, &left)?;
         let Some((axis, span)) = second else {
             return Ok(());
         };
         let ticks = &axes::ticks_up(span, frame.plot.height());
+        let top = axes::top_room(&self.chart.title, cell);
         axes::side(
             canvas,
             frame,
@@ -222,7 +225,8 @@ impl<'a> Sheet<'a> {
                 ticks,
                 color: color(true),
                 right: true,
-                room: self.room_up(cell),
+                room: self.room_up(cell) - top,
+                top,
             },
         )
     }

@@ -97,6 +97,7 @@ impl Stage {
             color: INK,
             right: false,
             room: words::room_up(cell),
+            top: 0.0,
         };
         axes::side(canvas, frame, cell, &drawing.y, &look)?;
         axes::title(canvas, &drawing.title, &frame.plot, cell)?;
