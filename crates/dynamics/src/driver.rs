@@ -81,9 +81,9 @@ pub fn integrate(
     // What cannot even start is said at once, not after a futile search for a step size.
     let mut rates = vec![0.0; n];
     system.rates(start.t, &start.y, &mut rates)?;
-    let fastest = start.y[..n]
-        .iter()
-        .fold(1.0_f64, |most, y| most.max(y.abs()));
+    // At rest the rates say how soon something happens: a motor's current climbs within microseconds.
+    let started = start.y.iter().chain(&rates);
+    let fastest = started.fold(1.0_f64, |most, y| most.max(y.abs()));
     let absolute: Vec<f64> = (0..n)
         .map(|i| options.absolute * system.weight(i))
         .collect();

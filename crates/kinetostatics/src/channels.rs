@@ -5,7 +5,10 @@
 //! loaded    q̇, known q̈, all loads           c − Q             R⁰
 //! inertial  q̈ᵢ = 1 alone                     column i of M     a_k,i
 //! channel   magnitude 1 of a load alone      −w_ℓ              c_k,ℓ
+//! speeds    q̇ᵢ q̇ⱼ alone                     Cᵢⱼ               b_k,ij
 //! ```
+//!
+//! C are the Christoffel terms: c(q, q̇) = Σ Cᵢⱼ q̇ᵢ q̇ⱼ over i ≤ j.
 //!
 //! All of them share the pose, its factors and the measured states. With one coordinate, the first run at
 //! unit speed without loads is ½m′ and b_k.
@@ -129,5 +132,43 @@ impl Model {
         run.evaluate_loaded(self, pose, Still, &mut loaded.alone);
         actions.take(self, pose, run);
         Ok(())
+    }
+
+    /// What the product of two speeds alone makes at the pose entered, q̇ᵢ q̇ⱼ = 1 per s²: of one speed by
+    /// itself the run at unit speed, of two what is more than both of them make alone.
+    pub fn speeds<T: Scalar>(
+        &self,
+        [i, j]: [usize; 2],
+        work: &mut Workspace<T>,
+        actions: &mut Actions<T>,
+    ) {
+        let Workspace {
+            pose, run, loaded, ..
+        } = work;
+        let rest = vec![T::lift(0.0); self.plan.actuators()];
+        let mut at = |which: &[usize], actions: &mut Actions<T>| {
+            loaded.unit.fill(T::lift(0.0));
+            for &k in which {
+                loaded.unit[k] = T::lift(1.0);
+            }
+            self.plan.speeds(pose, &loaded.unit, &mut loaded.trial);
+            self.plan.accelerations(pose, &rest, &mut loaded.trial);
+            run.evaluate(self, pose, Prescribed(&loaded.trial));
+            actions.take(self, pose, run);
+        };
+        if i == j {
+            return at(&[i], actions);
+        }
+        let mut alone = self.actions();
+        at(&[i, j], actions);
+        for k in [i, j] {
+            at(&[k], &mut alone);
+            for (sum, one) in actions.tau.iter_mut().zip(&alone.tau) {
+                *sum -= *one;
+            }
+            for (sum, one) in actions.reactions.iter_mut().zip(&alone.reactions) {
+                *sum -= *one;
+            }
+        }
     }
 }
