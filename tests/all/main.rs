@@ -16,6 +16,7 @@ mod cycles;
 mod derivatives;
 mod ends;
 mod equilibria;
+mod events;
 mod findings;
 mod invariance;
 mod joints;

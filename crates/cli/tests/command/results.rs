@@ -392,6 +392,29 @@ fn odd_motions_are_told_as_they_are() {
     assert!(out.contains("no body with mass moves"), "{out}");
 }
 
+/// Friction that brings a mechanism to rest is stiff there: an explicit method creeps through it, and is
+/// told of another.
+#[test]
+fn a_method_that_chokes_is_told_of_another() {
+    let bench = Bench::new();
+    let rub = "[loads]\nweight = { gravity = [0, -9.81] }\n[friction.A]\ncoefficient = 0.3\n\
+               radius = 0.05\nfade = 0.001\n[motion]";
+    let stiff = [("[motion]", rub), ("periods = 2", "duration = 3")];
+    bench.put("scene.toml", with(&stiff));
+    let run = bench.run(&[
+        "simulate",
+        "scene.toml",
+        "--method",
+        "tsit45",
+        "--rtol",
+        "1e-6",
+    ]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("hint: --method bdf"), "{}", run.out);
+    let run = bench.run(&["simulate", "scene.toml", "--rtol", "1e-6"]);
+    assert!(!run.out.contains("hint"), "{}", run.out);
+}
+
 /// The schema needs no folder, and is the one of the documentation.
 #[test]
 fn the_schema_is_that_of_the_documentation() {

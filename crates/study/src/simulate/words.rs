@@ -2,7 +2,7 @@
 
 use super::{Accuracy, Free, Moved};
 use crate::words::digits;
-use dwell_dynamics::{Fate, MachineWork, Method, Options, Orbit, fate, follow};
+use dwell_dynamics::{Fate, MachineWork, Method, Options, Orbit, Point, fate, follow};
 use std::fmt::Write as _;
 
 /// Largest part of the energies exchanged that may be lost without a remark.
@@ -132,21 +132,24 @@ impl Free<'_> {
         if moved.statistics.steps < 100 || end <= 0.0 || moved.legs.len() > 1 {
             return String::new();
         }
-        // A tenth of the motion by the other method says what the whole would take.
+        // The costliest tenth of the motion, by the other method: what is stiff is so only at times.
+        let steps: Vec<&Point> = moved.steps().map(|(_, point)| point).collect();
+        let until = |k: usize| 0.1 * k as f64 * end;
+        let first = |k: usize| steps.partition_point(|p| p.t < until(k));
+        let costliest = (0..10)
+            .max_by_key(|&k| first(k + 1) - first(k))
+            .unwrap_or(0);
+        let (from, to) = (first(costliest), first(costliest + 1));
+        let Some(&start) = steps.get(from).filter(|p| p.t < until(costliest + 1)) else {
+            return String::new();
+        };
         let options = Options {
             absolute: accuracy.absolute,
             budget: moved.statistics.steps.max(100),
             ..Options::new(other, accuracy.relative)
         };
-        let part = 0.1 * end;
-        let tried = follow(
-            &self.machine,
-            &self.shown,
-            &self.start(),
-            part,
-            &options,
-            &[],
-        );
+        let (end, events) = (until(costliest + 1), &[]);
+        let tried = follow(&self.machine, &self.shown, start, end, &options, events);
         let cost = |method: Method, work: dwell_dynamics::Statistics| {
             // A Jacobian takes two evaluations in dual numbers for each free coordinate.
             let columns = 4 * self.machine.free().len() * usize::from(method.implicit());
@@ -155,17 +158,18 @@ impl Free<'_> {
         let Ok(tried) = tried else {
             return String::new();
         };
-        let before = moved.steps().take_while(|(_, p)| p.t <= part).count();
-        let share = before.max(1) as f64 / moved.steps().count() as f64;
+        let share = (to - from) as f64 / steps.len() as f64;
         let here = cost(accuracy.method, moved.statistics) * share;
         let there = cost(other, tried.statistics);
         if tried.failed.is_some() || here < FAR_CHEAPER * there {
             return String::new();
         }
         format!(
-            "  hint: --method {} would take about {:.0} times fewer evaluations\n",
+            "  hint: --method {} takes about {:.0} times fewer evaluations from t = {} to {} s\n",
             other.name().to_lowercase(),
-            here / there
+            here / there,
+            digits(start.t, 3),
+            digits(end, 3),
         )
     }
 }
