@@ -3,7 +3,7 @@
 
 use crate::cycle::Turning;
 use crate::error::DynamicsError;
-use crate::machine::Moving;
+use crate::moving::Moving;
 use crate::system::System;
 
 /// Time takes the coordinate's place among the states, and the columns of S follow them.

@@ -442,7 +442,7 @@ impl Machine {
         own.moves.fill(plan, &work.inner.pose, &own.trial);
         moving(&own.values, [q_dot, zero], &mut work.inner.motion);
         self.model.enter_placed(t, &work.q_dot, &mut work.inner)?;
-        self.drive(t, memory, work);
+        self.drive(t, memory, work)?;
         self.model.push(&mut work.inner)?;
         let [mut m, mut half_dm] = self.model.sums(&own.moves);
         for drive in &self.drives {

@@ -11,7 +11,7 @@
 
 use dwell_geometry::measure::{BodyStates, Measured};
 use dwell_geometry::{Coordinate, Mechanism, Scalar};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Meter};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 
 /// What acts along a coordinate s, an actuator's or another.
 #[derive(Debug, Clone, PartialEq)]
@@ -111,7 +111,8 @@ pub(crate) struct Driven {
     pub(crate) state: Option<usize>,
     /// N² J, kg m² or kg.
     pub(crate) inertia: f64,
-    meter: Meter,
+    /// What is given from outside: an action, a voltage, a wanted speed.
+    pub(crate) given: Magnitude,
     law: Law,
 }
 
@@ -159,8 +160,8 @@ impl Driven {
             wanted.then_some(place)
         };
         let not_negative = |numbers: &[f64]| numbers.iter().all(|n| n.is_finite() && *n >= 0.0);
-        let (magnitude, law, inertia, state) = match &drive.kind {
-            DriveKind::Action(magnitude) => (magnitude, Law::Action, 0.0, None),
+        let (law, inertia, state) = match &drive.kind {
+            DriveKind::Action(_) => (Law::Action, 0.0, None),
             DriveKind::Motor(m) => {
                 let finite = m.constant.is_finite() && m.ratio.is_finite();
                 let positive = not_negative(&[m.inductance, m.inertia, m.resistance]);
@@ -169,7 +170,7 @@ impl Driven {
                 }
                 let law = Law::Motor([m.constant * m.ratio, m.resistance, m.inductance]);
                 let inertia = m.ratio * m.ratio * m.inertia;
-                (&m.voltage, law, inertia, state(m.inductance > 0.0))
+                (law, inertia, state(m.inductance > 0.0))
             }
             DriveKind::Regulator(r) => {
                 if !not_negative(&[r.proportional, r.integral])
@@ -179,29 +180,31 @@ impl Driven {
                     return Err("a regulator needs gains from zero and a limit above zero");
                 }
                 let law = Law::Regulator([r.proportional, r.integral, r.limit]);
-                (&r.speed, law, 0.0, state(r.integral > 0.0))
+                (law, 0.0, state(r.integral > 0.0))
             }
         };
+        let given = drive.kind.given().clone();
+        if matches!(given, Magnitude::Friction(_) | Magnitude::Given(_)) {
+            return Err("friction acts in joints alone, and a drive is not given by another");
+        }
         Ok(Self {
             load,
             measured,
             state,
             inertia,
-            meter: Meter::new(mechanism, magnitude.clone())?,
+            given,
             law,
         })
     }
 
-    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state, with
-    /// `more` of the action, voltage or speed that it is given.
+    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state, for
+    /// the action, voltage or speed that it is given.
     pub(crate) fn act<T: Scalar>(
         &self,
-        t: f64,
+        given: T,
         states: &BodyStates<T>,
         state: Option<T>,
-        more: T,
     ) -> (T, T) {
-        let given = self.meter.at(t, states) + more;
         let [_, speed, _] = states.measure(self.measured);
         let zero = T::lift(0.0);
         match self.law {

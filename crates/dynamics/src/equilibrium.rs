@@ -3,7 +3,8 @@
 
 use crate::error::DynamicsError;
 use crate::linear::{Linear, linearise};
-use crate::machine::{Machine, Moving};
+use crate::machine::Machine;
+use crate::moving::Moving;
 use crate::root;
 use crate::system::System;
 use dwell_geometry::small;

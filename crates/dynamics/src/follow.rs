@@ -6,7 +6,8 @@
 
 use crate::driver::{Dense, Next, integrate};
 use crate::error::DynamicsError;
-use crate::machine::{Machine, MachineWork, Moving};
+use crate::machine::{Machine, MachineWork};
+use crate::moving::Moving;
 use crate::options::{Options, Statistics};
 use crate::root;
 use crate::system::Point;

@@ -16,8 +16,7 @@
 use crate::bridge::{CrossWork, Span};
 use crate::drive::{Drive, DriveError, Driven};
 use crate::error::DynamicsError;
-use crate::system::System;
-use dwell_geometry::{Dual, Mechanism, Scalar, small};
+use dwell_geometry::{Mechanism, Scalar, small};
 use dwell_kinetostatics::{Actions, By, Load, LoadError, Model, Signal, Workspace};
 use dwell_laws::Law;
 
@@ -216,7 +215,7 @@ impl Machine {
             return self.cross(bridge, t, &y[2 * n..], work);
         }
         self.model.enter(t, &work.q, &work.q_dot, &mut work.inner)?;
-        self.drive(t, &y[2 * n..], work);
+        self.drive(t, &y[2 * n..], work)?;
         self.model
             .loaded(&work.q_ddot, &mut work.inner, &mut work.base)?;
         for (k, &i) in self.free.iter().enumerate() {
@@ -239,16 +238,28 @@ impl Machine {
     }
 
     /// The drives' actions at the state entered, from their own states.
-    pub(crate) fn drive<T: Scalar>(&self, t: f64, memory: &[T], work: &mut MachineWork<T>) {
+    ///
+    /// # Errors
+    /// [`DynamicsError::Load`] where what a drive is given has no finite value.
+    pub(crate) fn drive<T: Scalar>(
+        &self,
+        t: f64,
+        memory: &[T],
+        work: &mut MachineWork<T>,
+    ) -> Result<(), DynamicsError> {
         for (d, drive) in self.drives.iter().enumerate() {
             let state = drive.state.map(|s| memory[s]);
-            let (action, rate) = drive.act(t, work.inner.states(), state, work.input[d]);
+            let given = self
+                .model
+                .sense(drive.load, &drive.given, t, &mut work.inner)?;
+            let (action, rate) = drive.act(given + work.input[d], work.inner.states(), state);
             work.action[d] = action;
             work.inner.give(drive.load, action);
             if let Some(s) = drive.state {
                 work.memory[s] = rate;
             }
         }
+        Ok(())
     }
 
     /// Lets the rotors resist: N² J times what their channels make of s̈ = S q̈ + what is left at zero q̈.
@@ -491,93 +502,5 @@ impl<T> MachineWork<T> {
     /// computes, of the last evaluation.
     pub fn actions(&self) -> &Actions<T> {
         &self.base
-    }
-}
-
-/// A machine with the working memory to integrate it, for one thread.
-#[derive(Debug)]
-pub struct Moving<'m> {
-    machine: &'m Machine,
-    /// The last evaluation in plain numbers.
-    pub work: MachineWork<f64>,
-    dual: MachineWork<Dual>,
-    y: Vec<Dual>,
-    out: Vec<Dual>,
-    weights: Vec<f64>,
-}
-
-impl<'m> Moving<'m> {
-    /// A machine about to move, from a state whose energies give the works their scale.
-    ///
-    /// # Errors
-    /// [`DynamicsError`] where the start cannot be evaluated.
-    pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self, DynamicsError> {
-        let mut work = machine.work();
-        machine.evaluate(t, y, &mut work)?;
-        let mut weights = vec![1.0; machine.states()];
-        let scale = machine.energy_scale(&work);
-        weights[machine.first_work()..].fill(scale);
-        let zero = vec![Dual::lift(0.0); machine.states()];
-        Ok(Self {
-            machine,
-            work,
-            dual: machine.work(),
-            y: zero.clone(),
-            out: zero,
-            weights,
-        })
-    }
-
-    /// The machine.
-    pub fn machine(&self) -> &'m Machine {
-        self.machine
-    }
-}
-
-impl Machine {
-    /// An energy to measure works by, J: the kinetic one, or what the loads and drives do in one unit of
-    /// the coordinates.
-    fn energy_scale(&self, work: &MachineWork<f64>) -> f64 {
-        let [kinetic, _] = self.energy(work);
-        let forces = work.base.tau.iter().chain(&work.action);
-        let scale = kinetic + forces.map(|f| f.abs()).sum::<f64>();
-        if scale.is_normal() { scale } else { 1.0 }
-    }
-}
-
-impl System for Moving<'_> {
-    fn size(&self) -> usize {
-        self.machine.states()
-    }
-
-    fn rates(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        self.machine.evaluate(t, y, &mut self.work)?;
-        self.machine.rates(&self.work, out);
-        Ok(())
-    }
-
-    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        let n = self.size();
-        out.fill(0.0);
-        // No rate depends on the works.
-        for j in 0..self.machine.first_work() {
-            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
-                *dual = if i == j {
-                    Dual::variable(value)
-                } else {
-                    Dual::lift(value)
-                };
-            }
-            self.machine.evaluate(t, &self.y, &mut self.dual)?;
-            self.machine.rates(&self.dual, &mut self.out);
-            for (i, rate) in self.out.iter().enumerate() {
-                out[i * n + j] = rate.d;
-            }
-        }
-        Ok(())
-    }
-
-    fn weight(&self, state: usize) -> f64 {
-        self.weights[state]
     }
 }

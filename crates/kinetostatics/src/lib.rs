@@ -22,7 +22,6 @@ pub use balance::{PowerBalance, Shaking, Wrench};
 pub use kinetostatics::KinetostaticsError;
 pub use ledger::Ledger;
 pub use load::{Friction, Guide, Load, LoadKind, Magnitude, Signal};
-pub use magnitudes::Meter;
 pub use mass::Mass;
 pub use model::{Actions, Model, ModelError, Workspace};
 pub use reduced::{Coefficients, Exact, ExactWork, Inertia, Reduced};

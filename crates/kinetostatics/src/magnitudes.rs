@@ -1,8 +1,9 @@
 //! How strong the loads are: laws and expressions of what is measured.
 
 use crate::acts::{LoadState, Loads};
-use crate::kinetostatics::KinetostaticsError;
+use crate::kinetostatics::{KinetostaticsError, Loaded};
 use crate::load::{Magnitude, Signal};
+use crate::model::{Model, Workspace};
 use dwell_geometry::measure::{BodyStates, Measured};
 use dwell_geometry::{Mechanism, Scalar};
 use dwell_laws::Expression;
@@ -76,31 +77,26 @@ impl Magnitude {
     }
 }
 
-/// A magnitude that is measured by itself, beside those of the loads: the voltage of a motor.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Meter {
-    magnitude: Magnitude,
-    senses: Vec<Sense>,
-}
-
-impl Meter {
-    /// A magnitude ready to be measured.
+impl Model {
+    /// What a load of [`Magnitude::Given`] is given from, at time `t` (s) and the state entered: a
+    /// magnitude of the same signals, such as the voltage of a motor.
     ///
     /// # Errors
-    /// What is wrong with it: a coordinate that the mechanism does not have, a friction.
-    pub fn new(mechanism: &Mechanism, magnitude: Magnitude) -> Result<Self, &'static str> {
-        if matches!(magnitude, Magnitude::Friction(_) | Magnitude::Given(_)) {
-            return Err("friction acts in joints alone, and what is given is not measured");
+    /// [`KinetostaticsError::MagnitudeNotFinite`] where it has no finite value.
+    pub fn sense<T: Scalar>(
+        &self,
+        load: usize,
+        magnitude: &Magnitude,
+        t: f64,
+        work: &mut Workspace<T>,
+    ) -> Result<T, KinetostaticsError> {
+        let Loaded { states, loads, .. } = &mut work.loaded;
+        let value = magnitude.at(t, &self.loads.senses[load], states, &mut loads.scratch);
+        if value.value().is_finite() {
+            Ok(value)
+        } else {
+            Err(KinetostaticsError::MagnitudeNotFinite { load })
         }
-        let senses = senses(mechanism, &magnitude)?;
-        Ok(Self { magnitude, senses })
-    }
-
-    /// Its value at time `t` (s) where the bodies have these states.
-    pub fn at<T: Scalar>(&self, t: f64, states: &BodyStates<T>) -> T {
-        // Allocates; drives are few, and their expressions cost more.
-        let mut scratch = Scratch::new(self.senses.len());
-        self.magnitude.at(t, &self.senses, states, &mut scratch)
     }
 }
 
