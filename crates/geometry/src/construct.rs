@@ -3,7 +3,7 @@
 
 use crate::error::PlaceError;
 use crate::groups::{Group, Unknown};
-use crate::place::{SINGULAR, root};
+use crate::place::{root, singular};
 use crate::plan::{Closure, How, Plan, Pose, Solved};
 use crate::plane::Vec2;
 use crate::scalar::Scalar;
@@ -139,7 +139,7 @@ impl Plan {
             &mut pose.lu[solved.lu..solved.lu + n * n],
             &mut pose.pivots[solved.pivots..solved.pivots + n],
         );
-        if factored.measure <= SINGULAR {
+        if factored.measure <= singular::<T>() {
             return Err(PlaceError::Singular {
                 group,
                 q: pose.q.first().map_or(0.0, |q| q.value()),

@@ -27,6 +27,7 @@ mod solve;
 mod tall;
 pub mod tree;
 mod ways;
+pub mod wide;
 
 pub use error::{AssemblyError, PlaceError, StructureError};
 pub use mechanism::{
@@ -38,3 +39,4 @@ pub use plan::{Plan, Pose, Start};
 pub use plane::{Vec2, vec2};
 pub use range::{End, Range};
 pub use scalar::{Dual, Scalar};
+pub use wide::Wide;

@@ -9,7 +9,18 @@ use crate::tree::Arm;
 use std::f64::consts::TAU;
 
 /// Below this determinant, relative to the lengths that make it, nothing is left of the digits.
-pub(crate) const SINGULAR: f64 = 1e-14;
+const SINGULAR: f64 = 1e-14;
+
+/// The same for a kind of number. Wider ones refuse where plain ones do: they are there to judge them.
+pub(crate) const fn singular<T: Scalar>() -> f64 {
+    SINGULAR.max(32.0 * T::EPSILON)
+}
+
+/// Whether such numbers see the rounding of constants that are derived from a scene's lengths: they
+/// derive them anew.
+pub(crate) const fn finer<T: Scalar>() -> bool {
+    T::EPSILON < f64::EPSILON
+}
 /// Steps to a turn of an actuator where a pose is followed. A group's pose changes little over 3°,
 /// so that Newton's method needs two or three steps; what changes faster is followed in finer steps.
 pub(crate) const PER_TURN: usize = 120;
@@ -148,7 +159,7 @@ impl Plan {
                 }
                 Step::Solve(g) => {
                     match &self.groups[*g].kind {
-                        Kind::Pin(pin) => place_pin(pin, *g, pose)?,
+                        Kind::Pin(pin) => place_pin(pin, &self.arms, *g, pose)?,
                         Kind::Aim(aim) => place_aim(aim, *g, pose)?,
                         Kind::Solved(solved) => self.place_solved(*g, solved, pose, guess)?,
                     }
@@ -195,7 +206,7 @@ impl Plan {
             };
             let angle = pose.turn[root].y.atan2(pose.turn[root].x);
             let turns = ((expected - angle.value()) / TAU).round();
-            pose.angle[root] = angle + T::lift(TAU * turns);
+            pose.angle[root] = angle + T::turns(turns);
         }
         Ok(())
     }
@@ -281,11 +292,17 @@ pub(crate) fn gap<T: Scalar>(closure: &Closure, arm: &[Vec2<T>], slide: &[T]) ->
 }
 
 /// Two arms of known length that close a triangle with the known part D of the loop.
-fn place_pin<T: Scalar>(pin: &Pin, group: usize, pose: &mut Pose<T>) -> Result<(), PlaceError> {
+fn place_pin<T: Scalar>(
+    pin: &Pin,
+    arms: &[Arm],
+    group: usize,
+    pose: &mut Pose<T>,
+) -> Result<(), PlaceError> {
+    let (per_square, [sum2, gap2, excess]) = triangle_of(pin, arms);
     let known = sum(pin.fixed, &pin.known, &pose.arm);
     let square = known.dot(known);
     // (2 × area)² by factors that keep their digits near a stretched or folded triangle.
-    let rest = (T::lift(pin.sum2) - square) * (square - T::lift(pin.gap2));
+    let rest = (sum2 - square) * (square - gap2);
     let size = square.value() * square.value();
     let q = pose.q[0].value();
     let missing = || {
@@ -294,18 +311,42 @@ fn place_pin<T: Scalar>(pin: &Pin, group: usize, pose: &mut Pose<T>) -> Result<(
     };
     let reach = root(rest, size, group, q, missing)? * T::lift(0.5 * pin.branch);
     let half = T::lift(0.5);
-    let excess = T::lift(pin.excess);
     let inverse = T::lift(1.0) / square;
     let across = known.perp() * reach;
     let first = (known * (half * (excess - square)) + across) * inverse;
     let second = (known * (half * (-excess - square)) - across) * inverse;
     pose.arm[pin.arms[0]] = first;
     pose.arm[pin.arms[1]] = second;
-    pose.turn[pin.frames[0]] = first.turn_back(pin.per_square[0].lift());
-    pose.turn[pin.frames[1]] = second.turn_back(pin.per_square[1].lift());
+    pose.turn[pin.frames[0]] = first.turn_back(per_square[0]);
+    pose.turn[pin.frames[1]] = second.turn_back(per_square[1]);
     // arm₁ × arm₂ = the signed double area.
     pose.inverse[group] = T::lift(1.0) / reach;
     Ok(())
+}
+
+/// The arms over their squares, and (l₁ + l₂)², (l₁ − l₂)², l₂² − l₁² of their lengths.
+#[inline]
+fn triangle_of<T: Scalar>(pin: &Pin, arms: &[Arm]) -> ([Vec2<T>; 2], [T; 3]) {
+    if !finer::<T>() {
+        let lengths = [pin.sum2, pin.gap2, pin.excess];
+        return (pin.per_square.map(Vec2::lift), lengths.map(T::lift));
+    }
+    let local = pin.arms.map(|a| arms[a].local.lift::<T>());
+    let squares = local.map(|arm| arm.dot(arm));
+    let [one, two] = squares.map(T::sqrt);
+    let (sum, gap) = (one + two, one - two);
+    let per_square = [0, 1].map(|k| local[k] * (T::lift(1.0) / squares[k]));
+    (per_square, [sum * sum, gap * gap, squares[1] - squares[0]])
+}
+
+/// A vector of length one, to the last digit of finer numbers too.
+#[inline]
+pub(crate) fn unit<T: Scalar>(vector: Vec2<T>) -> Vec2<T> {
+    if finer::<T>() {
+        vector * (T::lift(1.0) / vector.dot(vector).sqrt())
+    } else {
+        vector
+    }
 }
 
 /// A unit vector e that turns — the line's normal, or the arm's direction — so that n·L = 0.
@@ -313,32 +354,37 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
     let known = sum(aim.fixed, &aim.known, &pose.arm);
     let branch = T::lift(aim.branch);
     let q = pose.q[0].value();
-    let (unit, slope) = if aim.line_turns {
+    let (still, local) = (unit(aim.unit.lift::<T>()), aim.local.lift::<T>());
+    let (turned, slope) = if aim.line_turns {
         // n·D = −n₀·w with n₀, w constant in the turning frame.
-        let kappa = T::lift(-aim.unit.dot(aim.local));
+        let kappa = -still.dot(local);
         let square = known.dot(known);
         let missing = || kappa.value().abs() - square.value().sqrt();
         let reach = branch * root(square - kappa * kappa, square.value(), group, q, missing)?;
-        let unit = (known * kappa + known.perp() * reach) * (T::lift(1.0) / square);
+        let turned = (known * kappa + known.perp() * reach) * (T::lift(1.0) / square);
         // axis·D = reach.
-        pose.travel[aim.closure] = reach + T::lift(aim.local.cross(aim.unit));
-        pose.arm[aim.found] = -unit.perp();
-        (unit, reach)
+        pose.travel[aim.closure] = reach + local.cross(still);
+        pose.arm[aim.found] = -turned.perp();
+        (turned, reach)
     } else {
         // n·(e |w|) = −n·D with n known.
         let along = pose.arm[aim.axis.0];
         let normal = along.perp();
-        let length = aim.local.norm();
+        let length = if finer::<T>() {
+            local.dot(local).sqrt()
+        } else {
+            T::lift(aim.local.norm())
+        };
         let kappa = -normal.dot(known);
-        let square = T::lift(length * length);
-        let missing = || kappa.value().abs() - length;
+        let square = length * length;
+        let missing = || kappa.value().abs() - length.value();
         let reach = branch * root(square - kappa * kappa, square.value(), group, q, missing)?;
         let arm = normal * kappa - along * reach;
         pose.travel[aim.closure] = along.dot(known) - reach;
         pose.arm[aim.found] = arm;
-        (arm * T::lift(1.0 / length), reach)
+        (arm * (T::lift(1.0) / length), reach)
     };
-    pose.turn[aim.frame] = unit.turn_back(aim.unit.lift());
+    pose.turn[aim.frame] = turned.turn_back(still);
     pose.inverse[group] = -T::lift(1.0) / slope;
     Ok(())
 }
@@ -352,7 +398,8 @@ pub(crate) fn root<T: Scalar>(
     missing: impl Fn() -> f64,
 ) -> Result<T, PlaceError> {
     let value = rest.value();
-    if value > SINGULAR * SINGULAR * size {
+    let least = singular::<T>();
+    if value > least * least * size {
         return Ok(rest.sqrt());
     }
     if value.is_nan() {

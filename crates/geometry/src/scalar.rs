@@ -1,6 +1,7 @@
-//! The kinds of number a plan can be evaluated in: plain `f64`, and [`Dual`] for exact
-//! derivatives with respect to a coordinate.
+//! The kinds of number a plan can be evaluated in: plain `f64`, [`Dual`] for exact derivatives with
+//! respect to a coordinate, `f32` and [`Wide`](crate::Wide) to measure what rounding does.
 
+use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -22,6 +23,8 @@ pub trait Scalar:
 {
     /// Whether such a number carries derivatives.
     const DERIVES: bool;
+    /// The distance from one to the next larger number.
+    const EPSILON: f64;
     /// A constant.
     fn lift(value: f64) -> Self;
     /// The value alone, on which every decision (pivot, convergence, limit) is made.
@@ -32,6 +35,11 @@ pub trait Scalar:
     fn sin_cos(self) -> (Self, Self);
     /// The angle of (x, y) = (`other`, `self`) from the x axis, in (−π, π].
     fn atan2(self, other: Self) -> Self;
+    /// The angle of whole turns, rad.
+    #[inline]
+    fn turns(count: f64) -> Self {
+        Self::lift(TAU * count)
+    }
     /// The numbers as plain ones, if that is what they are: for a library that knows no others.
     fn plain(_numbers: &mut [Self]) -> Option<&mut [f64]> {
         None
@@ -43,6 +51,7 @@ pub trait Scalar:
 
 impl Scalar for f64 {
     const DERIVES: bool = false;
+    const EPSILON: f64 = f64::EPSILON;
     #[inline]
     fn lift(value: f64) -> Self {
         value
@@ -73,6 +82,35 @@ impl Scalar for f64 {
     }
 }
 
+impl Scalar for f32 {
+    const DERIVES: bool = false;
+    const EPSILON: f64 = f32::EPSILON as f64;
+    #[inline]
+    fn lift(value: f64) -> Self {
+        value as Self
+    }
+    #[inline]
+    fn value(self) -> f64 {
+        f64::from(self)
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        f32::sqrt(self)
+    }
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        f32::sin_cos(self)
+    }
+    #[inline]
+    fn atan2(self, other: Self) -> Self {
+        f32::atan2(self, other)
+    }
+    #[inline]
+    fn through(self, derivatives: &[f64; 4]) -> Self {
+        derivatives[0] as Self
+    }
+}
+
 /// A value with its derivative: v + d ε with ε² = 0. Evaluating a plan at q + ε gives the exact
 /// derivative of everything with respect to q, to rounding.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -92,6 +130,7 @@ impl Dual {
 
 impl Scalar for Dual {
     const DERIVES: bool = true;
+    const EPSILON: f64 = f64::EPSILON;
     #[inline]
     fn lift(value: f64) -> Self {
         Self { v: value, d: 0.0 }

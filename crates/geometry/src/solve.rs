@@ -3,7 +3,7 @@
 
 use crate::error::PlaceError;
 use crate::groups::{Group, Unknown};
-use crate::place::{Guess, SINGULAR, gap, turn};
+use crate::place::{Guess, gap, singular, turn, unit};
 use crate::plan::{Closure, How, Kind, Plan, Pose, Solved};
 use crate::plane::{Vec2, vec2};
 use crate::scalar::Scalar;
@@ -160,6 +160,8 @@ impl Plan {
     ) -> Result<Factored, PlaceError> {
         let mut residual = f64::INFINITY;
         let mut once_more = true;
+        let converged = CONVERGED.max(0.05 * T::EPSILON.sqrt());
+        let repeated = REPEATED.max(64.0 * T::EPSILON);
         for _ in 0..MOST_STEPS {
             self.turn_group(group, pose);
             residual = self.residual(group, pose);
@@ -169,11 +171,11 @@ impl Plan {
                 break;
             }
             // One step past convergence: it makes the derivative of a dual number exact.
-            if largest < CONVERGED && !std::mem::replace(&mut once_more, false) {
+            if largest < converged && !std::mem::replace(&mut once_more, false) {
                 self.turn_group(group, pose);
                 if solved.tall() {
                     residual = self.residual(group, pose);
-                    if residual > REPEATED * self.groups[group].size {
+                    if residual > repeated * self.groups[group].size {
                         break;
                     }
                 }
@@ -227,7 +229,7 @@ impl Plan {
                         self.set_angle(class, pose.angle[frame] - step, pose);
                     } else {
                         let (sin, cos) = step.sin_cos();
-                        pose.turn[frame] = pose.turn[frame].turn(vec2(cos, -sin));
+                        pose.turn[frame] = unit(pose.turn[frame].turn(vec2(cos, -sin)));
                     }
                 }
                 Unknown::Slide(slide) => pose.slide[slide] -= step * T::lift(scale),
@@ -315,7 +317,7 @@ impl Plan {
                 &mut pose.pivots[solved.pivots..solved.pivots + n],
             )
         };
-        if factored.measure > SINGULAR {
+        if factored.measure > singular::<T>() {
             Ok(factored)
         } else {
             Err(PlaceError::Singular {

@@ -31,6 +31,7 @@ struct Counted(f64);
 
 impl Scalar for Counted {
     const DERIVES: bool = false;
+    const EPSILON: f64 = f64::EPSILON;
     fn lift(value: f64) -> Self {
         Self(value)
     }

@@ -155,7 +155,7 @@ fn measures_do_not_depend_on_the_place() {
     assert_eq!(two.origin() - one.origin(), place);
     for coordinate in &coordinates()[..4] {
         let [a, b] = [(&one, &here), (&two, &there)]
-            .map(|(s, m)| s.measure(Measured::find(m, *coordinate).unwrap()));
+            .map(|(s, m)| -> [f64; 3] { s.measure(Measured::find(m, *coordinate).unwrap()) });
         // Only the pivots' own coordinates were rounded, at 1e-12 m.
         let off = a.iter().zip(b).map(|(a, b)| (a - b).abs());
         assert!(off.fold(0.0, f64::max) < 1e-11, "{a:?} {b:?}");
@@ -172,7 +172,8 @@ fn points_that_coincide_part_with_their_speed() {
     let bodies = [BodyId(0), CRANK];
     let points = [vec2(0.1, 0.0), vec2(0.4, 0.1)];
     assert_eq!(states.separation(bodies, points).direction, None);
-    let [length, speed, acceleration] = states.measure(Measured::Length { bodies, points });
+    let [length, speed, acceleration]: [f64; 3] =
+        states.measure(Measured::Length { bodies, points });
     assert!(length < 1e-16);
     assert!((speed - 0.3).abs() < 1e-15);
     // Along the path, which is not speeding up.
