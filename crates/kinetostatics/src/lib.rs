@@ -13,6 +13,7 @@ pub mod mass;
 pub mod model;
 mod reactions;
 pub mod reduced;
+mod rounding;
 mod runs;
 pub mod section;
 mod turns;

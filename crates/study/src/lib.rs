@@ -35,6 +35,7 @@ mod prepare;
 mod quantity;
 mod reduce;
 mod reference;
+mod rounding;
 mod run;
 mod simulate;
 mod states;

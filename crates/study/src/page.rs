@@ -6,6 +6,7 @@ use crate::figures;
 use crate::multibody::{self, FreeRun};
 use crate::outcome::{Outcome, Progress, Step};
 use crate::reference::Reference;
+use crate::rounding::{self, Rounding};
 use crate::states::{self, Judged};
 use crate::validate::{STEPS, Validation};
 use dwell_findings::all_pass;
@@ -50,6 +51,8 @@ pub(crate) fn of_states(
     );
     let (mut judged, (run, of_motion)) = (judged?, motion?);
     judged.findings.extend(of_motion);
+    let rounding = Rounding::new(scene, &judged.states)?;
+    judged.findings.extend(rounding::finding(&rounding));
     done("states");
     let mut pages = vec![
         figures::drawing(scene, &judged),
@@ -57,6 +60,7 @@ pub(crate) fn of_states(
     ];
     pages.extend(run.as_ref().map(|run| figures::energies(scene, run)));
     pages.push(figures::digits(scene, &judged.findings));
+    pages.push(figures::rounding(scene, &judged, &rounding));
     let pictures: Vec<Vec<u8>> = pages.par_iter().map(png).collect::<Result<_, _>>()?;
     done("pictures");
     let mut files = Files::new();

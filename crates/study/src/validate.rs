@@ -12,6 +12,7 @@ use crate::page;
 use crate::prepare::Prepared;
 use crate::reduce::Sweep;
 use crate::reference::Reference;
+use crate::rounding::{self, Rounding};
 use crate::simulate::Accuracy;
 use crate::states;
 use crate::subject::PlanSubject;
@@ -87,7 +88,9 @@ pub fn validate(
         findings.extend(motion.findings.clone());
     }
     let judged = states::judge(scene, &reference)?;
-    findings.extend(judged.findings);
+    let rounding = Rounding::new(scene, &judged.states)?;
+    findings.extend(rounding::finding(&rounding));
+    findings.extend(judged.findings.iter().cloned());
     done("states");
     findings.extend(multibody::judged(scene, &reference)?.1);
     let (drawing, dwell) = figures::mechanism(&prepared)?;
@@ -100,7 +103,8 @@ pub fn validate(
         dwell,
         sweep: Sweep::new(&prepared)?,
     };
-    let pages = pages(&prepared, drawing, &evidence);
+    let mut pages = pages(&prepared, drawing, &evidence);
+    pages.push(figures::rounding(scene, &judged, &rounding));
     let pictures: Vec<Vec<u8>> = pages.par_iter().map(png).collect::<Result<_, _>>()?;
     done("pictures");
     let mut files = Files::new();
