@@ -135,7 +135,7 @@ impl Dense {
         if rows == columns {
             return Ok(dense);
         }
-        let kept = dense.independent(poses)?;
+        let kept = dense.independent(&dense.start(poses)?);
         if kept.len() != columns {
             return Err(DenseError::NotSquare { rows, columns });
         }
@@ -159,8 +159,8 @@ impl Dense {
 
     /// Rows of which none is made up of the others, the actuators' among them; by Gram and Schmidt,
     /// always with the one that is farthest from those before.
-    fn independent(&self, poses: &[[f64; 3]]) -> Result<Vec<usize>, DenseError> {
-        let matrix = self.scaled_jacobian(&self.start(poses)?);
+    pub(crate) fn independent(&self, x: &[f64]) -> Vec<usize> {
+        let matrix = self.scaled_jacobian(x);
         let rows = 0..matrix.nrows();
         let mut left: Vec<Vec<f64>> = rows
             .map(|i| (0..matrix.ncols()).map(|j| matrix[(i, j)]).collect())
@@ -190,7 +190,7 @@ impl Dense {
             kept.push(next);
         }
         kept.sort_unstable();
-        Ok(kept)
+        kept
     }
 
     /// The same whatever the number of rows: it can be measured, but not closed.

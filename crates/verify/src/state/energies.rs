@@ -62,7 +62,7 @@ const RELEASED: Words = Words {
 /// Each reaction costs some twenty closings a state.
 ///
 /// The findings are state-inertia, state-kinetic, state-lagrange and state-released, in this order. Reactions
-/// that are not determined are left out. If the mechanism is not determinate there is one failed finding.
+/// that are not determined are left out, and state-released where none is. If the mechanism is not determinate there is one failed finding.
 ///
 /// [`judge_states`]: super::judge_states
 pub fn judge_energies(
@@ -116,7 +116,7 @@ impl Judge<'_> {
     }
 
     /// (3), of the actuators and of the reactions.
-    fn lagrange(&self) -> [Finding; 2] {
+    fn lagrange(&self) -> Vec<Finding> {
         let size = self.dense.size();
         let driven = self.dense.actuator_row();
         let reactions = self.mechanism.reactions();
@@ -128,7 +128,10 @@ impl Judge<'_> {
             for (k, (claimed, force)) in claimed.zip(forces).enumerate() {
                 let Some(force) = force else { continue };
                 let (moment, name) = match reactions.get(k) {
-                    Some(&r) => (r.component == Component::Moment, self.mechanism.reaction_name(r)),
+                    Some(&r) => (
+                        r.component == Component::Moment,
+                        self.mechanism.reaction_name(r),
+                    ),
                     None => {
                         let actuator = &self.mechanism.actuators[k - driven];
                         (actuator.coordinate().is_angle(), actuator.name.clone())
@@ -136,19 +139,31 @@ impl Judge<'_> {
                 };
                 let arm = if moment { 1.0 / size } else { 1.0 };
                 let (value, own) = (force.value * arm, force.error * arm);
-                let tally = if k < driven { &mut released } else { &mut actions };
+                let tally = if k < driven {
+                    &mut released
+                } else {
+                    &mut actions
+                };
                 let scale = brought.max(value.abs());
                 let there = format!("{}, {name}", place(m));
                 tally.read(m, claimed * arm - value, own, scale, there);
             }
         }
+        let shared = self.dense.unique[..driven]
+            .iter()
+            .filter(|&&unique| !unique);
+        let shared = shared.count();
+        let mut findings = vec![actions.judge(&ACTIONS, self)];
+        if shared == driven && driven > 0 {
+            return findings;
+        }
         let mut released = released.judge(&RELEASED, self);
-        let shared = self.dense.unique[..driven].iter().filter(|&&unique| !unique);
-        match shared.count() {
+        match shared {
             0 => {}
             n => released.over += &format!("; {n} reactions that joints share are not determined"),
         }
-        [actions.judge(&ACTIONS, self), released]
+        findings.push(released);
+        findings
     }
 }
 
@@ -166,7 +181,9 @@ impl Measured<'_> {
 
     /// Kinetic energy of the claimed velocities, J.
     fn claimed_energy(&self) -> f64 {
-        0.5 * self.dense.inertia(&self.closed, &self.claimed_dot, &self.claimed_dot)
+        0.5 * self
+            .dense
+            .inertia(&self.closed, &self.claimed_dot, &self.claimed_dot)
     }
 
     /// (3) for every row; none for those that are not determined.
@@ -206,7 +223,12 @@ impl Measured<'_> {
                 let rate = state.q_dot[i] + t * state.q_ddot[i];
                 x_dot.iter_mut().zip(u).for_each(|(v, u)| *v += u * rate);
             }
-            Some(speeds.iter().map(|u| dense.inertia(&closed, u, &x_dot)).collect())
+            Some(
+                speeds
+                    .iter()
+                    .map(|u| dense.inertia(&closed, u, &x_dot))
+                    .collect(),
+            )
         })
     }
 

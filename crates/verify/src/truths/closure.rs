@@ -68,7 +68,7 @@ fn branch(bench: &Bench<'_>) -> Worst {
     let mut here = first.closed.clone();
     worst.meet(&apart(0.0, first), || bench.place(first.q));
     for site in others {
-        match dense.follow(&here, row, site.q) {
+        match dense.follow_by_best(&here, row, site.q) {
             Ok(next) => here = next,
             Err(error) => {
                 worst.refuse(format!("on the way to {}: {error}", bench.place(site.q)));

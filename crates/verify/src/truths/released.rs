@@ -28,8 +28,14 @@ use crate::differences::{Estimate, Order, derivatives};
 use crate::judge::{Check, Reading};
 use dwell_findings::Finding;
 
-/// Three findings: a, b by differences, b by virtual power.
+/// Three findings: a, b by differences, b by virtual power. None where joints share all reactions.
 pub fn released(bench: &Bench<'_>) -> Vec<Finding> {
+    if bench.dense.unique[..bench.reactions.len()]
+        .iter()
+        .all(|&unique| !unique)
+    {
+        return Vec::new();
+    }
     let [a, b, power] = bench.each_site_into(|site, [a, b, power]| {
         let subject = bench.subject.coefficients(site.q)?;
         if subject.a.len() != bench.reactions.len() || subject.b.len() != bench.reactions.len() {
