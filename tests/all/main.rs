@@ -31,6 +31,7 @@ mod published;
 mod random;
 mod refusals;
 mod repeatability;
+mod rounding;
 mod scaling;
 mod sketch;
 mod slides;

@@ -23,6 +23,7 @@ mod driven;
 mod equilibria;
 mod error;
 mod figures;
+mod freed;
 
 mod history;
 mod index;
@@ -31,6 +32,7 @@ mod motion_error;
 mod multibody;
 mod outcome;
 mod page;
+mod period;
 mod prepare;
 mod quantity;
 mod reduce;

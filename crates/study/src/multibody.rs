@@ -1,6 +1,7 @@
 //! The free motion of a scene, judged by the full multibody equations.
 
 use crate::error::{StudyError, explain_machine, explain_model};
+use crate::freed::Freed;
 use crate::motion_error::explain_motion;
 use crate::reference::{Reached, Reference};
 use crate::simulate::{Free, Moved};
@@ -33,6 +34,8 @@ pub struct FreeRun {
     pub coordinates: Vec<Vec<[f64; 2]>>,
     /// Why it ended early, if it did.
     pub stopped: Option<String>,
+    /// How it was set free, of a scene without `[motion]`.
+    pub told: String,
 }
 
 /// The free motion of a scene over its duration or two periods, whichever is shorter; none where
@@ -41,17 +44,19 @@ pub struct FreeRun {
 /// # Errors
 /// [`StudyError::Scene`] when the scene cannot be put together or its start cannot be evaluated.
 pub fn free_run(scene: &Scene) -> Result<Option<FreeRun>, StudyError> {
-    followed(scene, None)
+    followed(scene, None, None)
 }
 
 /// The same, or until a time.
-fn followed(scene: &Scene, until: Option<f64>) -> Result<Option<FreeRun>, StudyError> {
+fn followed(
+    scene: &Scene,
+    until: Option<f64>,
+    longest: Option<f64>,
+) -> Result<Option<FreeRun>, StudyError> {
     let Some(motion) = &scene.motion else {
         return Ok(None);
     };
-    let loads = all_loads(&scene.mechanism, &scene.loads, &scene.drives);
-    let mut driven = scene.clone();
-    driven.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
+    let driven = with_drives(scene)?;
     let free = Free::new(scene, &driven, motion)?;
     let period = Orbit::loaded(&free.machine, free.state()).ok();
     let period = period.filter(|_| free.machine.free().len() == 1 && motion.laws.len() == 1);
@@ -61,12 +66,24 @@ fn followed(scene: &Scene, until: Option<f64>) -> Result<Option<FreeRun>, StudyE
         (Length::Duration(d), Some(orbit)) => d.min(PERIODS * orbit.period),
         (_, None) => free.duration()?,
     };
-    let moved = free.follow(scene, duration, &Options::new(Method::Tsit45, TOLERANCE))?;
+    let options = Options {
+        longest,
+        ..Options::new(Method::Tsit45, TOLERANCE)
+    };
+    let moved = free.follow(scene, duration, &options)?;
     let shown = shown(&driven)?;
     let explain = |e: &DynamicsError| explain_motion(&driven, shown.plan(), e);
     let mut run = run(scene, &free.machine, &shown, &moved).map_err(|e| explain(&e))?;
     run.stopped = moved.failed.as_ref().map(|e| explain(e).to_string());
     Ok(Some(run))
+}
+
+/// The scene with the loads through which its drives act.
+pub(crate) fn with_drives(scene: &Scene) -> Result<Scene, StudyError> {
+    let loads = all_loads(&scene.mechanism, &scene.loads, &scene.drives);
+    let mut driven = scene.clone();
+    driven.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
+    Ok(driven)
 }
 
 /// The model with all loads and reactions.
@@ -190,7 +207,8 @@ impl<'a> Eye<'a> {
     }
 }
 
-/// The findings of a scene's motion: the multibody equations, then what is known of it.
+/// The findings of a scene's motion: the multibody equations, then what is known of it. A scene without one is
+/// set free.
 ///
 /// # Errors
 /// As [`free_run`]; [`StudyError::Reference`] where a name is none of the scene's.
@@ -199,11 +217,20 @@ pub(crate) fn judged(
     reference: &Reference,
 ) -> Result<(Option<FreeRun>, Vec<Finding>), StudyError> {
     let Some(run) = free_run(scene)? else {
-        return Ok((None, Vec::new()));
+        let freed = Freed::new(scene, reference)?;
+        let Some(mut run) = followed(&freed.scene, None, freed.longest())? else {
+            return Ok((None, Vec::new()));
+        };
+        freed.cut(&mut run);
+        let mut findings = run.judge(&freed.scene);
+        for finding in &mut findings {
+            finding.over += &format!(", {}", run.told);
+        }
+        return Ok((Some(run), findings));
     };
     let mut findings = run.judge(scene);
     for known in &reference.motion {
-        if let Some(run) = followed(scene, Some(known.t))? {
+        if let Some(run) = followed(scene, Some(known.t), None)? {
             findings.push(run.reaches(scene, known, &reference.source)?);
         }
     }
@@ -253,7 +280,7 @@ impl FreeRun {
         };
         let mut finding = Finding {
             key: "published-motion".into(),
-            truth: "published values".into(),
+            truth: "9 published values".into(),
             compared: format!("the state that is reached with its published values ({source})"),
             over: format!("{} values at t = {} s", found.len(), known.t),
             absolute: 0.0,
@@ -263,7 +290,8 @@ impl FreeRun {
             worst: "none".into(),
             tolerance: known.relative,
             why: known.reason.clone(),
-            pass: false,
+            integrated: true,
+            ..Finding::default()
         };
         for (name, unit, value, wanted) in &found {
             let absolute = (value - wanted).abs();
@@ -318,13 +346,9 @@ fn refused(why: String) -> Finding {
         truth: "6 full multibody equations".into(),
         compared: "the motion with that of the multibody equations".into(),
         over: "the motion".into(),
-        absolute: f64::NAN,
-        unit: String::new(),
-        relative: f64::NAN,
-        scale: "none".into(),
         worst: why,
-        tolerance: 0.0,
         why: "a motion that cannot be followed cannot be judged".into(),
-        pass: false,
+        integrated: true,
+        ..Finding::default()
     }
 }

@@ -5,10 +5,11 @@ use crate::error::StudyError;
 use crate::figures;
 use crate::multibody::{self, FreeRun};
 use crate::outcome::{Outcome, Progress, Step};
+use crate::period;
 use crate::reference::Reference;
 use crate::rounding::{self, Rounding};
 use crate::states::{self, Judged};
-use crate::validate::{STEPS, Validation};
+use crate::validate::{STEPS, Validation, reduced, silent};
 use dwell_findings::all_pass;
 use dwell_report::{Block, Document, Files, json, png};
 use dwell_scene::Scene;
@@ -45,14 +46,32 @@ pub(crate) fn of_states(
             done: what,
         });
     };
-    let (judged, motion) = rayon::join(
-        || states::judge(scene, reference),
-        || multibody::judged(scene, reference),
+    let ((judged, motion), (reduced, timed)) = rayon::join(
+        || {
+            rayon::join(
+                || states::judge(scene, reference),
+                || multibody::judged(scene, reference),
+            )
+        },
+        || {
+            rayon::join(
+                // m, half dm/dq, a and b do not depend on loads.
+                || match scene.mechanism.actuators.len() {
+                    1 => reduced(scene, reference),
+                    _ => Ok((Vec::new(), Vec::new())),
+                },
+                || period::of_case(scene, reference),
+            )
+        },
     );
-    let (mut judged, (run, of_motion)) = (judged?, motion?);
+    let (mut judged, (run, of_motion), (of_model, _)) = (judged?, motion?, reduced?);
+    let timed = timed?;
+    judged.findings.extend(of_model);
+    judged.findings.extend(timed.iter().flatten().cloned());
     judged.findings.extend(of_motion);
     let rounding = Rounding::new(scene, &judged.states)?;
     judged.findings.extend(rounding::finding(&rounding));
+    reference.judge(&mut judged.findings)?;
     done("states");
     let mut pages = vec![
         figures::drawing(scene, &judged),
@@ -85,6 +104,7 @@ pub(crate) fn of_states(
     );
     done("report");
     Ok(Validation {
+        silent: silent(&judged.findings, timed.err()),
         outcome: Outcome {
             summary: verdicts(scene, &judged.findings),
             files,
@@ -147,7 +167,8 @@ fn snapshot(scene: &Scene, judged: &Judged, run: Option<&FreeRun>) -> String {
             let _ = writeln!(text, "    {} = {value}", mechanism.reaction_name(wanted));
         }
     }
-    if let Some(run) = run {
+    // Where a motion of our own making ends depends on the steps.
+    if let Some(run) = run.filter(|run| run.told.is_empty()) {
         text += &ended(scene, run);
     }
     text.push('\n');

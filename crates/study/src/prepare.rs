@@ -18,7 +18,7 @@ pub struct Prepared<'a> {
 }
 
 /// A model of a scene for some reactions.
-fn compiled(scene: &Scene, reactions: &[Reaction]) -> Result<Model, StudyError> {
+pub(crate) fn compiled(scene: &Scene, reactions: &[Reaction]) -> Result<Model, StudyError> {
     let start = scene.assembly.to_start();
     Model::new(&scene.mechanism, &scene.masses, &start, reactions)
         .map_err(|e| explain_model(scene, &e))

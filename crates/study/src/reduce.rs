@@ -10,6 +10,7 @@ use crate::words::digits;
 use dwell_kinetostatics::{Coefficients, Reduced};
 use dwell_report::{Axis, Column, Figure, Table, png};
 use dwell_scene::Scene;
+use rayon::prelude::*;
 
 /// Positions of the table: half a degree over a turn.
 const POSITIONS: usize = 720;
@@ -21,6 +22,68 @@ pub(crate) struct Sweep {
     pub(crate) q: Vec<f64>,
     /// The coefficients at each.
     pub(crate) at: Vec<Coefficients>,
+}
+
+/// Estimated rounding errors over a sweep, as parts of the largest value of each coefficient.
+#[derive(Debug, Clone)]
+pub(crate) struct Errors {
+    /// By position: the largest of all coefficients.
+    pub(crate) rows: Vec<f64>,
+    /// Over all positions: of m, of ½m′, of every a and b.
+    pub(crate) most: [f64; 3],
+}
+
+impl Errors {
+    /// Evaluates a sweep again in numbers of 32 digits.
+    pub(crate) fn new(prepared: &Prepared<'_>, sweep: &Sweep) -> Result<Self, StudyError> {
+        let model = prepared.model.model();
+        let flat = |at: &Coefficients| -> Vec<f64> {
+            let rest = at.a.iter().chain(&at.b).copied();
+            [at.m, at.half_dm].into_iter().chain(rest).collect()
+        };
+        let mut scales = vec![0.0_f64; 2 + 2 * model.reactions().len()];
+        for at in &sweep.at {
+            for (scale, value) in scales.iter_mut().zip(flat(at)) {
+                *scale = scale.max(value.abs());
+            }
+        }
+        let judged = |(&q, at): (&f64, &Coefficients)| {
+            let (mut work, mut errors) = (model.workspace(), model.coefficients());
+            model
+                .reduce_errors(q, at, &mut work, &mut errors)
+                .map_err(|e| explain_place(prepared.scene, model.plan(), &e))?;
+            let parts = flat(&errors).into_iter().zip(&scales);
+            let part = |(error, &scale): (f64, &f64)| if error > 0.0 { error / scale } else { 0.0 };
+            Ok(parts.map(part).collect())
+        };
+        let all: Vec<Vec<f64>> = sweep
+            .q
+            .par_iter()
+            .zip(&sweep.at)
+            .map(judged)
+            .collect::<Result<_, StudyError>>()?;
+        let largest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
+        let over = |pick: &dyn Fn(&Vec<f64>) -> f64| all.iter().map(pick).fold(0.0, f64::max);
+        Ok(Self {
+            rows: all.iter().map(|row| largest(row)).collect(),
+            most: [
+                over(&|row| row[0]),
+                over(&|row| row[1]),
+                over(&|row| largest(&row[2..])),
+            ],
+        })
+    }
+
+    /// To the next power of ten.
+    fn words(&self) -> String {
+        let [m, half_dm, rest] = self.most.map(|error| match error {
+            0.0 => "0".to_owned(),
+            error => format!("{:.0e}", 10_f64.powf(error.log10().ceil())),
+        });
+        format!(
+            "  rounding errors, held against 32 digits, below {m} of the largest m, {half_dm} of ½m′, {rest} of any a or b\n"
+        )
+    }
 }
 
 impl Sweep {
@@ -92,6 +155,11 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
             }
         }
     }
+    let errors = Errors::new(&prepared, &sweep)?;
+    table.columns.push(Column::new("relative_error", ""));
+    for (row, error) in table.rows.iter_mut().zip(&errors.rows) {
+        row.push(*error);
+    }
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-reduced.{rest}", scene.name);
     outcome.files.add(name("csv"), table.csv()?);
@@ -115,6 +183,7 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
         digits(h0, 9),
         digits(h1, 9),
     );
+    outcome.summary += &errors.words();
     if let Some(note) = note {
         outcome.summary += &format!("  {note}\n");
     }

@@ -1,14 +1,20 @@
-//! The reference numbers of a case: `reference.json` beside its scene.
+//! What a case knows of itself: `case.toml` beside its scene, with reference numbers, their source and tolerances.
 
 mod table;
+mod tolerances;
 
 use crate::error::StudyError;
+use dwell_findings::Finding;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_scene::Scene;
 use dwell_verify::truths::{Point, Sample};
 use serde_json::{Map, Value};
 use std::path::Path;
 use table::{Table, table};
+use tolerances::Tolerances;
+
+/// The file of a case beside its scene.
+const FILE: &str = "case.toml";
 
 /// Published or independently computed values of a case.
 #[derive(Debug, Clone, Default)]
@@ -26,6 +32,10 @@ pub(crate) struct Reference {
     /// Values of states of motion, computed and published.
     pub(crate) states: Option<Table>,
     pub(crate) published: Option<Table>,
+    /// By finding.
+    pub(crate) tolerances: Tolerances,
+    /// The file.
+    path: String,
 }
 
 /// What is known of a free motion at one time.
@@ -41,14 +51,15 @@ pub(crate) struct Reached {
     pub(crate) reason: String,
 }
 
-/// What a reference file holds. The words are for people, and so are numbers of other quantities.
-const KEYS: [&str; 11] = [
+/// What the file holds. The words are for people, and so are numbers of other quantities.
+const KEYS: [&str; 12] = [
     "title",
     "source",
     "computed",
     "definition",
     "convention",
     "tolerance",
+    "tolerances",
     "samples",
     "free_motion",
     "others_measured",
@@ -59,10 +70,10 @@ const KEYS: [&str; 11] = [
 const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
 
 impl Reference {
-    /// Reads the reference of a case; an absent file is an empty reference. A key that is not known
+    /// Reads the file of a case; an absent one is an empty reference. A key that is not known
     /// is an error: what is given and never compared would pass for agreement.
     pub(crate) fn read(folder: &Path, scene: &Scene) -> Result<Self, StudyError> {
-        let path = folder.join("reference.json");
+        let path = folder.join(FILE);
         if !path.exists() {
             return Ok(Self::default());
         }
@@ -73,9 +84,25 @@ impl Reference {
         let bytes = std::fs::read(&path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
         let text = String::from_utf8(bytes).map_err(|_| wrong("is not UTF-8 text".to_owned()))?;
         let text = text.trim_start_matches('\u{feff}');
-        let value: Value =
-            serde_json::from_str(text).map_err(|e| wrong(format!("not valid JSON: {e}")))?;
-        Self::from_value(&value, scene).map_err(wrong)
+        let value: Value = toml::from_str(text)
+            .map_err(|e| wrong(format!("not valid TOML: {}", e.to_string().trim_end())))?;
+        let read = Self::from_value(&value, scene).map_err(wrong)?;
+        Ok(Self {
+            path: path.display().to_string(),
+            ..read
+        })
+    }
+
+    /// Judges the findings of the case by its own tolerances.
+    ///
+    /// # Errors
+    /// [`StudyError::Reference`] where a tolerance is given for no finding.
+    pub(crate) fn judge(&self, findings: &mut [Finding]) -> Result<(), StudyError> {
+        let judged = self.tolerances.judge(findings);
+        judged.map_err(|reason| StudyError::Reference {
+            path: self.path.clone(),
+            reason,
+        })
     }
 
     fn from_value(value: &Value, scene: &Scene) -> Result<Self, String> {
@@ -126,6 +153,8 @@ impl Reference {
             motion,
             states,
             published,
+            tolerances: Tolerances::read(&value["tolerances"])?,
+            path: String::new(),
         })
     }
 }

@@ -118,9 +118,12 @@ fn worst<T: Scalar>(values: &[T], wide: &[Wide], scales: &[f64]) -> (f64, usize)
 /// The one finding: the error of `f64`.
 pub(crate) fn finding(rounding: &Rounding) -> Option<Finding> {
     let (plain, short) = rounding.worst()?;
-    let lost = match short {
-        None => "no pose in f32".to_owned(),
-        Some(short) => format!("{short:.0e} in f32"),
+    let (condition, lost) = match short {
+        None => (1.0, "no pose in f32".to_owned()),
+        Some(short) => (
+            short / f64::from(f32::EPSILON),
+            format!("f32 errs by {short:.0e}, which tells the condition"),
+        ),
     };
     Some(Finding {
         key: "rounding".to_owned(),
@@ -134,6 +137,8 @@ pub(crate) fn finding(rounding: &Rounding) -> Option<Finding> {
         worst: format!("t = {} s, {}", plain.t, plain.worst),
         tolerance: PLAIN,
         why: format!("roundings of a plain evaluation; {lost}"),
+        condition,
+        integrated: false,
         pass: plain.plain <= PLAIN,
     })
 }

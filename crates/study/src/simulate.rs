@@ -139,7 +139,7 @@ pub(crate) struct Moved {
 }
 
 impl Moved {
-    fn occurrences(&self) -> impl Iterator<Item = (usize, &Occurrence)> {
+    pub(crate) fn occurrences(&self) -> impl Iterator<Item = (usize, &Occurrence)> {
         self.legs
             .iter()
             .flat_map(|(chart, trace)| trace.occurrences.iter().map(|o| (*chart, o)))

@@ -9,6 +9,7 @@ use crate::motion_error::explain_motion;
 use crate::multibody;
 use crate::outcome::{Outcome, Progress, Step};
 use crate::page;
+use crate::period;
 use crate::prepare::Prepared;
 use crate::reduce::Sweep;
 use crate::reference::Reference;
@@ -21,7 +22,7 @@ use dwell_kinetostatics::Reduced;
 use dwell_report::{Figure, Files, png};
 use dwell_scene::{Length, Scene};
 use dwell_verify::{
-    Bench, Case, ErrorCurve, FreeMotion, FreeMotionCase, free_motion, half_dm_curve,
+    Bench, Case, ErrorCurve, FreeMotion, FreeMotionCase, Range, free_motion, half_dm_curve,
     reaction_curve, spread,
 };
 use rayon::prelude::*;
@@ -42,6 +43,25 @@ pub struct Validation {
     pub outcome: Outcome,
     /// The rounded text that every machine reproduces.
     pub snapshot: String,
+    /// Truths by number that say nothing of the case, and in a few words why.
+    pub silent: Vec<(usize, &'static str)>,
+}
+
+/// Why some truths have no findings, where it is not said elsewhere.
+pub(crate) fn silent(
+    findings: &[Finding],
+    period: Option<&'static str>,
+) -> Vec<(usize, &'static str)> {
+    let known = [
+        (3, "reactions shared"),
+        (5, period.unwrap_or("no period")),
+        (9, "no values"),
+    ];
+    let spoken = |number: usize| findings.iter().any(|f| f.number() == Some(number));
+    known
+        .into_iter()
+        .filter(|&(number, _)| !spoken(number))
+        .collect()
 }
 
 /// What the checks of a case yield.
@@ -80,19 +100,35 @@ pub fn validate(
         });
     };
     let (judged, rest) = rayon::join(
-        || judge(scene, &reference).inspect(|_| done("truths")),
+        || reduced(scene, &reference).inspect(|_| done("truths")),
         || rest(&prepared, &reference).inspect(|_| done("free motion")),
     );
     let ((mut findings, curves), (motion, calibrated, history)) = (judged?, rest?);
     if let Some(motion) = &motion {
         findings.extend(motion.findings.clone());
     }
-    let judged = states::judge(scene, &reference)?;
+    let (judged, (followed, timed)) = rayon::join(
+        || states::judge(scene, &reference),
+        || {
+            rayon::join(
+                || multibody::judged(scene, &reference),
+                // A motion of the scene's own without loads has been timed already.
+                || match &motion {
+                    Some(_) => Ok(Ok(Vec::new())),
+                    None => period::of_case(scene, &reference),
+                },
+            )
+        },
+    );
+    let judged = judged?;
     let rounding = Rounding::new(scene, &judged.states)?;
     findings.extend(rounding::finding(&rounding));
     findings.extend(judged.findings.iter().cloned());
     done("states");
-    findings.extend(multibody::judged(scene, &reference)?.1);
+    findings.extend(followed?.1);
+    let timed = timed?;
+    findings.extend(timed.iter().flatten().cloned());
+    reference.judge(&mut findings)?;
     let (drawing, dwell) = figures::mechanism(&prepared)?;
     let evidence = Evidence {
         findings,
@@ -116,6 +152,7 @@ pub fn validate(
         files.add(format!("{name}/{file}.csv"), table.csv()?);
     }
     let snapshot = snapshot(&prepared, &evidence);
+    let silent = silent(&evidence.findings, timed.err());
     files.add(format!("{name}.txt"), snapshot.clone());
     files.add(format!("{name}.json"), numbers(scene, &evidence)?);
     let document = document(&prepared, &reference, &pages, &evidence);
@@ -128,16 +165,22 @@ pub fn validate(
             findings: evidence.findings,
         },
         snapshot,
+        silent,
     })
 }
 
-/// The truths that need no motion, on every reaction of every joint.
-fn judge(
+/// The truths of the reduced model, which need no motion, on every reaction of every joint.
+pub(crate) fn reduced(
     scene: &Scene,
     reference: &Reference,
 ) -> Result<(Vec<Finding>, Vec<ErrorCurve>), StudyError> {
     let subject = PlanSubject::new(scene)?;
-    let range = subject.exact().range();
+    // The scene says where the mechanism is used; outside, a change point may be near.
+    let used = scene.sweep.as_ref().and_then(|sweep| sweep.range);
+    let range = match used {
+        Some([from, to]) => Range::Between(from.min(to), from.max(to)),
+        None => subject.exact().range(),
+    };
     let case = Case {
         mechanism: &scene.mechanism,
         masses: &scene.masses,

@@ -119,6 +119,28 @@ impl Dense {
         self.close_beside(from, &start, &imposed)
     }
 
+    /// As [`Dense::follow`]; where rows repeat each other, by those that are farthest from dependent at `from`:
+    /// any others may become dependent on the way.
+    pub(crate) fn follow_by_best(
+        &self,
+        from: &Closed,
+        row: usize,
+        to: f64,
+    ) -> Result<Closed, DenseError> {
+        if self.rows.len() == self.rows.columns() {
+            return self.follow(from, row, to);
+        }
+        let kept = self.independent(&from.x);
+        if kept.len() != self.rows.columns() {
+            return Err(DenseError::Singular { pivot: 0.0 });
+        }
+        let best = Self {
+            kept,
+            ..self.clone()
+        };
+        best.follow(&best.close(&from.x, &from.imposed)?, row, to)
+    }
+
     /// Follows the branch continuously until `row` has the value `to`, in steps short enough for
     /// Newton's method not to change branch, halved where it fails.
     pub fn follow(&self, from: &Closed, row: usize, to: f64) -> Result<Closed, DenseError> {

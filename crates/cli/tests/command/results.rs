@@ -44,10 +44,14 @@ fn reduce_writes_a_table_with_units_and_pictures() {
     );
     assert_eq!(
         first_line(&bench, "o/single-dwell-reduced.csv"),
-        "phi [rad],m [kg m2],half_dm [kg m2/rad],slide.normal a [kg m],slide.normal b [kg m]"
+        "phi [rad],m [kg m2],half_dm [kg m2/rad],slide.normal a [kg m],slide.normal b [kg m],relative_error"
     );
     assert!(run.out.contains("o/single-dwell-reduced.csv"));
     assert!(run.out.contains("kg m²/rad"));
+    assert!(
+        run.out
+            .contains("rounding errors, held against 32 digits, below 1e-15 of the largest m")
+    );
 }
 
 #[test]

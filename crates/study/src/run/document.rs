@@ -136,6 +136,7 @@ impl<'a> Document<'a> {
             }
         }
         text += &self.balance();
+        text += &self.rounding();
         text += &self.shared();
         text += &self.absent();
         text
@@ -172,6 +173,17 @@ impl<'a> Document<'a> {
         text
     }
 
+    /// What rounding does, to the next power of ten.
+    fn rounding(&self) -> String {
+        let Some(error) = self.record.rounding.filter(|error| *error > 0.0) else {
+            return String::new();
+        };
+        format!(
+            "  rounding errors below {:.0e} of the largest of a unit, held against 32 digits\n",
+            10_f64.powf(error.log10().ceil())
+        )
+    }
+
     /// The page that gathers everything.
     pub(crate) fn markdown(&self, figures: &[Figure], file: &dyn Fn(&Figure) -> String) -> String {
         let mut blocks = vec![Block::Text(format!("{}.", self.first_line()))];
@@ -181,7 +193,7 @@ impl<'a> Document<'a> {
         if !self.balance().is_empty() {
             blocks.push(Block::Text(format!("{}.", self.balance().trim())));
         }
-        for told in [self.shared(), self.absent()] {
+        for told in [self.rounding(), self.shared(), self.absent()] {
             if !told.is_empty() {
                 let told = told.trim();
                 let (first, rest) = told.split_at(1);

@@ -3,6 +3,7 @@
 
 mod columns;
 mod document;
+mod doubt;
 mod dyads;
 mod leverage;
 mod link;

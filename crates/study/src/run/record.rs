@@ -4,6 +4,7 @@ use crate::error::{StudyError, explain_model};
 use crate::figures::{Frame, size};
 use crate::run::Command;
 use crate::run::columns::{Column, Columns, Quantity, Term};
+use crate::run::doubt::Doubt;
 use crate::run::leverage::Pace;
 use crate::run::link::Link;
 use crate::run::need::lean;
@@ -31,6 +32,8 @@ pub(crate) struct Record {
     pub(crate) links: Vec<Link>,
     /// The largest residual of the power balance, as a part of its absolute terms.
     pub(crate) residual: f64,
+    /// The estimated rounding error of actions and reactions, as a part of the largest of their unit.
+    pub(crate) rounding: Option<f64>,
     /// The reactions that the loads do not determine.
     pub(crate) shared: Vec<String>,
     /// By body: whether it is modelled.
@@ -367,6 +370,7 @@ pub(crate) fn follow(
         frames: Vec::with_capacity(way.points),
         links: sections.iter().map(Link::new).collect(),
         residual: 0.0,
+        rounding: None,
         shared: (0..model.reactions().len())
             .filter(|&k| !model.plan().is_unique(k))
             .map(|k| scene.mechanism.reaction_name(model.reactions()[k]))
@@ -374,6 +378,8 @@ pub(crate) fn follow(
         placed,
         stop: None,
     };
+    let doubted = matches!(command, Command::Statics | Command::Kinetostatics);
+    let mut doubt = doubted.then(|| Doubt::new(scene, model, way.points));
     let mut before: Option<f64> = None;
     for k in 0..way.points {
         let part = way.part(k);
@@ -421,7 +427,17 @@ pub(crate) fn follow(
             let residual = probe.power.residual().abs() / probe.power.scale;
             record.residual = record.residual.max(residual);
         }
+        if let Some(doubt) = &mut doubt {
+            let t = if timed { sample.t } else { 0.0 };
+            let rest = vec![0.0; sample.q.len()];
+            let at = match command {
+                Command::Statics => [sample.q.as_slice(), &rest, &rest],
+                _ => [&sample.q, &sample.q_dot, &sample.q_ddot].map(Vec::as_slice),
+            };
+            doubt.take(k, model, t, at, &probe.actions);
+        }
         heard(k);
     }
+    record.rounding = doubt.map(|doubt| doubt.largest());
     Ok(record)
 }

@@ -167,6 +167,7 @@ fn reduce_leaves_out_reactions_that_are_not_unique() {
         "P.x c weight",
         "P.y c weight",
         "G.y c weight",
+        "relative_error",
     ];
     assert_eq!(all.names[9..], channels);
     assert!(told.contains("share them: A.x, A.y, C.x, C.y\n"), "{told}");
