@@ -45,5 +45,6 @@ pub(crate) fn rounding(scene: &Scene, judged: &Judged, rounding: &Rounding) -> F
             ],
             ..Chart::default()
         })],
+        ..Figure::default()
     }
 }
