@@ -224,18 +224,32 @@ struct Changed(PathBuf);
 
 impl Changed {
     fn new(case: &str, change: impl FnOnce(&mut Value)) -> Self {
-        let text = std::fs::read_to_string(folder(case).join("reference.json")).expect("a file");
-        let mut reference: Value = serde_json::from_str(&text).expect("JSON");
+        let text = std::fs::read_to_string(folder(case).join("case.toml")).expect("a file");
+        let mut reference: Value = toml::from_str(&text).expect("TOML");
         change(&mut reference);
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let number = COUNT.fetch_add(1, Ordering::Relaxed);
         let name = format!("dwell-changed-{}-{number}", std::process::id());
         let folder = std::env::temp_dir().join(name);
         std::fs::create_dir_all(&folder).expect("a folder");
-        let text = reference.to_string();
-        std::fs::write(folder.join("reference.json"), text).expect("a file");
+        drop_nulls(&mut reference);
+        let text = toml::to_string(&reference).expect("TOML");
+        std::fs::write(folder.join("case.toml"), text).expect("a file");
         Self(folder)
     }
+}
+
+/// TOML knows no null: what is null is left out.
+fn drop_nulls(value: &mut Value) {
+    if let Value::Object(fields) = value {
+        fields.retain(|_, value| !value.is_null());
+    }
+    let inside: Vec<&mut Value> = match value {
+        Value::Object(fields) => fields.values_mut().collect(),
+        Value::Array(entries) => entries.iter_mut().collect(),
+        _ => Vec::new(),
+    };
+    inside.into_iter().for_each(drop_nulls);
 }
 
 impl Drop for Changed {

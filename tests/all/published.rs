@@ -14,8 +14,8 @@ fn number(value: &Value) -> f64 {
 fn val_reference(case: &str) {
     let scene = scene(case);
     let model = model(&scene);
-    let text = std::fs::read_to_string(home().join("validation").join(case).join("reference.json"));
-    let reference: Value = serde_json::from_str(&text.expect("a file")).expect("JSON");
+    let text = std::fs::read_to_string(home().join("validation").join(case).join("case.toml"));
+    let reference: Value = toml::from_str(&text.expect("a file")).expect("TOML");
     let reactions = scene.mechanism.reactions();
     let mut work = model.work();
     let mut at = model.model().coefficients();

@@ -76,11 +76,14 @@ fn gathered(
             (name.as_str(), told)
         })
         .collect();
+    let mut bad = Vec::new();
     let mut files = Files::new();
     if cases.len() > 1 && results.iter().any(Result::is_ok) {
-        files.add("index.md", index(&verdicts));
+        match index(&verdicts) {
+            Ok(overview) => files.extend("", overview),
+            Err(error) => bad.push(as_scene_error(error)),
+        }
     }
-    let mut bad = Vec::new();
     for result in results {
         match result {
             Ok(one) => {

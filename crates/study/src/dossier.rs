@@ -1,9 +1,11 @@
 //! What a validated case is written as: tables, numbers, a document, and the rounded text.
 
 use crate::error::StudyError;
+use crate::index::told;
 use crate::prepare::Prepared;
 use crate::reference::Reference;
 use crate::validate::Evidence;
+use crate::words::count;
 use dwell_dynamics::Method;
 use dwell_findings::{Finding, all_pass};
 use dwell_kinetostatics::Reduced;
@@ -205,6 +207,28 @@ pub(crate) fn rounded_to(value: f64, largest: f64) -> String {
     }
 }
 
+/// What is said of the tolerances of a case.
+pub(crate) fn tolerances(findings: &[Finding]) -> Block {
+    let slack: Vec<String> = (findings.iter().filter(|f| f.slack()))
+        .map(|f| format!("`{}` (at most {:.0e})", f.key, f.most()))
+        .collect();
+    let integrated = findings.iter().filter(|f| f.integrated).count();
+    let mut text = match slack.is_empty() {
+        true => "No tolerance is above 100 times the difference met plus 50 roundings times the condition number.".to_owned(),
+        false => format!(
+            "Tolerances above 100 times the difference met plus 50 roundings times the condition number: {}.",
+            slack.join(", ")
+        ),
+    };
+    if integrated > 0 {
+        text += &format!(
+            " That rule is not for {}, which are judged by slopes and by factors of the integrator's tolerance.",
+            count(integrated, "integrated result")
+        );
+    }
+    Block::Text(text)
+}
+
 /// How many findings pass, and those that do not.
 pub(crate) fn verdicts(scene: &Scene, findings: &[Finding]) -> String {
     let failed: Vec<&Finding> = findings.iter().filter(|f| !f.pass).collect();
@@ -215,10 +239,7 @@ pub(crate) fn verdicts(scene: &Scene, findings: &[Finding]) -> String {
         findings.len()
     );
     for f in failed {
-        text += &format!(
-            "  FAIL {} ({}): {}; relative {:.1e}, tolerance {:.1e}, worst at {}\n",
-            f.key, f.truth, f.compared, f.relative, f.tolerance, f.worst
-        );
+        text += &format!("  FAIL {} {}\n", f.key, told(f).join("\n    "));
     }
     text
 }
@@ -280,6 +301,7 @@ pub(crate) fn document(
     }
     blocks.push(Block::Heading("Findings".to_owned()));
     blocks.push(Block::Findings(evidence.findings.clone()));
+    blocks.push(tolerances(&evidence.findings));
     if let Some(motion) = &evidence.motion {
         blocks.push(Block::Heading("What a tolerance is worth".to_owned()));
         blocks.push(Block::Text(

@@ -1,6 +1,6 @@
 //! The report of a case that is judged in states alone: with loads, or several actuators.
 
-use crate::dossier::{illustrated, rounded_to, verdicts};
+use crate::dossier::{illustrated, rounded_to, tolerances, verdicts};
 use crate::error::StudyError;
 use crate::figures;
 use crate::multibody::{self, FreeRun};
@@ -227,5 +227,6 @@ fn document(
     }
     blocks.push(Block::Heading("Findings".to_owned()));
     blocks.push(Block::Findings(judged.findings.clone()));
+    blocks.push(tolerances(&judged.findings));
     illustrated(scene, pages, blocks)
 }

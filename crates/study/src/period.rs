@@ -45,10 +45,10 @@ fn judged(scene: &Scene) -> Result<Judged, StudyError> {
         return Ok(Err("no motion"));
     };
     if motion.laws.iter().any(Option::is_some) {
-        return Ok(Err("led"));
+        return Ok(Err("led in time"));
     }
     if motion.laws.len() != 1 {
-        return Ok(Err("freedoms"));
+        return Ok(Err("several freedoms"));
     }
     let driven = with_drives(scene)?;
     let free = Free::new(scene, &driven, motion)?;
@@ -58,7 +58,10 @@ fn judged(scene: &Scene) -> Result<Judged, StudyError> {
         Err(DynamicsError::AtRest) => return Ok(Err("at rest")),
         Err(DynamicsError::Creeps { .. }) => return Ok(Err("creeps")),
         Err(DynamicsError::NotResolved { .. }) => return Ok(Err("too sharp")),
-        Err(_) => return Ok(Err("no return")),
+        Err(DynamicsError::NoFullTurn { .. }) => return Ok(Err("reaches a limit")),
+        Err(DynamicsError::GoesOn { .. }) => return Ok(Err("never returns")),
+        Err(DynamicsError::Place(_)) => return Ok(Err("change point")),
+        Err(_) => return Ok(Err("no period")),
     };
     let coordinate = scene.mechanism.actuators[0].coordinate();
     // Of a swing the first and the third turning are a period apart.

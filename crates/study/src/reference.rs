@@ -84,8 +84,11 @@ impl Reference {
         let bytes = std::fs::read(&path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
         let text = String::from_utf8(bytes).map_err(|_| wrong("is not UTF-8 text".to_owned()))?;
         let text = text.trim_start_matches('\u{feff}');
-        let value: Value = toml::from_str(text)
-            .map_err(|e| wrong(format!("not valid TOML: {}", e.to_string().trim_end())))?;
+        let value: Value = toml::from_str(text).map_err(|e| {
+            let before = e.span().and_then(|span| text.get(..span.start));
+            let line = before.map_or(1, |before| before.lines().count().max(1));
+            wrong(format!("line {line}: not valid TOML: {}", e.message().trim_end()))
+        })?;
         let read = Self::from_value(&value, scene).map_err(wrong)?;
         Ok(Self {
             path: path.display().to_string(),

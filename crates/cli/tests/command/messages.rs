@@ -277,42 +277,43 @@ fn validations() {
     group.refused("two of one name", &["validate", "cases/a", "other/a"]);
     group.refused("a scene file", &["validate", "cases/notes.txt"]);
     for (title, reference) in [
-        ("no JSON", "{ \"samples\": [ "),
-        ("a list", "[]"),
-        ("an unknown key", "{ \"sample\": [] }"),
-        ("no position", "{ \"samples\": [{ \"m1_kg_m2\": 1 }] }"),
+        ("no TOML", "source = \"me\"\nsamples = [ "),
+        ("an unknown key", "sample = []"),
+        ("no position", "samples = [{ m1_kg_m2 = 1 }]"),
         (
             "an unknown reaction",
-            "{ \"samples\": [{ \"phi_rad\": 0, \"reactions\": { \"E.x\": { \"a\": 1, \"b\": 1 } } }] }",
+            "samples = [{ phi_rad = 0, reactions = { \"E.x\" = { a = 1, b = 1 } } }]",
         ),
         (
             "half a reaction",
-            "{ \"samples\": [{ \"phi_rad\": 0, \"reactions\": { \"A.x\": { \"a\": 1 } } }] }",
+            "samples = [{ phi_rad = 0, reactions = { \"A.x\" = { a = 1 } } }]",
         ),
-        (
-            "a number in words",
-            "{ \"samples\": [{ \"phi_rad\": \"one\" }] }",
-        ),
+        ("a number in words", "samples = [{ phi_rad = \"one\" }]"),
         (
             "a misspelt quantity",
-            "{ \"samples\": [{ \"phi_rad\": 1, \"m_kg_m2\": 1 }] }",
+            "samples = [{ phi_rad = 1, m_kg_m2 = 1 }]",
         ),
-        (
-            "nothing to compare",
-            "{ \"samples\": [{ \"phi_rad\": 1 }] }",
-        ),
+        ("nothing to compare", "samples = [{ phi_rad = 1 }]"),
         (
             "an unknown point",
-            "{ \"samples\": [{ \"phi_rad\": 1, \"E_m\": [0, 1] }] }",
+            "samples = [{ phi_rad = 1, E_m = [0, 1] }]",
         ),
         (
             "a motion without its period",
-            "{ \"free_motion\": { \"period\": 1 } }",
+            "free_motion = { period = 1 }",
+        ),
+        (
+            "a tolerance for no finding",
+            "[tolerances]\nm-energi = 1e-14",
+        ),
+        (
+            "a tolerance that is none",
+            "[tolerances]\nm-energy = \"small\"",
         ),
     ] {
-        group.bench.put("cases/a/reference.json", reference);
+        group.bench.put("cases/a/case.toml", reference);
         group.refused(
-            &format!("a reference with {title}"),
+            &format!("a case.toml with {title}"),
             &["validate", "cases/a"],
         );
     }

@@ -195,9 +195,9 @@ fn validate_writes_the_report_and_its_status_tells_the_verdict() {
     let bench = Bench::new();
     let folder = home().join("validation/single-dwell");
     let text = |file: &str| fs::read_to_string(folder.join(file)).unwrap();
-    let reference = text("reference.json");
+    let reference = text("case.toml");
     bench.put("cases/dwell/scene.toml", text("scene.toml"));
-    bench.put("cases/dwell/reference.json", &reference);
+    bench.put("cases/dwell/case.toml", &reference);
     let run = bench.run(&["validate", "--folder", "cases"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     let passed = |out: &str| -> [usize; 2] {
@@ -236,7 +236,7 @@ fn validate_writes_the_report_and_its_status_tells_the_verdict() {
     // One published digit changed, the tenth of m at φ = 0: the check fails, the report says so.
     let wrong = reference.replacen("0.9101735605", "0.9101735606", 1);
     assert_ne!(wrong, reference);
-    bench.put("cases/dwell/reference.json", wrong);
+    bench.put("cases/dwell/case.toml", wrong);
     let run = bench.run(&["validate", "--folder", "cases"]);
     assert_eq!((run.status, run.err.as_str()), (Some(1), ""));
     assert_eq!(passed(&run.out), [all - 1, all]);

@@ -13,7 +13,8 @@ const WHY: &str = "two integrations at a relative tolerance of 1e-12 or finer, g
 /// Judges a claimed motion: the multibody equations start as its first sample says, and are followed
 /// to the times of all others. Reactions that the rows do not determine are left out.
 ///
-/// The findings are motion-poses, -velocities, -reactions, -actions and -energy, in this order.
+/// The findings are motion-poses, -velocities, -reactions (where any is determined), -actions and -energy, in this
+/// order.
 ///
 /// # Errors
 /// [`UnreducedError`] where the truth itself cannot be had.
@@ -126,13 +127,12 @@ impl Unreduced {
             return Err(UnreducedError::Start);
         }
         let unique = self.unique(&first.bodies)?;
-        Ok(vec![
-            self.poses(&pairs),
-            self.velocities(&pairs),
-            self.reactions(&pairs, &unique),
-            self.actions(&pairs),
-            self.energy(&pairs),
-        ])
+        let mut findings = vec![self.poses(&pairs), self.velocities(&pairs)];
+        if unique.contains(&true) {
+            findings.push(self.reactions(&pairs, &unique));
+        }
+        findings.extend([self.actions(&pairs), self.energy(&pairs)]);
+        Ok(findings)
     }
 
     fn body(&self, body: usize) -> &str {

@@ -351,7 +351,7 @@ fn andrews() -> Plant {
     plant
 }
 
-/// At t = 0.03 s, at 25 digits (`validation/andrews/reference.json`): the angles, their speeds, and the
+/// At t = 0.03 s, at 25 digits (`validation/andrews/case.toml`): the angles, their speeds, and the
 /// multipliers, which are the forces of k2 on k3, k4 and k6 at E.
 const ANGLES: [f64; 7] = [
     15.810_771_195_153_707,

@@ -1,0 +1,86 @@
+//! Writes the tolerances of the cases from measurement: `cargo run --release -p dwell-tests --example tolerances`
+//! replaces `[tolerances]` in every `validation/*/case.toml`, or in those of the cases named. What has changed is
+//! to be read and explained before it is committed.
+#![allow(clippy::print_stdout, reason = "a study, run by hand")]
+
+use dwell_findings::Finding;
+use dwell_scene::Scene;
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::path::Path;
+
+/// Differences met, and roundings, that a tolerance leaves room for: another machine has another sine.
+const SEEN: f64 = 15.0;
+const ROUNDINGS: f64 = 20.0;
+/// The part for roundings grows with the condition number, but to no more than this many differences: at another
+/// machine's worst place the rows may be better.
+const ROUNDED: f64 = 10.0;
+const HEADER: &str = "[tolerances] # measured, with room for another machine's rounding";
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../validation");
+    let named: Vec<String> = std::env::args().skip(1).collect();
+    let mut cases: Vec<_> = std::fs::read_dir(folder)?.collect::<Result<_, _>>()?;
+    cases.sort_by_key(std::fs::DirEntry::path);
+    for case in cases {
+        let name = case.file_name().to_string_lossy().into_owned();
+        if named.is_empty() || named.contains(&name) {
+            println!("{name}: {} tolerances", rewritten(&case.path())?);
+        }
+    }
+    Ok(())
+}
+
+/// Measures a case and writes its tolerances; how many.
+fn rewritten(case: &Path) -> Result<usize, Box<dyn Error>> {
+    let scene = Scene::read(case.join("scene.toml"))?;
+    let file = case.join("case.toml");
+    let old = std::fs::read_to_string(&file).unwrap_or_default();
+    let rest = without(&old);
+    // A key that is left over from another time would be an error.
+    let bare = std::env::temp_dir().join(format!("dwell-tolerances-{}", std::process::id()));
+    std::fs::create_dir_all(&bare)?;
+    std::fs::write(bare.join("case.toml"), &rest)?;
+    let done = dwell_study::validate(&scene, &bare, &dwell_study::silent)?;
+    std::fs::remove_dir_all(&bare)?;
+    let mut wanted: BTreeMap<&str, f64> = BTreeMap::new();
+    let exact = done.outcome.findings.iter().filter(|f| !f.integrated);
+    for finding in exact.filter(|f| f.tolerance > 0.0 && f.relative.is_finite()) {
+        let most = wanted.entry(&finding.key).or_default();
+        *most = most.max(tolerance(finding));
+    }
+    let mut block = format!("{HEADER}\n");
+    for (key, tolerance) in &wanted {
+        block += &format!("{key} = {tolerance:.0e}\n");
+    }
+    let at = rest.find("\n[").map_or(rest.len(), |at| at + 1);
+    let (head, tail) = rest.split_at(at);
+    let gap = if head.is_empty() { "" } else { "\n" };
+    let text = format!(
+        "{}{gap}{block}\n{tail}",
+        head.trim_end().to_owned() + if head.is_empty() { "" } else { "\n" }
+    );
+    std::fs::write(&file, text.trim_end().to_owned() + "\n")?;
+    Ok(wanted.len())
+}
+
+/// Rounded up to one digit.
+fn tolerance(finding: &Finding) -> f64 {
+    let rounding = ROUNDINGS * f64::EPSILON;
+    let more = (rounding * finding.condition).min(ROUNDED * finding.relative);
+    let wanted = (SEEN * finding.relative + more).max(rounding);
+    let unit = 10_f64.powf(wanted.log10().floor());
+    // Not up for the rounding of this quotient.
+    (wanted / unit - 1e-9).ceil() * unit
+}
+
+/// The file without its tolerances.
+fn without(text: &str) -> String {
+    let Some(from) = text.find("[tolerances]") else {
+        return text.to_owned();
+    };
+    let to = text[from..]
+        .find("\n[")
+        .map_or(text.len(), |at| from + at + 1);
+    text[..from].to_owned() + &text[to..]
+}
