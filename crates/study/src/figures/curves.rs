@@ -130,12 +130,12 @@ fn one(prepared: &Prepared<'_>, sweep: &Sweep, some: &[usize], unit: &str, more:
         columns: 1,
         panels: vec![
             panel(
-                format!("a: what multiplies {q}'s acceleration"),
+                format!("a: what multiplies {q}’s acceleration"),
                 "a",
                 |c, k| c.a[k],
             ),
             panel(
-                format!("b: what multiplies {q}'s speed squared"),
+                format!("b: what multiplies {q}’s speed squared"),
                 "b",
                 |c, k| c.b[k],
             ),

@@ -96,13 +96,14 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
     let first = prepared.model.model().plan().start()[0].to_degrees();
     let words = match &dwell {
         Some(d) => format!(
-            "Drawn in full at {first:.0}°, lighter further on. The marked dwell: {} stays within {:.2}° of its {:.1}° swing for {:.0}° of the actuator.",
+            "Drawn in full at {}, lighter further on. The marked dwell: {} stays within {:.2}° of its {:.1}° swing for {:.0}° of the actuator.",
+            degrees(first),
             scene.mechanism.body_name(d.body),
             d.moves.to_degrees(),
             d.swing.to_degrees(),
             (d.to - d.from).to_degrees(),
         ),
-        None => format!("Drawn in full at {first:.0}°, lighter further on."),
+        None => format!("Drawn in full at {}, lighter further on.", degrees(first)),
     };
     let figure = Figure {
         name: "a-mechanism".to_owned(),
@@ -113,6 +114,11 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
         provenance: format!("the mechanism at {}", count(sweep.q.len(), "position")),
     };
     Ok((figure, dwell))
+}
+
+/// A whole number of degrees, with a minus sign.
+fn degrees(angle: f64) -> String {
+    format!("{angle:.0}°").replace('-', "−")
 }
 
 /// The bodies in several positions, the lightest at the back.
