@@ -3,6 +3,7 @@
 use super::foot;
 use crate::rounding::{Rounded, Rounding};
 use crate::states::Judged;
+use crate::words::count;
 use dwell_report::{Axis, Chart, Figure, Mark, Panel, Series, Stroke};
 use dwell_scene::Scene;
 
@@ -45,6 +46,9 @@ pub(crate) fn rounding(scene: &Scene, judged: &Judged, rounding: &Rounding) -> F
             ],
             ..Chart::default()
         })],
-        ..Figure::default()
+        provenance: format!(
+            "exact evaluation in f32, f64 and 32 digits at {}",
+            count(drawn.len(), "state")
+        ),
     }
 }
