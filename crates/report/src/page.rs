@@ -27,6 +27,8 @@ const LONE_HEIGHT: f64 = 0.56;
 const STRETCHED_HEIGHT: f64 = 0.36;
 const TITLE_LEADING: f64 = 1.25;
 const CAPTION_LEADING: f64 = 1.4;
+/// Between the caption and the line that says where the figure comes from.
+const FOOT_GAP: f64 = 10.0;
 
 /// A panel whose labels have been measured.
 enum Ready<'a> {
@@ -126,7 +128,10 @@ impl<'a> Page<'a> {
         }
         let mut foot = Vec::new();
         for (words, size) in [(&figure.caption, CAPTION), (&figure.provenance, PROVENANCE)] {
-            for line in wrapped(words, size, false, inner) {
+            for (k, line) in wrapped(words, size, false, inner).into_iter().enumerate() {
+                if k == 0 && !foot.is_empty() {
+                    y += FOOT_GAP;
+                }
                 foot.push((line, size, y + 0.8 * size));
                 y += CAPTION_LEADING * size;
             }

@@ -34,6 +34,7 @@ mod outcome;
 mod page;
 mod period;
 mod prepare;
+mod provenance;
 mod quantity;
 mod reduce;
 mod reference;

@@ -16,7 +16,8 @@ use dwell_scene::{Length, Scene};
 use dwell_verify::{MotionSample, Unreduced, UnreducedError, judge_motion};
 use std::f64::consts::TAU;
 
-/// Relative and absolute tolerance of the motion.
+/// Integrator of the motion, and its relative and absolute tolerance.
+const METHOD: Method = Method::Tsit45;
 const TOLERANCE: f64 = 1e-13;
 /// Periods that are judged, where there is a period and the scene asks for so many.
 const PERIODS: f64 = 2.0;
@@ -36,6 +37,13 @@ pub struct FreeRun {
     pub stopped: Option<String>,
     /// How it was set free, of a scene without `[motion]`.
     pub told: String,
+}
+
+impl FreeRun {
+    /// Integrator and tolerance, as figures tell them.
+    pub(crate) fn how() -> String {
+        format!("{}, tolerance {TOLERANCE:e}", METHOD.name())
+    }
 }
 
 /// The free motion of a scene over its duration or two periods, whichever is shorter; none where
@@ -68,7 +76,7 @@ fn followed(
     };
     let options = Options {
         longest,
-        ..Options::new(Method::Tsit45, TOLERANCE)
+        ..Options::new(METHOD, TOLERANCE)
     };
     let moved = free.follow(scene, duration, &options)?;
     let shown = shown(&driven)?;

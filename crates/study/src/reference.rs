@@ -87,7 +87,10 @@ impl Reference {
         let value: Value = toml::from_str(text).map_err(|e| {
             let before = e.span().and_then(|span| text.get(..span.start));
             let line = before.map_or(1, |before| before.lines().count().max(1));
-            wrong(format!("line {line}: not valid TOML: {}", e.message().trim_end()))
+            wrong(format!(
+                "line {line}: not valid TOML: {}",
+                e.message().trim_end()
+            ))
         })?;
         let read = Self::from_value(&value, scene).map_err(wrong)?;
         Ok(Self {

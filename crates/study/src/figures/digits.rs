@@ -1,54 +1,83 @@
 //! How far the findings of a case agree.
 
 use super::foot;
+use crate::words::count;
 use dwell_findings::Finding;
-use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
+use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
 use dwell_scene::Scene;
 
-/// Where an exact agreement is drawn.
-const EXACT: f64 = 1e-18;
-/// Most findings in a panel.
-const TOGETHER: usize = 7;
+/// Digits of a number: what agrees exactly has no more.
+const MOST: f64 = 16.0;
 
-/// The relative difference of every finding beside its tolerance, in the order of the table.
+/// Difference, tolerance and what is between them, of every finding, by truth.
 pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
-    let parts = findings.len().div_ceil(TOGETHER).max(1);
-    let panel = |some: &[Finding]| {
-        let row = |k: usize| (some.len() - k) as f64;
-        let points = |of: &dyn Fn(&Finding) -> f64| -> Vec<[f64; 2]> {
-            let at = |(k, f): (usize, &Finding)| [of(f), row(k)];
-            some.iter().enumerate().map(at).collect()
-        };
-        let labels = some.iter().enumerate().map(|(k, f)| Mark::Horizontal {
-            at: row(k),
-            label: f.key.clone(),
-        });
-        Panel::from(Chart {
-            x: Axis::log("relative difference", "").within(EXACT, 1.0),
-            y: Axis::new("finding", "").within(0.0, some.len() as f64 + 1.0),
-            series: vec![
-                Series::line("difference", points(&|f| f.relative.max(EXACT)))
-                    .stroke(Stroke::Points),
-                Series::line("tolerance", points(&|f| f.tolerance.max(EXACT)))
-                    .stroke(Stroke::Points)
-                    .color(Paint::Grey),
-            ],
-            marks: labels.collect(),
-            ..Chart::default()
-        })
-    };
+    let mut groups: Vec<Group> = Vec::new();
+    for finding in findings {
+        match groups
+            .iter_mut()
+            .find(|group| group.heading == finding.truth)
+        {
+            Some(group) => group.rows.push(row(finding)),
+            None => groups.push(Group {
+                heading: finding.truth.clone(),
+                rows: vec![row(finding)],
+            }),
+        }
+    }
+    // Truths are numbered.
+    groups.sort_by(|a, b| a.heading.cmp(&b.heading));
+    let columns = [
+        "relative difference",
+        "tolerance",
+        "tolerance over difference",
+    ];
     Figure {
         name: "h-digits".to_owned(),
         title: "Digits of agreement".to_owned(),
         caption: foot(
             scene,
-            "The largest relative difference of every finding and its tolerance; what agrees exactly stands at the left edge.",
+            "The largest relative difference of every finding beside its tolerance, by the truth it is held against.",
         ),
-        columns: parts.min(2),
-        panels: findings
-            .chunks(findings.len().div_ceil(parts).max(1))
-            .map(panel)
-            .collect(),
+        columns: 1,
+        panels: vec![
+            Grid {
+                columns: columns.map(str::to_owned).into(),
+                groups,
+                values: Axis::new("digits that agree", "").within(0.0, MOST),
+                ..Grid::default()
+            }
+            .into(),
+        ],
+        provenance: format!(
+            "{}, each with its own truth and tolerance",
+            count(findings.len(), "finding")
+        ),
         ..Figure::default()
     }
+}
+
+fn row(finding: &Finding) -> Row {
+    let part = |value: f64| {
+        let text = match value {
+            0.0 => "0".to_owned(),
+            value => format!("{value:.1e}").replace('-', "−"),
+        };
+        // Zero has all the digits there are; what is no number has no colour.
+        Cell {
+            value: (!value.is_nan()).then(|| (-value.log10()).min(MOST)),
+            ..Cell::words(text)
+        }
+    };
+    let between = match finding.tolerance / finding.relative {
+        factor if !factor.is_finite() => None,
+        factor if factor < 100.0 => Some(Cell::words(format!("{factor:.1}"))),
+        factor if factor < 1e5 => Some(Cell::words(format!("{factor:.0}"))),
+        factor => Some(Cell::words(format!("{factor:.0e}"))),
+    };
+    let mut difference = part(finding.relative);
+    difference.failed = !finding.pass;
+    Row::new(
+        finding.key.clone(),
+        vec![Some(difference), Some(part(finding.tolerance)), between],
+    )
 }

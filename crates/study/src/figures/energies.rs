@@ -11,20 +11,25 @@ const POINTS: usize = 1500;
 /// The motion that was held against the multibody equations.
 pub(crate) fn energies(scene: &Scene, run: &FreeRun) -> Figure {
     let thin = run.steps.len().div_ceil(POINTS).max(1);
-    let shown: Vec<usize> = (0..run.steps.len()).step_by(thin).collect();
+    let mut shown: Vec<usize> = (0..run.steps.len()).step_by(thin).collect();
+    // A motion is shown to its end.
+    shown.extend(
+        run.steps
+            .len()
+            .checked_sub(1)
+            .filter(|last| Some(last) != shown.last()),
+    );
     let curve = |of: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
         shown.iter().map(|&k| [run.steps[k].t, of(k)]).collect()
     };
-    let chart = |title: String, y: Axis, series: Vec<Series>| {
-        Panel::from(Chart {
-            title,
-            x: Axis::new("time", "s"),
-            y,
-            series,
-            ..Chart::default()
-        })
+    let chart = |title: String, y: Axis, series: Vec<Series>| Chart {
+        title,
+        x: Axis::new("time", "s"),
+        y,
+        series,
+        ..Chart::default()
     };
-    let mut panels = Vec::new();
+    let mut charts = Vec::new();
     for (a, actuator) in scene.mechanism.actuators.iter().enumerate() {
         let (name, unit) = match actuator.coordinate().is_angle() {
             true => (symbol(&actuator.name), "rad"),
@@ -39,7 +44,7 @@ pub(crate) fn energies(scene: &Scene, run: &FreeRun) -> Figure {
                 _ => (format!("Speed of {name}"), "speed".to_owned()),
             };
             let line = Series::line("", curve(&|k| run.coordinates[k][a][i]));
-            panels.push(chart(title, Axis::new(label, unit), vec![line]));
+            charts.push(chart(title, Axis::new(label, unit), vec![line]));
         }
     }
     let began = run.steps.first().map_or(0.0, |first| first.potential);
@@ -50,15 +55,15 @@ pub(crate) fn energies(scene: &Scene, run: &FreeRun) -> Figure {
         Series::line("work", curve(&|k| run.steps[k].work)).stroke(Stroke::Dashed),
     ];
     let energy = Axis::new("energy", "J");
-    panels.push(chart("Energies".to_owned(), energy, lines));
+    charts.push(chart("Energies".to_owned(), energy, lines));
     let words = "The free motion under loads and drives, judged by the full multibody equations. The potential counts \
                  from the start; the work is that of all that has none.";
     Figure {
         name: "d-motion".to_owned(),
         title: "Free motion".to_owned(),
         caption: foot(scene, words),
-        columns: if panels.len() > 3 { 2 } else { 1 },
-        panels,
-        ..Figure::default()
+        columns: 1,
+        panels: vec![Panel::Stack(charts)],
+        provenance: FreeRun::how(),
     }
 }

@@ -5,6 +5,7 @@ use super::{caption, coordinate_label};
 use crate::error::StudyError;
 use crate::motion_error::explain_place;
 use crate::prepare::Prepared;
+use crate::words::count;
 use dwell_geometry::{BodyId, Plan, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape};
@@ -95,13 +96,14 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
     let first = prepared.model.model().plan().start()[0].to_degrees();
     let words = match &dwell {
         Some(d) => format!(
-            "Drawn in full at {first:.0}°, lighter further on. The marked dwell: {} stays within {:.2}° of its {:.1}° swing for {:.0}° of the actuator.",
+            "Drawn in full at {}, lighter further on. The marked dwell: {} stays within {:.2}° of its {:.1}° swing for {:.0}° of the actuator.",
+            degrees(first),
             scene.mechanism.body_name(d.body),
             d.moves.to_degrees(),
             d.swing.to_degrees(),
             (d.to - d.from).to_degrees(),
         ),
-        None => format!("Drawn in full at {first:.0}°, lighter further on."),
+        None => format!("Drawn in full at {}, lighter further on.", degrees(first)),
     };
     let figure = Figure {
         name: "a-mechanism".to_owned(),
@@ -109,9 +111,14 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
         caption: caption(prepared, &words),
         columns: 1,
         panels,
-        ..Figure::default()
+        provenance: format!("the mechanism at {}", count(sweep.q.len(), "position")),
     };
     Ok((figure, dwell))
+}
+
+/// A whole number of degrees, with a minus sign.
+fn degrees(angle: f64) -> String {
+    format!("{angle:.0}°").replace('-', "−")
 }
 
 /// The bodies in several positions, the lightest at the back.

@@ -262,14 +262,14 @@ impl<'a> Skeleton<'a> {
         let mechanism = &self.scene.mechanism;
         let named = lightness == 0.0;
         // Joints at one place share a label.
-        let mut labels: Vec<([f64; 2], String, Side)> = Vec::new();
-        let mut label = |at: [f64; 2], name: &str, side: Side| {
-            let near = |l: &&mut ([f64; 2], String, Side)| {
+        let mut labels: Vec<([f64; 2], Vec<&Joint>, Side)> = Vec::new();
+        let mut label = |at: [f64; 2], joint, side: Side| {
+            let near = |l: &&mut ([f64; 2], Vec<&Joint>, Side)| {
                 (vector(l.0) - vector(at)).norm() < 0.02 * self.size
             };
             match labels.iter_mut().find(near) {
-                Some((_, names, _)) => *names += &format!(", {name}"),
-                None => labels.push((at, name.to_owned(), side)),
+                Some((_, joints, _)) => joints.push(joint),
+                None => labels.push((at, vec![joint], side)),
             }
         };
         for joint in mechanism.joints.iter().filter(|j| self.shows(j.bodies)) {
@@ -278,13 +278,13 @@ impl<'a> Skeleton<'a> {
             match joint.kind {
                 JointKind::Revolute if on_ground && named => {
                     shapes.push(Shape::GroundPin { at: ends[0] });
-                    label(ends[0], &joint.name, Side::AboveLeft);
+                    label(ends[0], joint, Side::AboveLeft);
                 }
                 JointKind::Revolute if on_ground => {}
                 JointKind::Revolute => {
                     shapes.push(Shape::pin(ends[0], Paint::Ink, lightness));
                     if named {
-                        label(ends[0], &joint.name, Side::AboveRight);
+                        label(ends[0], joint, Side::AboveRight);
                     }
                 }
                 JointKind::Slot { .. } => shapes.push(Shape::pin(ends[1], Paint::Ink, lightness)),
@@ -302,7 +302,30 @@ impl<'a> Skeleton<'a> {
             }
         }
         let words = labels.into_iter();
-        shapes.extend(words.map(|(at, names, side)| Shape::text(at, names, side)));
+        shapes.extend(
+            words.map(|(at, joints, side)| Shape::text(at, self.shared_name(&joints), side)),
+        );
+    }
+
+    /// What stands at joints of one place: of a pin of many bodies, whose joints are `pin-body`, the pin.
+    fn shared_name(&self, joints: &[&Joint]) -> String {
+        let pin = |joint: &&Joint| {
+            let body = self.scene.mechanism.body_name(joint.bodies[1]);
+            let pin = joint.name.strip_suffix(body)?.strip_suffix('-')?;
+            Some(pin.to_owned())
+        };
+        let pins: Option<Vec<String>> = joints.iter().map(pin).collect();
+        match pins.as_deref() {
+            Some([first, second, rest @ ..])
+                if [second].into_iter().chain(rest).all(|p| p == first) =>
+            {
+                first.clone()
+            }
+            _ => {
+                let names: Vec<&str> = joints.iter().map(|joint| joint.name.as_str()).collect();
+                names.join(", ")
+            }
+        }
     }
 
     /// Springs and dampers between points, in full only.

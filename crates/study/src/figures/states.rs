@@ -1,9 +1,10 @@
 //! A mechanism along the states in which it was judged, and what its actuators do there.
 
-use super::foot;
 use super::mechanism::{Sweep, paths};
-use super::skeleton::Skeleton;
+use super::skeleton::{Frame, Skeleton};
+use super::{foot, symbol};
 use crate::states::Judged;
+use crate::words::count;
 use dwell_geometry::{Vec2, vec2};
 use dwell_report::{Axis, Chart, Drawing, Figure, Panel, Series};
 use dwell_scene::Scene;
@@ -20,11 +21,9 @@ pub(crate) fn drawing(scene: &Scene, judged: &Judged) -> Figure {
         q: Vec::new(),
         frames: frames.collect(),
     };
-    let last = sweep.frames.len().saturating_sub(1);
     let skeleton = Skeleton::new(scene, &sweep.frames);
     let mut shapes = paths(scene, &sweep);
-    for k in (0..DRAWN).rev() {
-        let position = k * last / DRAWN;
+    for (k, &position) in apart(&sweep.frames).iter().enumerate().rev() {
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.05 * k as f64 };
         skeleton.draw(&sweep.frames[position], lightness, &mut shapes);
     }
@@ -45,8 +44,32 @@ pub(crate) fn drawing(scene: &Scene, judged: &Judged) -> Figure {
             y: Axis::new("y", "m"),
             shapes,
         })],
-        ..Figure::default()
+        provenance: format!("the mechanism at {}", count(judged.drawn, "state")),
     }
+}
+
+/// Positions that differ as much as they can, the first before all, in the order of the motion: at equal distances of
+/// time those of whole turns would all be one.
+fn apart(frames: &[Vec<Frame>]) -> Vec<usize> {
+    let points = || frames.iter().flatten().map(|(at, _)| at.norm());
+    let size = points().fold(f64::MIN_POSITIVE, f64::max);
+    let distance = |a: usize, b: usize| {
+        let bodies = frames[a].iter().zip(&frames[b]);
+        let of = |(a, b): (&Frame, &Frame)| (a.0 - b.0).norm() / size + (a.1 - b.1).norm();
+        bodies.map(of).sum::<f64>()
+    };
+    let mut chosen = vec![0];
+    while chosen.len() < DRAWN.min(frames.len()) {
+        let nearest = |k: &usize| {
+            let distances = chosen.iter().map(|&c| distance(c, *k));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let farthest = (0..frames.len()).max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+        chosen.extend(farthest);
+    }
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen
 }
 
 /// What the actuators do along those states.
@@ -58,7 +81,7 @@ pub(crate) fn actions(scene: &Scene, judged: &Judged) -> Figure {
             false => ("force", "N"),
         };
         Panel::from(Chart {
-            title: format!("Action of {}", actuator.name),
+            title: format!("Action of {}", symbol(&actuator.name)),
             x: Axis::new("time", "s"),
             y: Axis::new(what, unit),
             series: vec![Series::line(
@@ -75,6 +98,26 @@ pub(crate) fn actions(scene: &Scene, judged: &Judged) -> Figure {
         caption: foot(scene, &format!("Along {}, under the loads.", judged.motion)),
         columns: 1,
         panels: actuators.map(panel).collect(),
-        ..Figure::default()
+        provenance: format!("the mechanism at {}", count(judged.drawn, "state")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_of_whole_turns_are_not_drawn_over_each_other() {
+        // Five turns in 120 steps: at equal distances all would be the first.
+        let turn = |k: usize| Vec2::from_angle(std::f64::consts::TAU * 5.0 * k as f64 / 120.0);
+        let frames: Vec<Vec<Frame>> = (0..=120).map(|k| vec![(turn(k), turn(k))]).collect();
+        let chosen = apart(&frames);
+        assert_eq!((chosen.len(), chosen[0]), (DRAWN, 0));
+        for (i, &a) in chosen.iter().enumerate() {
+            for &b in &chosen[..i] {
+                assert!((turn(a) - turn(b)).norm() > 0.5);
+            }
+        }
+        assert_eq!(apart(&frames[..1]), [0]);
     }
 }
