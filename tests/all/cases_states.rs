@@ -5,7 +5,7 @@ use crate::world::{home, scene};
 use dwell_findings::Finding;
 use dwell_geometry::Mechanism;
 use dwell_scene::Scene;
-use dwell_study::{Judged, judge_case, silent, validate};
+use dwell_study::{Judged, Validation, judge_case, silent, validate};
 use dwell_verify::{State, judge_states};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -111,12 +111,39 @@ fn val_andrews_published_start() {
     }
 }
 
-/// The rounded text of every case is the committed one.
+/// Each truth of a case speaks or says why not, passes, and has no slack in its tolerance.
+fn speaks(case: &str, done: &Validation) {
+    let findings = &done.outcome.findings;
+    for number in 0..=9 {
+        let spoken = findings.iter().any(|f| f.number() == Some(number));
+        let silent = done.silent.iter().any(|(silent, _)| *silent == number);
+        assert!(spoken != silent, "{case}: truth {number}");
+        // These can always be held against a case.
+        assert!(
+            spoken || [3, 5, 9].contains(&number),
+            "{case}: truth {number}"
+        );
+    }
+    for f in findings {
+        assert!(f.pass && f.number().is_some(), "{case}: {f:?}");
+        let most = f.most();
+        assert!(
+            !f.slack(),
+            "{case}, {}: {:e} where {most:e} is the most",
+            f.key,
+            f.tolerance
+        );
+    }
+}
+
+/// Every case passes with tolerances that are near to what is met, and its rounded text is the committed one.
 #[test]
 fn regress_reports() {
     for case in cases() {
         let done = validate(&scene(&case), &folder(&case), &silent);
-        let text = done.unwrap_or_else(|e| panic!("{case}: {e}")).snapshot;
+        let done = done.unwrap_or_else(|e| panic!("{case}: {e}"));
+        speaks(&case, &done);
+        let text = done.snapshot;
         let path = home().join("reports").join(format!("{case}.txt"));
         let committed = std::fs::read_to_string(&path);
         let committed = committed.unwrap_or_else(|e| panic!("{}: {e}", path.display()));

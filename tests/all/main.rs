@@ -15,6 +15,7 @@ mod changes;
 mod cycles;
 mod derivatives;
 mod ends;
+mod energies;
 mod equilibria;
 mod events;
 mod findings;

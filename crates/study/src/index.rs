@@ -228,3 +228,100 @@ fn margins((name, verdict): &Verdict<'_>) -> Vec<String> {
         },
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::Scene;
+
+    fn finding(truth: &str, relative: f64, tolerance: f64) -> Finding {
+        Finding {
+            key: format!("key-{}", &truth[..1]),
+            truth: truth.into(),
+            compared: "m with 2 E_c".into(),
+            over: "24 positions".into(),
+            absolute: 2.0 * relative,
+            unit: "kg m2".into(),
+            relative,
+            scale: "the largest m".into(),
+            worst: "phi = 1 rad".into(),
+            tolerance,
+            pass: relative <= tolerance,
+            ..Finding::default()
+        }
+    }
+
+    fn validation(findings: Vec<Finding>) -> Validation {
+        let mut done = Validation {
+            silent: vec![(5, "driven")],
+            ..Validation::default()
+        };
+        done.outcome.findings = findings;
+        done
+    }
+
+    #[test]
+    fn a_truth_has_the_digits_of_its_worst_finding_or_says_why_it_has_none() {
+        let done = validation(vec![
+            finding("1 energy", 1e-15, 1e-14),
+            finding("1 energy", 1e-13, 1e-12),
+            finding("2 slope", 0.0, 1e-12),
+            finding("3 release", 1e-9, 1e-12),
+            finding("3 release", 1e-15, 1e-12),
+        ]);
+        let words = words(&done);
+        assert_eq!(words[0], Word::None("nothing"));
+        // A tenth of a digit is told.
+        assert!(matches!(words[1], Word::Digits(d) if (d - 13.0).abs() < 0.01));
+        assert!(matches!(words[2], Word::Digits(d) if (d - 15.65).abs() < 0.01));
+        assert_eq!(words[3], Word::Failed("key-3".into()));
+        assert_eq!(words[5], Word::None("driven"));
+    }
+
+    #[test]
+    fn a_failure_names_the_equation_the_place_and_the_difference() {
+        let [equation, place, difference] = told(&finding("1 energy", 3e-9, 1e-12));
+        assert_eq!(equation, "truth 1 energy, m with 2 E_c");
+        assert_eq!(place, "at phi = 1 rad, of 24 positions");
+        assert_eq!(
+            difference,
+            "difference 6.00e-9 kg m2, 3.0e-9 of the largest m; tolerance 1.0e-12"
+        );
+        let [.., difference] = told(&finding("1 energy", f64::NAN, 1e-12));
+        assert_eq!(difference, "difference none could be taken");
+    }
+
+    #[test]
+    fn the_index_tells_failures_slack_and_what_was_not_validated() {
+        let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.bar]\npoints = { A = [0, 0] }\n\
+                    [joints]\nA = { revolute = [\"ground.A\", \"bar.A\"] }\n[actuators]\nphi = { angle = [\"ground\", \"bar\"] }";
+        let scene = Scene::parse("bar.toml", text).unwrap();
+        let done = validation(vec![
+            finding("1 energy", 1e-16, 1e-9),
+            finding("2 slope", 1e-9, 1e-12),
+        ]);
+        let verdicts = [
+            ("cases/bar", Ok((&scene, &done))),
+            ("cases/lost", Err("it cannot be read".to_owned())),
+        ];
+        let files = index(&verdicts).unwrap();
+        let text = files.iter().find(|(path, _)| path.ends_with("index.md"));
+        let text = String::from_utf8(text.unwrap().1.to_vec()).unwrap();
+        for part in [
+            "0 of 2 cases pass",
+            "| 15.7 | **FAIL** key-2 |",
+            "| driven |",
+            "- `bar` key-2: truth 2 slope, m with 2 E_c; at phi = 1 rad, of 24 positions; difference 2.00e-9 kg m2",
+            "| 1 of 2 | 1000.00 of key-2 | key-1 |",
+            "| `cases/lost` | **not validated** |",
+            "- `cases/lost`: it cannot be read",
+        ] {
+            assert!(text.contains(part), "{part}\n{text}");
+        }
+        assert!(
+            files
+                .iter()
+                .any(|(path, bytes)| path.ends_with("index.png") && !bytes.is_empty())
+        );
+    }
+}

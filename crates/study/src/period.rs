@@ -189,3 +189,53 @@ fn findings(orbit: &Orbit, errors: &[f64]) -> Vec<Finding> {
     }
     findings
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bar on a pin under its weight, started downwards with a speed in rad/s.
+    fn pendulum(speed: f64, more: &str) -> Scene {
+        let text = format!(
+            "[bodies.ground]\npoints = {{ A = [0, 0] }}\n[bodies.bar]\npoints = {{ A = [0, 0] }}\nmass = 2.0\n\
+             center = [0.5, 0]\ninertia = 0.3\n[joints]\nA = {{ revolute = [\"ground.A\", \"bar.A\"] }}\n\
+             [actuators]\nphi = {{ angle = [\"ground\", \"bar\"] }}\n[assembly]\nbar = -90\n\
+             [loads]\nweight = {{ gravity = 9.81 }}\n{more}\n[motion]\nspeed = {speed}\nduration = 1"
+        );
+        Scene::parse("pendulum.toml", &text).expect("a scene")
+    }
+
+    #[test]
+    fn turns_and_swings_are_timed() {
+        for (speed, event) in [(1.0, "third turning"), (12.0, "whole turn")] {
+            let findings = judged(&pendulum(speed, ""))
+                .expect("a scene")
+                .expect("a period");
+            let keys: Vec<&str> = findings.iter().map(|f| f.key.as_str()).collect();
+            assert_eq!(keys, ["period-event", "period-slope"]);
+            assert!(findings.iter().all(|f| f.pass), "{findings:?}");
+            assert!(findings[0].compared.contains(event), "{findings:?}");
+        }
+    }
+
+    #[test]
+    fn what_has_no_period_is_told() {
+        let rubbed = pendulum(
+            1.0,
+            "brake = { torque = [\"ground\", \"bar\"], magnitude = \"-0.1*phi.speed\" }",
+        );
+        assert_eq!(judged(&rubbed).expect("a scene"), Err("not conservative"));
+    }
+
+    #[test]
+    fn an_event_that_does_not_come_nearer_fails() {
+        let scene = pendulum(1.0, "");
+        let motion = scene.motion.as_ref().expect("a motion");
+        let free = Free::new(&scene, &scene, motion).expect("a machine");
+        let orbit = Orbit::loaded(&free.machine, free.state()).expect("an orbit");
+        let wrong = findings(&orbit, &[1e-6; LADDER.len()]);
+        assert_eq!(wrong.len(), 2);
+        assert!(wrong.iter().all(|f| !f.pass), "{wrong:?}");
+        assert!(!missed(&orbit, 1e-9).pass);
+    }
+}

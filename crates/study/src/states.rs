@@ -28,6 +28,8 @@ pub struct Judged {
     pub start: Vec<[f64; 3]>,
     /// Along the prescribed motion, over the sweep, and those of the reference.
     pub states: Vec<State>,
+    /// By state: the generalised inertias, row by row.
+    pub inertias: Vec<Vec<f64>>,
     /// How many of them, from the first, are of the motion that is drawn.
     pub drawn: usize,
     /// What that motion is, in words.
@@ -94,6 +96,7 @@ pub(crate) fn judge(scene: &Scene, reference: &Reference) -> Result<Judged, Stud
     Ok(Judged {
         start,
         states,
+        inertias,
         drawn,
         motion,
         frames,

@@ -6,6 +6,7 @@
     reason = "a test, its producer of states too"
 )]
 
+mod energies;
 #[path = "../subjects/gauss.rs"]
 mod gauss;
 mod mechanisms;

@@ -25,7 +25,11 @@ impl Setup {
     }
 
     fn unloaded(&self, q: f64, q_dot: f64, q_ddot: f64) -> State {
-        let motion = [vec![q], vec![q_dot], vec![q_ddot]];
+        self.unloaded_at([vec![q], vec![q_dot], vec![q_ddot]])
+    }
+
+    /// Without loads, with [q, q̇, q̈] of every actuator.
+    pub(crate) fn unloaded_at(&self, motion: [Vec<f64>; 3]) -> State {
         plain::state(&self.mechanism, &self.masses, &self.start, &[], motion)
     }
 

@@ -1,0 +1,169 @@
+//! The truths of kinetic energy and virtual work on every mechanism of the tests: they agree with a plain
+//! solution, and see every number of it that is wrong.
+
+use crate::mechanisms::all;
+use crate::setup::Setup;
+use crate::{failing, told};
+use dwell_findings::{Finding, all_pass};
+use dwell_verify::{State, judge_energies};
+
+/// M, row by row, from a run at unit acceleration for each coordinate.
+fn inertias(setup: &Setup, state: &State) -> Vec<f64> {
+    let n = state.q.len();
+    let columns: Vec<Vec<f64>> = (0..n)
+        .map(|i| {
+            let mut unit = vec![0.0; n];
+            unit[i] = 1.0;
+            setup.unloaded_at([state.q.clone(), vec![0.0; n], unit]).tau
+        })
+        .collect();
+    (0..n * n).map(|k| columns[k % n][k / n]).collect()
+}
+
+fn judged(setup: &Setup, states: &[State]) -> Vec<Finding> {
+    let all: Vec<_> = states.iter().map(|s| inertias(setup, s)).collect();
+    judge_energies(&setup.mechanism, &setup.masses, &setup.start, states, &all)
+}
+
+#[test]
+fn val_plain_solutions_have_their_energies() {
+    for setup in all() {
+        let findings = judged(&setup, &setup.states());
+        let keys: Vec<&str> = findings.iter().map(|f| f.key.as_str()).collect();
+        assert_eq!(
+            keys,
+            [
+                "state-inertia",
+                "state-kinetic",
+                "state-lagrange",
+                "state-released"
+            ]
+        );
+        assert!(all_pass(&findings), "{}\n{}", setup.name, told(&findings));
+    }
+}
+
+/// A reaction or action that is off by a millionth of the largest, and one whose sign is wrong.
+#[test]
+fn every_action_and_reaction_counts() {
+    for setup in all() {
+        let states = setup.states();
+        for k in 0..states[1].tau.len() {
+            let mut wrong = states.clone();
+            wrong[1].tau[k] += 1e-6 * wrong[1].tau[k].abs().max(1.0);
+            let findings = judged(&setup, &wrong);
+            assert_eq!(
+                failing(&findings),
+                ["state-lagrange"],
+                "{} {k}\n{}",
+                setup.name,
+                told(&findings)
+            );
+        }
+        for k in 0..states[1].reactions.len() {
+            let most = states[1]
+                .reactions
+                .iter()
+                .fold(1.0_f64, |m, r| m.max(r.abs()));
+            let mut wrong = states.clone();
+            wrong[1].reactions[k] += 1e-6 * most;
+            let findings = judged(&setup, &wrong);
+            assert_eq!(
+                failing(&findings),
+                ["state-released"],
+                "{} {k}\n{}",
+                setup.name,
+                told(&findings)
+            );
+        }
+    }
+}
+
+/// Without a term of the equations: what speeds make, what accelerations make, a load.
+#[test]
+fn every_term_counts() {
+    let mut met = [0; 3];
+    for setup in all() {
+        let states = setup.states();
+        let terms: [fn(&mut State); 3] = [
+            |s| s.q_dot.fill(0.0),
+            |s| s.q_ddot.fill(0.0),
+            |s| s.loads.truncate(s.loads.len().saturating_sub(1)),
+        ];
+        for (term, met) in terms.into_iter().zip(&mut met) {
+            // Actions of the whole state, held against equations without the term.
+            let mut wrong = states.clone();
+            term(&mut wrong[1]);
+            if wrong == states {
+                continue;
+            }
+            let findings = judged(&setup, &wrong);
+            let failed = failing(&findings);
+            *met += usize::from(
+                failed.contains(&"state-lagrange") || failed.contains(&"state-released"),
+            );
+        }
+    }
+    // A term may have no part in a mechanism that moves straight, or a load none in one that rests on it.
+    assert!(
+        met.iter().all(|&met| met + 2 >= all().len()),
+        "{met:?} of {}",
+        all().len()
+    );
+}
+
+/// Inertias and velocities that are off.
+#[test]
+fn every_inertia_and_velocity_counts() {
+    for setup in all() {
+        let states = setup.states();
+        let sound: Vec<_> = states.iter().map(|s| inertias(&setup, s)).collect();
+        for k in 0..sound[1].len() {
+            let mut wrong = sound.clone();
+            let n = states[1].q.len();
+            let size = (sound[1][k / n * (n + 1)] * sound[1][k % n * (n + 1)]).sqrt();
+            wrong[1][k] -= 1e-9 * size;
+            let findings = judge_energies(
+                &setup.mechanism,
+                &setup.masses,
+                &setup.start,
+                &states,
+                &wrong,
+            );
+            assert!(
+                failing(&findings).contains(&"state-inertia"),
+                "{}\n{}",
+                setup.name,
+                told(&findings)
+            );
+        }
+        let mut wrong = states.clone();
+        for velocity in &mut wrong[1].velocity {
+            *velocity = velocity.map(|v| v * (1.0 + 1e-6));
+        }
+        let findings = judged(&setup, &wrong);
+        assert_eq!(
+            failing(&findings),
+            ["state-kinetic"],
+            "{}\n{}",
+            setup.name,
+            told(&findings)
+        );
+    }
+}
+
+#[test]
+fn what_is_not_claimed_fails() {
+    let setup = all().remove(0);
+    let states = setup.states();
+    let findings = judge_energies(&setup.mechanism, &setup.masses, &setup.start, &states, &[]);
+    assert_eq!(failing(&findings), ["state-inertia", "state-kinetic"]);
+    let short = &setup.masses[1..];
+    assert!(!all_pass(&judge_energies(
+        &setup.mechanism,
+        short,
+        &setup.start,
+        &states,
+        &[]
+    )));
+}
