@@ -1,48 +1,108 @@
-//! The verdicts of `dwell validate` on the four cases, and how far within them the numbers are.
+//! The findings of `dwell validate` on every case: verdicts and digits, and how far within them the numbers are.
 
 use crate::world::{home, scene};
-use dwell_findings::all_pass;
+use dwell_findings::{Finding, all_pass};
 use dwell_scene::Scene;
 use dwell_study::{Validation, silent, validate};
 use serde_json::Value;
+use std::fmt::Write as _;
+use std::panic::catch_unwind;
 
 fn validated(scene: &Scene, case: &str) -> Validation {
     let folder = home().join("validation").join(case);
     validate(scene, &folder, &silent).unwrap_or_else(|e| panic!("{case}: {e}"))
 }
 
-/// A case against its snapshot: values rounded to what every machine reproduces, and verdicts.
-fn regress_case(case: &str) -> Validation {
+/// The folders of `validation/` that hold a scene.
+fn cases() -> Vec<String> {
+    let folders = std::fs::read_dir(home().join("validation")).expect("the cases");
+    let folders = folders.map(|entry| entry.expect("a folder"));
+    let cases = folders.filter(|folder| folder.path().join("scene.toml").is_file());
+    let mut names: Vec<String> = cases
+        .map(|folder| folder.file_name().into_string().expect("a name"))
+        .collect();
+    names.sort();
+    names
+}
+
+/// Digits that every machine reproduces, in steps of three: the difference, four times as large (its last bits are a machine's
+/// own), is within them. More than twelve are nobody's business; where the tolerance is wider than 1e-12 the
+/// difference is that of an approximation, which has nine at the most.
+fn digits(finding: &Finding) -> usize {
+    let most = if finding.tolerance <= 1.5e-12 { 12 } else { 9 };
+    let within = |n: &usize| 4.0 * finding.relative <= 10f64.powi(-(*n as i32));
+    let mut steps = [12, 9, 6, 3].into_iter().filter(|n| *n <= most);
+    steps.find(within).unwrap_or(0)
+}
+
+fn told(findings: &[Finding]) -> String {
+    findings.iter().fold(String::new(), |mut text, f| {
+        let verdict = if f.pass { "pass" } else { "FAIL" };
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "{verdict}  {:2} digits  {}  [{}]",
+            digits(f),
+            f.key,
+            f.truth
+        );
+        text
+    })
+}
+
+/// A case against its snapshot, and its values against the committed report.
+fn regress(case: &str) {
     let done = validated(&scene(case), case);
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../snapshots");
     settings.set_prepend_module_to_snapshot(false);
-    settings.bind(|| insta::assert_snapshot!(format!("findings-{case}"), done.snapshot));
-    for finding in &done.outcome.findings {
-        assert!(finding.pass, "{case}: {finding:?}");
-    }
-    done
+    settings.set_omit_expression(true);
+    let findings = told(&done.outcome.findings);
+    settings.bind(|| insta::assert_snapshot!(format!("findings-{case}"), findings));
+    assert!(all_pass(&done.outcome.findings), "{case}: {findings}");
+    let report = home().join("reports").join(format!("{case}.txt"));
+    let committed = std::fs::read_to_string(report).unwrap_or_default();
+    assert!(
+        committed.replace("\r\n", "\n") == done.snapshot,
+        "{case}: reports/{case}.txt is another; `dwell validate {case}` writes it anew, `git diff` shows what changed"
+    );
 }
 
 #[test]
-fn regress_crank_rocker() {
-    regress_case("crank-rocker");
+fn val_every_case_has_the_verdicts_digits_and_values_it_had() {
+    let cases = cases();
+    assert!(cases.len() >= 27, "{cases:?}");
+    // All of them, so that one run tells everything that changed.
+    let changed = cases
+        .iter()
+        .filter(|case| catch_unwind(|| regress(case)).is_err());
+    let changed: Vec<&String> = changed.collect();
+    assert!(changed.is_empty(), "{changed:?}");
 }
 
 #[test]
-fn regress_slotted_rocker() {
-    regress_case("slotted-rocker");
-}
-
-#[test]
-fn regress_class_three_six_bar() {
-    regress_case("class-three-six-bar");
+fn digits_are_rounded_down_with_room_and_never_more_than_asked() {
+    let done = validated(&scene("pendulum-a01"), "pendulum-a01");
+    let finding = |relative: f64, tolerance: f64| {
+        let some = done.outcome.findings[0].clone();
+        digits(&Finding {
+            relative,
+            tolerance,
+            ..some
+        })
+    };
+    assert_eq!(finding(3e-16, 1e-12), 12);
+    assert_eq!(finding(2e-13, 1e-12), 12);
+    assert_eq!(finding(3e-13, 1e-12), 9);
+    assert_eq!(finding(3e-16, 1e-11), 9);
+    assert_eq!(finding(0.3, 1.0), 0);
+    assert_eq!(finding(f64::NAN, 1.0), 0);
 }
 
 /// The single-dwell reaches what the project promises of it, whatever tolerance its findings have.
 #[test]
 fn val_single_dwell_reaches_what_is_promised() {
-    let done = regress_case("single-dwell");
+    let done = validated(&scene("single-dwell"), "single-dwell");
     let findings = &done.outcome.findings;
     let finding = |key: &str| {
         let found = findings.iter().find(|f| f.key == key);
