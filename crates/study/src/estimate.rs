@@ -39,7 +39,11 @@ pub fn second(options: &Options) -> Options {
 /// no second run can show, in the quantity's unit.
 pub fn of_motion(first: &[f64], again: &[f64], rounding: f64) -> f64 {
     let recent = (first.len() - first.len() / 8).saturating_sub(1);
-    let apart = first.iter().zip(again).skip(recent).map(|(a, b)| (a - b).abs());
+    let apart = first
+        .iter()
+        .zip(again)
+        .skip(recent)
+        .map(|(a, b)| (a - b).abs());
     SAFETY * apart.fold(0.0, f64::max) + rounding
 }
 
@@ -76,12 +80,14 @@ pub fn of_period(
     orbit: &Orbit,
     at: impl Fn(f64) -> Result<Orbit, DynamicsError>,
 ) -> Result<f64, DynamicsError> {
-    const ROUNDINGS: f64 = 4.0;
+    const ROUNDINGS: f64 = 2.0;
     let mut moved = 0.0_f64;
     for side in [-1.0, 1.0] {
         let beside = at(1.0 + side * ROUNDINGS * f64::EPSILON)?;
         moved = moved.max((beside.period - orbit.period).abs());
     }
-    let own = (orbit.rounding + ROUNDINGS * f64::EPSILON) * orbit.period;
+    // Roundings of a sum add up as the root of its terms.
+    let summed = ROUNDINGS + 0.5 * (orbit.points as f64).sqrt();
+    let own = (orbit.rounding + summed * f64::EPSILON) * orbit.period;
     Ok(moved + own)
 }

@@ -48,7 +48,11 @@ fn beside(side: f64) -> Row {
             let complement = ((half - one) * (half + one)).sqrt() / half;
             wide(2.0) * elliptic_k(complement) / half
         };
-        let start = State { t: 0.0, q: 0.0, q_dot };
+        let start = State {
+            t: 0.0,
+            q: 0.0,
+            q_dot,
+        };
         let orbit = |stretch: f64| {
             let q_dot = start.q_dot * stretch;
             Orbit::loaded(&machine, State { q_dot, ..start })
@@ -58,9 +62,15 @@ fn beside(side: f64) -> Row {
         Ok(vec![Ok(Reading::new(own.period, period, error))])
     };
     let (key, what) = if side < 0.0 {
-        ("swings", "Pendulum that swings: speed short of the separatrix")
+        (
+            "swings",
+            "Pendulum that swings: speed short of the separatrix",
+        )
     } else {
-        ("turns", "Pendulum that turns over: speed beyond the separatrix")
+        (
+            "turns",
+            "Pendulum that turns over: speed beyond the separatrix",
+        )
     };
     Row {
         family: FAMILY,
@@ -103,7 +113,10 @@ fn separatrix() -> Row {
         key: "separatrix".into(),
         what: "Pendulum with the very energy of the top (1e-12 by Tsit45): time".into(),
         parameter: ("time t", "s"),
-        values: (0..=9).map(|k| 2.0_f64.powf(0.5 * f64::from(k))).chain([32.0]).collect(),
+        values: (0..=9)
+            .map(|k| 2.0_f64.powf(0.5 * f64::from(k)))
+            .chain([32.0])
+            .collect(),
         quantities: &["angle", "speed"],
         truth: "4 atan eᵗ − π",
         why: "whatever error there is grows as eᵗ towards the top: some hundred steps of 4 tolerances",
@@ -115,7 +128,7 @@ fn separatrix() -> Row {
 /// Driven at the slider, which hardly moves where crank and rod are in line. All mass is the crank's, so that
 /// this turns evenly.
 const STRETCHED: SliderCrank = SliderCrank {
-    lengths: [1.0, 2.0],
+    lengths: [1.1, 2.3],
     height: 0.0,
     masses: [
         Mass {
@@ -140,14 +153,15 @@ const STRETCHED: SliderCrank = SliderCrank {
 fn dead_point() -> Row {
     const TOLERANCE: f64 = 1e-10;
     let run = |apart: f64| -> Result<Vec<Told>, String> {
-        let travel = 3.0 - apart;
+        let [crank, rod] = STRETCHED.lengths.map(wide);
+        let travel = (crank + rod - wide(apart)).value();
         let q = wide(travel);
-        let one = wide(1.0);
-        let angle = arc_cosine((q * q - wide(3.0)) / (wide(2.0) * q));
+        let angle = arc_cosine((q * q + crank * crank - rod * rod) / (wide(2.0) * crank * q));
+        // How far the rod reaches along the guide.
+        let reach = |sin: Wide| ((rod + crank * sin) * (rod - crank * sin)).sqrt();
         let slope = |angle: Wide| {
             let (sin, cos) = angle.sin_cos();
-            let root = (wide(4.0) - sin * sin).sqrt();
-            -(sin + sin * cos / root)
+            -(crank * sin + crank * crank * sin * cos / reach(sin))
         };
         // About 1 rad/s of the crank, away from the dead point.
         let speed = slope(angle).value();
@@ -170,11 +184,15 @@ fn dead_point() -> Row {
                 t: 0.0,
                 y: vec![travel, speed],
             };
-            let journey = atlas.follow(&start, end, options, &[]).map_err(|e| e.to_string())?;
+            let journey = atlas
+                .follow(&start, end, options, &[])
+                .map_err(|e| e.to_string())?;
             if let Some(error) = &journey.failed {
                 return Err(error.to_string());
             }
-            let tracked = atlas.track(&journey, atlas.own()).map_err(|e| e.to_string())?;
+            let tracked = atlas
+                .track(&journey, atlas.own())
+                .map_err(|e| e.to_string())?;
             Ok(tracked.samples.iter().flatten().map(|s| s[0]).collect())
         };
         let options = Options {
@@ -184,10 +202,12 @@ fn dead_point() -> Row {
         let (first, again) = (run(&options)?, run(&estimate::second(&options))?);
         let turned = angle + turning * wide(end);
         let (sin, cos) = turned.sin_cos();
-        let truth = cos + ((wide(2.0) + sin) * (wide(2.0) - sin)).sqrt();
+        let truth = crank * cos + reach(sin);
         let got = first.last().copied().unwrap_or(f64::NAN);
-        let _ = one;
-        let rounding = 4.0 * f64::EPSILON * (1.0 + travel / apart);
+        // The crank's speed is as well known as the root of its inertia, and turns it for 2 s.
+        let exact = shape.exact(&[])?;
+        let (at, error) = estimate::reduced(exact.model(), travel).map_err(|e| e.to_string())?;
+        let rounding = 2.0 * end * error.m / at.m + 4.0 * f64::EPSILON;
         let error = estimate::of_motion(&first, &again, rounding);
         Ok(vec![Ok(Reading::new(got, truth, error).of(1.0))])
     };

@@ -37,7 +37,10 @@ fn finding(measured: &Measured, key: &str) -> Finding {
         key: format!("{}-{key}", row.key),
         truth: FLOOR.to_owned(),
         compared: format!("{}: {}", row.what, row.truth),
-        over: format!("{} from {from:e} to {to:e} {}", row.parameter.0, row.parameter.1),
+        over: format!(
+            "{} from {from:e} to {to:e} {}",
+            row.parameter.0, row.parameter.1
+        ),
         absolute: 0.0,
         unit: String::new(),
         relative: 0.0,

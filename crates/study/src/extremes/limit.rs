@@ -127,7 +127,8 @@ fn slider_crank() -> Row {
         run: Box::new(move |at| {
             let told = |model: &Exact| {
                 let q = (limit - wide(at)).value();
-                let (got, error) = estimate::reduced(model.model(), q).map_err(|e| e.to_string())?;
+                let (got, error) =
+                    estimate::reduced(model.model(), q).map_err(|e| e.to_string())?;
                 let [m, half_dm] = truth::slider_crank(&SHORT_ROD, wide(q));
                 Ok(vec![
                     Ok(Reading::new(got.m, m, error.m)),
@@ -153,12 +154,11 @@ fn parallelogram() -> Row {
                 in closed form",
         why: "a length off by eps turns the coupler by eps/δ, its speed by eps/δ² and its acceleration by eps/δ³; \
               16 roundings. Branches meet at δ = 0",
-        stated: Box::new(|at, quantity| {
-            Stated::rounding(ROUNDINGS, at.powi(-2 - quantity as i32))
-        }),
+        stated: Box::new(|at, quantity| Stated::rounding(ROUNDINGS, at.powi(-2 - quantity as i32))),
         run: Box::new(move |at| {
             let told = |model: &Exact| {
-                let (got, error) = estimate::reduced(model.model(), at).map_err(|e| e.to_string())?;
+                let (got, error) =
+                    estimate::reduced(model.model(), at).map_err(|e| e.to_string())?;
                 let [m, half_dm] = truth::parallelogram(&PARALLELOGRAM);
                 Ok(vec![
                     Ok(Reading::new(got.m, m, error.m)),

@@ -59,7 +59,12 @@ fn stated(method: Method, tolerance: f64, turns: f64, quantity: usize) -> Stated
 }
 
 /// So many turns at a speed of the start, to the same position again.
-fn turned(model: &Exact, speed: f64, turns: f64, options: &Options) -> Result<Vec<Told>, DynamicsError> {
+fn turned(
+    model: &Exact,
+    speed: f64,
+    turns: f64,
+    options: &Options,
+) -> Result<Vec<Told>, DynamicsError> {
     let [m, period] = *TURN;
     let whole = period * wide(turns) / wide(speed);
     let start = State {

@@ -201,7 +201,11 @@ fn snapshot(grid: &[Measured], findings: &[Finding]) -> String {
 }
 
 fn document(grid: &[Measured], pages: &[Figure], findings: &[Finding]) -> Document {
-    let verdict = if all_pass(findings) { "pass" } else { "**FAIL**" };
+    let verdict = if all_pass(findings) {
+        "pass"
+    } else {
+        "**FAIL**"
+    };
     let header = [
         "Row",
         "Floor, digits",

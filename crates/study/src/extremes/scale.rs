@@ -71,12 +71,9 @@ fn lengths() -> Row {
     Row {
         parameter: ("crank's length", "m"),
         why: "nothing but the unit of length changes; a dyad's 8, 16 roundings",
-        ..row(
-            "length",
-            "Four-bar: all lengths",
-            decades(-9, 9),
-            |by| CRANK_ROCKER.scaled(by),
-        )
+        ..row("length", "Four-bar: all lengths", decades(-9, 9), |by| {
+            CRANK_ROCKER.scaled(by)
+        })
     }
 }
 

@@ -54,7 +54,11 @@ fn stiffness() -> Row {
         let (q, q_error) = twice.last(|y| y[0], 16.0 * f64::EPSILON);
         let rounding = 16.0 * f64::EPSILON * frequency.value();
         let (v, v_error) = twice.last(|y| y[1], rounding);
-        let start = State { t: 0.0, q: 1.0, q_dot: 0.0 };
+        let start = State {
+            t: 0.0,
+            q: 1.0,
+            q_dot: 0.0,
+        };
         let orbit = |stretch: f64| {
             let q = start.q * stretch;
             Orbit::loaded(&machine, State { q, ..start })
@@ -112,7 +116,9 @@ fn damping() -> Row {
     Row {
         family: FAMILY,
         key: "damping".into(),
-        what: "Slider between a spring and a damper of the same number: it creeps home within seconds".into(),
+        what:
+            "Slider between a spring and a damper of the same number: it creeps home within seconds"
+                .into(),
         parameter: ("damping", "N s/m"),
         values: decades(1, 12),
         quantities: &["travel", "speed"],
@@ -172,7 +178,11 @@ fn light_crank() -> Row {
         let complement = (wide(inertia) / one).sqrt();
         let way = wide(4.0) * one.sqrt() * elliptic_e(wide(1.0) / one, complement);
         let period = way / m.sqrt();
-        let start = State { t: 0.0, q: FROM, q_dot: 1.0 };
+        let start = State {
+            t: 0.0,
+            q: FROM,
+            q_dot: 1.0,
+        };
         let motion = free(&model, start, period.value(), &options()).map_err(|e| e.to_string());
         let ends = motion.map(|twice| {
             let angle = wide(FROM) + Wide::turns(1.0) + (wide(period.value()) - period);
@@ -208,11 +218,15 @@ fn light_crank() -> Row {
         values: decades(0, -15),
         quantities: &["angle", "energy", "period by quadrature"],
         truth: "the complete elliptic integral of the second kind, by the arithmetic-geometric mean",
-        why: "the time of a turn hardly knows J: twice the steps of a turn (1e-10) for what is sharp at the dead points; \
-              the quadrature keeps all but 64 roundings",
-        stated: Box::new(|_, quantity| match quantity {
+        why: "the time of a turn hardly knows J: the steps of a turn (1e-10), and as many for each tenth of J, for they \
+              grow geometrically from each dead point on. There the state passes within J s, so that its time would \
+              have to be known to eps J: a condition of 1/J. The quadrature keeps all but 64 roundings",
+        stated: Box::new(|inertia, quantity| match quantity {
             2 => Stated::rounding(64.0, 1.0),
-            _ => Stated::error(2.0 * TOLERANCES * 1e-10, 1.0),
+            _ => {
+                let decades = 1.0 - inertia.log10();
+                Stated::error(decades * TOLERANCES * 1e-10, 1.0 / inertia)
+            }
         }),
         run: Box::new(move |j| run(j).unwrap_or_else(|e| refused(e, 3))),
     }
