@@ -76,6 +76,9 @@ pub fn reduced(model: &Model, q: f64) -> Result<(Coefficients, Coefficients), Pl
 
 /// The error of an orbit's period, s: what it changes by where the speed at the start is changed by a few
 /// roundings either way (`at` is the orbit at so many times the speed), and what its series leaves.
+///
+/// # Errors
+/// Where the changed start has no such orbit: within its rounding it creeps up to a summit.
 pub fn of_period(
     orbit: &Orbit,
     at: impl Fn(f64) -> Result<Orbit, DynamicsError>,

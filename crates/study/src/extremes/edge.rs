@@ -85,7 +85,7 @@ fn beside(side: f64) -> Row {
             let condition = 1.0 + 2.0 / (at * (32.0 / at).ln());
             Stated::rounding(16.0, condition)
         }),
-        run: Box::new(move |at| run(at).unwrap_or_else(|e| refused(e, 1))),
+        run: Box::new(move |at| run(at).unwrap_or_else(|e| refused(&e, 1))),
     }
 }
 
@@ -121,7 +121,7 @@ fn separatrix() -> Row {
         truth: "4 atan eᵗ − π",
         why: "whatever error there is grows as eᵗ towards the top: some hundred steps of 4 tolerances",
         stated: Box::new(|t, _| Stated::error(2000.0 * TOLERANCE * t.exp(), t.exp())),
-        run: Box::new(move |at| run(at).unwrap_or_else(|e| refused(e, 2))),
+        run: Box::new(move |at| run(at).unwrap_or_else(|e| refused(&e, 2))),
     }
 }
 
@@ -226,6 +226,6 @@ fn dead_point() -> Row {
             let error = 2000.0 * TOLERANCE / at.sqrt() + 16.0 * f64::EPSILON * condition;
             Stated::error(error, condition)
         }),
-        run: Box::new(move |at| run(at).unwrap_or_else(|e| refused(e, 1))),
+        run: Box::new(move |at| run(at).unwrap_or_else(|e| refused(&e, 1))),
     }
 }

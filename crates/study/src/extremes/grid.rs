@@ -174,7 +174,7 @@ impl Row {
 }
 
 /// The same words for every quantity of a value.
-pub(crate) fn refused(error: impl ToString, quantities: usize) -> Vec<Told> {
+pub(crate) fn refused(error: &impl ToString, quantities: usize) -> Vec<Told> {
     vec![Err(error.to_string()); quantities]
 }
 

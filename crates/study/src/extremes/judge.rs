@@ -24,7 +24,7 @@ fn place(measured: &Measured, cell: &Cell) -> String {
 }
 
 /// The cell with the most of something, and how much that is.
-fn worst<'m>(measured: &'m Measured, of: impl Fn(&Cell) -> Option<f64>) -> Option<(f64, &'m Cell)> {
+fn worst(measured: &Measured, of: impl Fn(&Cell) -> Option<f64>) -> Option<(f64, &Cell)> {
     let all = measured.cells.iter().filter_map(|c| Some((of(c)?, c)));
     all.max_by(|a, b| a.0.total_cmp(&b.0))
 }

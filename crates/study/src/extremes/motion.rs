@@ -112,7 +112,7 @@ fn row(
                 Ok(model) => turned(model, speed, turns, &options).map_err(|e| e.to_string()),
                 Err(error) => Err(error.clone()),
             };
-            told.unwrap_or_else(|error| refused(error, ENDS.len()))
+            told.unwrap_or_else(|error| refused(&error, ENDS.len()))
         }),
     }
 }

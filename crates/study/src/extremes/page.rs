@@ -6,8 +6,8 @@ use crate::error::StudyError;
 use crate::outcome::Outcome;
 use dwell_findings::{Finding, all_pass};
 use dwell_report::{
-    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Panel, Series, Stroke, Table,
-    png, stable,
+    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table, png,
+    stable,
 };
 use rayon::prelude::*;
 
@@ -88,7 +88,12 @@ fn points(
 
 fn parameter(measured: &Measured) -> Axis {
     let (label, unit) = measured.row.parameter;
-    Axis::log(label, unit)
+    let values = measured.row.values.iter().copied();
+    let (low, high) = (values.clone().reduce(f64::min), values.reduce(f64::max));
+    // A little room beside the outermost points, the same on the left and on the right.
+    let (low, high) = (low.unwrap_or(1.0), high.unwrap_or(1.0));
+    let room = (high / low).powf(0.03);
+    Axis::log(label, unit).within(low / room, high * room)
 }
 
 fn digits(measured: &Measured) -> Chart {

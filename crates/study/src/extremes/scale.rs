@@ -42,7 +42,7 @@ fn row(key: &str, what: &str, values: Vec<f64>, make: fn(f64) -> FourBar) -> Row
             let shape = bars.shape();
             match shape.exact(&shape.reactions("C")) {
                 Ok(model) => judged(&bars, &model, 1.0, HERE),
-                Err(error) => refused(error, REDUCED.len()),
+                Err(error) => refused(&error, REDUCED.len()),
             }
         }),
     }
@@ -121,7 +121,7 @@ fn powers_of_two() -> Row {
             let both = at(by).and_then(|got| Ok((got, at(1.0)?)));
             let (got, base) = match both {
                 Ok(both) => both,
-                Err(error) => return refused(error, REDUCED.len()),
+                Err(error) => return refused(&error, REDUCED.len()),
             };
             // What may differ is the last place.
             let reading = |got: f64, base: f64, power: i32| {

@@ -86,7 +86,7 @@ fn stiffness() -> Row {
             2 => Stated::rounding(32.0, 1.0),
             _ => Stated::error(TOLERANCES * 1e-10, 1.0),
         }),
-        run: Box::new(move |k| run(k).unwrap_or_else(|e| refused(e, 3))),
+        run: Box::new(move |k| run(k).unwrap_or_else(|e| refused(&e, 3))),
     }
 }
 
@@ -125,7 +125,7 @@ fn damping() -> Row {
         truth: "two exponentials, of which the fast one is gone after 1/c s",
         why: "the slow motion is the same for all: some hundred steps of 4 tolerances (1e-10)",
         stated: Box::new(|_, _| Stated::error(TOLERANCES * 1e-10, 1.0)),
-        run: Box::new(move |c| run(c).unwrap_or_else(|e| refused(e, 2))),
+        run: Box::new(move |c| run(c).unwrap_or_else(|e| refused(&e, 2))),
     }
 }
 
@@ -161,7 +161,7 @@ fn small_rotor() -> Row {
         truth: "1 − J (1 − e^(−1/J)) rad after 1 s",
         why: "what is left is the balance of both couples: some hundred steps of 4 tolerances (1e-10)",
         stated: Box::new(|_, _| Stated::error(TOLERANCES * 1e-10, 1.0)),
-        run: Box::new(move |j| run(j).unwrap_or_else(|e| refused(e, 2))),
+        run: Box::new(move |j| run(j).unwrap_or_else(|e| refused(&e, 2))),
     }
 }
 
@@ -228,6 +228,6 @@ fn light_crank() -> Row {
                 Stated::error(decades * TOLERANCES * 1e-10, 1.0 / inertia)
             }
         }),
-        run: Box::new(move |j| run(j).unwrap_or_else(|e| refused(e, 3))),
+        run: Box::new(move |j| run(j).unwrap_or_else(|e| refused(&e, 3))),
     }
 }
