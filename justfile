@@ -9,6 +9,11 @@ default:
 validate *cases: && size
     cargo run --release -- validate {{ cases }}
 
+# The same with the extremes that take minutes: 1e5 revolutions
+[group('main')]
+validate-long: && size
+    cargo run --release -- validate --long
+
 # What a pose costs against the mechanism's size, and its errors: reports/size.png
 [group('main')]
 size:

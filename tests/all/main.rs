@@ -18,6 +18,7 @@ mod ends;
 mod energies;
 mod equilibria;
 mod events;
+mod extremes;
 mod findings;
 mod invariance;
 mod joints;

@@ -95,8 +95,12 @@ fn run(options: Options) -> Result<bool, Report> {
             let scene = read(scene)?;
             told(dwell_study::calibrate(&scene, set.as_deref(), *period))?
         }
-        Command::Validate { cases, folder } => {
-            let (outcome, others) = validate::validate(cases, folder)?;
+        Command::Validate {
+            cases,
+            folder,
+            long,
+        } => {
+            let (outcome, others) = validate::validate(cases, folder, *long)?;
             unusable = others;
             outcome
         }

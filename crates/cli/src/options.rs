@@ -97,12 +97,18 @@ pub(crate) enum Command {
         /// Names of cases, or folders with a scene.toml; all cases if none
         cases: Vec<String>,
         /// The folder of the cases
-        #[arg(long, default_value = "validation", value_name = "FOLDER")]
+        #[arg(long, default_value = OWN_CASES, value_name = "FOLDER")]
         folder: PathBuf,
+        /// With the rows of the extremes that take minutes
+        #[arg(long)]
+        long: bool,
     },
     /// The JSON schema of scenes, for editors that complete TOML
     Schema,
 }
+
+/// The folder of the workbench's own cases.
+pub(crate) const OWN_CASES: &str = "validation";
 
 #[derive(Debug, Args)]
 pub(crate) struct Along {

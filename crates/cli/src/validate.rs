@@ -1,18 +1,20 @@
 //! `dwell validate`: every case, whatever becomes of the others.
 
+use crate::options::OWN_CASES;
 use crate::{as_scene_error, cases, plain, progress_bar};
 use dwell_report::Files;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Outcome, Step, Validation, index};
+use dwell_study::{Outcome, Step, Validation, extremes, index};
 use miette::{Report, miette};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Validates the cases in parallel. The outcome is that of those that can be validated; the report
-/// tells of the others.
+/// Validates the cases in parallel, and with all of the workbench's own ones the extremes (`long`: all of
+/// them). The outcome is that of those that can be validated; the report tells of the others.
 pub(crate) fn validate(
     names: &[String],
     folder: &Path,
+    long: bool,
 ) -> Result<(Outcome, Option<Report>), Report> {
     let cases = cases::find(names, folder)?;
     let scenes: Vec<_> = cases
@@ -30,10 +32,20 @@ pub(crate) fn validate(
         };
         dwell_study::validate(scene, case, &heard).map_err(as_scene_error)
     };
-    let results: Vec<Result<Validation, SceneError>> =
-        scenes.par_iter().zip(&cases).map(one).collect();
+    let everything = names.is_empty() && folder == Path::new(OWN_CASES);
+    let (results, extremes): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
+        || scenes.par_iter().zip(&cases).map(one).collect(),
+        || (everything || long).then(|| extremes::study(long)),
+    );
     bar.finish_and_clear();
-    Ok(gathered(&cases, &scenes, results))
+    let (mut all, bad) = gathered(&cases, &scenes, results);
+    if let Some(extremes) = extremes {
+        let more = extremes.map_err(as_scene_error)?;
+        all.summary += &more.summary;
+        all.findings.extend(more.findings);
+        all.files.extend("", more.files);
+    }
+    Ok((all, bad))
 }
 
 /// Two cases of one name would write the same files.

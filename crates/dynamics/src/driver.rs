@@ -20,7 +20,7 @@ type Matrix = NalgebraMat<f64>;
 type Solver = NalgebraLU<f64>;
 
 /// Smallest step, s, at a rate of 1 per s or less; at a higher one, in proportion shorter.
-const SMALLEST_STEP: f64 = 1e-14;
+const SMALLEST_STEP: f64 = 1e-17;
 
 /// What the one who watches an integration says after a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

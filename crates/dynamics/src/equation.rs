@@ -16,6 +16,8 @@ use dwell_kinetostatics::Reduced;
 pub struct Equation<'a, R: Reduced> {
     model: &'a R,
     work: R::Work,
+    /// What speeds are measured by, rad/s.
+    pub(crate) speed: f64,
 }
 
 impl<'a, R: Reduced> Equation<'a, R> {
@@ -24,7 +26,17 @@ impl<'a, R: Reduced> Equation<'a, R> {
         Self {
             model,
             work: model.work(),
+            speed: 1.0,
         }
+    }
+
+    /// The same with speeds measured by that of a start (rad/s): without loads a speed only scales time.
+    #[must_use]
+    pub fn at_speed(mut self, q_dot: f64) -> Self {
+        if q_dot.abs().is_normal() {
+            self.speed = q_dot.abs();
+        }
+        self
     }
 
     /// The acceleration q̈ (rad/s²) at `q` (rad) and `q_dot` (rad/s), by (1).

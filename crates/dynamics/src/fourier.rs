@@ -8,6 +8,8 @@ use std::f64::consts::TAU;
 /// Points of the first rule, and of the last that is tried.
 pub(crate) const FEWEST: usize = 32;
 pub(crate) const MOST: usize = 8192;
+/// Points from which on a function that is still not resolved is taken for sharp.
+pub(crate) const MANY: usize = 2048;
 /// Coefficients below this part of the largest are rounding.
 const NEGLIGIBLE: f64 = 1e-16;
 /// Coefficients below this part, of which the last quarter is not below this part of the quarter before,

@@ -103,7 +103,7 @@ pub fn simulate<R: Reduced>(
         }
         Ok(if enough { Next::Stop } else { Next::GoOn })
     };
-    let mut equation = Equation::new(model);
+    let mut equation = Equation::new(model).at_speed(start.q_dot);
     let ended = integrate(&mut equation, &from, end, options, &mut watch)?;
     match ended.failed {
         // Within its range the mechanism has a pose everywhere: it is the end that was met.
@@ -144,6 +144,10 @@ impl<R: Reduced> System for Equation<'_, R> {
         let row = Equation::jacobian(self, y[0], y[1])?;
         out.copy_from_slice(&[0.0, 1.0, row[0], row[1]]);
         Ok(())
+    }
+
+    fn weight(&self, state: usize) -> f64 {
+        if state == 0 { 1.0 } else { self.speed }
     }
 }
 

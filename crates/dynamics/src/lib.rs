@@ -20,6 +20,7 @@ pub mod machine;
 pub mod moving;
 pub mod options;
 pub mod orbit;
+mod panels;
 pub mod root;
 mod swing;
 pub mod system;

@@ -12,14 +12,16 @@
 //!
 //! with P what everything repeats itself after, a and b the turning points, and c_k, s_k the Fourier
 //! coefficients of dt/ds. Both kinds of dt/ds are smooth and periodic, so that the trapezoid rule has all
-//! digits of (4) and (3) all of the time history.
+//! digits of (4) and (3) all of the time history. Where dt/ds is too sharp for equal steps, next to a summit
+//! or where next to nothing resists, it is summed by panels.
 
 use crate::conservative::{Conservative, Held, Loaded, Unloaded};
 use crate::error::DynamicsError;
 use crate::fate::{Fate, Flight};
-use crate::fourier::{MOST, Series, refine};
+use crate::fourier::{MANY, Series, refine};
 use crate::free::State;
 use crate::machine::Machine;
+use crate::panels::{Panels, Slowness};
 use crate::swing::Swing;
 use dwell_kinetostatics::Reduced;
 use std::f64::consts::TAU;
@@ -48,7 +50,7 @@ pub struct Orbit {
     phase: f64,
     lead: f64,
     /// dt/ds, s/rad.
-    slowness: Series,
+    slowness: Slowness,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -121,26 +123,33 @@ impl Orbit {
             }
             let points = known.len();
             let size = values.iter().sum::<f64>() / points as f64;
-            let slowness = Series::new(&values, size);
-            if slowness.resolved {
-                return Ok(Self {
-                    start,
-                    period: TAU * slowness.mean,
-                    energy: kinetic + held.potential,
-                    kinetic: most,
-                    points,
-                    rounding: slowness.left,
-                    fate,
-                    way: Way::Turning(along),
-                    phase: 0.0,
-                    lead: 0.0,
-                    slowness,
-                });
-            }
-            if points >= MOST {
-                let left = slowness.left;
-                return Err(DynamicsError::NotResolved { points, left });
-            }
+            let series = Series::new(&values, size);
+            let (slowness, points) = if series.resolved {
+                (Slowness::Even(series), points)
+            } else if points >= MANY {
+                let panels = Panels::new(|phase| {
+                    let at = field.held(first + along * (phase / TAU))?;
+                    let left = kinetic + (held.potential - at.potential);
+                    Ok(along.abs() / TAU * (at.m / (2.0 * left)).sqrt())
+                })?;
+                let taken = points + panels.points;
+                (Slowness::Sharp(panels), taken)
+            } else {
+                continue;
+            };
+            return Ok(Self {
+                start,
+                period: TAU * slowness.mean(),
+                energy: kinetic + held.potential,
+                kinetic: most,
+                points,
+                rounding: slowness.left(),
+                fate,
+                way: Way::Turning(along),
+                phase: 0.0,
+                lead: 0.0,
+                slowness,
+            });
         }
     }
 
@@ -156,11 +165,11 @@ impl Orbit {
         let [_, lead] = swing.slowness.at(phase);
         Ok(Self {
             start,
-            period: TAU * swing.slowness.mean,
+            period: TAU * swing.slowness.mean(),
             energy: kinetic + held.potential,
             kinetic: swing.most,
             points: swing.points,
-            rounding: swing.slowness.left,
+            rounding: swing.slowness.left(),
             fate: Fate::Swings {
                 between: swing.ends,
             },

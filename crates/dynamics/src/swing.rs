@@ -15,8 +15,9 @@
 
 use crate::conservative::{Conservative, Held};
 use crate::error::DynamicsError;
-use crate::fourier::{MOST, Series, refine};
+use crate::fourier::{MANY, MOST, Series, refine};
 use crate::orbit::phase_of;
+use crate::panels::{Panels, Slowness};
 use std::f64::consts::{PI, TAU};
 
 /// Times that the turning points are improved.
@@ -25,7 +26,7 @@ const MOST_ROUNDS: usize = 60;
 /// A resolved swing.
 pub(crate) struct Swing {
     pub(crate) ends: [f64; 2],
-    pub(crate) slowness: Series,
+    pub(crate) slowness: Slowness,
     /// The largest kinetic energy at a point, J.
     pub(crate) most: f64,
     pub(crate) points: usize,
@@ -50,12 +51,20 @@ impl Swing {
                 break;
             }
         }
-        let sampled = Sampled::new(field, ends, |s| s.slowness().resolved)?;
-        let slowness = sampled.slowness();
+        let resolved = |s: &Sampled| s.known.len() >= MANY || s.slowness().resolved;
+        let sampled = Sampled::new(field, ends, resolved)?;
+        let (most, points, series) = (sampled.most(), sampled.known.len(), sampled.slowness());
+        let (slowness, points) = if series.resolved {
+            (Slowness::Even(series), points)
+        } else {
+            let panels = sampled.panels(field)?;
+            let taken = points + panels.points;
+            (Slowness::Sharp(panels), taken)
+        };
         Ok(Self {
             ends,
-            most: sampled.most(),
-            points: sampled.known.len(),
+            most,
+            points,
             slowness,
         })
     }
@@ -164,13 +173,17 @@ impl Sampled {
     /// G towards an end: `phase` counted from it, `mirrored` for the upper one. `table` holds the sines
     /// of multiples of π over the number of points.
     fn quotient(&self, phase: usize, mirrored: bool, table: &[f64]) -> f64 {
-        let fejer = |m: usize| {
+        self.sum(mirrored, |m: usize| {
             if phase == 0 {
                 return (m * m) as f64;
             }
             let ratio = table[m * phase % table.len()] / table[phase];
             ratio * ratio
-        };
+        })
+    }
+
+    /// G of (1) with F_m from `fejer`; `mirrored` from the upper end.
+    fn sum(&self, mirrored: bool, fejer: impl Fn(usize) -> f64) -> f64 {
         let sign = |k: usize| if mirrored && k % 2 == 1 { -1.0 } else { 1.0 };
         let mut sum = self.force.mean;
         for (k, [c, _]) in self.force.harmonics.iter().enumerate() {
@@ -213,6 +226,29 @@ impl Sampled {
             .collect();
         let size = values.iter().sum::<f64>() / n as f64;
         Series::new(&values, size)
+    }
+
+    /// dt/ds where equal steps do not resolve it.
+    fn panels(&self, field: &mut dyn Conservative) -> Result<Panels, DynamicsError> {
+        let [a, b] = self.ends;
+        let half = 0.5 * (b - a);
+        Panels::new(|phase| {
+            // The way down is the way up.
+            let phase = if phase > PI { TAU - phase } else { phase };
+            let mirrored = phase > 0.5 * PI;
+            let from_end = if mirrored { PI - phase } else { phase };
+            let (sin, cos) = (0.5 * from_end).sin_cos();
+            let way = 2.0 * half * sin * sin;
+            let m = field.held(if mirrored { b - way } else { a + way })?.m;
+            let quotient = self.sum(mirrored, |k| {
+                if sin == 0.0 {
+                    return (k * k) as f64;
+                }
+                let ratio = (0.5 * k as f64 * from_end).sin() / sin;
+                ratio * ratio
+            });
+            Ok((m * half * cos * cos / quotient).sqrt())
+        })
     }
 
     /// The largest kinetic energy, J.

@@ -30,10 +30,10 @@ pub(crate) struct Look {
 
 fn look(series: &Series, index: usize) -> Look {
     let paint = series.color.unwrap_or(automatic(index));
-    let marker = if let Paint::Palette(i) = paint {
-        i
-    } else {
-        index
+    let marker = match paint {
+        Paint::Palette(i) => i,
+        Paint::Ink => marks::CROSS,
+        Paint::Grey => index,
     };
     Look {
         line: Line {

@@ -209,7 +209,7 @@ pub enum Stroke {
 pub enum Paint {
     /// Colour of the palette, counted from 0 and taken round: blue, vermilion, green, purple, orange, sky blue.
     Palette(usize),
-    /// Near black.
+    /// Near black; its markers are crosses, which stand apart from all others.
     Ink,
     /// Middle grey.
     Grey,

@@ -9,9 +9,17 @@ use crate::occupancy::Occupancy;
 use crate::rect::Rect;
 use crate::theme::{BAND, GREY, INK, MARK, MARKER, Rgb, TICK, WHITE};
 
+/// The marker of what is drawn in ink: it stands apart from all curves.
+pub(crate) const CROSS: usize = usize::MAX;
+
 /// Draws the marker of a series; series differ in shape as well as in colour.
 pub(crate) fn marker(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], color: Rgb) -> Drawn {
     let r = MARKER;
+    if shape == CROSS {
+        let pen = Line::solid(color, 0.7 * r);
+        canvas.line(&[[x - r, y - r], [x + r, y + r]], pen)?;
+        return canvas.line(&[[x - r, y + r], [x + r, y - r]], pen);
+    }
     match shape % 4 {
         0 => canvas.disc([x, y], r, color),
         1 => canvas.rect(

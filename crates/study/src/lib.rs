@@ -22,6 +22,8 @@ mod dossier;
 mod driven;
 mod equilibria;
 mod error;
+pub mod estimate;
+pub mod extremes;
 mod figures;
 mod freed;
 

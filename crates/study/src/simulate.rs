@@ -1,5 +1,6 @@
 //! `dwell simulate`: the free motion of a machine in time, under its loads and drives.
 
+mod error;
 mod rows;
 mod words;
 
@@ -98,6 +99,7 @@ pub fn simulate(
     }
     let told = run.told();
     let samples = run.samples(&moved).map_err(|e| explain(&e))?;
+    let error = run.estimated(scene, &samples, moved.end(), &options);
     let led = motion.laws.iter().map(Option::is_some).collect();
     let charts = moved.charts.iter().map(|c| c.shown.clone()).collect();
     let mut way = Way::free(run.shown.plan(), samples, told, led, charts);
@@ -109,6 +111,7 @@ pub fn simulate(
         outcome.files.add(name, run.event_table(&moved).csv()?);
     }
     outcome.summary += &run.summary(&moved, accuracy, duration);
+    outcome.summary += &error;
     if let Some(error) = &moved.failed {
         followed.stopped = Some(explain(error));
     }
