@@ -1,0 +1,365 @@
+//! A case with its model, evaluated with or without a slip, and judged by the truths.
+
+use crate::verdict::Verdict;
+use crate::watched::{Place, Slip, Watched, noting, slipping};
+use dwell_geometry::{BodyId, Plan, Pose, Vec2};
+use dwell_kinetostatics::{Actions as Kinetostatic, Model, Workspace};
+use dwell_scene::Scene;
+use dwell_verify::{
+    Actions, Case, Coefficients, State, Subject, SubjectError, judge_states, load_acts, spread,
+    verify_all,
+};
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+
+/// Positions or states at which a fault is judged.
+const POSITIONS: usize = 3;
+/// Between two positions no coordinate goes farther at once, rad or m: whole turns are counted.
+const STRIDE: f64 = 0.05;
+/// What is left out at both ends of a range, as a part of it.
+const MARGIN: f64 = 0.1;
+/// Speeds and accelerations of the states, by state and actuator.
+const SPEEDS: [[f64; 3]; POSITIONS] = [[1.0, -0.6, 0.4], [-0.8, 0.9, -0.5], [0.6, 0.7, 1.1]];
+const RATES: [[f64; 3]; POSITIONS] = [[0.7, 0.5, -0.9], [0.5, -1.1, 0.6], [-1.2, 0.8, 0.7]];
+
+/// A fault in one operation of the product.
+pub(crate) type Fault = Option<(Place, Slip)>;
+
+/// How a mechanism is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum By {
+    /// Its reduced model, of one coordinate and no load.
+    Reduced,
+    /// Its states under loads, of any number of coordinates.
+    States,
+}
+
+/// A mechanism to be judged.
+pub(crate) struct Machine {
+    pub(crate) name: String,
+    pub(crate) by: By,
+    scene: Scene,
+    model: Model,
+    positions: Vec<Vec<f64>>,
+    /// By position, the frames of all bodies, turns counted from the start.
+    frames: Vec<Vec<[f64; 3]>>,
+    start: Vec<[f64; 3]>,
+    /// What is answered without a fault.
+    clean: Answers,
+    clean_states: Vec<State>,
+}
+
+/// Everything that is judged, by kind.
+pub(crate) type Answers = Vec<Vec<f64>>;
+
+impl Machine {
+    pub(crate) fn new(scene: Scene, by: By) -> Self {
+        let mechanism = &scene.mechanism;
+        let start = scene.assembly.to_start();
+        let model = Model::new(mechanism, &scene.masses, &start, &mechanism.reactions())
+            .and_then(|model| match by {
+                By::Reduced => Ok(model),
+                By::States => Ok(model
+                    .with_loads(mechanism, scene.loads.clone())
+                    .expect("loads")),
+            })
+            .unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+        let positions = positions(&scene, model.plan());
+        let (at_start, frames) = walked(&scene, model.plan(), &positions);
+        let mut machine = Self {
+            name: scene.name.clone(),
+            by,
+            scene,
+            model,
+            positions,
+            frames,
+            start: at_start,
+            clean: Vec::new(),
+            clean_states: Vec::new(),
+        };
+        if by == By::States {
+            machine.clean_states = machine.states(None).expect("states");
+        }
+        machine.clean = machine.answers(None).expect("answers");
+        machine
+    }
+
+    /// Every place that an evaluation meets.
+    pub(crate) fn places(&self) -> BTreeSet<Place> {
+        noting(|| self.answers(None)).1
+    }
+
+    /// How far a fault moves the answers, relative to the largest of each kind; none where there is
+    /// no answer at all.
+    pub(crate) fn moved(&self, fault: Fault) -> Option<f64> {
+        let answers = self.answers(fault)?;
+        let mut worst = 0.0_f64;
+        for (clean, found) in self.clean.iter().zip(&answers) {
+            let largest = clean.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+            for (c, f) in clean.iter().zip(found) {
+                if !f.is_finite() {
+                    return None;
+                }
+                if f != c {
+                    worst = worst.max((f - c).abs() / largest.max(f64::MIN_POSITIVE));
+                }
+            }
+        }
+        Some(worst)
+    }
+
+    /// What the truths say.
+    pub(crate) fn judge(&self, fault: Fault) -> Verdict {
+        match self.by {
+            By::Reduced => {
+                let case = Case {
+                    mechanism: &self.scene.mechanism,
+                    masses: &self.scene.masses,
+                    range: self.model.plan().range(),
+                    positions: self.positions.iter().map(|q| q[0]).collect(),
+                };
+                let subject = Slipping {
+                    machine: self,
+                    fault,
+                };
+                Verdict::of(&verify_all(&case, &subject, &[]))
+            }
+            By::States => match self.states(fault) {
+                None => Verdict::default(),
+                Some(states) => Verdict::of(&judge_states(
+                    &self.scene.mechanism,
+                    &self.scene.masses,
+                    &self.start,
+                    &states,
+                )),
+            },
+        }
+    }
+
+    fn answers(&self, fault: Fault) -> Option<Answers> {
+        match self.by {
+            By::Reduced => {
+                let subject = Slipping {
+                    machine: self,
+                    fault,
+                };
+                let (mut poses, mut m, mut slope) = (Vec::new(), Vec::new(), Vec::new());
+                let (mut a, mut b, mut acts) = (Vec::new(), Vec::new(), Vec::new());
+                for (q, k) in self.positions.iter().zip(0..) {
+                    let [v, r] = [SPEEDS[k][0], RATES[k][0]];
+                    poses.extend(subject.poses(q[0]).ok()?.into_iter().flatten());
+                    let at = subject.coefficients(q[0]).ok()?;
+                    m.push(at.m);
+                    slope.push(at.half_dm);
+                    a.extend(at.a);
+                    b.extend(at.b);
+                    let done = subject.actions(q[0], v, r).ok()?;
+                    acts.extend(done.reactions);
+                    acts.push(done.tau);
+                }
+                Some(vec![poses, m, slope, a, b, acts])
+            }
+            By::States => {
+                let states = self.states(fault)?;
+                let all = |of: fn(&State) -> &Vec<[f64; 3]>| {
+                    states.iter().flat_map(|s| of(s).iter().flatten().copied()).collect()
+                };
+                let acts = states.iter().flat_map(|s| s.reactions.iter().chain(&s.tau).copied());
+                Some(vec![
+                    all(|s| &s.bodies),
+                    all(|s| &s.velocity),
+                    all(|s| &s.acceleration),
+                    acts.collect(),
+                ])
+            }
+        }
+    }
+
+    /// The states under the loads. What the loads do is told from the right poses and magnitudes.
+    fn states(&self, fault: Fault) -> Option<Vec<State>> {
+        let mut work = self.model.workspace::<Watched>();
+        let mut actions = self.model.actions();
+        let n = self.model.plan().actuators();
+        let mut states = Vec::new();
+        for (k, q) in self.positions.iter().enumerate() {
+            let t = 0.3 + 0.4 * k as f64;
+            let [q_dot, q_ddot] = [&SPEEDS[k][..n], &RATES[k][..n]];
+            let done = slipping(fault, || {
+                let lifted = |values: &[f64]| values.iter().map(|&v| Watched(v)).collect::<Vec<_>>();
+                let (q, v, a) = (lifted(q), lifted(q_dot), lifted(q_ddot));
+                self.model.kinetostatics(t, &q, &v, &a, &mut work, &mut actions)
+            });
+            done.ok()?;
+            let state = slipping(fault, || self.state(t, k, &work, &actions));
+            states.push(state);
+        }
+        Some(states)
+    }
+
+    fn state(
+        &self,
+        t: f64,
+        k: usize,
+        work: &Workspace<Watched>,
+        actions: &Kinetostatic<Watched>,
+    ) -> State {
+        let (mechanism, n) = (&self.scene.mechanism, self.model.plan().actuators());
+        let states = work.states();
+        let mut bodies = self.model.plan().body_frames(mechanism, &plain(self.model.plan(), &work.pose));
+        for (frame, right) in bodies.iter_mut().zip(&self.frames[k]) {
+            frame[2] += ((right[2] - frame[2]) / TAU).round() * TAU;
+        }
+        let of = |b: usize| (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
+        let (mut velocity, mut acceleration) = (Vec::new(), Vec::new());
+        for b in 0..bodies.len() {
+            let (body, origin) = of(b);
+            velocity.push([origin.velocity.x, origin.velocity.y, body.spin].map(|v| v.0));
+            let [x, y] = [origin.acceleration.x, origin.acceleration.y];
+            acceleration.push([x, y, body.spin_rate].map(|v| v.0));
+        }
+        let loads = match self.clean_states.get(k) {
+            Some(clean) => clean.loads.clone(),
+            None => {
+                let loads = self.scene.loads.iter().zip(&work.loads().magnitude);
+                let acts = loads.filter_map(|(load, magnitude)| {
+                    let masses = &self.scene.masses;
+                    load_acts(&load.kind, magnitude.0, mechanism.ground, masses, &bodies, &velocity)
+                });
+                acts.flatten().collect()
+            }
+        };
+        State {
+            t,
+            q: self.positions[k].clone(),
+            q_dot: SPEEDS[k][..n].to_vec(),
+            q_ddot: RATES[k][..n].to_vec(),
+            bodies,
+            velocity,
+            acceleration,
+            reactions: actions.reactions.iter().map(|r| r.0).collect(),
+            tau: actions.tau.iter().map(|r| r.0).collect(),
+            loads,
+        }
+    }
+}
+
+/// The reduced model of a machine, evaluated in watched numbers.
+struct Slipping<'a> {
+    machine: &'a Machine,
+    fault: Fault,
+}
+
+impl Subject for Slipping<'_> {
+    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+        let Machine { model, scene, .. } = self.machine;
+        let mut pose = model.plan().pose();
+        slipping(self.fault, || model.plan().place(&[Watched(q)], &mut pose)).map_err(refused(q))?;
+        Ok(model.plan().body_frames(&scene.mechanism, &plain(model.plan(), &pose)))
+    }
+
+    fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
+        let model = &self.machine.model;
+        let (mut work, mut at) = (model.workspace(), model.coefficients());
+        slipping(self.fault, || model.reduce(Watched(q), &mut work, &mut at)).map_err(refused(q))?;
+        Ok(Coefficients {
+            m: at.m.0,
+            half_dm: at.half_dm.0,
+            a: at.a.iter().map(|v| v.0).collect(),
+            b: at.b.iter().map(|v| v.0).collect(),
+        })
+    }
+
+    fn actions(&self, q: f64, q_dot: f64, q_ddot: f64) -> Result<Actions, SubjectError> {
+        let model = &self.machine.model;
+        let (mut work, mut actions) = (model.workspace(), model.actions());
+        let [at, v, a] = [q, q_dot, q_ddot].map(|v| [Watched(v)]);
+        slipping(self.fault, || model.act(&at, &v, &a, &mut work, &mut actions)).map_err(refused(q))?;
+        Ok(Actions {
+            tau: actions.tau[0].0,
+            reactions: actions.reactions.iter().map(|v| v.0).collect(),
+        })
+    }
+}
+
+fn refused<E: std::fmt::Display>(q: f64) -> impl Fn(E) -> SubjectError {
+    move |e| SubjectError {
+        q,
+        message: e.to_string(),
+    }
+}
+
+/// A pose in plain numbers, for what only reads positions.
+fn plain(plan: &Plan, pose: &Pose<Watched>) -> Pose<f64> {
+    let mut out = plan.pose::<f64>();
+    let numbers = |to: &mut Vec<f64>, from: &[Watched]| {
+        to.clear();
+        to.extend(from.iter().map(|v| v.0));
+    };
+    let vectors = |to: &mut Vec<Vec2>, from: &[Vec2<Watched>]| {
+        to.clear();
+        to.extend(from.iter().map(|v| dwell_geometry::vec2(v.x.0, v.y.0)));
+    };
+    numbers(&mut out.q, &pose.q);
+    vectors(&mut out.turn, &pose.turn);
+    numbers(&mut out.angle, &pose.angle);
+    vectors(&mut out.arm, &pose.arm);
+    numbers(&mut out.slide, &pose.slide);
+    numbers(&mut out.travel, &pose.travel);
+    out
+}
+
+/// Some positions inside the range, or near the start where there are several actuators.
+fn positions(scene: &Scene, plan: &Plan) -> Vec<Vec<f64>> {
+    let start = plan.start();
+    if start.len() > 1 {
+        let near = |k: usize| {
+            let beside = |(i, q): (usize, &f64)| {
+                let by = if plan.is_angle(i) { 0.1 } else { 0.01 };
+                q + by * (k + 1) as f64 * if i % 2 == 0 { 1.0 } else { -1.0 }
+            };
+            start.iter().enumerate().map(beside).collect()
+        };
+        return (0..POSITIONS).map(near).collect();
+    }
+    let range = match (plan.range().limits(), &scene.sweep) {
+        (_, Some(sweep)) if sweep.range.is_some() => {
+            let [low, high] = sweep.range.unwrap_or_default();
+            dwell_geometry::Range::Between(low, high)
+        }
+        (Some((low, high)), _) => {
+            let margin = MARGIN * (high - low);
+            dwell_geometry::Range::Between(low + margin, high - margin)
+        }
+        (None, _) => dwell_geometry::Range::Full,
+    };
+    spread(range, POSITIONS).into_iter().map(|q| vec![q]).collect()
+}
+
+/// The frames at the start and at some positions, whole turns counted on the way.
+fn walked(
+    scene: &Scene,
+    plan: &Plan,
+    positions: &[Vec<f64>],
+) -> (Vec<[f64; 3]>, Vec<Vec<[f64; 3]>>) {
+    let mut pose = plan.pose::<f64>();
+    let mut at = plan.start().to_vec();
+    plan.place(&at, &mut pose).expect("a start");
+    let first = plan.body_frames(&scene.mechanism, &pose);
+    let (mut frames, mut all) = (first.clone(), Vec::new());
+    for to in positions {
+        let far = at.iter().zip(to).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
+        let steps = (far / STRIDE).ceil().max(1.0);
+        for k in 1..=steps as usize {
+            let part = k as f64 / steps;
+            let q: Vec<f64> = at.iter().zip(to).map(|(a, b)| a + part * (b - a)).collect();
+            plan.place(&q, &mut pose).expect("a pose");
+            for (frame, next) in frames.iter_mut().zip(plan.body_frames(&scene.mechanism, &pose)) {
+                let turns = ((frame[2] - next[2]) / TAU).round();
+                *frame = [next[0], next[1], next[2] + turns * TAU];
+            }
+        }
+        at.clone_from(to);
+        all.push(frames.clone());
+    }
+    (first, all)
+}
