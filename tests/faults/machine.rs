@@ -185,7 +185,7 @@ impl Machine {
             let t = 0.3 + 0.4 * k as f64;
             let [q_dot, q_ddot] = [&SPEEDS[k][..n], &RATES[k][..n]];
             let done = slipping(fault, || {
-                let lifted = |values: &[f64]| values.iter().map(|&v| Watched(v)).collect::<Vec<_>>();
+                let lifted = |values: &[f64]| values.iter().map(|&v| Watched::new(v)).collect::<Vec<_>>();
                 let (q, v, a) = (lifted(q), lifted(q_dot), lifted(q_ddot));
                 self.model.kinetostatics(t, &q, &v, &a, &mut work, &mut actions)
             });
@@ -253,14 +253,14 @@ impl Subject for Slipping<'_> {
     fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
         let Machine { model, scene, .. } = self.machine;
         let mut pose = model.plan().pose();
-        slipping(self.fault, || model.plan().place(&[Watched(q)], &mut pose)).map_err(refused(q))?;
+        slipping(self.fault, || model.plan().place(&[Watched::new(q)], &mut pose)).map_err(refused(q))?;
         Ok(model.plan().body_frames(&scene.mechanism, &plain(model.plan(), &pose)))
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
         let model = &self.machine.model;
         let (mut work, mut at) = (model.workspace(), model.coefficients());
-        slipping(self.fault, || model.reduce(Watched(q), &mut work, &mut at)).map_err(refused(q))?;
+        slipping(self.fault, || model.reduce(Watched::new(q), &mut work, &mut at)).map_err(refused(q))?;
         Ok(Coefficients {
             m: at.m.0,
             half_dm: at.half_dm.0,
@@ -272,7 +272,7 @@ impl Subject for Slipping<'_> {
     fn actions(&self, q: f64, q_dot: f64, q_ddot: f64) -> Result<Actions, SubjectError> {
         let model = &self.machine.model;
         let (mut work, mut actions) = (model.workspace(), model.actions());
-        let [at, v, a] = [q, q_dot, q_ddot].map(|v| [Watched(v)]);
+        let [at, v, a] = [q, q_dot, q_ddot].map(|v| [Watched::new(v)]);
         slipping(self.fault, || model.act(&at, &v, &a, &mut work, &mut actions)).map_err(refused(q))?;
         Ok(Actions {
             tau: actions.tau[0].0,

@@ -19,8 +19,10 @@ fn main() {
     let clock = Instant::now();
     let mut names: Vec<String> = std::fs::read_dir(home.join("validation")).expect("x").map(|e| e.expect("e").file_name().into_string().expect("s")).collect();
     names.sort();
-    let machines: Vec<Machine> = names.par_iter().flat_map_iter(|name| {
-        let scene = Scene::read(home.join("validation").join(name).join("scene.toml")).expect("scene");
+    let mut paths: Vec<std::path::PathBuf> = names.iter().map(|n| home.join("validation").join(n).join("scene.toml")).collect();
+    for e in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("faults/scenes")).expect("x") { paths.push(e.expect("e").path()); }
+    let machines: Vec<Machine> = paths.par_iter().flat_map_iter(|path| {
+        let scene = Scene::read(path).expect("scene");
         let n = scene.mechanism.actuators.len();
         let mut all = Vec::new();
         if n == 1 { all.push(Machine::new(scene.clone(), By::Reduced)); }

@@ -95,7 +95,12 @@ pub(crate) struct Place {
     pub(crate) line: u32,
     pub(crate) column: u32,
     pub(crate) operation: Operation,
+    /// Which one of a chain, such as the second difference of a − b − c: they begin in one place.
+    pub(crate) link: u8,
 }
+
+/// Links of a chain that are told apart; loops go on and on.
+const MOST_LINKS: u8 = 3;
 
 thread_local! {
     /// The place that slips in this thread, and how.
@@ -119,17 +124,27 @@ pub(crate) fn noting<R>(act: impl FnOnce() -> R) -> (R, BTreeSet<Place>) {
     (done, MET.take().unwrap_or_default())
 }
 
-/// How an operation called from here slips, if it does.
+/// How an operation called from here on this first term slips, if it does, and where it comes from.
 #[track_caller]
-fn slip(operation: Operation) -> Option<Slip> {
+fn slip(operation: Operation, first: Origin) -> (Option<Slip>, Origin) {
     let at = Location::caller();
+    let mut origin = Origin {
+        line: at.line(),
+        column: at.column(),
+        operation: Some(operation),
+        link: 0,
+    };
+    if (first.line, first.column, first.operation) == (origin.line, origin.column, origin.operation) {
+        origin.link = (first.link + 1).min(MOST_LINKS);
+    }
     let here = || Place {
         file: at.file(),
         line: at.line(),
         column: at.column(),
         operation,
+        link: origin.link,
     };
-    match SLIPPING.get() {
+    let slip = match SLIPPING.get() {
         Some((place, slip)) => {
             let same = place.line == at.line() && place.operation == operation;
             (same && place == here()).then_some(slip)
@@ -138,22 +153,50 @@ fn slip(operation: Operation) -> Option<Slip> {
             MET.with_borrow_mut(|met| met.as_mut().map(|met| met.insert(here())));
             None
         }
-    }
+    };
+    (slip, origin)
+}
+
+/// The operation that a number comes from.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Origin {
+    line: u32,
+    column: u32,
+    operation: Option<Operation>,
+    link: u8,
 }
 
 /// A plain number whose operations are watched.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct Watched(pub(crate) f64);
+pub(crate) struct Watched(pub(crate) f64, Origin);
+
+impl Watched {
+    pub(crate) fn new(value: f64) -> Self {
+        Self(value, Origin::default())
+    }
+}
 
 /// A result that may lose its sign, its size or itself.
-fn spoilt(value: f64, slip: Option<Slip>) -> Watched {
-    Watched(match slip {
+fn spoilt(value: f64, (slip, origin): (Option<Slip>, Origin)) -> Watched {
+    let value = match slip {
         Some(Slip::Sign) => -value,
         Some(Slip::Nothing) => 0.0,
         Some(Slip::Twice) => 2.0 * value,
         Some(Slip::Half) => 0.5 * value,
         _ => value,
-    })
+    };
+    Watched(value, origin)
+}
+
+/// A sum of two terms, one of which may lose its sign or itself.
+fn summed(first: f64, second: f64, (slip, origin): (Option<Slip>, Origin)) -> Watched {
+    let value = match slip {
+        Some(Slip::Sign) => first - second,
+        Some(Slip::First) => second,
+        Some(Slip::Second) => first,
+        _ => first + second,
+    };
+    Watched(value, origin)
 }
 
 impl Scalar for Watched {
@@ -162,35 +205,36 @@ impl Scalar for Watched {
     fn lift(value: f64) -> Self {
         // Nothing can go wrong with nothing.
         if value == 0.0 {
-            return Self(0.0);
+            return Self::new(0.0);
         }
-        spoilt(value, slip(Operation::Constant))
+        spoilt(value, slip(Operation::Constant, Origin::default()))
     }
     fn value(self) -> f64 {
         self.0
     }
     #[track_caller]
     fn sqrt(self) -> Self {
-        match slip(Operation::Root) {
-            Some(Slip::Second) => self,
-            other => spoilt(self.0.sqrt(), other),
+        match slip(Operation::Root, Origin::default()) {
+            (Some(Slip::Second), origin) => Self(self.0, origin),
+            slip => spoilt(self.0.sqrt(), slip),
         }
     }
     #[track_caller]
     fn sin_cos(self) -> (Self, Self) {
         let (sin, cos) = self.0.sin_cos();
-        match slip(Operation::Direction) {
-            Some(Slip::Swapped) => (Self(cos), Self(sin)),
-            other => (spoilt(sin, other), Self(cos)),
+        match slip(Operation::Direction, Origin::default()) {
+            (Some(Slip::Swapped), origin) => (Self(cos, origin), Self(sin, origin)),
+            slip => (spoilt(sin, slip), Self(cos, slip.1)),
         }
     }
     #[track_caller]
     fn atan2(self, other: Self) -> Self {
-        spoilt(self.0.atan2(other.0), slip(Operation::Angle))
+        let angle = self.0.atan2(other.0);
+        spoilt(angle, slip(Operation::Angle, Origin::default()))
     }
     #[track_caller]
     fn through(self, derivatives: &[f64; 4]) -> Self {
-        spoilt(derivatives[0], slip(Operation::Law))
+        spoilt(derivatives[0], slip(Operation::Law, Origin::default()))
     }
 }
 
@@ -198,12 +242,7 @@ impl Add for Watched {
     type Output = Self;
     #[track_caller]
     fn add(self, other: Self) -> Self {
-        Self(match slip(Operation::Sum) {
-            Some(Slip::Sign) => self.0 - other.0,
-            Some(Slip::First) => other.0,
-            Some(Slip::Second) => self.0,
-            _ => self.0 + other.0,
-        })
+        summed(self.0, other.0, slip(Operation::Sum, self.1))
     }
 }
 
@@ -211,12 +250,7 @@ impl Sub for Watched {
     type Output = Self;
     #[track_caller]
     fn sub(self, other: Self) -> Self {
-        Self(match slip(Operation::Difference) {
-            Some(Slip::Sign) => self.0 + other.0,
-            Some(Slip::First) => -other.0,
-            Some(Slip::Second) => self.0,
-            _ => self.0 - other.0,
-        })
+        summed(self.0, -other.0, slip(Operation::Difference, self.1))
     }
 }
 
@@ -224,7 +258,7 @@ impl Mul for Watched {
     type Output = Self;
     #[track_caller]
     fn mul(self, other: Self) -> Self {
-        spoilt(self.0 * other.0, slip(Operation::Product))
+        spoilt(self.0 * other.0, slip(Operation::Product, self.1))
     }
 }
 
@@ -232,9 +266,9 @@ impl Div for Watched {
     type Output = Self;
     #[track_caller]
     fn div(self, other: Self) -> Self {
-        match slip(Operation::Quotient) {
-            Some(Slip::Swapped) => Self(self.0 * other.0),
-            other_slip => spoilt(self.0 / other.0, other_slip),
+        match slip(Operation::Quotient, self.1) {
+            (Some(Slip::Swapped), origin) => Self(self.0 * other.0, origin),
+            slip => spoilt(self.0 / other.0, slip),
         }
     }
 }
@@ -243,30 +277,22 @@ impl Neg for Watched {
     type Output = Self;
     #[track_caller]
     fn neg(self) -> Self {
-        spoilt(-self.0, slip(Operation::Sign))
+        spoilt(-self.0, slip(Operation::Sign, Origin::default()))
     }
 }
+
+// What adds to itself in a loop is one term, however often it goes round: no chain.
 
 impl AddAssign for Watched {
     #[track_caller]
     fn add_assign(&mut self, other: Self) {
-        *self = Self(match slip(Operation::Sum) {
-            Some(Slip::Sign) => self.0 - other.0,
-            Some(Slip::First) => other.0,
-            Some(Slip::Second) => self.0,
-            _ => self.0 + other.0,
-        });
+        *self = summed(self.0, other.0, slip(Operation::Sum, Origin::default()));
     }
 }
 
 impl SubAssign for Watched {
     #[track_caller]
     fn sub_assign(&mut self, other: Self) {
-        *self = Self(match slip(Operation::Difference) {
-            Some(Slip::Sign) => self.0 + other.0,
-            Some(Slip::First) => -other.0,
-            Some(Slip::Second) => self.0,
-            _ => self.0 - other.0,
-        });
+        *self = summed(self.0, -other.0, slip(Operation::Difference, Origin::default()));
     }
 }

@@ -141,7 +141,8 @@ impl<T: Scalar> AddAssign for Vec2<T> {
     #[inline]
     #[track_caller]
     fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
+        self.x += o.x;
+        self.y += o.y;
     }
 }
 
@@ -149,6 +150,7 @@ impl<T: Scalar> SubAssign for Vec2<T> {
     #[inline]
     #[track_caller]
     fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
+        self.x -= o.x;
+        self.y -= o.y;
     }
 }
