@@ -52,7 +52,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             cost("Time", "time per pose", "µs", times),
             accuracy(),
         ],
-    };
+..Figure::default()
+};
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../reports");
     std::fs::create_dir_all(&folder)?;
     std::fs::write(folder.join("size.png"), png(&figure)?)?;

@@ -83,7 +83,10 @@ pub(crate) fn ticks_up(span: &Span, length: f64) -> Ticks {
 /// Room a vertical axis needs beside the plot, if its label has `room` upwards.
 pub(crate) fn side_room(axis: &Axis, ticks: &Ticks, room: f64) -> f64 {
     let wide = ticks.labels.iter().map(|label| width(label, TICK, false));
-    TICK_LENGTH + TICK_GAP + wide.fold(0.0, f64::max) + label_room(&words::up(axis, ticks, room))
+    TICK_LENGTH
+        + TICK_GAP
+        + wide.fold(0.0, f64::max)
+        + label_room(&words::label_within(axis, ticks, room))
 }
 
 /// Room the horizontal axis needs below the plot; without words only that for its ticks, and for half a label of the
@@ -194,7 +197,7 @@ pub(crate) fn side(
         }
     }
     // Lines that read upwards follow each other to the right.
-    let words = words::up(axis, look.ticks, look.room);
+    let words = words::label_within(axis, look.ticks, look.room);
     let left = if look.right {
         cell.x1 - words.height()
     } else {

@@ -1,5 +1,6 @@
-//! A figure as plain data: panels on one page, each a chart or a drawing.
+//! A figure as plain data: panels on one page, each a chart, a drawing or a matrix of cells.
 
+use crate::grid::Grid;
 use crate::shape::Drawing;
 
 /// One page of panels, written as one PNG.
@@ -11,6 +12,9 @@ pub struct Figure {
     pub title: String,
     /// Words at the foot of the page; wrapped, and split at `\n`.
     pub caption: String,
+    /// Where the figure comes from: version, scene and its hash, method; small and grey under the caption. What draws many
+    /// figures sets it once for all of them.
+    pub provenance: String,
     /// Panels in a row (at least one); a last row that is not full is stretched over the page.
     pub columns: usize,
     /// The panels, row by row.
@@ -27,6 +31,14 @@ pub enum Panel {
     /// Charts one below another over one horizontal axis, that of the first: a position, its speed and its acceleration, or
     /// the forces along a link.
     Stack(Vec<Chart>),
+    /// A matrix of coloured cells; best alone on its page.
+    Grid(Grid),
+}
+
+impl From<Grid> for Panel {
+    fn from(grid: Grid) -> Self {
+        Self::Grid(grid)
+    }
 }
 
 impl From<Vec<Chart>> for Panel {

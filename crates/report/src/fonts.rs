@@ -91,6 +91,30 @@ pub(crate) fn wrapped(text: &str, size: f64, bold: bool, room: f64) -> Vec<Strin
     lines
 }
 
+/// The same, but a word that is too wide is broken too: after a mark such as a hyphen if there is one, else anywhere.
+pub(crate) fn broken(text: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
+    let mut lines = Vec::new();
+    for line in wrapped(text, size, bold, room) {
+        let mut rest = line.as_str();
+        while width(rest, size, bold) > room {
+            let ends = rest.char_indices().map(|(at, c)| (at + c.len_utf8(), c));
+            let fits = |end: &(usize, char)| width(&rest[..end.0], size, bold) <= room;
+            let fitting: Vec<(usize, char)> = ends.take_while(fits).collect();
+            let marked = fitting.iter().rfind(|(_, c)| "-_/.,:=·".contains(*c));
+            // A room too narrow for a letter still gets one.
+            let first = rest.chars().next().map_or(rest.len(), char::len_utf8);
+            let end = marked.or(fitting.last()).map_or(first, |(end, _)| *end);
+            if end >= rest.len() {
+                break;
+            }
+            lines.push(rest[..end].to_owned());
+            rest = &rest[end..];
+        }
+        lines.push(rest.to_owned());
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,5 +151,16 @@ mod tests {
         assert!(lines.len() > 2);
         assert!(lines.iter().all(|line| width(line, 27.0, false) <= 400.0));
         assert_eq!(lines.join(" "), text.replace('\n', " "));
+    }
+
+    #[test]
+    fn long_words_are_broken_after_a_mark_and_lose_no_letter() {
+        ready().unwrap();
+        let text = "reaction-of-the-second-joint φφφφφφφφφφφφφφφφφφφφφφ";
+        let lines = broken(text, 27.0, false, 200.0);
+        assert!(lines.iter().all(|line| width(line, 27.0, false) <= 200.0));
+        assert!(lines[0].ends_with('-'), "{lines:?}");
+        assert_eq!(lines.concat(), text.replace(' ', ""));
+        assert_eq!(broken("abc", 27.0, false, 1.0), ["a", "b", "c"]);
     }
 }

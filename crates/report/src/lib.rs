@@ -2,7 +2,7 @@
 //!
 //! Everything here is plain data with public fields and a writer for it:
 //!
-//! - [`Figure`] (charts, stacks of charts and drawings on one page) → [`png()`]
+//! - [`Figure`] (charts, stacks of charts, drawings and grids on one page) → [`png()`]
 //! - [`Animation`] (drawings one after another) → [`Animation::gif`]
 //! - [`Table`] → [`Table::csv`] to read, [`Table::npz`] to compute with: both give back every bit
 //! - named matrices → [`npz()`]
@@ -21,6 +21,7 @@
 //! | cost over size, error over step | [`Axis::log`] both ways, [`Stroke::LineAndPoints`] and a [`Mark::Slope`] |
 //! | a path, a mechanism in one or more positions | [`Drawing`], whose axes have equal scales |
 //! | a mechanism that moves | [`Animation`] |
+//! | many cases under many checks | [`Grid`], cells coloured by a value, with a few letters each |
 //!
 //! The example `gallery` draws one of each. Six colours, ink and grey tell eight curves apart, also for colour-blind
 //! readers; from the seventh on take [`Stroke::Dashed`] too.
@@ -33,6 +34,7 @@ mod animation;
 mod axes;
 mod canvas;
 mod chart;
+mod color_bar;
 mod curve;
 mod drawing;
 mod error;
@@ -40,8 +42,12 @@ mod extent;
 mod figure;
 mod files;
 mod fonts;
+mod grid;
+mod header;
+mod heat;
 mod json;
 mod labels;
+mod lattice;
 mod legend;
 mod log_ticks;
 mod markdown;
@@ -67,6 +73,7 @@ pub use animation::Animation;
 pub use error::ReportError;
 pub use figure::{Axis, Chart, Figure, Mark, Paint, Panel, Scale, Series, Stroke};
 pub use files::Files;
+pub use grid::{Cell, Grid, Group, Row};
 pub use json::json;
 pub use markdown::{Block, Document, stable};
 pub use npz::{Array, npz};

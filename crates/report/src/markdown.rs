@@ -181,6 +181,7 @@ mod tests {
             tolerance: 1e-12,
             why: "rounding of\na sum".to_owned(),
             pass,
+            ..Finding::default()
         }
     }
 

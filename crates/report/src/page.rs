@@ -5,10 +5,11 @@ use crate::chart::{self, Sheet};
 use crate::drawing::{self, Stage};
 use crate::figure::{Figure, Panel};
 use crate::fonts::wrapped;
+use crate::lattice::Lattice;
 use crate::rect::{Insets, Rect};
 use crate::shape::Drawing;
 use crate::stack::Stack;
-use crate::theme::{CAPTION, CAPTION_GREY, INK, TITLE, WHITE};
+use crate::theme::{CAPTION, CAPTION_GREY, INK, PROVENANCE, TITLE, WHITE};
 use std::slice::from_ref;
 
 /// Around the page.
@@ -32,6 +33,7 @@ enum Ready<'a> {
     Chart(Sheet<'a>),
     Drawing(&'a Drawing),
     Stack(Stack<'a>),
+    Grid(Box<Lattice<'a>>),
 }
 
 impl Ready<'_> {
@@ -40,6 +42,8 @@ impl Ready<'_> {
             Self::Chart(sheet) => sheet.insets(cell),
             Self::Drawing(drawing) => drawing::insets(from_ref(drawing), cell),
             Self::Stack(stack) => stack.insets(cell),
+            // Its cells line up with nothing on the page.
+            Self::Grid(_) => Insets::default(),
         }
     }
 
@@ -50,6 +54,7 @@ impl Ready<'_> {
                 Stage::new(from_ref(drawing), cell, insets).draw(canvas, drawing, cell)
             }
             Self::Stack(stack) => stack.draw(canvas, cell, insets),
+            Self::Grid(lattice) => lattice.draw(canvas, cell),
         }
     }
 }
@@ -68,7 +73,8 @@ pub(crate) struct Page<'a> {
     pub(crate) width: f64,
     pub(crate) height: f64,
     title: Vec<String>,
-    caption: Vec<String>,
+    /// Lines at the foot, with size and baseline.
+    foot: Vec<(String, f64, f64)>,
     panels: Vec<Placed<'a>>,
 }
 
@@ -83,7 +89,6 @@ impl<'a> Page<'a> {
             CELL * columns as f64 + gaps
         };
         let title = wrapped(&figure.title, TITLE, true, inner);
-        let caption = wrapped(&figure.caption, CAPTION, false, inner);
         let mut y = MARGIN;
         if !title.is_empty() {
             y += title.len() as f64 * TITLE_LEADING * TITLE + 0.55 * TITLE;
@@ -108,6 +113,7 @@ impl<'a> Page<'a> {
                     Panel::Chart(chart) => Ready::Chart(Sheet::new(chart)),
                     Panel::Drawing(drawing) => Ready::Drawing(drawing),
                     Panel::Stack(charts) => Ready::Stack(Stack::new(charts)),
+                    Panel::Grid(grid) => Ready::Grid(Box::new(Lattice::new(grid, width))),
                 };
                 panels.push(Placed {
                     panel,
@@ -118,15 +124,21 @@ impl<'a> Page<'a> {
             }
             y += height + ROW_GAP;
         }
-        y += caption.len() as f64 * CAPTION_LEADING * CAPTION;
-        if caption.is_empty() {
+        let mut foot = Vec::new();
+        for (words, size) in [(&figure.caption, CAPTION), (&figure.provenance, PROVENANCE)] {
+            for line in wrapped(words, size, false, inner) {
+                foot.push((line, size, y + 0.8 * size));
+                y += CAPTION_LEADING * size;
+            }
+        }
+        if foot.is_empty() {
             y -= ROW_GAP;
         }
         Self {
             width: inner + 2.0 * MARGIN,
             height: (y + 0.75 * MARGIN).ceil(),
             title,
-            caption,
+            foot,
             panels,
         }
     }
@@ -146,15 +158,9 @@ impl<'a> Page<'a> {
         for (placed, insets) in self.panels.iter().zip(self.aligned()) {
             placed.panel.draw(canvas, &placed.cell, insets)?;
         }
-        let lines = self.caption.len() as f64;
-        let mut baseline = self.height - 0.75 * MARGIN - (lines - 0.75) * CAPTION_LEADING * CAPTION;
-        for line in &self.caption {
-            canvas.text(
-                line,
-                [MARGIN, baseline],
-                Type::new(CAPTION, CAPTION_GREY, Align::Start),
-            )?;
-            baseline += CAPTION_LEADING * CAPTION;
+        for (line, size, baseline) in &self.foot {
+            let look = Type::new(*size, CAPTION_GREY, Align::Start);
+            canvas.text(line, [MARGIN, *baseline], look)?;
         }
         Ok(())
     }
@@ -203,5 +209,6 @@ fn wanted_height(panel: &Panel, width: f64, lone: bool, stretched: bool) -> f64 
         Panel::Chart(_) => chart::HEIGHT * width,
         Panel::Drawing(drawing) => drawing::height(from_ref(drawing), width).min(1000.0),
         Panel::Stack(charts) => Stack::new(charts).height(width),
+        Panel::Grid(grid) => Lattice::new(grid, width).height(),
     }
 }

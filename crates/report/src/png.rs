@@ -69,14 +69,15 @@ mod tests {
     use crate::canvas::FACTOR;
     use crate::figure::Paint;
     use crate::figure::{Axis, Chart, Mark, Panel, Scale, Series, Stroke};
+    use crate::grid::{Cell, Grid, Group, Row};
     use crate::rect::Rect;
     use crate::shape::{Drawing, Pen, Shape, Side};
     use proptest::prelude::*;
-    use resvg::usvg::{Group, Node, Tree};
+    use resvg::usvg::{self, Node, Tree};
 
     /// Every text of the page and where its letters are, in pixels.
     fn texts(figure: &Figure) -> (Rect, Vec<(String, Rect)>) {
-        fn collect(group: &Group, found: &mut Vec<(String, Rect)>) {
+        fn collect(group: &usvg::Group, found: &mut Vec<(String, Rect)>) {
             for node in group.children() {
                 match node {
                     Node::Group(group) => collect(group, found),
@@ -228,16 +229,48 @@ mod tests {
         })
     }
 
+    fn grid() -> impl Strategy<Value = Panel> {
+        let word = || "[A-Z]?[a-zφ½]{1,14}([-_ ][a-z]{1,12}){0,5}";
+        let cell = (
+            prop::option::of(-5.0..5.0f64),
+            "[0-9e−<. ]{0,7}|[a-z]{4,16}",
+            any::<bool>(),
+        );
+        let cell = cell.prop_map(|(value, text, failed)| Cell {
+            value,
+            text,
+            failed,
+        });
+        let cells = prop::collection::vec(prop::option::weighted(0.8, cell), 0..14);
+        let row = (word(), cells).prop_map(|(name, cells)| Row { name, cells });
+        let rows = prop_oneof![9 => prop::collection::vec(row.clone(), 0..8), 1 => prop::collection::vec(row, 40..60)];
+        let heading = prop_oneof![Just(String::new()), word()];
+        let group = (heading, rows).prop_map(|(heading, rows)| Group { heading, rows });
+        let title = prop_oneof![Just(String::new()), word()];
+        let columns = prop::collection::vec(word(), 0..14);
+        (title, columns, prop::collection::vec(group, 0..3), axis()).prop_map(
+            |(title, columns, groups, values)| {
+                Panel::Grid(Grid {
+                    title,
+                    columns,
+                    groups,
+                    values,
+                })
+            },
+        )
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(128))]
         #[test]
         fn no_text_is_cut_or_lies_on_another(
-            panels in prop::collection::vec(prop_oneof![3 => chart(6).prop_map(Panel::from), 1 => drawing(), 1 => stack()], 0..5),
+            panels in prop::collection::vec(prop_oneof![3 => chart(6).prop_map(Panel::from), 1 => drawing(), 1 => stack(), 1 => grid()], 0..5),
             columns in 0..4_usize,
             title in "[A-Z][a-z]{1,9}( [a-z]{1,9}){0,20}",
             caption in "([a-z]{1,9} ){0,60}",
+            provenance in "([a-z]{1,9} ){0,40}",
         ) {
-            let figure = Figure { name: String::new(), title, caption, columns, panels };
+            let figure = Figure { name: String::new(), title, caption, provenance, columns, panels };
             prop_assert_eq!(legible(&figure), Ok(()));
         }
     }

@@ -31,6 +31,7 @@ pub(crate) const LABEL: f64 = 30.0;
 pub(crate) const PANEL_TITLE: f64 = 31.0;
 pub(crate) const TITLE: f64 = 42.0;
 pub(crate) const CAPTION: f64 = 27.0;
+pub(crate) const PROVENANCE: f64 = 22.0;
 
 pub(crate) const CURVE: f64 = 4.2;
 pub(crate) const MARK: f64 = 2.6;
@@ -70,22 +71,22 @@ pub(crate) fn lightened(color: Rgb, lightness: f64) -> Rgb {
     })
 }
 
+/// Relative luminance (WCAG 2), 1 for white.
+pub(crate) fn luminance(color: Rgb) -> f64 {
+    let [r, g, b] = color.map(|c| {
+        let c = f64::from(c) / 255.0;
+        if c <= 0.03928 {
+            c / 12.92
+        } else {
+            ((c + 0.055) / 1.055).powf(2.4)
+        }
+    });
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Relative luminance (WCAG 2), 1 for white.
-    fn luminance(color: Rgb) -> f64 {
-        let [r, g, b] = color.map(|c| {
-            let c = f64::from(c) / 255.0;
-            if c <= 0.03928 {
-                c / 12.92
-            } else {
-                ((c + 0.055) / 1.055).powf(2.4)
-            }
-        });
-        0.2126 * r + 0.7152 * g + 0.0722 * b
-    }
 
     #[test]
     fn every_line_colour_stands_out_from_white() {

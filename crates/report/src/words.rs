@@ -68,8 +68,8 @@ pub(crate) fn across(axis: &Axis, ticks: &Ticks, cell: &Rect) -> Words {
     Words::new(&label(axis, ticks), LABEL, false, cell.width() - BESIDE)
 }
 
-/// The label of a vertical axis, with so much room.
-pub(crate) fn up(axis: &Axis, ticks: &Ticks, room: f64) -> Words {
+/// The label of a vertical axis or a colour bar, with so much room.
+pub(crate) fn label_within(axis: &Axis, ticks: &Ticks, room: f64) -> Words {
     Words::new(&label(axis, ticks), LABEL, false, room)
 }
 

@@ -1,6 +1,9 @@
 //! Figures as their readers get them: PNG files.
 
-use dwell_report::{Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Series, Shape, Stroke, png};
+use dwell_report::{
+    Axis, Cell, Chart, Drawing, Figure, Grid, Group, Paint, Panel, Pen, Row, Series, Shape, Stroke,
+    png,
+};
 use std::collections::BTreeMap;
 
 struct Picture {
@@ -74,6 +77,7 @@ fn page(columns: usize, charts: Vec<Chart>) -> Figure {
         caption: "Caption.".to_owned(),
         columns,
         panels,
+        ..Figure::default()
     }
 }
 
@@ -202,6 +206,57 @@ fn a_stack_is_one_panel_and_shows_every_chart() {
         ..page(1, vec![])
     };
     assert_eq!(Picture::of(&none).count(BLUE), 0);
+}
+
+fn grid(cells: Vec<Option<Cell>>) -> Picture {
+    let grid = Grid {
+        columns: vec!["a".to_owned(); 4],
+        groups: vec![Group {
+            rows: vec![Row::new("row", cells)],
+            ..Group::default()
+        }],
+        values: Axis::new("digits", "").within(0.0, 16.0),
+        ..Grid::default()
+    };
+    Picture::of(&Figure {
+        panels: vec![grid.into()],
+        ..Figure::default()
+    })
+}
+
+#[test]
+fn a_cell_has_the_colour_of_its_value_and_a_failed_one_a_vermilion_border() {
+    const DARKEST: [u8; 3] = [4, 42, 86];
+    const VERMILION: [u8; 3] = [213, 94, 0];
+    let low = grid(vec![Some(Cell::new(0.0, "0"))]);
+    let high = grid(vec![Some(Cell::new(16.0, "16"))]);
+    let beyond = grid(vec![Some(Cell::new(99.0, "16"))]);
+    // One of four columns of 1250 pixels, 38 high, less two digits.
+    assert!(high.count(DARKEST) > low.count(DARKEST) + 9000);
+    assert!(high.pixels == beyond.pixels);
+    assert_eq!(high.count(VERMILION), 0);
+    let failed = grid(vec![Some(Cell::new(16.0, "16").failed())]);
+    // The border of a cell and of its like in the key: five pixels wide around 300 by 38.
+    assert!(failed.count(VERMILION) > 2500);
+}
+
+#[test]
+fn what_does_not_apply_is_not_the_lowest_value_nor_a_cell_without_one() {
+    let absent = grid(vec![None; 4]);
+    assert!(absent.pixels == grid(vec![]).pixels);
+    let nothing = grid(vec![Some(Cell::words("")); 4]);
+    let nowhere = grid(vec![Some(Cell::new(f64::NAN, "")); 4]);
+    assert!(nothing.pixels == nowhere.pixels);
+    // The dash is the only grey ink of that kind; its edges are tints.
+    let grey = |picture: &Picture| picture.count([120, 120, 126]);
+    assert!(
+        grey(&absent) >= 4 && grey(&nothing) == 0,
+        "{}",
+        grey(&absent)
+    );
+    assert!(absent.pixels != nothing.pixels);
+    let lowest = grid(vec![Some(Cell::new(0.0, "")); 4]);
+    assert!(lowest.count([236, 243, 249]) > 30_000 && absent.count([236, 243, 249]) == 0);
 }
 
 #[test]

@@ -148,6 +148,7 @@ impl Channels {
             ),
             columns: 1,
             panels,
+            ..Figure::default()
         }
     }
 }

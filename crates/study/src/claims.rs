@@ -5,7 +5,7 @@ use crate::motion_error::explain_place;
 use dwell_geometry::{ActuatorId, BodyId, Vec2};
 use dwell_kinetostatics::{Actions, KinetostaticsError, Model, Workspace};
 use dwell_scene::{Place, Scene};
-use dwell_verify::{State, load_acts};
+use dwell_verify::{State, condition, load_acts};
 use std::f64::consts::TAU;
 
 /// Between two states no coordinate goes farther at once than this, rad, or this part of the size:
@@ -141,6 +141,20 @@ impl<'a> Claims<'a> {
         })
     }
 
+    /// The generalised inertias at the last state that was gone to, by unit runs, row by row.
+    pub(crate) fn inertias(&mut self) -> Vec<f64> {
+        let n = self.strides.len();
+        let mut run = self.model.actions();
+        let columns: Vec<Vec<f64>> = (0..n)
+            .map(|i| {
+                self.model.inertial(i, &mut self.work, &mut run);
+                run.tau.clone()
+            })
+            .collect();
+        let at = |k: usize| columns[k % n][k / n];
+        (0..n * n).map(at).collect()
+    }
+
     /// The frames of all bodies at a position.
     ///
     /// # Errors
@@ -148,6 +162,11 @@ impl<'a> Claims<'a> {
     pub(crate) fn frames_at(&mut self, q: &[f64]) -> Result<Vec<[f64; 3]>, StudyError> {
         self.walk(q)?;
         Ok(self.frames())
+    }
+
+    /// Condition number of the dense rows at the last state that was gone to.
+    pub(crate) fn condition(&self) -> f64 {
+        condition(&self.scene.mechanism, &self.frames())
     }
 
     /// The last state that was gone to.

@@ -7,7 +7,7 @@ use crate::multibody::{self, FreeRun};
 use crate::outcome::{Outcome, Progress, Step};
 use crate::reference::Reference;
 use crate::states::{self, Judged};
-use crate::validate::{STEPS, Validation};
+use crate::validate::{STEPS, Validation, reduced};
 use dwell_findings::all_pass;
 use dwell_report::{Block, Document, Files, json, png};
 use dwell_scene::Scene;
@@ -44,11 +44,21 @@ pub(crate) fn of_states(
             done: what,
         });
     };
-    let (judged, motion) = rayon::join(
-        || states::judge(scene, reference),
-        || multibody::judged(scene, reference),
+    let ((judged, motion), reduced) = rayon::join(
+        || {
+            rayon::join(
+                || states::judge(scene, reference),
+                || multibody::judged(scene, reference),
+            )
+        },
+        // m, half dm/dq, a and b do not depend on loads.
+        || match scene.mechanism.actuators.len() {
+            1 => reduced(scene, reference),
+            _ => Ok((Vec::new(), Vec::new())),
+        },
     );
-    let (mut judged, (run, of_motion)) = (judged?, motion?);
+    let (mut judged, (run, of_motion), (of_model, _)) = (judged?, motion?, reduced?);
+    judged.findings.extend(of_model);
     judged.findings.extend(of_motion);
     done("states");
     let mut pages = vec![

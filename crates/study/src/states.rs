@@ -8,7 +8,7 @@ use crate::reference::Reference;
 use dwell_findings::Finding;
 use dwell_geometry::Reaction;
 use dwell_scene::{Prescribed, Scene};
-use dwell_verify::{State, judge_states};
+use dwell_verify::{State, judge_energies, judge_states};
 use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -16,6 +16,8 @@ use std::path::Path;
 /// States along each motion, and positions in which it is drawn.
 const STATES: usize = 121;
 const FINE: usize = 721;
+/// States that are judged by kinetic energy, where each reaction costs some twenty closings.
+const OPENED: usize = 16;
 /// What is left out at a limit position, where everything grows, as a part of the range.
 const MARGIN: f64 = 0.02;
 
@@ -68,9 +70,10 @@ pub(crate) fn judge(scene: &Scene, reference: &Reference) -> Result<Judged, Stud
     };
     let asked: Vec<Vec<Ask>> = motions(&claims, STATES).collect();
     let drawn = asked.first().map_or(0, Vec::len);
-    let mut states = Vec::new();
+    let (mut states, mut inertias) = (Vec::new(), Vec::new());
     for ask in asked.into_iter().flatten().chain(reference.asks()) {
         states.push(claims.state(&ask)?);
+        inertias.push(claims.inertias());
     }
     let fine = motions(&claims, FINE).next();
     let mut frames = Vec::with_capacity(FINE);
@@ -78,7 +81,15 @@ pub(crate) fn judge(scene: &Scene, reference: &Reference) -> Result<Judged, Stud
         frames.push(claims.frames_at(&ask.q)?);
     }
     let start = claims.start().to_vec();
-    let mut findings = judge_states(&scene.mechanism, &scene.masses, &start, &states);
+    let (mechanism, masses) = (&scene.mechanism, &scene.masses);
+    let (some, of_some): (Vec<_>, Vec<_>) = opened(states.len())
+        .map(|k| (states[k].clone(), inertias[k].clone()))
+        .unzip();
+    let (mut findings, of_energy) = rayon::join(
+        || judge_states(mechanism, masses, &start, &states),
+        || judge_energies(mechanism, masses, &start, &some, &of_some),
+    );
+    findings.extend(of_energy);
     findings.extend(reference.findings(scene, &mut claims)?);
     Ok(Judged {
         start,
@@ -89,6 +100,12 @@ pub(crate) fn judge(scene: &Scene, reference: &Reference) -> Result<Judged, Stud
         shared: shared(scene, claims.model().plan()),
         findings,
     })
+}
+
+/// Which of so many states are opened: spread evenly, between round places.
+fn opened(count: usize) -> impl Iterator<Item = usize> {
+    let some = count.min(OPENED);
+    (0..some).map(move |k| (2 * k + 1) * count / (2 * some))
 }
 
 /// The prescribed motion.

@@ -79,7 +79,7 @@ pub fn validate(
         });
     };
     let (judged, rest) = rayon::join(
-        || judge(scene, &reference).inspect(|_| done("truths")),
+        || reduced(scene, &reference).inspect(|_| done("truths")),
         || rest(&prepared, &reference).inspect(|_| done("free motion")),
     );
     let ((mut findings, curves), (motion, calibrated, history)) = (judged?, rest?);
@@ -127,8 +127,8 @@ pub fn validate(
     })
 }
 
-/// The truths that need no motion, on every reaction of every joint.
-fn judge(
+/// The truths of the reduced model, which need no motion, on every reaction of every joint.
+pub(crate) fn reduced(
     scene: &Scene,
     reference: &Reference,
 ) -> Result<(Vec<Finding>, Vec<ErrorCurve>), StudyError> {

@@ -26,6 +26,8 @@ pub struct Site {
     pub noise: Coefficients,
     /// How much rounding may have moved the pose, relative to the mechanism's size.
     pub pose_noise: f64,
+    /// Condition number of the dense scaled rows.
+    pub condition: f64,
 }
 
 /// The largest coefficients of each unit over all positions, by the dense side.
@@ -83,11 +85,12 @@ impl<'a> Bench<'a> {
         if actuators != 1 {
             return Err(DenseError::Actuators { actuators });
         }
-        let mut dense = Dense::new(case.mechanism, case.masses)?;
-        // Gears mesh as the subject first shows them: from there on they must keep step.
-        if let Some(poses) = case.positions.first().and_then(|&q| subject.poses(q).ok()) {
-            dense.mesh(&poses)?;
-        }
+        let shown = case.positions.first().and_then(|&q| subject.poses(q).ok());
+        let dense = match shown {
+            None => Dense::new(case.mechanism, case.masses)?,
+            // Gears mesh as the subject first shows them: from there on they must keep step.
+            Some(poses) => Dense::meshed(case.mechanism, case.masses, &poses)?,
+        };
         let tried: Vec<_> = case
             .positions
             .par_iter()
@@ -204,6 +207,7 @@ impl Site {
         let unit_speeds = dense.unit_speeds(&closed);
         let exact = dense.coefficients(&closed, &unit_speeds);
         let (noise, pose_noise) = noise(dense, &closed, &exact, &unit_speeds).map_err(failed)?;
+        let condition = dense.condition(&closed.x);
         let moved: Vec<_> = start.iter().zip(&closed.x).map(|(s, x)| s - x).collect();
         let largest = poses
             .iter()
@@ -217,6 +221,7 @@ impl Site {
             exact,
             noise,
             pose_noise,
+            condition,
         })
     }
 

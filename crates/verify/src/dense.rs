@@ -146,6 +146,17 @@ impl Dense {
         Ok(dense)
     }
 
+    /// The same with its gears meshed as they stand there.
+    pub(crate) fn meshed(
+        mechanism: &Mechanism,
+        masses: &[Mass],
+        poses: &[[f64; 3]],
+    ) -> Result<Self, DenseError> {
+        let mut dense = Self::repeated(mechanism, masses, poses)?;
+        dense.mesh(poses)?;
+        Ok(dense)
+    }
+
     /// Rows of which none is made up of the others, the actuators' among them; by Gram and Schmidt,
     /// always with the one that is farthest from those before.
     fn independent(&self, poses: &[[f64; 3]]) -> Result<Vec<usize>, DenseError> {
@@ -275,6 +286,16 @@ impl Dense {
         Ok(x)
     }
 
+    /// Largest over smallest singular value of the scaled rows at the coordinates `x`; 1 where there is none.
+    pub(crate) fn condition(&self, x: &[f64]) -> f64 {
+        let values = self.scaled_jacobian(x).singular_values();
+        let values = values.unwrap_or_default();
+        match (values.first(), values.last()) {
+            (Some(largest), Some(smallest)) if *smallest > 0.0 => largest / smallest,
+            _ => 1.0,
+        }
+    }
+
     /// Where a point given in a body's own frame is in the plane, m.
     pub fn point(&self, closed: &Closed, body: usize, point: Vec2) -> Vec2 {
         let ground = self.bodies[self.mechanism.ground].shift;
@@ -288,6 +309,16 @@ impl Dense {
             vec2(x[c], x[c + 1]) + point.turn(Vec2::from_angle(x[c + 2]))
         })
     }
+}
+
+/// The condition number of the dense scaled rows of a mechanism, those of its joints and actuators, in the
+/// configuration with the frames `poses` of all bodies, m and rad: largest over smallest singular value. It
+/// says how many roundings a result may be off by. 1 where there is none.
+pub fn condition(mechanism: &Mechanism, poses: &[[f64; 3]]) -> f64 {
+    let masses = vec![Mass::default(); mechanism.bodies.len()];
+    let dense = Dense::of_any_shape(mechanism, &masses);
+    let at = |dense: Dense| Ok(dense.condition(&dense.start(poses)?));
+    dense.and_then(at).unwrap_or(1.0)
 }
 
 /// Any other length than one would scale a reaction silently.

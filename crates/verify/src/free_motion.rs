@@ -267,6 +267,7 @@ fn quadrature(case: &FreeMotionCase, turn: &Orbit) -> Option<Finding> {
         tolerance: 4e-14,
         why: "a spectral rule on an exact integrand leaves only the rounding of its sum".into(),
         pass: relative <= 4e-14,
+        ..Finding::default()
     })
 }
 
@@ -317,7 +318,9 @@ fn judge<R: Reduced>(
         worst: format!("t = {:.6} s", turn.period),
         tolerance: period,
         why: why.into(),
+        integrated: true,
         pass: relative <= period,
+        ..Finding::default()
     }];
     let worst = rung
         .drift_in_time
@@ -335,7 +338,9 @@ fn judge<R: Reduced>(
         worst: format!("t = {:.3} s", worst[0]),
         tolerance: energy,
         why: why.into(),
+        integrated: true,
         pass: worst[1] <= energy,
+        ..Finding::default()
     });
     let (mut speed, mut reaction) = ((0.0_f64, 0.0), (0.0_f64, 0.0, 0, 0.0));
     let mut eye = Eye::new(model);
@@ -361,7 +366,9 @@ fn judge<R: Reduced>(
         worst: format!("t = {:.3} s", speed.1),
         tolerance: energy,
         why: "the accuracy asked of the energy; the speed errs by half as much".into(),
+        integrated: true,
         pass: speed.0 <= energy * scales.speed,
+        ..Finding::default()
     });
     if let Some((name_k, unit)) = case.reactions.get(reaction.2) {
         findings.push(Finding {
@@ -378,7 +385,9 @@ fn judge<R: Reduced>(
             worst: format!("{name_k}, t = {:.3} s", reaction.3),
             tolerance: energy,
             why: "the accuracy asked of the energy, on which a reaction depends linearly".into(),
+            integrated: true,
             pass: reaction.0 <= energy,
+            ..Finding::default()
         });
     }
     Ok(findings)
@@ -420,7 +429,9 @@ fn convergence(slope: f64) -> Finding {
             "an integrator that obeys its tolerance has a slope near 1; its changes of order make \
               it wander, and below 0.6 it would not be following"
                 .into(),
+        integrated: true,
         pass: slope >= 0.6,
+        ..Finding::default()
     }
 }
 
@@ -481,5 +492,6 @@ fn jacobian<R: Reduced>(
               the eighth derivative of m, which is up to 1e6 times m where the inertia is sharp"
                 .into(),
         pass: relative <= 1e-9,
+        ..Finding::default()
     })
 }

@@ -15,6 +15,7 @@ pub(crate) struct Worst {
     unit: &'static str,
     place: String,
     own: f64,
+    condition: f64,
     met: usize,
     refusal: Option<String>,
 }
@@ -29,6 +30,8 @@ pub(crate) struct Reading {
     pub(crate) own: f64,
     /// The unit.
     pub(crate) unit: &'static str,
+    /// Condition number of the dense rows there; 1 where it has no meaning.
+    pub(crate) condition: f64,
 }
 
 impl Worst {
@@ -46,6 +49,7 @@ impl Worst {
             self.absolute = reading.difference.abs();
             self.relative = relative;
             self.unit = reading.unit;
+            self.condition = reading.condition;
             self.place = place();
         }
     }
@@ -115,6 +119,8 @@ impl Check {
             worst: worst.place,
             tolerance,
             why,
+            condition: worst.condition.max(1.0),
+            integrated: false,
             pass: worst.met > 0 && worst.relative <= tolerance,
         };
         let refusal = match worst.refusal {
@@ -155,6 +161,7 @@ mod tests {
                 scale: 2.0,
                 own,
                 unit: "N",
+                condition: 1.0,
             };
             worst.meet(&reading, || format!("at {difference}"));
         }

@@ -17,7 +17,10 @@
 //! q(t) = q + q̇ t + ½ q̈ t², closed without any velocity. (5) and (6) take the dense motion. (3)
 //! and the acts of (4) to (6) share nothing but the poses.
 
+mod energies;
 mod measured;
+
+pub use energies::judge_energies;
 
 use crate::dense::{Dense, DenseError};
 use crate::judge::{Check, Reading, Worst};
@@ -77,18 +80,16 @@ pub fn judge_states(
     start: &[[f64; 3]],
     states: &[State],
 ) -> Vec<Finding> {
-    let dense = Dense::repeated(mechanism, masses, start).and_then(|mut dense| {
-        dense.mesh(start)?;
-        Ok(dense)
-    });
-    match dense {
+    match Dense::meshed(mechanism, masses, start) {
         Ok(dense) => Judge::new(&dense, mechanism, states).findings(),
-        Err(error) => {
-            let mut worst = Worst::default();
-            worst.refuse(error.to_string());
-            vec![POSES.check(0).judge(worst)]
-        }
+        Err(error) => vec![not_dense(&POSES, error.to_string())],
     }
+}
+
+fn not_dense(words: &Words, message: String) -> Finding {
+    let mut worst = Worst::default();
+    worst.refuse(message);
+    words.check(0).judge(worst)
 }
 
 /// The fixed words of one finding.
@@ -188,12 +189,22 @@ const BALANCE: Words = Words {
     why: NEWTON.why,
 };
 
+/// One comparison.
+struct Read {
+    difference: f64,
+    /// The truth's own error.
+    own: f64,
+    /// The scale of this one.
+    scale: f64,
+    place: String,
+    condition: f64,
+}
+
 /// Comparisons, most of whose scales are only known when all are there.
 struct Tally {
     unit: &'static str,
     scale: f64,
-    /// The difference, the truth's own error, the scale of this one, the place.
-    read: Vec<(f64, f64, f64, String)>,
+    read: Vec<Read>,
     /// Whether each is judged by its own scale.
     each: bool,
 }
@@ -217,22 +228,29 @@ impl Tally {
     }
 
     /// One comparison: the difference, the truth's own error, what the scale must hold.
-    fn read(&mut self, difference: f64, own: f64, scale: f64, place: String) {
+    fn read(&mut self, m: &Measured<'_>, difference: f64, own: f64, scale: f64, place: String) {
         // A maximum drops what is not a number, but then the difference is not one either.
         self.scale = self.scale.max(scale);
-        self.read.push((difference, own, scale, place));
+        self.read.push(Read {
+            difference,
+            own,
+            scale,
+            place,
+            condition: m.condition,
+        });
     }
 
     fn judge(self, words: &Words, judge: &Judge<'_>) -> Finding {
         let mut worst = Worst::default();
-        for (difference, own, scale, place) in self.read {
+        for read in self.read {
             let reading = Reading {
-                difference,
-                scale: if self.each { scale } else { self.scale },
-                own,
+                difference: read.difference,
+                scale: if self.each { read.scale } else { self.scale },
+                own: read.own,
                 unit: self.unit,
+                condition: read.condition,
             };
-            worst.meet(&reading, || place);
+            worst.meet(&reading, || read.place);
         }
         for reason in &judge.refused {
             worst.refuse(reason.clone());
@@ -286,7 +304,7 @@ impl<'a> Judge<'a> {
     fn poses(&self) -> Finding {
         let mut tally = Tally::new("");
         for m in &self.measured {
-            tally.read(m.moved, m.pose_noise, 1.0, place(m));
+            tally.read(m, m.moved, m.pose_noise, 1.0, place(m));
         }
         tally.judge(&POSES, self)
     }
@@ -296,7 +314,7 @@ impl<'a> Judge<'a> {
         let positive = |m: &Measured<'_>| m.closed.lu.positive();
         for m in &self.measured {
             let other = self.measured.first().map(positive) != Some(positive(m));
-            tally.read(f64::from(u8::from(other)), 0.0, 1.0, place(m));
+            tally.read(m, f64::from(u8::from(other)), 0.0, 1.0, place(m));
         }
         tally.judge(&BRANCH, self)
     }
@@ -312,7 +330,7 @@ impl<'a> Judge<'a> {
                 let of = |tally: &mut Tally, claimed: &[f64], dense: &[f64], own: &[f64], scale| {
                     for c in column..column + 3 {
                         let arm = if c == column + 2 { size } else { 1.0 };
-                        tally.read((claimed[c] - dense[c]) * arm, own[c] * arm, scale, at());
+                        tally.read(m, (claimed[c] - dense[c]) * arm, own[c] * arm, scale, at());
                     }
                 };
                 of(&mut first, &m.claimed_dot, &m.x_dot, &m.noise_dot, speed);
@@ -357,7 +375,7 @@ impl<'a> Judge<'a> {
                 let arm = if *moment { 1.0 / size } else { 1.0 };
                 let (dense, own) = (m.multipliers[k] * arm, m.noise_multipliers[k] * arm);
                 let at = format!("{}, {name}", place(m));
-                tally.read(claimed * arm - dense, own, brought.max(dense.abs()), at);
+                tally.read(m, claimed * arm - dense, own, brought.max(dense.abs()), at);
             }
         }
         tally.judge(&REACTIONS, self)
@@ -384,7 +402,7 @@ impl<'a> Judge<'a> {
                     let own = m.pose_noise * terms;
                     let scale = terms + exact.abs() * arm;
                     let at = || format!("{}, {name}", place(m));
-                    claimed.read((acting.sum[c] - exact) * arm, own, scale, at());
+                    claimed.read(m, (acting.sum[c] - exact) * arm, own, scale, at());
                     let factor = if c == 2 {
                         inertia.inertia
                     } else {
@@ -394,7 +412,7 @@ impl<'a> Judge<'a> {
                         .get(3 * i + c)
                         .map_or((f64::NAN, f64::NAN), |s| (s.value, s.error));
                     let difference = acting.sum[c] * arm - factor * value;
-                    differenced.read(difference, own + factor * error, scale, at());
+                    differenced.read(m, difference, own + factor * error, scale, at());
                 }
             }
         }
@@ -408,7 +426,7 @@ impl<'a> Judge<'a> {
         let mut tally = Tally::of_each("W");
         for m in &self.measured {
             let (difference, terms) = m.power();
-            tally.read(difference, m.relative_noise() * terms, terms, place(m));
+            tally.read(m, difference, m.relative_noise() * terms, terms, place(m));
         }
         tally.judge(&POWER, self)
     }
@@ -418,7 +436,7 @@ impl<'a> Judge<'a> {
         for m in &self.measured {
             for (difference, terms, what) in m.balance() {
                 let own = m.relative_noise() * terms;
-                tally.read(difference, own, terms, format!("{}, {what}", place(m)));
+                tally.read(m, difference, own, terms, format!("{}, {what}", place(m)));
             }
         }
         tally.judge(&BALANCE, self)

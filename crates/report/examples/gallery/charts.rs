@@ -91,6 +91,7 @@ pub(crate) fn curves() -> Figure {
         caption: "Lines: reduced model. Points: kinetic energy at unit speed.".to_owned(),
         columns: 2,
         panels: vec![m.into(), rate.into(), reactions.into(), coefficients.into()],
+        ..Figure::default()
     }
 }
 
@@ -135,6 +136,7 @@ pub(crate) fn precision() -> Figure {
         caption: "Each marker is one tolerance from 10⁻³ to 10⁻¹³.".to_owned(),
         columns: 1,
         panels: vec![chart.into()],
+        ..Figure::default()
     }
 }
 
@@ -199,6 +201,7 @@ pub(crate) fn time() -> Figure {
         caption: String::new(),
         columns: 2,
         panels: vec![chart.into(), energy.into(), drift.into()],
+        ..Figure::default()
     }
 }
 
@@ -261,5 +264,6 @@ pub(crate) fn errors() -> Figure {
             .to_owned(),
         columns: 2,
         panels,
-    }
+..Figure::default()
+}
 }

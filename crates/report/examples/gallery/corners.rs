@@ -78,5 +78,6 @@ pub(crate) fn corners() -> Figure {
             tall.into(),
             flat.into(),
         ],
+        ..Figure::default()
     }
 }

@@ -48,6 +48,7 @@ pub(crate) fn ratios() -> Figure {
             chart("Bodies that move alike", 0.0).into(),
             chart("Bodies that move apart", 0.7).into(),
         ],
+        ..Figure::default()
     }
 }
 
@@ -92,6 +93,7 @@ pub(crate) fn path() -> Figure {
         caption: String::new(),
         columns: 1,
         panels: vec![drawing.into()],
+        ..Figure::default()
     }
 }
 
@@ -156,6 +158,7 @@ pub(crate) fn motion() -> Figure {
         caption: "Panels of a stack share the horizontal axis.".to_owned(),
         columns: 2,
         panels: vec![slider.into(), rods.into()],
+        ..Figure::default()
     }
 }
 
@@ -190,6 +193,7 @@ pub(crate) fn cost() -> Figure {
         caption: "Lines that run parallel to the dashed one are linear.".to_owned(),
         columns: 1,
         panels: vec![chart.into()],
+        ..Figure::default()
     }
 }
 
@@ -237,5 +241,6 @@ pub(crate) fn profile() -> Figure {
             .to_owned(),
         columns: 1,
         panels: vec![stack],
-    }
+..Figure::default()
+}
 }

@@ -145,7 +145,8 @@ pub(crate) fn linkage() -> Figure {
             .to_owned(),
         columns: 2,
         panels: vec![drawing.into(), slide.into()],
-    }
+..Figure::default()
+}
 }
 
 /// The dwell mechanism over a turn.

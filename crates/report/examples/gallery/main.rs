@@ -2,6 +2,7 @@
 
 mod charts;
 mod corners;
+mod grids;
 mod kinematics;
 mod linkage;
 
@@ -25,6 +26,8 @@ fn main() -> Result<(), ReportError> {
         kinematics::motion(),
         kinematics::cost(),
         kinematics::profile(),
+        grids::faults(),
+        grids::digits(),
     ];
     let mut files = Files::new();
     for figure in &figures {

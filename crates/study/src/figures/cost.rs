@@ -43,6 +43,7 @@ pub(crate) fn drift(prepared: &Prepared<'_>, motion: &FreeMotion) -> Figure {
         ),
         columns: 1,
         panels: vec![panel(Method::Bdf), panel(Method::Tsit45)],
+        ..Figure::default()
     }
 }
 
@@ -148,5 +149,6 @@ pub(crate) fn cost(prepared: &Prepared<'_>, motion: &FreeMotion) -> Figure {
                 vec![],
             ),
         ],
+        ..Figure::default()
     }
 }

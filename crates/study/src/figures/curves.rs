@@ -60,6 +60,7 @@ pub(crate) fn reduced(prepared: &Prepared<'_>, sweep: &Sweep) -> Figure {
             panel("m (generalised inertia)", "kg m²", |c| c.m),
             panel("½m′ (half its derivative)", "kg m²/rad", |c| c.half_dm),
         ],
+        ..Figure::default()
     }
 }
 
@@ -139,5 +140,6 @@ fn one(prepared: &Prepared<'_>, sweep: &Sweep, some: &[usize], unit: &str, more:
                 |c, k| c.b[k],
             ),
         ],
+        ..Figure::default()
     }
 }

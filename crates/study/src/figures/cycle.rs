@@ -73,5 +73,6 @@ pub(crate) fn cycle(
         caption: foot(driven.scene, &words),
         columns: 1,
         panels,
+        ..Figure::default()
     }
 }

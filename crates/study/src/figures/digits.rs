@@ -49,5 +49,6 @@ pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
             .chunks(findings.len().div_ceil(parts).max(1))
             .map(panel)
             .collect(),
+        ..Figure::default()
     }
 }

@@ -78,5 +78,6 @@ pub(crate) fn equilibria(
         ),
         columns: 1,
         panels,
+        ..Figure::default()
     }
 }

@@ -109,6 +109,7 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
         caption: caption(prepared, &words),
         columns: 1,
         panels,
+        ..Figure::default()
     };
     Ok((figure, dwell))
 }

@@ -114,5 +114,6 @@ pub(crate) fn history(prepared: &Prepared<'_>, history: &History, accuracy: &Acc
         ),
         columns: if panels.len() > 2 { 2 } else { 1 },
         panels,
+        ..Figure::default()
     }
 }

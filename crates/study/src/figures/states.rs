@@ -45,6 +45,7 @@ pub(crate) fn drawing(scene: &Scene, judged: &Judged) -> Figure {
             y: Axis::new("y", "m"),
             shapes,
         })],
+        ..Figure::default()
     }
 }
 
@@ -74,5 +75,6 @@ pub(crate) fn actions(scene: &Scene, judged: &Judged) -> Figure {
         caption: foot(scene, &format!("Along {}, under the loads.", judged.motion)),
         columns: 1,
         panels: actuators.map(panel).collect(),
+        ..Figure::default()
     }
 }

@@ -38,5 +38,6 @@ pub(crate) fn steps(prepared: &Prepared<'_>, curves: &[ErrorCurve]) -> Figure {
         ),
         columns: 1,
         panels: curves.iter().map(panel).collect(),
+        ..Figure::default()
     }
 }

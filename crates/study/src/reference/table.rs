@@ -174,6 +174,7 @@ impl Table {
         let mut unknown = Vec::new();
         for (k, row) in self.samples.iter().enumerate() {
             claims.go(&row.ask)?;
+            let condition = claims.condition();
             let moment = claims.moment();
             for (name, wanted) in &row.values {
                 let Some(quantity) = Quantity::find(scene, name) else {
@@ -187,6 +188,7 @@ impl Table {
                     got: quantity.at(&moment),
                     wanted: *wanted,
                     scale: 0.0,
+                    condition,
                 };
                 read.push((quantity.kind(), value));
             }
@@ -258,7 +260,7 @@ fn names(unknown: &[String], over: &str, published: bool) -> Finding {
         worst: format!("the scene has no quantity {}", unknown.join(", ")),
         tolerance: 0.0,
         why: "what is given and never compared would pass for agreement".to_owned(),
-        pass: false,
+        ..Finding::default()
     }
 }
 

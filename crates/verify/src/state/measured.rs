@@ -9,11 +9,11 @@ use dwell_geometry::{Vec2, vec2};
 
 /// The longest step of a difference in time turns no body by more than this (rad), nor moves one
 /// by more than this many sizes, to first order: as for the truths of the reduced model.
-const FIRST_TURN: f64 = 0.3;
+pub(super) const FIRST_TURN: f64 = 0.3;
 
 /// A state with its dense solution.
 pub(super) struct Measured<'a> {
-    dense: &'a Dense,
+    pub(super) dense: &'a Dense,
     pub(super) state: &'a State,
     pub(super) closed: Closed,
     /// How far closing moved the claimed poses, relative to the largest coordinate in them.
@@ -30,7 +30,8 @@ pub(super) struct Measured<'a> {
     pub(super) noise_dot: Vec<f64>,
     pub(super) noise_ddot: Vec<f64>,
     pub(super) noise_multipliers: Vec<f64>,
-    loads: Vec<Act>,
+    pub(super) condition: f64,
+    pub(super) loads: Vec<Act>,
     acts: Vec<Act>,
 }
 
@@ -139,6 +140,7 @@ impl<'a> Measured<'a> {
             acts: dense.acts(&closed, &state.reactions, &state.tau),
             dense,
             state,
+            condition: dense.condition(&closed.x),
             closed,
             x_dot: exact.x_dot,
             x_ddot: exact.x_ddot,
@@ -235,7 +237,7 @@ impl<'a> Measured<'a> {
     }
 
     /// t with v t + ½ a t² = the longest step; a second where nothing moves.
-    fn time_step(&self) -> f64 {
+    pub(super) fn time_step(&self) -> f64 {
         let (v, a) = (self.reach_of(&self.x_dot), self.reach_of(&self.x_ddot));
         let step = 2.0 * FIRST_TURN / (v + (v * v + 2.0 * a * FIRST_TURN).sqrt());
         if step.is_finite() { step } else { 1.0 }

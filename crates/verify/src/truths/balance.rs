@@ -71,6 +71,7 @@ pub fn balance(bench: &Bench<'_>) -> Vec<Finding> {
                     scale,
                     own: balance.rate[c].error,
                     unit,
+                    condition: site.condition,
                 };
                 worst.meet(&reading, || place_in(bench, site.q, MOTIONS[i]));
             }

@@ -72,6 +72,7 @@ pub fn bodies(bench: &Bench<'_>) -> Vec<Finding> {
                         scale,
                         own: e.own[c],
                         unit,
+                        condition: site.condition,
                     };
                     worst.meet(&reading, || {
                         let name = &bench.case.mechanism.bodies[e.body].name;

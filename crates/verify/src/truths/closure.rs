@@ -25,6 +25,7 @@ pub fn closure(bench: &Bench<'_>) -> Vec<Finding> {
             scale: 1.0,
             own: site.pose_noise,
             unit: "",
+            condition: site.condition,
         };
         worst.meet(&reading, || bench.place(site.q));
         Ok(())
@@ -65,7 +66,7 @@ fn branch(bench: &Bench<'_>) -> Worst {
         return worst;
     };
     let mut here = first.closed.clone();
-    worst.meet(&apart(0.0), || bench.place(first.q));
+    worst.meet(&apart(0.0, first), || bench.place(first.q));
     for site in others {
         match dense.follow(&here, row, site.q) {
             Ok(next) => here = next,
@@ -83,16 +84,17 @@ fn branch(bench: &Bench<'_>) -> Worst {
         for angle in between.iter_mut().skip(2).step_by(3) {
             *angle -= TAU * (*angle / TAU).round();
         }
-        worst.meet(&apart(dense.reach(&between)), || bench.place(site.q));
+        worst.meet(&apart(dense.reach(&between), site), || bench.place(site.q));
     }
     worst
 }
 
-fn apart(difference: f64) -> Reading {
+fn apart(difference: f64, site: &Site) -> Reading {
     Reading {
         difference,
         scale: 1.0,
         own: 0.0,
         unit: "",
+        condition: site.condition,
     }
 }

@@ -38,6 +38,7 @@ pub fn energy(bench: &Bench<'_>) -> Vec<Finding> {
             scale: scales.m,
             own: site.noise.m,
             unit: "kg m2",
+            condition: site.condition,
         };
         whole.meet(&reading, place);
         let reading = Reading {
@@ -46,6 +47,7 @@ pub fn energy(bench: &Bench<'_>) -> Vec<Finding> {
             // A few roundings of m itself at least.
             own: site.noise.m.max(0.5 * f64::EPSILON * scales.m),
             unit: "kg m2",
+            condition: site.condition,
         };
         varying.meet(&reading, place);
         Ok(())

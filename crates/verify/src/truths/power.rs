@@ -39,6 +39,7 @@ pub fn power(bench: &Bench<'_>) -> Vec<Finding> {
                         scale,
                         own: rate.error,
                         unit: "W",
+                        condition: site.condition,
                     };
                     all.meet(&reading, || place_in(bench, site.q, motion));
                 }

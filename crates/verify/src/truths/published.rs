@@ -2,6 +2,7 @@
 
 use crate::bench::unit_index;
 use crate::case::Case;
+use crate::dense::condition;
 use crate::judge::{Check, Reading, Worst};
 use crate::subject::{Subject, SubjectError};
 use dwell_findings::Finding;
@@ -90,6 +91,8 @@ pub fn published(case: &Case<'_>, subject: &dyn Subject, samples: &[Sample]) -> 
 
     let mut worst: [Worst; 5] = Default::default();
     for sample in samples {
+        let poses = subject.poses(sample.q).unwrap_or_default();
+        let condition = condition(case.mechanism, &poses);
         let result = compare(case, subject, sample, |kind, k, difference, unit_name| {
             let scale = match kind {
                 0 => m,
@@ -103,6 +106,7 @@ pub fn published(case: &Case<'_>, subject: &dyn Subject, samples: &[Sample]) -> 
                 scale,
                 own: 0.0,
                 unit: unit_name,
+                condition,
             };
             worst[kind].meet(&reading, || match (kind, reactions.get(k)) {
                 (2 | 3, Some(&r)) => {

@@ -39,6 +39,8 @@ pub fn released(bench: &Bench<'_>) -> Vec<Finding> {
             return Ok(());
         }
         for (k, b_k) in b_by_differences(bench, site).iter().enumerate() {
+            // Of a reaction that is not determined there is no single value.
+            let Some(b_k) = b_k else { continue };
             let place = || bench.place_of(site.q, k);
             let moment = bench.reactions[k].component.unit() != "N";
             let (a_unit, b_unit) = if moment {
@@ -51,6 +53,7 @@ pub fn released(bench: &Bench<'_>) -> Vec<Finding> {
                 scale: bench.a_scale(k),
                 own: site.noise.a[k],
                 unit: a_unit,
+                condition: site.condition,
             };
             a.meet(&reading, place);
             let reading = Reading {
@@ -58,6 +61,7 @@ pub fn released(bench: &Bench<'_>) -> Vec<Finding> {
                 scale: bench.b_scale(k),
                 own: b_k.error,
                 unit: b_unit,
+                condition: site.condition,
             };
             b.meet(&reading, place);
             let reading = Reading {
@@ -65,12 +69,19 @@ pub fn released(bench: &Bench<'_>) -> Vec<Finding> {
                 scale: bench.b_scale(k),
                 own: site.noise.b[k],
                 unit: b_unit,
+                condition: site.condition,
             };
             power.meet(&reading, place);
         }
         Ok(())
     });
-    let over = format!("{} reactions at {}", bench.reactions.len(), bench.over());
+    let determined = bench.dense.unique[..bench.reactions.len()].iter();
+    let determined = determined.filter(|&&unique| unique).count();
+    let mut over = format!("{determined} reactions at {}", bench.over());
+    if determined < bench.reactions.len() {
+        let rest = bench.reactions.len() - determined;
+        over += &format!("; {rest} that joints share are not determined");
+    }
     let check = |key, truth, compared, scale, tolerance, why| Check {
         key,
         truth,
@@ -111,8 +122,8 @@ pub fn released(bench: &Bench<'_>) -> Vec<Finding> {
     ]
 }
 
-/// Eq. (3) for every reaction.
-fn b_by_differences(bench: &Bench<'_>, site: &Site) -> Vec<Estimate> {
+/// Eq. (3) for every reaction that is determined.
+fn b_by_differences(bench: &Bench<'_>, site: &Site) -> Vec<Option<Estimate>> {
     let (dense, row) = (&bench.dense, bench.dense.actuator_row());
     let u = site.speed();
     // All m₁₂ along q₁ at once: the released speeds are columns of one inverse.
@@ -143,15 +154,18 @@ fn b_by_differences(bench: &Bench<'_>, site: &Site) -> Vec<Estimate> {
         m1.first().copied()
     };
     (0..row)
-        .map(|k| match (along_q1.get(k), along_q2(k)) {
-            (Some(m12), Some(m1)) => Estimate {
-                value: m12.value - 0.5 * m1.value,
-                error: m12.error + 0.5 * m1.error,
-            },
-            _ => Estimate {
-                value: f64::NAN,
-                error: f64::NAN,
-            },
+        .map(|k| {
+            let estimate = || match (along_q1.get(k), along_q2(k)) {
+                (Some(m12), Some(m1)) => Estimate {
+                    value: m12.value - 0.5 * m1.value,
+                    error: m12.error + 0.5 * m1.error,
+                },
+                _ => Estimate {
+                    value: f64::NAN,
+                    error: f64::NAN,
+                },
+            };
+            dense.unique[k].then(estimate)
         })
         .collect()
 }

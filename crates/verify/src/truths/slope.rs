@@ -40,6 +40,7 @@ pub fn slope(bench: &Bench<'_>) -> Vec<Finding> {
             scale,
             own,
             unit,
+            condition: site.condition,
         };
         differences.meet(&reading(half_dm - slope, own), place);
         let by_power = half_dm - site.exact.half_dm;

@@ -76,6 +76,7 @@ fn judge(bench: &Bench<'_>, slopes: &[f64], own: f64) -> Worst {
                     scale: bench.scales.half_dm,
                     own,
                     unit: "kg m2/rad",
+                    condition: site.condition,
                 };
                 worst.meet(&reading, || bench.place(site.q));
             }

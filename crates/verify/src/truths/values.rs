@@ -16,6 +16,8 @@ pub struct Value {
     pub wanted: f64,
     /// The largest value of the unit, which the difference is relative to.
     pub scale: f64,
+    /// Condition number of the dense rows at the state.
+    pub condition: f64,
 }
 
 /// The words of a comparison of values.
@@ -44,6 +46,7 @@ pub fn values(words: Values<'_>, values: &[Value]) -> Finding {
             scale: value.scale,
             own: 0.0,
             unit: value.unit,
+            condition: value.condition,
         };
         worst.meet(&reading, || value.place.clone());
     }
@@ -74,6 +77,7 @@ mod tests {
             got,
             wanted: 2.0,
             scale: 4.0,
+            condition: 1.0,
         };
         let all: Vec<Value> = got.iter().map(value).collect();
         let words = Values {

@@ -70,6 +70,7 @@ impl<'a> Kind<'a> {
                 scale: scale.max(self.least).min(self.most),
                 own: 0.0,
                 unit: self.unit,
+                condition: 1.0,
             };
             worst.meet(&reading, || format!("t = {t} s, {name}"));
         }
@@ -95,7 +96,10 @@ fn finding(
         tolerance,
         why: WHY,
     };
-    check.judge(worst)
+    Finding {
+        integrated: true,
+        ..check.judge(worst)
+    }
 }
 
 impl Unreduced {

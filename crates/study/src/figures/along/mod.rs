@@ -182,6 +182,7 @@ impl<'a> Sheet<'a> {
             caption: self.foot(&format!("{words}{limits}")),
             columns: 1,
             panels,
+            ..Figure::default()
         }
     }
 
@@ -330,6 +331,7 @@ impl<'a> Sheet<'a> {
                 y: Axis::new("y", "m"),
                 shapes,
             })],
+            ..Figure::default()
         }
     }
 }

@@ -1,0 +1,88 @@
+//! A matrix of judged or measured cells as plain data.
+
+use crate::figure::Axis;
+
+/// Rows and columns of cells, coloured by their values: which fault each check sees, how many digits each case keeps.
+///
+/// The panel is as wide as its place on the page and grows with its rows: about 40 pixels each. Give it a page of one column, and
+/// no more than about 24 columns. The colours go from nearly white to dark blue, so that they can be told apart in
+/// grey and by colour-blind readers; a bar above the cells states them.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Grid {
+    /// Line above the panel.
+    pub title: String,
+    /// Names of the columns; turned upwards if they do not fit across.
+    pub columns: Vec<String>,
+    /// The rows, under headings.
+    pub groups: Vec<Group>,
+    /// What the values are, their unit and scale, and the range that the colours cover (found from the values if absent). A value
+    /// beyond the range has the colour of its end.
+    pub values: Axis,
+}
+
+/// Rows under one heading.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Group {
+    /// Words above the rows, or nothing.
+    pub heading: String,
+    /// The rows, from above.
+    pub rows: Vec<Row>,
+}
+
+/// One row of a [`Grid`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Row {
+    /// Its name, to the left of the cells.
+    pub name: String,
+    /// One cell for each column. `None`, and what is missing at the end, does not apply: it is hatched, with a dash. What is
+    /// beyond the last column is not shown.
+    pub cells: Vec<Option<Cell>>,
+}
+
+/// One cell of a [`Grid`].
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Cell {
+    /// What decides about the colour, in the unit of [`Grid::values`]; white if there is none, or if the scale has no place for
+    /// it.
+    pub value: Option<f64>,
+    /// A few letters drawn in the cell, or nothing.
+    pub text: String,
+    /// Whether to mark the cell as failed: a vermilion border and bold letters.
+    pub failed: bool,
+}
+
+impl Row {
+    /// A named row of cells.
+    pub fn new(name: impl Into<String>, cells: Vec<Option<Cell>>) -> Self {
+        Self {
+            name: name.into(),
+            cells,
+        }
+    }
+}
+
+impl Cell {
+    /// A cell coloured by a value, with a few letters.
+    pub fn new(value: f64, text: impl Into<String>) -> Self {
+        Self {
+            value: Some(value),
+            ..Self::words(text)
+        }
+    }
+
+    /// A white cell with a few letters.
+    pub fn words(text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            ..Self::default()
+        }
+    }
+
+    /// The same cell, marked as failed.
+    pub fn failed(self) -> Self {
+        Self {
+            failed: true,
+            ..self
+        }
+    }
+}
