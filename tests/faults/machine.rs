@@ -1,12 +1,13 @@
 //! A case with its model, evaluated with or without a slip, and judged by the truths.
 
-use crate::verdict::Verdict;
+use crate::verdict::{ENOUGH, Verdict};
+use dwell_findings::Finding;
 use crate::watched::{Place, Slip, Watched, noting, slipping};
 use dwell_geometry::{BodyId, Plan, Pose, Vec2};
 use dwell_kinetostatics::{Actions as Kinetostatic, Model, Workspace};
 use dwell_scene::Scene;
 use dwell_verify::{
-    Actions, Case, Coefficients, State, Subject, SubjectError, judge_states, load_acts, spread,
+    Actions, Case, Coefficients, State, Subject, SubjectError, judge_energies, judge_states, load_acts, spread,
     verify_all,
 };
 use std::collections::BTreeSet;
@@ -47,6 +48,9 @@ pub(crate) struct Machine {
     /// What is answered without a fault.
     clean: Answers,
     clean_states: Vec<State>,
+    /// The keys of findings that fail without a fault: too few positions for them, or constraints
+    /// that repeat each other. They judge nothing here.
+    pub(crate) blind: Vec<String>,
 }
 
 /// Everything that is judged, by kind.
@@ -76,11 +80,15 @@ impl Machine {
             start: at_start,
             clean: Vec::new(),
             clean_states: Vec::new(),
+            blind: Vec::new(),
         };
         if by == By::States {
-            machine.clean_states = machine.states(None).expect("states");
+            machine.clean_states = machine.states(None).expect("states").0;
         }
         machine.clean = machine.answers(None).expect("answers");
+        let findings = machine.findings(None, usize::MAX);
+        let failed = findings.into_iter().filter(|f| !f.pass);
+        machine.blind = failed.map(|f| f.key).collect();
         machine
     }
 
@@ -110,30 +118,39 @@ impl Machine {
 
     /// What the truths say.
     pub(crate) fn judge(&self, fault: Fault) -> Verdict {
-        match self.by {
-            By::Reduced => {
-                let case = Case {
-                    mechanism: &self.scene.mechanism,
-                    masses: &self.scene.masses,
-                    range: self.model.plan().range(),
-                    positions: self.positions.iter().map(|q| q[0]).collect(),
-                };
-                let subject = Slipping {
-                    machine: self,
-                    fault,
-                };
-                Verdict::of(&verify_all(&case, &subject, &[]))
-            }
-            By::States => match self.states(fault) {
-                None => Verdict::default(),
-                Some(states) => Verdict::of(&judge_states(
-                    &self.scene.mechanism,
-                    &self.scene.masses,
-                    &self.start,
-                    &states,
-                )),
-            },
+        self.verdict(&self.findings(fault, ENOUGH))
+    }
+
+    /// Of findings that can judge here.
+    fn verdict(&self, findings: &[Finding]) -> Verdict {
+        let seeing = findings.iter().filter(|f| !self.blind.contains(&f.key));
+        Verdict::of(seeing)
+    }
+
+    /// What the truths find; the costly ones only where fewer than `enough` others catch it.
+    fn findings(&self, fault: Fault, enough: usize) -> Vec<Finding> {
+        let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
+        if self.by == By::Reduced {
+            let case = Case {
+                mechanism,
+                masses,
+                range: self.model.plan().range(),
+                positions: self.positions.iter().map(|q| q[0]).collect(),
+            };
+            let subject = Slipping {
+                machine: self,
+                fault,
+            };
+            return verify_all(&case, &subject, &[]);
         }
+        let Some((states, inertias)) = self.states(fault) else {
+            return Vec::new();
+        };
+        let mut findings = judge_states(mechanism, masses, &self.start, &states);
+        if self.verdict(&findings).count() < enough {
+            findings.extend(judge_energies(mechanism, masses, &self.start, &states, &inertias));
+        }
+        findings
     }
 
     fn answers(&self, fault: Fault) -> Option<Answers> {
@@ -160,7 +177,7 @@ impl Machine {
                 Some(vec![poses, m, slope, a, b, acts])
             }
             By::States => {
-                let states = self.states(fault)?;
+                let (states, inertias) = self.states(fault)?;
                 let all = |of: fn(&State) -> &Vec<[f64; 3]>| {
                     states.iter().flat_map(|s| of(s).iter().flatten().copied()).collect()
                 };
@@ -170,17 +187,18 @@ impl Machine {
                     all(|s| &s.velocity),
                     all(|s| &s.acceleration),
                     acts.collect(),
+                    inertias.concat(),
                 ])
             }
         }
     }
 
     /// The states under the loads. What the loads do is told from the right poses and magnitudes.
-    fn states(&self, fault: Fault) -> Option<Vec<State>> {
+    fn states(&self, fault: Fault) -> Option<(Vec<State>, Vec<Vec<f64>>)> {
         let mut work = self.model.workspace::<Watched>();
-        let mut actions = self.model.actions();
+        let (mut actions, mut unit) = (self.model.actions(), self.model.actions());
         let n = self.model.plan().actuators();
-        let mut states = Vec::new();
+        let (mut states, mut inertias) = (Vec::new(), Vec::<Vec<f64>>::new());
         for (k, q) in self.positions.iter().enumerate() {
             let t = 0.3 + 0.4 * k as f64;
             let [q_dot, q_ddot] = [&SPEEDS[k][..n], &RATES[k][..n]];
@@ -191,9 +209,53 @@ impl Machine {
             });
             done.ok()?;
             let state = slipping(fault, || self.state(t, k, &work, &actions));
+            let mut runs = Vec::new();
+            for i in 0..n {
+                slipping(fault, || self.model.inertial(i, &mut work, &mut unit));
+                runs.push(plain_actions(&unit));
+            }
+            // M_ij is the action i at q̈ⱼ = 1 alone.
+            let at = |i: usize, j: usize| runs[j].tau[i];
+            inertias.push((0..n * n).map(|k| at(k / n, k % n)).collect());
             states.push(state);
+            if k + 1 == self.positions.len() && self.model.frictions().len() == 0 {
+                let mut free = self.free(fault, states.last()?, &runs, &mut work)?;
+                free.t += 1e-3;
+                inertias.push(inertias.last()?.clone());
+                states.push(free);
+            }
         }
-        Some(states)
+        Some((states, inertias))
+    }
+
+    /// The same state, moving freely: its accelerations from the inertias, and every reaction as one
+    /// line of what the unit runs yield.
+    fn free(
+        &self,
+        fault: Fault,
+        state: &State,
+        runs: &[Kinetostatic<f64>],
+        work: &mut Workspace<Watched>,
+    ) -> Option<State> {
+        let n = runs.len();
+        let still = vec![Watched::default(); n];
+        let mut without = self.model.actions();
+        slipping(fault, || self.model.loaded(&still, work, &mut without)).ok()?;
+        let without = plain_actions(&without);
+        let q_ddot = solved(runs, &without.tau)?;
+        let lifted: Vec<_> = q_ddot.iter().map(|&a| Watched::new(a)).collect();
+        slipping(fault, || self.model.accelerate(&lifted, work));
+        let mut free = state.clone();
+        free.reactions = without.reactions;
+        for (run, a) in runs.iter().zip(&q_ddot) {
+            for (sum, one) in free.reactions.iter_mut().zip(&run.reactions) {
+                *sum += one * a;
+            }
+        }
+        free.acceleration = slipping(fault, || accelerations(work, free.bodies.len()));
+        free.tau = vec![0.0; n];
+        free.q_ddot = q_ddot;
+        Some(free)
     }
 
     fn state(
@@ -210,13 +272,11 @@ impl Machine {
             frame[2] += ((right[2] - frame[2]) / TAU).round() * TAU;
         }
         let of = |b: usize| (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
-        let (mut velocity, mut acceleration) = (Vec::new(), Vec::new());
-        for b in 0..bodies.len() {
+        let velocity = |b: usize| {
             let (body, origin) = of(b);
-            velocity.push([origin.velocity.x, origin.velocity.y, body.spin].map(|v| v.0));
-            let [x, y] = [origin.acceleration.x, origin.acceleration.y];
-            acceleration.push([x, y, body.spin_rate].map(|v| v.0));
-        }
+            [origin.velocity.x, origin.velocity.y, body.spin].map(|v| v.0)
+        };
+        let velocity: Vec<[f64; 3]> = (0..bodies.len()).map(velocity).collect();
         let loads = match self.clean_states.get(k) {
             Some(clean) => clean.loads.clone(),
             None => {
@@ -233,9 +293,9 @@ impl Machine {
             q: self.positions[k].clone(),
             q_dot: SPEEDS[k][..n].to_vec(),
             q_ddot: RATES[k][..n].to_vec(),
+            acceleration: accelerations(work, bodies.len()),
             bodies,
             velocity,
-            acceleration,
             reactions: actions.reactions.iter().map(|r| r.0).collect(),
             tau: actions.tau.iter().map(|r| r.0).collect(),
             loads,
@@ -286,6 +346,40 @@ fn refused<E: std::fmt::Display>(q: f64) -> impl Fn(E) -> SubjectError {
         q,
         message: e.to_string(),
     }
+}
+
+/// The second derivatives of the frames of all bodies.
+fn accelerations(work: &Workspace<Watched>, bodies: usize) -> Vec<[f64; 3]> {
+    let of = |b: usize| {
+        let origin = work.states().point(BodyId(b), Vec2::ZERO).acceleration;
+        [origin.x, origin.y, work.states().body(BodyId(b)).spin_rate].map(|v| v.0)
+    };
+    (0..bodies).map(of).collect()
+}
+
+fn plain_actions(actions: &Kinetostatic<Watched>) -> Kinetostatic<f64> {
+    let plain = |values: &[Watched]| values.iter().map(|v| v.0).collect();
+    Kinetostatic {
+        tau: plain(&actions.tau),
+        reactions: plain(&actions.reactions),
+    }
+}
+
+/// q̈ of Σ runs q̈ + rest = 0, by elimination with the largest pivot.
+fn solved(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f64>> {
+    let n = runs.len();
+    let row = |i: usize| runs.iter().map(|run| run.tau[i]).chain([-rest[i]]).collect();
+    let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
+    for c in 0..n {
+        let pivot = (c..n).max_by(|&i, &j| rows[i][c].abs().total_cmp(&rows[j][c].abs()))?;
+        rows.swap(c, pivot);
+        let own = rows[c].clone();
+        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != c) {
+            let by = other[c] / own[c];
+            other.iter_mut().zip(&own).for_each(|(a, b)| *a -= by * b);
+        }
+    }
+    (0..n).map(|i| Some(rows[i][n] / rows[i][i])).collect()
 }
 
 /// A pose in plain numbers, for what only reads positions.

@@ -1,7 +1,7 @@
 //! Every sign and every term of every step of a plan, in the product's own lines.
 
 use crate::machine::Machine;
-use crate::verdict::Verdict;
+use crate::verdict::{ENOUGH, Verdict};
 use crate::watched::{Place, Slip};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -9,9 +9,6 @@ use std::collections::BTreeMap;
 /// An answer that moves by less than this, relative to the largest of its kind, is the same answer:
 /// three digits above what the truths tell from rounding.
 const SAME: f64 = 1e-9;
-/// Truths that must catch a fault.
-pub(crate) const ENOUGH: usize = 2;
-
 /// What became of a fault.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Outcome {

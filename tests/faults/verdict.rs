@@ -15,6 +15,8 @@ pub(crate) const TRUTHS: [&str; 10] = [
     "bodies",
     "published",
 ];
+/// Truths that must catch a fault in an equation.
+pub(crate) const ENOUGH: usize = 2;
 /// Digits that stand for a difference that is no number.
 const NO_NUMBER: f64 = 16.0;
 
@@ -27,7 +29,7 @@ pub(crate) struct Verdict {
 
 impl Verdict {
     /// Of findings, by the number that each truth begins with.
-    pub(crate) fn of(findings: &[Finding]) -> Self {
+    pub(crate) fn of<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Self {
         let mut verdict = Self::default();
         for finding in findings {
             verdict.meet(finding);
@@ -36,8 +38,8 @@ impl Verdict {
     }
 
     fn meet(&mut self, finding: &Finding) {
-        let number = match finding.truth.chars().next().and_then(|c| c.to_digit(10)) {
-            Some(number) => number as usize,
+        let number = match finding.number() {
+            Some(number) => number,
             None if finding.truth.starts_with("published") => 9,
             None => return,
         };
