@@ -68,7 +68,11 @@ impl Machine {
                     .expect("loads")),
             })
             .unwrap_or_else(|e| panic!("{}: {e}", scene.name));
-        let positions = positions(&scene, model.plan());
+        let mut positions = positions(&scene, model.plan());
+        if by == By::Reduced {
+            // Judging costs more there.
+            positions.truncate(2);
+        }
         let (at_start, frames) = walked(&scene, model.plan(), &positions);
         let mut machine = Self {
             name: scene.name.clone(),
@@ -106,7 +110,7 @@ impl Machine {
             let largest = clean.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             for (c, f) in clean.iter().zip(found) {
                 if !f.is_finite() {
-                    return None;
+                    return Some(f64::INFINITY);
                 }
                 if f != c {
                     worst = worst.max((f - c).abs() / largest.max(f64::MIN_POSITIVE));
@@ -168,10 +172,10 @@ impl Machine {
                     let at = subject.coefficients(q[0]).ok()?;
                     m.push(at.m);
                     slope.push(at.half_dm);
-                    a.extend(at.a);
-                    b.extend(at.b);
+                    a.extend(self.determined(at.a));
+                    b.extend(self.determined(at.b));
                     let done = subject.actions(q[0], v, r).ok()?;
-                    acts.extend(done.reactions);
+                    acts.extend(self.determined(done.reactions));
                     acts.push(done.tau);
                 }
                 Some(vec![poses, m, slope, a, b, acts])
@@ -181,7 +185,10 @@ impl Machine {
                 let all = |of: fn(&State) -> &Vec<[f64; 3]>| {
                     states.iter().flat_map(|s| of(s).iter().flatten().copied()).collect()
                 };
-                let acts = states.iter().flat_map(|s| s.reactions.iter().chain(&s.tau).copied());
+                let acts = states.iter().flat_map(|s| {
+                    let reactions = self.determined(s.reactions.clone());
+                    reactions.into_iter().chain(s.tau.clone())
+                });
                 Some(vec![
                     all(|s| &s.bodies),
                     all(|s| &s.velocity),
@@ -191,6 +198,12 @@ impl Machine {
                 ])
             }
         }
+    }
+
+    /// The reactions that the loads determine; the others may be split in any way that balances.
+    fn determined(&self, reactions: Vec<f64>) -> Vec<f64> {
+        let own = |(k, value): (usize, f64)| self.model.plan().is_unique(k).then_some(value);
+        reactions.into_iter().enumerate().filter_map(own).collect()
     }
 
     /// The states under the loads. What the loads do is told from the right poses and magnitudes.

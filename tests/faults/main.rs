@@ -3,6 +3,9 @@
 
 mod machine;
 mod operations;
+mod published;
+mod reduced;
+mod wrench;
 mod source;
 mod verdict;
 mod watched;
@@ -17,6 +20,8 @@ use std::time::Instant;
 fn main() {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let clock = Instant::now();
+    named(&home);
+    println!("named {:?}", clock.elapsed());
     let mut names: Vec<String> = std::fs::read_dir(home.join("validation")).expect("x").map(|e| e.expect("e").file_name().into_string().expect("s")).collect();
     names.sort();
     let mut paths: Vec<std::path::PathBuf> = names.iter().map(|n| home.join("validation").join(n).join("scene.toml")).collect();
@@ -62,5 +67,29 @@ fn main() {
     }
     for s in all.iter().filter(|s| s.outcome == operations::Outcome::Same) {
         println!("SAME {} :{} `{}` {} {}", source.step(s.place), s.place.line, source.line(s.place), s.place.operation.words(), s.slip.words());
+    }
+}
+
+fn named(home: &Path) {
+    let read = |p: std::path::PathBuf| Scene::read(p).expect("scene");
+    let case = |n: &str| read(home.join("validation").join(n).join("scene.toml"));
+    let own = |n: &str| read(Path::new(env!("CARGO_MANIFEST_DIR")).join("faults/scenes").join(format!("{n}.toml")));
+    let single = case("single-dwell");
+    let mut other = single.clone();
+    for rough in &mut other.assembly.rough { *rough = rough.map(|r| -r); }
+    println!("{:?}", single.assembly);
+    let samples = published::samples(&home.join("validation/single-dwell"), &single);
+    let models = vec![
+        reduced::Model::new(single, Some(&other), samples),
+        reduced::Model::new(case("crank-rocker"), None, vec![]),
+        reduced::Model::new(own("cross-slide"), None, vec![]),
+        reduced::Model::new(own("turning-rail"), None, vec![]),
+        reduced::Model::new(case("slotted-rocker"), None, vec![]),
+    ];
+    for fault in std::iter::once(None).chain(reduced::Fault::ALL.map(Some)) {
+        for m in &models {
+            let v = m.judge(fault);
+            println!("{:<60} {:<14} {:?}", fault.map_or("none", |f| f.words()), m.scene.name, v.map(|v| v.digits.map(|d| d.map_or(-1, |d| d as i32))));
+        }
     }
 }

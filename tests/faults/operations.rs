@@ -73,7 +73,7 @@ pub(crate) fn study(machines: &[Machine]) -> Vec<Slipped> {
 fn outcome(place: Place, slip: Slip, machines: &[&Machine]) -> Outcome {
     let fault = Some((place, slip));
     let (mut verdict, mut on) = (Verdict::default(), Vec::new());
-    let (mut refused, mut kinds) = (false, Vec::new());
+    let (mut refused, mut kinds, mut no_number) = (false, Vec::new(), Vec::new());
     for machine in machines {
         if kinds.contains(&machine.by) && verdict.count() >= ENOUGH {
             continue;
@@ -81,11 +81,19 @@ fn outcome(place: Place, slip: Slip, machines: &[&Machine]) -> Outcome {
         match machine.moved(fault) {
             None => refused = true,
             Some(by) if by <= SAME => (),
+            Some(by) if by.is_infinite() => no_number.push(*machine),
             Some(_) => {
                 verdict = verdict.and(&machine.judge(fault));
                 kinds.push(machine.by);
                 on.push(machine.name.clone());
             }
+        }
+    }
+    // What is no number anybody sees; it counts only where there is nothing else.
+    for machine in no_number {
+        if verdict.count() < ENOUGH {
+            verdict = verdict.and(&machine.judge(fault));
+            on.push(machine.name.clone());
         }
     }
     match (on.is_empty(), refused) {
