@@ -1,6 +1,6 @@
 //! Drawings one after another as an animated GIF.
 
-use crate::canvas::Canvas;
+use crate::canvas::{Align, Canvas, Type};
 use crate::drawing::{self, Stage};
 use crate::error::ReportError;
 use crate::fonts;
@@ -8,7 +8,7 @@ use crate::palette::Palette;
 use crate::raster::Vector;
 use crate::rect::Rect;
 use crate::shape::Drawing;
-use crate::theme::{Rgb, WHITE};
+use crate::theme::{CAPTION_GREY, Rgb, WHITE};
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -17,6 +17,9 @@ use std::collections::HashMap;
 const WIDTH: f64 = 800.0;
 /// Around the drawing.
 const MARGIN: f64 = 18.0;
+/// Size of the letters at the foot, and the distance of their baselines in sizes.
+const FOOT: f64 = 15.0;
+const LEADING: f64 = 1.3;
 /// Pixels of all frames together: they are held at once, at three bytes each.
 const MOST: u64 = 1 << 27;
 /// Colours beside the one that means "as before".
@@ -39,6 +42,8 @@ pub struct Animation {
     pub delay_ms: u32,
     /// Width of the picture in pixels; the height follows from the drawings.
     pub width_px: u32,
+    /// Where the film comes from, as in [`Figure::provenance`](crate::Figure::provenance).
+    pub provenance: String,
 }
 
 impl Animation {
@@ -79,13 +84,20 @@ impl Animation {
         }
         fonts::ready()?;
         let (cell, stage) = self.stage();
-        let page = [WIDTH, (cell.y1 + MARGIN).ceil()].map(|side| side as u32);
+        let foot = fonts::wrapped(&self.provenance, FOOT, false, cell.width());
+        let lowest = cell.y1 + LEADING * FOOT * foot.len() as f64;
+        let page = [WIDTH, (lowest + MARGIN).ceil()].map(|side| side as u32);
         let size = self.size(page)?;
         let picture = |drawing: &Drawing| {
             let vector = Vector::drawn(&self.name, page, |canvas: &mut Canvas<'_>| {
                 let [width, height] = page.map(f64::from);
                 canvas.rect(&Rect::sized(0.0, 0.0, width, height), WHITE)?;
-                stage.draw(canvas, drawing, &cell)
+                stage.draw(canvas, drawing, &cell)?;
+                let look = Type::new(FOOT, CAPTION_GREY, Align::Start);
+                foot.iter().enumerate().try_for_each(|(i, line)| {
+                    let baseline = cell.y1 + LEADING * FOOT * (i as f64 + 1.0);
+                    canvas.text(line, [cell.x0, baseline], look)
+                })
             })?;
             let pixels = vector.pixels(&self.name, size.map(u32::from))?;
             // The page is opaque.
@@ -241,6 +253,7 @@ mod tests {
             frames: (0..count).map(frame).collect(),
             delay_ms: 40,
             width_px: 240,
+            ..Animation::default()
         }
     }
 

@@ -80,13 +80,15 @@ pub(crate) fn ticks_up(span: &Span, length: f64) -> Ticks {
     })
 }
 
-/// Room a vertical axis needs beside the plot, if its label has `room` upwards.
-pub(crate) fn side_room(axis: &Axis, ticks: &Ticks, room: f64) -> f64 {
+/// Room a vertical axis needs beside a plot of this height.
+pub(crate) fn side_room(axis: &Axis, ticks: &Ticks, height: f64) -> f64 {
+    ticks_room(ticks) + label_room(&words::label_within(axis, ticks, height))
+}
+
+/// Room the ticks of a vertical axis need beside the plot.
+fn ticks_room(ticks: &Ticks) -> f64 {
     let wide = ticks.labels.iter().map(|label| width(label, TICK, false));
-    TICK_LENGTH
-        + TICK_GAP
-        + wide.fold(0.0, f64::max)
-        + label_room(&words::label_within(axis, ticks, room))
+    TICK_LENGTH + TICK_GAP + wide.fold(0.0, f64::max)
 }
 
 /// Room the horizontal axis needs below the plot; without words only that for its ticks, and for half a label of the
@@ -168,7 +170,10 @@ pub(crate) fn bottom(
     let words = words::across(axis, ticks, cell);
     for (line, baseline) in words.baselines() {
         let look = Type::new(words.size, INK, Align::Middle);
-        canvas.text(line, [plot.centre()[0], top + baseline], look)?;
+        // Between unlike sides the plot is not in the middle of its cell, and another may be beside it.
+        let half = 0.5 * width(line, words.size, false);
+        let middle = plot.centre()[0].min(cell.x1 - half).max(cell.x0 + half);
+        canvas.text(line, [middle, top + baseline], look)?;
     }
     Ok(())
 }
@@ -196,8 +201,20 @@ pub(crate) fn side(
             canvas.text_beside(label, place, Type::new(TICK, look.color, align))?;
         }
     }
+    // The words keep to the heights of the plot, as it was before it gave way to a legend: what is above and below them is a
+    // title, the words of the horizontal axis, or the next chart of a stack.
+    let (top, bottom) = look.heights;
+    let beside = if look.right {
+        cell.x1 - plot.x1
+    } else {
+        plot.x0 - cell.x0
+    };
+    let words = words::label_within(axis, look.ticks, bottom - top).within(
+        bottom - top,
+        beside - ticks_room(look.ticks) - 0.5 * LABEL_GAP,
+        false,
+    );
     // Lines that read upwards follow each other to the right.
-    let words = words::label_within(axis, look.ticks, look.room);
     let left = if look.right {
         cell.x1 - words.height()
     } else {
@@ -205,10 +222,8 @@ pub(crate) fn side(
     };
     for (line, baseline) in words.baselines() {
         let text = Type::new(words.size, look.color, Align::Middle);
-        // A plot that gave way to a legend is not in the middle of its cell, and in a stack the next cell is near.
-        let half = 0.5 * width(line, words.size, false) + LABEL_GAP;
-        let highest = cell.y0 + look.top + half;
-        let middle = plot.centre()[1].min(cell.y1 - half).max(highest);
+        let half = 0.5 * width(line, words.size, false);
+        let middle = plot.centre()[1].min(bottom - half).max(top + half);
         canvas.text_upwards(line, [left + baseline, middle], text)?;
     }
     Ok(())
@@ -219,10 +234,8 @@ pub(crate) struct Side<'a> {
     pub(crate) ticks: &'a Ticks,
     pub(crate) color: Rgb,
     pub(crate) right: bool,
-    /// Room for the label upwards.
-    pub(crate) room: f64,
-    /// What it must leave free at the top of its cell: a title reaches to the right.
-    pub(crate) top: f64,
+    /// Between which heights the label may stand.
+    pub(crate) heights: (f64, f64),
 }
 
 /// Draws the title of a panel.

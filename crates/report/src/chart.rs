@@ -13,7 +13,6 @@ use crate::rect::{Insets, Rect};
 use crate::span::Span;
 use crate::theme::{CURVE, GREY, INK, LABEL, Rgb, SPINE, automatic, lightened, rgb};
 use crate::ticks::Ticks;
-use crate::words;
 
 /// Height of a chart's cell as a share of its width.
 pub(crate) const HEIGHT: f64 = 0.68;
@@ -55,8 +54,6 @@ pub(crate) struct Sheet<'a> {
     y2: Option<Span>,
     /// The horizontal axis in words; a chart in a stack leaves them to the lowest.
     x_axis: Option<&'a Axis>,
-    /// Room for the words of a vertical axis, if it is not that of a cell of its own.
-    room: Option<f64>,
 }
 
 /// Where things go in the cell.
@@ -75,11 +72,11 @@ fn no_data(frame: &Frame) -> Rect {
 
 impl<'a> Sheet<'a> {
     pub(crate) fn new(chart: &'a Chart) -> Self {
-        Self::with(chart, Extent::of(chart), Some(&chart.x), None)
+        Self::with(chart, Extent::of(chart), Some(&chart.x))
     }
 
-    /// Charts over the horizontal axis of the first, with plots about as high as given.
-    pub(crate) fn stacked(charts: &'a [Chart], plot: f64) -> Vec<Self> {
+    /// Charts over the horizontal axis of the first.
+    pub(crate) fn stacked(charts: &'a [Chart]) -> Vec<Self> {
         let Some(first) = charts.first() else {
             return Vec::new();
         };
@@ -87,17 +84,12 @@ impl<'a> Sheet<'a> {
         let lowest = charts.len() - 1;
         let sheet = |(place, chart)| {
             let axis = (place == lowest).then_some(&first.x);
-            Self::with(chart, Extent::over(x, chart), axis, Some(plot))
+            Self::with(chart, Extent::over(x, chart), axis)
         };
         charts.iter().enumerate().map(sheet).collect()
     }
 
-    fn with(
-        chart: &'a Chart,
-        Extent { x, y, y2 }: Extent,
-        x_axis: Option<&'a Axis>,
-        room: Option<f64>,
-    ) -> Self {
+    fn with(chart: &'a Chart, Extent { x, y, y2 }: Extent, x_axis: Option<&'a Axis>) -> Self {
         let looks = chart.series.iter().enumerate();
         Self {
             chart,
@@ -106,12 +98,7 @@ impl<'a> Sheet<'a> {
             y,
             y2,
             x_axis,
-            room,
         }
-    }
-
-    fn room_up(&self, cell: &Rect) -> f64 {
-        self.room.unwrap_or_else(|| words::room_up(cell))
     }
 
     /// Whether a place is within the horizontal span.
@@ -141,11 +128,11 @@ impl<'a> Sheet<'a> {
             right: axes::right_room(),
             bottom: axes::bottom_room(self.x_axis, &x_ticks, cell),
         };
-        let (height, room) = (cell.inside(insets).height(), self.room_up(cell));
-        insets.left = axes::side_room(&chart.y, &axes::ticks_up(&self.y, height), room);
+        let height = cell.inside(insets).height();
+        let side = |axis, span| axes::side_room(axis, &axes::ticks_up(span, height), height);
+        insets.left = side(&chart.y, &self.y);
         if let (Some(axis), Some(span)) = (&chart.y2, &self.y2) {
-            let room = room - insets.top;
-            insets.right = axes::side_room(axis, &axes::ticks_up(span, height), room);
+            insets.right = side(axis, span);
         }
         if let Some(ends) = labels::at_ends(chart, &self.looks, &self.frame(cell.inside(insets))) {
             insets.right = insets.right.max(labels::room(&ends));
@@ -169,7 +156,8 @@ impl<'a> Sheet<'a> {
         marks::lines(canvas, &frame, &chart.marks)?;
         // Under the curves: a marker at the very edge is a datum, the spine is not.
         axes::bottom(canvas, &frame, cell, self.x_axis, &x_ticks)?;
-        self.sides(canvas, &frame, cell, &y_ticks)?;
+        let Rect { y0, y1, .. } = cell.inside(insets);
+        self.sides(canvas, &frame, cell, (y0, y1), &y_ticks)?;
         for (series, look) in chart.series.iter().zip(&self.looks) {
             self.area(canvas, &frame, series, look)?;
         }
@@ -194,41 +182,32 @@ impl<'a> Sheet<'a> {
         marks::words(canvas, &frame, &chart.marks, &taken, written)
     }
 
-    fn sides(&self, canvas: &mut Canvas<'_>, frame: &Frame, cell: &Rect, ticks: &Ticks) -> Drawn {
+    fn sides(
+        &self,
+        canvas: &mut Canvas<'_>,
+        frame: &Frame,
+        cell: &Rect,
+        heights: (f64, f64),
+        ticks: &Ticks,
+    ) -> Drawn {
         let chart = self.chart;
         let second = chart.y2.as_ref().zip(self.y2.as_ref());
         // With two axes, colour says which curve belongs to which.
-        let color = |right: bool| {
-            self.axis_color(right)
-                .filter(|_| second.is_some())
-                .unwrap_or(INK)
-        };
-        let left = Side {
+        let side = |ticks, right| Side {
             ticks,
-            color: color(false),
-            right: false,
-            room: self.room_up(cell),
-            top: 0.0,
+            color: self
+                .axis_color(right)
+                .filter(|_| second.is_some())
+                .unwrap_or(INK),
+            right,
+            heights,
         };
-        axes::side(canvas, frame, cell, &chart.y, &left)?;
+        axes::side(canvas, frame, cell, &chart.y, &side(ticks, false))?;
         let Some((axis, span)) = second else {
             return Ok(());
         };
         let ticks = &axes::ticks_up(span, frame.plot.height());
-        let top = axes::top_room(&self.chart.title, cell);
-        axes::side(
-            canvas,
-            frame,
-            cell,
-            axis,
-            &Side {
-                ticks,
-                color: color(true),
-                right: true,
-                room: self.room_up(cell) - top,
-                top,
-            },
-        )
+        axes::side(canvas, frame, cell, axis, &side(ticks, true))
     }
 
     /// The one colour of all the series on a side.

@@ -10,7 +10,6 @@ use crate::shape::{Drawing, Shape};
 use crate::sketch;
 use crate::span::Span;
 use crate::theme::{INK, lightened, rgb};
-use crate::words;
 
 /// Pixels between the shapes and the frame: the room a bearing and its hatching take.
 const PAD: f64 = 54.0;
@@ -23,6 +22,8 @@ const SIDES: f64 = 170.0;
 pub(crate) struct Stage {
     frame: Frame,
     legend: Option<(Legend, Rect, bool)>,
+    /// Between which heights the plot was before the legend.
+    heights: (f64, f64),
 }
 
 /// Height of the cell that suits the drawings at this width.
@@ -49,7 +50,7 @@ pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
     let x_ticks = axes::ticks_across(&frame.x, frame.plot.width());
     let y_ticks = axes::ticks_up(&frame.y, frame.plot.height());
     let own = |drawing: &Drawing| Insets {
-        left: axes::side_room(&drawing.y, &y_ticks, words::room_up(cell)),
+        left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
         bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
         ..guess
     };
@@ -61,9 +62,14 @@ impl Stage {
     /// One frame and one legend for all.
     pub(crate) fn new(drawings: &[Drawing], cell: &Rect, insets: Insets) -> Self {
         let mut frame = fitted(bounds(drawings), cell.inside(insets));
+        let heights = (frame.plot.y0, frame.plot.y1);
         let entries = entries(drawings);
         let legend = (!entries.is_empty()).then(|| place(drawings, &entries, &mut frame));
-        Self { frame, legend }
+        Self {
+            frame,
+            legend,
+            heights,
+        }
     }
 
     /// Height that the legend took from the plot.
@@ -96,8 +102,7 @@ impl Stage {
             ticks: &y,
             color: INK,
             right: false,
-            room: words::room_up(cell),
-            top: 0.0,
+            heights: self.heights,
         };
         axes::side(canvas, frame, cell, &drawing.y, &look)?;
         axes::title(canvas, &drawing.title, &frame.plot, cell)?;

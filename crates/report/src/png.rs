@@ -276,6 +276,30 @@ mod tests {
     }
 
     #[test]
+    fn long_labels_of_low_stacked_charts_keep_to_their_plots() {
+        // The last word, the power of ten and the unit are not parted from each other.
+        let axis = || Axis::new("words for displacements", "kg m²/rad").within(0.0, 3e-12);
+        let chart = |title: &str| Chart {
+            title: title.to_owned(),
+            y: axis(),
+            y2: Some(axis()),
+            ..Chart::default()
+        };
+        let long = "A title as long as its panel is wide, and longer, so that it reaches to the right and is broken";
+        let stack = || Panel::Stack(vec![chart(""), chart(long), chart("Low")]);
+        // Beside a panel with a title of many lines the stack has less room than it asked for.
+        let tall = chart(&long.repeat(3)).into();
+        for panels in [vec![stack()], vec![tall, stack()]] {
+            let figure = Figure {
+                columns: panels.len(),
+                panels,
+                ..Figure::default()
+            };
+            assert_eq!(legible(&figure), Ok(()));
+        }
+    }
+
+    #[test]
     fn the_judge_of_overlaps_sees_them() {
         let words = |text: &str| Shape::text([0.0, 0.0], text, Side::Left);
         let drawing = |shapes| Drawing {

@@ -16,7 +16,7 @@ pub(crate) struct Stack<'a> {
 impl<'a> Stack<'a> {
     pub(crate) fn new(charts: &'a [Chart]) -> Self {
         Self {
-            sheets: Sheet::stacked(charts, PLOT),
+            sheets: Sheet::stacked(charts),
         }
     }
 
@@ -132,12 +132,12 @@ mod tests {
             series: vec![series],
             ..Chart::default()
         });
-        let sheets = Sheet::stacked(&charts, PLOT);
+        let sheets = Sheet::stacked(&charts);
         assert!(
             sheets
                 .iter()
                 .all(|s| s.shows(0.0) && s.shows(5.0) && !s.shows(5.1))
         );
-        assert!(Sheet::stacked(&[], PLOT).is_empty());
+        assert!(Sheet::stacked(&[]).is_empty());
     }
 }

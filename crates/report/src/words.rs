@@ -11,9 +11,10 @@ use crate::ticks::Ticks;
 const LEADING: f64 = 1.25;
 /// Words a little too long are set smaller, down to this share; longer ones are broken.
 const SMALLER: f64 = 0.85;
+/// Words that still do not fit are set as small as they must, but not below this share of that.
+const LEAST: f64 = 0.3;
 /// What tick labels and margins take from a cell: words have the rest.
 const BESIDE: f64 = 190.0;
-const ABOVE_AND_BELOW: f64 = 170.0;
 
 /// Words broken into lines.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +41,20 @@ impl Words {
         Self {
             lines: wrapped(text, SMALLER * size, bold, room),
             size: SMALLER * size,
+        }
+        .within(room, f64::INFINITY, bold)
+    }
+
+    /// The same lines, set smaller if they are longer or together higher than there is room. Ticks may turn out wider than
+    /// they were measured, and a word cannot be broken: small words are better than words that lie on others.
+    pub(crate) fn within(self, long: f64, high: f64, bold: bool) -> Self {
+        let widths = self.lines.iter().map(|line| width(line, self.size, bold));
+        let longest = widths.fold(0.0, f64::max);
+        let share = (long / longest).min(high / self.height()).min(1.0);
+        Self {
+            // Of no lines the shares are no numbers; of no room, one cannot make any.
+            size: self.size * share.max(LEAST),
+            ..self
         }
     }
 
@@ -68,14 +83,9 @@ pub(crate) fn across(axis: &Axis, ticks: &Ticks, cell: &Rect) -> Words {
     Words::new(&label(axis, ticks), LABEL, false, cell.width() - BESIDE)
 }
 
-/// The label of a vertical axis or a colour bar, with so much room.
+/// The label of a vertical axis, which is as long as its plot at the most, or of a colour bar.
 pub(crate) fn label_within(axis: &Axis, ticks: &Ticks, room: f64) -> Words {
     Words::new(&label(axis, ticks), LABEL, false, room)
-}
-
-/// Room for the label of a vertical axis in a cell of its own.
-pub(crate) fn room_up(cell: &Rect) -> f64 {
-    cell.height() - ABOVE_AND_BELOW
 }
 
 /// What an axis shows: its label, what has been subtracted, power of ten and unit.

@@ -9,6 +9,8 @@ use dwell_geometry::{ActuatorId, BodyId, Coordinate, Mechanism, Reaction, Start,
 use dwell_kinetostatics::{Load, Mass};
 use dwell_laws::Law;
 use miette::NamedSource;
+use sha2::{Digest, Sha256};
+use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -236,6 +238,18 @@ impl Scene {
             Some(a) => a.name.clone(),
             None => named().map(|c| c.name.clone()).unwrap_or_default(),
         }
+    }
+
+    /// SHA-256 of the scene's text, as 64 hexadecimal digits: what a result names its scene by. Line ends count as `\n` and a
+    /// byte order mark for nothing, so that a file has one hash wherever it is checked out.
+    pub fn hash(&self) -> String {
+        let text = self.source.inner().trim_start_matches('\u{feff}');
+        let digest = Sha256::digest(text.replace("\r\n", "\n"));
+        digest.iter().fold(String::new(), |mut hash, byte| {
+            // Writing to a string cannot fail.
+            let _ = write!(hash, "{byte:02x}");
+            hash
+        })
     }
 
     /// Reads the text of a scene. `source_name` is the file's name in messages.

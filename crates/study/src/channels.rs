@@ -7,7 +7,7 @@
 //! F is the magnitude that the scene gives; of a damper or friction, the force or couple itself.
 
 use crate::error::StudyError;
-use crate::figures::{extent, range_caption};
+use crate::figures::{extent, range_caption, reduced_at};
 use crate::motion_error::explain_motion;
 use crate::prepare::{Prepared, determined};
 use crate::run::with_loads;
@@ -148,7 +148,7 @@ impl Channels {
             ),
             columns: 1,
             panels,
-            ..Figure::default()
+            provenance: reduced_at(q.len()),
         }
     }
 }

@@ -4,13 +4,14 @@ use crate::driven::Driven;
 use crate::error::StudyError;
 use crate::figures;
 use crate::outcome::Outcome;
+use crate::provenance::picture;
 use crate::simulate::Accuracy;
 use crate::words::{count, digits};
 use dwell_dynamics::{
     Cycle, DynamicsError, Flywheel, Machine, Options, flywheel, run_up, steady_cycle,
 };
 use dwell_geometry::ActuatorId;
-use dwell_report::{Column, Table, png};
+use dwell_report::{Column, Table};
 use dwell_scene::{Place, Scene};
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write as _;
@@ -82,8 +83,8 @@ pub fn cycle(
         _ => None,
     };
     let other = other.as_ref().map(|(cycle, table)| (*cycle, table));
-    let figure = figures::cycle(&driven, (&steady, &samples), other);
-    outcome.files.add(name(".png"), png(&figure)?);
+    let figure = figures::cycle(&driven, (&steady, &samples), other, accuracy);
+    outcome.files.add(name(".png"), picture(scene, &figure)?);
     outcome.summary = summary(&driven, &steady);
     if let (Some(wanted), Some(even)) = (fluctuation, &even) {
         outcome.summary += &evened(&driven, wanted, even);

@@ -2,6 +2,7 @@
 
 use crate::error::StudyError;
 use crate::prepare::Prepared;
+use crate::provenance::origin;
 use crate::reference::Reference;
 use crate::validate::Evidence;
 use dwell_dynamics::Method;
@@ -18,6 +19,8 @@ struct Numbers<'a> {
     title: &'a str,
     note: &'a Option<String>,
     version: &'static str,
+    scene: &'a str,
+    scene_sha256: String,
     passed: bool,
     period_s: Option<f64>,
     energy_j: Option<f64>,
@@ -117,6 +120,8 @@ pub(crate) fn numbers(scene: &Scene, evidence: &Evidence) -> Result<String, Stud
         title: &scene.title,
         note: &scene.note,
         version: env!("CARGO_PKG_VERSION"),
+        scene: &scene.name,
+        scene_sha256: scene.hash(),
         passed: all_pass(&evidence.findings),
         period_s: motion.map(|m| m.turn.period),
         energy_j: motion.map(|m| m.turn.energy),
@@ -250,9 +255,8 @@ pub(crate) fn document(
     }
     let passed = evidence.findings.iter().filter(|f| f.pass).count();
     blocks.push(Block::Text(format!(
-        "{passed} of {} findings pass. Written by Dwell {}.",
-        evidence.findings.len(),
-        env!("CARGO_PKG_VERSION")
+        "{passed} of {} findings pass.",
+        evidence.findings.len()
     )));
     if !reference.source.is_empty() {
         blocks.push(Block::Text(format!(
@@ -321,7 +325,7 @@ pub(crate) fn document(
     illustrated(scene, pages, blocks)
 }
 
-/// A document of these blocks with the pictures behind them.
+/// A document of these blocks with the pictures behind them, and where it comes from.
 pub(crate) fn illustrated(scene: &Scene, pages: &[Figure], mut blocks: Vec<Block>) -> Document {
     blocks.push(Block::Heading("Pictures".to_owned()));
     blocks.extend(pages.iter().map(|page| Block::Figure {
@@ -329,6 +333,7 @@ pub(crate) fn illustrated(scene: &Scene, pages: &[Figure], mut blocks: Vec<Block
         alt: page.title.clone(),
         caption: page.caption.clone(),
     }));
+    blocks.push(Block::Text(origin(scene)));
     Document {
         title: scene.title.clone(),
         blocks,

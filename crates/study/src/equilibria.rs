@@ -4,9 +4,10 @@ use crate::driven::Driven;
 use crate::error::StudyError;
 use crate::figures;
 use crate::outcome::Outcome;
+use crate::provenance::picture;
 use crate::words::{count, digits};
 use dwell_dynamics::{Equilibrium, Stability, at_rest, equilibria as over, equilibrium_near};
-use dwell_report::{Column, Table, png};
+use dwell_report::{Column, Table};
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
@@ -42,7 +43,7 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
         let marked: Vec<f64> = found.iter().map(|e| e.y[0]).collect();
         let marked_held = at_rest(&driven.machine, &marked).map_err(|e| driven.explain(&e))?;
         let figure = figures::equilibria(&driven, &curves, &found, &marked_held);
-        outcome.files.add(name("png"), png(&figure)?);
+        outcome.files.add(name("png"), picture(scene, &figure)?);
     }
     outcome.summary = summary(&driven, &found, interval);
     Ok(outcome)

@@ -32,6 +32,7 @@ mod multibody;
 mod outcome;
 mod page;
 mod prepare;
+mod provenance;
 mod quantity;
 mod reduce;
 mod reference;

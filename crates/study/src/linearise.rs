@@ -5,6 +5,7 @@ use crate::equilibria::{eigenvalues, find, told};
 use crate::error::StudyError;
 use crate::outcome::Outcome;
 use crate::prepare::{not_in_a_table, shared};
+use crate::provenance::origin;
 use crate::words::number;
 use dwell_dynamics::{DriveKind, DynamicsError, Equilibrium, Linear, Machine, linearise as about};
 use dwell_geometry::Reaction;
@@ -230,6 +231,7 @@ impl Named {
                 rows: rows.iter().zip(matrix).map(row).collect(),
             });
         }
+        blocks.push(Block::Text(origin(scene)));
         let title = format!("{}: linearised motion", scene.title);
         Document { title, blocks }.markdown()
     }

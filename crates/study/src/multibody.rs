@@ -15,7 +15,8 @@ use dwell_scene::{Length, Scene};
 use dwell_verify::{MotionSample, Unreduced, UnreducedError, judge_motion};
 use std::f64::consts::TAU;
 
-/// Relative and absolute tolerance of the motion.
+/// Integrator of the motion, and its relative and absolute tolerance.
+const METHOD: Method = Method::Tsit45;
 const TOLERANCE: f64 = 1e-13;
 /// Periods that are judged, where there is a period and the scene asks for so many.
 const PERIODS: f64 = 2.0;
@@ -33,6 +34,13 @@ pub struct FreeRun {
     pub coordinates: Vec<Vec<[f64; 2]>>,
     /// Why it ended early, if it did.
     pub stopped: Option<String>,
+}
+
+impl FreeRun {
+    /// Integrator and tolerance, as figures tell them.
+    pub(crate) fn how() -> String {
+        format!("{}, tolerance {TOLERANCE:e}", METHOD.name())
+    }
 }
 
 /// The free motion of a scene over its duration or two periods, whichever is shorter; none where
@@ -61,7 +69,7 @@ fn followed(scene: &Scene, until: Option<f64>) -> Result<Option<FreeRun>, StudyE
         (Length::Duration(d), Some(orbit)) => d.min(PERIODS * orbit.period),
         (_, None) => free.duration()?,
     };
-    let moved = free.follow(scene, duration, &Options::new(Method::Tsit45, TOLERANCE))?;
+    let moved = free.follow(scene, duration, &Options::new(METHOD, TOLERANCE))?;
     let shown = shown(&driven)?;
     let explain = |e: &DynamicsError| explain_motion(&driven, shown.plan(), e);
     let mut run = run(scene, &free.machine, &shown, &moved).map_err(|e| explain(&e))?;

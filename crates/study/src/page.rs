@@ -5,11 +5,12 @@ use crate::error::StudyError;
 use crate::figures;
 use crate::multibody::{self, FreeRun};
 use crate::outcome::{Outcome, Progress, Step};
+use crate::provenance::picture;
 use crate::reference::Reference;
 use crate::states::{self, Judged};
 use crate::validate::{STEPS, Validation, reduced};
 use dwell_findings::all_pass;
-use dwell_report::{Block, Document, Files, json, png};
+use dwell_report::{Block, Document, Files, json};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -24,6 +25,8 @@ struct Numbers<'a> {
     title: &'a str,
     note: &'a Option<String>,
     version: &'static str,
+    scene: &'a str,
+    scene_sha256: String,
     passed: bool,
     states: usize,
     findings: &'a [dwell_findings::Finding],
@@ -67,7 +70,8 @@ pub(crate) fn of_states(
     ];
     pages.extend(run.as_ref().map(|run| figures::energies(scene, run)));
     pages.push(figures::digits(scene, &judged.findings));
-    let pictures: Vec<Vec<u8>> = pages.par_iter().map(png).collect::<Result<_, _>>()?;
+    let draw = |page| picture(scene, page);
+    let pictures: Vec<Vec<u8>> = pages.par_iter().map(draw).collect::<Result<_, _>>()?;
     done("pictures");
     let mut files = Files::new();
     let name = &scene.name;
@@ -80,6 +84,8 @@ pub(crate) fn of_states(
         title: &scene.title,
         note: &scene.note,
         version: env!("CARGO_PKG_VERSION"),
+        scene: &scene.name,
+        scene_sha256: scene.hash(),
         passed: all_pass(&judged.findings),
         states: judged.states.len(),
         findings: &judged.findings,
@@ -194,15 +200,14 @@ fn document(
     let passed = judged.findings.iter().filter(|f| f.pass).count();
     let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Text).collect();
     blocks.push(Block::Text(format!(
-        "{passed} of {} findings pass, on {} states: {}{}. Written by Dwell {}.",
+        "{passed} of {} findings pass, on {} states: {}{}.",
         judged.findings.len(),
         judged.states.len(),
         judged.motion,
         match reference.asks().len() {
             0 => String::new(),
             n => format!(" and {n} of the reference"),
-        },
-        env!("CARGO_PKG_VERSION")
+        }
     )));
     if !reference.source.is_empty() {
         blocks.push(Block::Text(format!("Source: {}.", reference.source)));

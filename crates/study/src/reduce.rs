@@ -6,9 +6,10 @@ use crate::figures;
 use crate::motion_error::explain_place;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
+use crate::provenance::picture;
 use crate::words::digits;
 use dwell_kinetostatics::{Coefficients, Reduced};
-use dwell_report::{Axis, Column, Figure, Table, png};
+use dwell_report::{Axis, Column, Figure, Table};
 use dwell_scene::Scene;
 
 /// Positions of the table: half a degree over a turn.
@@ -98,7 +99,7 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
     outcome.files.add(name("npz"), table.npz()?);
     for figure in &figures {
         let name = format!("{}-{}.png", scene.name, figure.name);
-        outcome.files.add(name, png(figure)?);
+        outcome.files.add(name, picture(scene, figure)?);
     }
     let over = |pick: fn(&Coefficients) -> f64| {
         let values = sweep.at.iter().map(pick);

@@ -47,6 +47,18 @@ impl Default for Accuracy {
     }
 }
 
+impl Accuracy {
+    /// Integrator and tolerance, as figures tell them.
+    pub(crate) fn told(&self) -> String {
+        let [relative, absolute] = [self.relative, self.absolute].map(|v| format!("{v:e}"));
+        let absolute = match absolute {
+            same if same == relative => String::new(),
+            other => format!(" relative, {other} absolute"),
+        };
+        format!("{}, tolerance {relative}{absolute}", self.method.name())
+    }
+}
+
 /// Samples of a motion where the command does not say how far apart.
 const SAMPLES: f64 = 1000.0;
 /// Most samples of a motion.
@@ -88,7 +100,8 @@ pub fn simulate(
     let samples = run.samples(&moved).map_err(|e| explain(&e))?;
     let led = motion.laws.iter().map(Option::is_some).collect();
     let charts = moved.charts.iter().map(|c| c.shown.clone()).collect();
-    let way = Way::free(run.shown.plan(), samples, told, led, charts);
+    let mut way = Way::free(run.shown.plan(), samples, told, led, charts);
+    way.how = accuracy.told();
     let mut followed = write_up(&driven, &run.shown, &way, Command::Simulate, progress)?;
     let outcome = &mut followed.outcome;
     if moved.occurrences().next().is_some() {

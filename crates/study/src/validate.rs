@@ -10,6 +10,7 @@ use crate::multibody;
 use crate::outcome::{Outcome, Progress, Step};
 use crate::page;
 use crate::prepare::Prepared;
+use crate::provenance::picture;
 use crate::reduce::Sweep;
 use crate::reference::Reference;
 use crate::simulate::Accuracy;
@@ -17,7 +18,7 @@ use crate::states;
 use crate::subject::PlanSubject;
 use dwell_findings::Finding;
 use dwell_kinetostatics::Reduced;
-use dwell_report::{Figure, Files, png};
+use dwell_report::{Figure, Files};
 use dwell_scene::{Length, Scene};
 use dwell_verify::{
     Bench, Case, ErrorCurve, FreeMotion, FreeMotionCase, free_motion, half_dm_curve,
@@ -101,7 +102,8 @@ pub fn validate(
         sweep: Sweep::new(&prepared)?,
     };
     let pages = pages(&prepared, drawing, &evidence);
-    let pictures: Vec<Vec<u8>> = pages.par_iter().map(png).collect::<Result<_, _>>()?;
+    let draw = |page| picture(scene, page);
+    let pictures: Vec<Vec<u8>> = pages.par_iter().map(draw).collect::<Result<_, _>>()?;
     done("pictures");
     let mut files = Files::new();
     let name = &scene.name;

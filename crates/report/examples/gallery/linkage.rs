@@ -188,5 +188,6 @@ pub(crate) fn film() -> Animation {
         frames: (0..FRAMES).map(frame).collect(),
         delay_ms: 50,
         width_px: 480,
+        provenance: "Dwell 0.1.0 · gallery · sampled at 60 positions".to_owned(),
     }
 }

@@ -24,6 +24,25 @@ fn every_number_by_its_path() {
 }
 
 #[test]
+fn the_hash_is_that_of_the_text_whatever_its_line_ends() {
+    let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.crank]\npoints = { A = [0, 0] }\n[joints]\n\
+                A = { revolute = [\"ground.A\", \"crank.A\"] }\n[actuators]\nphi = { angle = [\"ground\", \"crank\"] }\n";
+    let hash = |text: &str| Scene::parse("crank.toml", text).unwrap().hash();
+    // Of `sha256sum` on a file of this text.
+    assert_eq!(
+        hash(text),
+        "8935b793c8c2d479fab03b9e2a7e9cfeffbf0f9ae67063cf00dc2c66a644d467"
+    );
+    assert_eq!(hash(&text.replace('\n', "\r\n")), hash(text));
+    assert_ne!(hash(&format!("{text}\n")), hash(text));
+    let scene = parse(WHOLE).unwrap();
+    assert_ne!(
+        scene.with_value("crank.mass", 3.25).unwrap().hash(),
+        scene.hash()
+    );
+}
+
+#[test]
 fn a_changed_number_changes_what_follows_from_it_and_nothing_else() {
     let scene = parse(WHOLE).unwrap();
     let heavier = scene.with_value("crank.mass", 3.25).unwrap();

@@ -43,8 +43,17 @@ pub(crate) fn drift(prepared: &Prepared<'_>, motion: &FreeMotion) -> Figure {
         ),
         columns: 1,
         panels: vec![panel(Method::Bdf), panel(Method::Tsit45)],
-        ..Figure::default()
+        provenance: ladder(motion),
     }
+}
+
+/// The integrators and tolerances that are compared.
+fn ladder(motion: &FreeMotion) -> String {
+    let tolerances = motion.rungs.iter().map(|r| r.tolerance);
+    let largest = tolerances.clone().fold(0.0, f64::max);
+    let least = tolerances.fold(f64::INFINITY, f64::min);
+    let [bdf, other] = [Method::Bdf, Method::Tsit45].map(Method::name);
+    format!("reduced model, {bdf} and {other}, tolerances {largest:.0e} to {least:.0e}")
 }
 
 /// The largest drift so far, at equal distances of time.
@@ -149,6 +158,6 @@ pub(crate) fn cost(prepared: &Prepared<'_>, motion: &FreeMotion) -> Figure {
                 vec![],
             ),
         ],
-        ..Figure::default()
+        provenance: ladder(motion),
     }
 }

@@ -1,6 +1,6 @@
 //! The reduced parameters over the range.
 
-use super::{coordinate_label, drawn, range_caption, symbol, tell};
+use super::{coordinate_label, drawn, range_caption, reduced_at, symbol, tell};
 use crate::prepare::Prepared;
 use crate::reduce::Sweep;
 use dwell_geometry::Range;
@@ -60,7 +60,7 @@ pub(crate) fn reduced(prepared: &Prepared<'_>, sweep: &Sweep) -> Figure {
             panel("m (generalised inertia)", "kg m²", |c| c.m),
             panel("½m′ (half its derivative)", "kg m²/rad", |c| c.half_dm),
         ],
-        ..Figure::default()
+        provenance: reduced_at(sweep.q.len()),
     }
 }
 
@@ -140,6 +140,6 @@ fn one(prepared: &Prepared<'_>, sweep: &Sweep, some: &[usize], unit: &str, more:
                 |c, k| c.b[k],
             ),
         ],
-        ..Figure::default()
+        provenance: reduced_at(sweep.q.len()),
     }
 }

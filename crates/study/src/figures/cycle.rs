@@ -2,6 +2,7 @@
 
 use super::{foot, symbol};
 use crate::driven::Driven;
+use crate::simulate::Accuracy;
 use dwell_dynamics::Cycle;
 use dwell_report::{Axis, Chart, Figure, Mark, Panel, Series, Stroke, Table};
 
@@ -13,6 +14,7 @@ pub(crate) fn cycle(
     driven: &Driven<'_>,
     (steady, samples): (&Cycle, &Table),
     even: Option<(&Cycle, &Table)>,
+    accuracy: &Accuracy,
 ) -> Figure {
     let (only, _) = driven.only();
     let name = symbol(driven.name(only));
@@ -73,6 +75,6 @@ pub(crate) fn cycle(
         caption: foot(driven.scene, &words),
         columns: 1,
         panels,
-        ..Figure::default()
+        provenance: format!("shooting over the coordinate, {}", accuracy.told()),
     }
 }

@@ -1,6 +1,7 @@
 //! How far the findings of a case agree.
 
 use super::foot;
+use crate::words::count;
 use dwell_findings::Finding;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
 use dwell_scene::Scene;
@@ -49,6 +50,9 @@ pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
             .chunks(findings.len().div_ceil(parts).max(1))
             .map(panel)
             .collect(),
-        ..Figure::default()
+        provenance: format!(
+            "{}, each with its own truth and tolerance",
+            count(findings.len(), "finding")
+        ),
     }
 }

@@ -59,6 +59,6 @@ pub(crate) fn energies(scene: &Scene, run: &FreeRun) -> Figure {
         caption: foot(scene, words),
         columns: if panels.len() > 3 { 2 } else { 1 },
         panels,
-        ..Figure::default()
+        provenance: FreeRun::how(),
     }
 }

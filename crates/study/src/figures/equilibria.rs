@@ -2,6 +2,7 @@
 
 use super::{foot, symbol};
 use crate::driven::Driven;
+use crate::words::count;
 use dwell_dynamics::{Equilibrium, Stability};
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
 
@@ -78,6 +79,9 @@ pub(crate) fn equilibria(
         ),
         columns: 1,
         panels,
-        ..Figure::default()
+        provenance: format!(
+            "force at rest at {}, zeros by bracketing",
+            count(curves.q.len(), "position")
+        ),
     }
 }

@@ -5,6 +5,7 @@ use super::{caption, coordinate_label};
 use crate::error::StudyError;
 use crate::motion_error::explain_place;
 use crate::prepare::Prepared;
+use crate::words::count;
 use dwell_geometry::{BodyId, Plan, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape};
@@ -109,7 +110,7 @@ pub(crate) fn mechanism(prepared: &Prepared<'_>) -> Result<(Figure, Option<Dwell
         caption: caption(prepared, &words),
         columns: 1,
         panels,
-        ..Figure::default()
+        provenance: format!("the mechanism at {}", count(sweep.q.len(), "position")),
     };
     Ok((figure, dwell))
 }

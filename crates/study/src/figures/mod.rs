@@ -27,6 +27,7 @@ pub(crate) use states::{actions, drawing};
 pub(crate) use steps::steps;
 
 use crate::prepare::Prepared;
+use crate::words::count;
 use dwell_report::Figure;
 use dwell_scene::Scene;
 
@@ -66,21 +67,21 @@ pub(crate) fn range_caption(prepared: &Prepared<'_>, words: &str) -> String {
     caption(prepared, &format!("{words}{limits}"))
 }
 
-/// The foot of a figure: the scene, the words, and what drew it.
+/// The foot of a figure: the scene's title and the words. What drew it is added where it is drawn.
 pub(crate) fn caption(prepared: &Prepared<'_>, words: &str) -> String {
     foot(prepared.scene, words)
 }
 
 /// The same for any scene.
 pub(crate) fn foot(scene: &Scene, words: &str) -> String {
-    let source = scene.source.name().rsplit(['/', '\\']);
-    let file: Vec<_> = source.take(2).collect();
-    let file: Vec<_> = file.into_iter().rev().collect();
+    format!("{}. {words}", scene.title.trim_end_matches('.'))
+}
+
+/// How the reduced model was evaluated.
+pub(crate) fn reduced_at(positions: usize) -> String {
     format!(
-        "{} ({}). {words} Dwell {}.",
-        scene.title,
-        file.join("/"),
-        env!("CARGO_PKG_VERSION")
+        "reduced model by unit runs, at {}",
+        count(positions, "position")
     )
 }
 

@@ -99,9 +99,7 @@ pub(crate) fn history(prepared: &Prepared<'_>, history: &History, accuracy: &Acc
         caption: caption(
             prepared,
             &format!(
-                "No torque. {} at relative tolerance {:.0e}; reactions by R = a q̈ + b q̇².{}",
-                accuracy.method.name(),
-                accuracy.relative,
+                "No torque. Reactions by R = a q̈ + b q̇².{}",
                 prepared
                     .scene
                     .calibration
@@ -114,6 +112,6 @@ pub(crate) fn history(prepared: &Prepared<'_>, history: &History, accuracy: &Acc
         ),
         columns: if panels.len() > 2 { 2 } else { 1 },
         panels,
-        ..Figure::default()
+        provenance: format!("reduced model, {}", accuracy.told()),
     }
 }

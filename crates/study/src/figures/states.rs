@@ -4,6 +4,7 @@ use super::foot;
 use super::mechanism::{Sweep, paths};
 use super::skeleton::Skeleton;
 use crate::states::Judged;
+use crate::words::count;
 use dwell_geometry::{Vec2, vec2};
 use dwell_report::{Axis, Chart, Drawing, Figure, Panel, Series};
 use dwell_scene::Scene;
@@ -45,7 +46,7 @@ pub(crate) fn drawing(scene: &Scene, judged: &Judged) -> Figure {
             y: Axis::new("y", "m"),
             shapes,
         })],
-        ..Figure::default()
+        provenance: format!("the mechanism at {}", count(judged.drawn, "state")),
     }
 }
 
@@ -75,6 +76,6 @@ pub(crate) fn actions(scene: &Scene, judged: &Judged) -> Figure {
         caption: foot(scene, &format!("Along {}, under the loads.", judged.motion)),
         columns: 1,
         panels: actuators.map(panel).collect(),
-        ..Figure::default()
+        provenance: format!("the mechanism at {}", count(judged.drawn, "state")),
     }
 }

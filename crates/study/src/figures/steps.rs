@@ -38,6 +38,6 @@ pub(crate) fn steps(prepared: &Prepared<'_>, curves: &[ErrorCurve]) -> Figure {
         ),
         columns: 1,
         panels: curves.iter().map(panel).collect(),
-        ..Figure::default()
+        provenance: "reduced model by unit runs, and differences of the kinetic energy".to_owned(),
     }
 }

@@ -1,6 +1,7 @@
 //! What a run says in words: its summary, and the page that gathers peaks, meanings and pictures.
 
 use crate::prepare::not_in_a_table;
+use crate::provenance::origin;
 use crate::run::Command;
 use crate::run::columns::Quantity;
 use crate::run::peaks::{self, Peak};
@@ -214,6 +215,11 @@ impl<'a> Document<'a> {
             header: ["column", "unit", "meaning"].map(str::to_owned).to_vec(),
             rows: self.chosen.iter().map(row).collect(),
         });
+        blocks.push(Block::Text(format!(
+            "{} · {}",
+            origin(self.scene),
+            self.way.how
+        )));
         Page {
             title: format!("{}: {}", self.scene.title, self.command.name()),
             blocks,

@@ -25,8 +25,9 @@ pub(crate) use way::{Sample, Told, Way};
 use crate::error::StudyError;
 use crate::figures;
 use crate::outcome::{Outcome, Progress, Step};
+use crate::provenance;
 use dwell_kinetostatics::Model;
-use dwell_report::{Figure, ReportError, Table, png};
+use dwell_report::{Figure, ReportError, Table};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
@@ -126,14 +127,16 @@ pub(crate) fn write_up(
     }
     let (pictures, left_out) = figures::run(scene, &record, way, command);
     let total = parts + pictures.len() + 1;
-    let drawn = draw(&pictures, total, progress)?;
+    let drawn = draw(scene, &pictures, total, progress)?;
     for (figure, bytes) in pictures.iter().zip(drawn) {
         outcome
             .files
             .add(name(&format!("-{}.png", figure.name)), bytes);
     }
     let film = figures::film(scene, &record, way);
-    outcome.files.add(name("-mechanism.gif"), film.gif()?);
+    outcome
+        .files
+        .add(name("-mechanism.gif"), provenance::film(scene, film)?);
     progress(Step {
         total,
         done: "animation",
@@ -150,12 +153,13 @@ pub(crate) fn write_up(
 }
 
 fn draw(
+    scene: &Scene,
     pictures: &[Figure],
     total: usize,
     progress: Progress<'_>,
 ) -> Result<Vec<Vec<u8>>, ReportError> {
     let one = |figure: &Figure| {
-        let bytes = png(figure)?;
+        let bytes = provenance::picture(scene, figure)?;
         progress(Step {
             total,
             done: &figure.name,

@@ -52,6 +52,8 @@ pub(crate) struct Way<'a> {
     pub(crate) points: usize,
     /// What it follows, in words.
     pub(crate) words: String,
+    /// How its positions were come by.
+    pub(crate) how: String,
     /// Where the scene says so.
     pub(crate) place: Place,
     /// Whether it begins and ends next to a limit position.
@@ -89,6 +91,11 @@ struct Ends {
     words: &'static str,
 }
 
+/// What is not integrated has no method and no tolerance.
+fn at_positions(points: usize) -> String {
+    format!("the mechanism at {}", count(points, "position"))
+}
+
 impl<'a> Way<'a> {
     /// The way that a command takes through a scene, at `points` positions if these are given.
     ///
@@ -101,8 +108,10 @@ impl<'a> Way<'a> {
         points: Option<usize>,
     ) -> Result<Self, StudyError> {
         if let Some(prescribed) = &scene.prescribed {
+            let points = points.unwrap_or(prescribed.points).max(2);
             return Ok(Self {
-                points: points.unwrap_or(prescribed.points).max(2),
+                points,
+                how: at_positions(points),
                 words: format!(
                     "the prescribed motion of {} s",
                     digits(prescribed.duration, 6)
@@ -145,7 +154,9 @@ impl<'a> Way<'a> {
         };
         let unit = if plan.is_angle(actuator) { "rad" } else { "m" };
         let name = &scene.mechanism.actuators[actuator].name;
+        let points = points.or(wanted).unwrap_or(POINTS).max(2);
         Ok(Self {
+            how: at_positions(points),
             words: format!(
                 "{} of {name} from {} to {} {unit}",
                 ends.words,
@@ -159,7 +170,7 @@ impl<'a> Way<'a> {
                 held,
                 speed,
             },
-            points: points.or(wanted).unwrap_or(POINTS).max(2),
+            points,
             place,
             at_limits: ends.at_limits,
             period: plan.range().period(),
@@ -177,6 +188,7 @@ impl<'a> Way<'a> {
         let last = samples.last().map_or(0.0, |s| s.t);
         Self {
             points: samples.len(),
+            how: at_positions(samples.len()),
             words: format!("a free motion of {} s", digits(last, 6)),
             kind: Kind::Free {
                 samples,

@@ -195,7 +195,7 @@ impl Sheet<'_> {
             caption: self.foot(&words),
             columns: 1,
             panels: vec![charts.into()],
-            ..Figure::default()
+            provenance: self.how.clone(),
         })
     }
 }

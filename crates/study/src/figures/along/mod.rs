@@ -32,6 +32,8 @@ struct Sheet<'a> {
     scene: &'a Scene,
     record: &'a Record,
     command: Command,
+    /// How the positions were come by.
+    how: String,
     x: Axis,
     at: Vec<f64>,
     /// Whether the way begins and ends next to a limit position.
@@ -94,6 +96,7 @@ pub(crate) fn film(scene: &Scene, record: &Record, way: &Way<'_>) -> Animation {
         frames: (0..count).map(frame).collect(),
         delay_ms: DELAY_MS,
         width_px: WIDTH_PX,
+        provenance: way.how.clone(),
     }
 }
 
@@ -150,6 +153,7 @@ impl<'a> Sheet<'a> {
             scene,
             record,
             command,
+            how: way.how.clone(),
             x,
             at,
             limits: [start, end || record.stop.is_some()],
@@ -182,7 +186,7 @@ impl<'a> Sheet<'a> {
             caption: self.foot(&format!("{words}{limits}")),
             columns: 1,
             panels,
-            ..Figure::default()
+            provenance: self.how.clone(),
         }
     }
 
@@ -331,7 +335,7 @@ impl<'a> Sheet<'a> {
                 y: Axis::new("y", "m"),
                 shapes,
             })],
-            ..Figure::default()
+            provenance: self.how.clone(),
         }
     }
 }
