@@ -1,14 +1,14 @@
 //! A case with its model, evaluated with or without a slip, and judged by the truths.
 
-use crate::verdict::{ENOUGH, Verdict};
+use super::verdict::{ENOUGH, Verdict};
+use super::watched::{Place, Slip, Watched, noting, slipping};
 use dwell_findings::Finding;
-use crate::watched::{Place, Slip, Watched, noting, slipping};
 use dwell_geometry::{BodyId, Plan, Pose, Vec2};
 use dwell_kinetostatics::{Actions as Kinetostatic, Model, Workspace};
 use dwell_scene::Scene;
 use dwell_verify::{
-    Actions, Case, Coefficients, State, Subject, SubjectError, judge_energies, judge_states, load_acts, spread,
-    verify_all,
+    Actions, Case, Coefficients, State, Subject, SubjectError, judge_energies, judge_states,
+    load_acts, spread, verify_all,
 };
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -55,37 +55,18 @@ pub(crate) struct Machine {
 
 /// Everything that is judged, by kind.
 pub(crate) type Answers = Vec<Vec<f64>>;
+/// States, and by state the generalised inertias, row by row.
+pub(crate) type Claims = (Vec<State>, Vec<Vec<f64>>);
+
+/// An answer that moves by less than this, relative to the largest of its kind, is the same answer:
+/// three digits above what the truths tell from rounding.
+pub(crate) const SAME: f64 = 1e-9;
 
 impl Machine {
+    /// A machine whose answers are known.
     pub(crate) fn new(scene: Scene, by: By) -> Self {
-        let mechanism = &scene.mechanism;
-        let start = scene.assembly.to_start();
-        let model = Model::new(mechanism, &scene.masses, &start, &mechanism.reactions())
-            .and_then(|model| match by {
-                By::Reduced => Ok(model),
-                By::States => Ok(model
-                    .with_loads(mechanism, scene.loads.clone())
-                    .expect("loads")),
-            })
-            .unwrap_or_else(|e| panic!("{}: {e}", scene.name));
-        let mut positions = positions(&scene, model.plan());
-        if by == By::Reduced {
-            // Judging costs more there.
-            positions.truncate(2);
-        }
-        let (at_start, frames) = walked(&scene, model.plan(), &positions);
-        let mut machine = Self {
-            name: scene.name.clone(),
-            by,
-            scene,
-            model,
-            positions,
-            frames,
-            start: at_start,
-            clean: Vec::new(),
-            clean_states: Vec::new(),
-            blind: Vec::new(),
-        };
+        let name = scene.name.clone();
+        let mut machine = Self::described(scene, by).unwrap_or_else(|| panic!("{name} is none"));
         if by == By::States {
             machine.clean_states = machine.states(None).expect("states").0;
         }
@@ -96,6 +77,40 @@ impl Machine {
         machine
     }
 
+    /// A machine as described; none if it cannot be put together.
+    pub(crate) fn described(scene: Scene, by: By) -> Option<Self> {
+        let mechanism = &scene.mechanism;
+        let start = scene.assembly.to_start();
+        let mut model =
+            Model::new(mechanism, &scene.masses, &start, &mechanism.reactions()).ok()?;
+        if by == By::States {
+            model = model.with_loads(mechanism, scene.loads.clone()).ok()?;
+        }
+        let mut positions = positions(&scene, model.plan());
+        if by == By::Reduced {
+            // Judging costs more there.
+            positions.truncate(2);
+        }
+        let (at_start, frames) = walked(&scene, model.plan(), &positions);
+        Some(Self {
+            name: scene.name.clone(),
+            by,
+            scene,
+            model,
+            positions,
+            frames,
+            start: at_start,
+            clean: Vec::new(),
+            clean_states: Vec::new(),
+            blind: Vec::new(),
+        })
+    }
+
+    /// What it costs to judge, roughly: dense rows, cubed.
+    pub(crate) fn size(&self) -> usize {
+        self.scene.mechanism.bodies.len()
+    }
+
     /// Every place that an evaluation meets.
     pub(crate) fn places(&self) -> BTreeSet<Place> {
         noting(|| self.answers(None)).1
@@ -104,20 +119,7 @@ impl Machine {
     /// How far a fault moves the answers, relative to the largest of each kind; none where there is
     /// no answer at all.
     pub(crate) fn moved(&self, fault: Fault) -> Option<f64> {
-        let answers = self.answers(fault)?;
-        let mut worst = 0.0_f64;
-        for (clean, found) in self.clean.iter().zip(&answers) {
-            let largest = clean.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-            for (c, f) in clean.iter().zip(found) {
-                if !f.is_finite() {
-                    return Some(f64::INFINITY);
-                }
-                if f != c {
-                    worst = worst.max((f - c).abs() / largest.max(f64::MIN_POSITIVE));
-                }
-            }
-        }
-        Some(worst)
+        Some(apart(&self.clean, &self.answers(fault)?))
     }
 
     /// What the truths say.
@@ -129,6 +131,54 @@ impl Machine {
     fn verdict(&self, findings: &[Finding]) -> Verdict {
         let seeing = findings.iter().filter(|f| !self.blind.contains(&f.key));
         Verdict::of(seeing)
+    }
+
+    /// What the truths say of states that are claimed of this machine; nothing where they are its own.
+    pub(crate) fn judge_claims(&self, mut claims: Claims) -> Option<Verdict> {
+        for (claim, own) in claims.0.iter_mut().zip(&self.clean_states) {
+            claim.loads.clone_from(&own.loads);
+        }
+        if apart(&self.clean, &self.told(&claims)) <= SAME {
+            return None;
+        }
+        let findings = self.judged(&claims, usize::MAX);
+        Some(self.verdict(&findings))
+    }
+
+    /// The states that this machine claims.
+    pub(crate) fn claims(&self) -> Option<Claims> {
+        self.states(None)
+    }
+
+    /// The accelerations of its states, without all that comes of speeds.
+    pub(crate) fn straight(&self, claims: &Claims) -> Vec<Vec<[f64; 3]>> {
+        let mut work = self.model.workspace::<Watched>();
+        let still = vec![Watched::default(); self.model.plan().actuators()];
+        let lifted = |values: &[f64]| values.iter().map(|&v| Watched::new(v)).collect::<Vec<_>>();
+        let of = |state: &State| {
+            let entered = self
+                .model
+                .enter(state.t, &lifted(&state.q), &still, &mut work);
+            entered.expect("a pose");
+            self.model.accelerate(&lifted(&state.q_ddot), &mut work);
+            accelerations(&work, state.bodies.len())
+        };
+        claims.0.iter().map(of).collect()
+    }
+
+    /// Where it is judged: to be the same for claims of a wrong description.
+    pub(crate) fn stand(&mut self, positions: &[Vec<f64>]) {
+        self.positions = positions.to_vec();
+        self.clean_states.clear();
+        (_, self.frames) = walked(&self.scene, self.model.plan(), &self.positions);
+    }
+
+    pub(crate) fn positions(&self) -> &[Vec<f64>] {
+        &self.positions
+    }
+
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
     }
 
     /// What the truths find; the costly ones only where fewer than `enough` others catch it.
@@ -147,12 +197,23 @@ impl Machine {
             };
             return verify_all(&case, &subject, &[]);
         }
-        let Some((states, inertias)) = self.states(fault) else {
-            return Vec::new();
-        };
-        let mut findings = judge_states(mechanism, masses, &self.start, &states);
+        match self.states(fault) {
+            None => Vec::new(),
+            Some(claims) => self.judged(&claims, enough),
+        }
+    }
+
+    fn judged(&self, (states, inertias): &Claims, enough: usize) -> Vec<Finding> {
+        let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
+        let mut findings = judge_states(mechanism, masses, &self.start, states);
         if self.verdict(&findings).count() < enough {
-            findings.extend(judge_energies(mechanism, masses, &self.start, &states, &inertias));
+            findings.extend(judge_energies(
+                mechanism,
+                masses,
+                &self.start,
+                states,
+                inertias,
+            ));
         }
         findings
     }
@@ -164,40 +225,41 @@ impl Machine {
                     machine: self,
                     fault,
                 };
-                let (mut poses, mut m, mut slope) = (Vec::new(), Vec::new(), Vec::new());
-                let (mut a, mut b, mut acts) = (Vec::new(), Vec::new(), Vec::new());
+                let (mut poses, mut inertia, mut acts) = (Vec::new(), Vec::new(), Vec::new());
                 for (q, k) in self.positions.iter().zip(0..) {
                     let [v, r] = [SPEEDS[k][0], RATES[k][0]];
                     poses.extend(subject.poses(q[0]).ok()?.into_iter().flatten());
                     let at = subject.coefficients(q[0]).ok()?;
-                    m.push(at.m);
-                    slope.push(at.half_dm);
-                    a.extend(self.determined(at.a));
-                    b.extend(self.determined(at.b));
+                    inertia.extend([at.m, at.half_dm]);
+                    acts.extend(self.determined(at.a));
+                    acts.extend(self.determined(at.b));
                     let done = subject.actions(q[0], v, r).ok()?;
                     acts.extend(self.determined(done.reactions));
                     acts.push(done.tau);
                 }
-                Some(vec![poses, m, slope, a, b, acts])
+                // What is zero throughout has the scale of its like.
+                Some(vec![poses, inertia, acts])
             }
-            By::States => {
-                let (states, inertias) = self.states(fault)?;
-                let all = |of: fn(&State) -> &Vec<[f64; 3]>| {
-                    states.iter().flat_map(|s| of(s).iter().flatten().copied()).collect()
-                };
-                let acts = states.iter().flat_map(|s| {
-                    let reactions = self.determined(s.reactions.clone());
-                    reactions.into_iter().chain(s.tau.clone())
-                });
-                Some(vec![
-                    all(|s| &s.bodies),
-                    all(|s| &s.velocity),
-                    all(|s| &s.acceleration),
-                    acts.collect(),
-                    inertias.concat(),
-                ])
-            }
+            By::States => Some(self.told(&self.states(fault)?)),
         }
+    }
+
+    fn told(&self, (states, inertias): &Claims) -> Answers {
+        let all = |of: fn(&State) -> &Vec<[f64; 3]>| {
+            let each = states.iter().flat_map(|s| of(s).iter().flatten().copied());
+            each.collect()
+        };
+        let acts = states.iter().flat_map(|s| {
+            let reactions = self.determined(s.reactions.clone());
+            reactions.into_iter().chain(s.tau.clone())
+        });
+        vec![
+            all(|s| &s.bodies),
+            all(|s| &s.velocity),
+            all(|s| &s.acceleration),
+            acts.collect(),
+            inertias.concat(),
+        ]
     }
 
     /// The reactions that the loads determine; the others may be split in any way that balances.
@@ -207,7 +269,7 @@ impl Machine {
     }
 
     /// The states under the loads. What the loads do is told from the right poses and magnitudes.
-    fn states(&self, fault: Fault) -> Option<(Vec<State>, Vec<Vec<f64>>)> {
+    fn states(&self, fault: Fault) -> Option<Claims> {
         let mut work = self.model.workspace::<Watched>();
         let (mut actions, mut unit) = (self.model.actions(), self.model.actions());
         let n = self.model.plan().actuators();
@@ -216,9 +278,11 @@ impl Machine {
             let t = 0.3 + 0.4 * k as f64;
             let [q_dot, q_ddot] = [&SPEEDS[k][..n], &RATES[k][..n]];
             let done = slipping(fault, || {
-                let lifted = |values: &[f64]| values.iter().map(|&v| Watched::new(v)).collect::<Vec<_>>();
+                let lifted =
+                    |values: &[f64]| values.iter().map(|&v| Watched::new(v)).collect::<Vec<_>>();
                 let (q, v, a) = (lifted(q), lifted(q_dot), lifted(q_ddot));
-                self.model.kinetostatics(t, &q, &v, &a, &mut work, &mut actions)
+                self.model
+                    .kinetostatics(t, &q, &v, &a, &mut work, &mut actions)
             });
             done.ok()?;
             let state = slipping(fault, || self.state(t, k, &work, &actions));
@@ -280,7 +344,10 @@ impl Machine {
     ) -> State {
         let (mechanism, n) = (&self.scene.mechanism, self.model.plan().actuators());
         let states = work.states();
-        let mut bodies = self.model.plan().body_frames(mechanism, &plain(self.model.plan(), &work.pose));
+        let mut bodies = self
+            .model
+            .plan()
+            .body_frames(mechanism, &plain(self.model.plan(), &work.pose));
         for (frame, right) in bodies.iter_mut().zip(&self.frames[k]) {
             frame[2] += ((right[2] - frame[2]) / TAU).round() * TAU;
         }
@@ -296,7 +363,14 @@ impl Machine {
                 let loads = self.scene.loads.iter().zip(&work.loads().magnitude);
                 let acts = loads.filter_map(|(load, magnitude)| {
                     let masses = &self.scene.masses;
-                    load_acts(&load.kind, magnitude.0, mechanism.ground, masses, &bodies, &velocity)
+                    load_acts(
+                        &load.kind,
+                        magnitude.0,
+                        mechanism.ground,
+                        masses,
+                        &bodies,
+                        &velocity,
+                    )
                 });
                 acts.flatten().collect()
             }
@@ -326,14 +400,22 @@ impl Subject for Slipping<'_> {
     fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
         let Machine { model, scene, .. } = self.machine;
         let mut pose = model.plan().pose();
-        slipping(self.fault, || model.plan().place(&[Watched::new(q)], &mut pose)).map_err(refused(q))?;
-        Ok(model.plan().body_frames(&scene.mechanism, &plain(model.plan(), &pose)))
+        slipping(self.fault, || {
+            model.plan().place(&[Watched::new(q)], &mut pose)
+        })
+        .map_err(refused(q))?;
+        Ok(model
+            .plan()
+            .body_frames(&scene.mechanism, &plain(model.plan(), &pose)))
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
         let model = &self.machine.model;
         let (mut work, mut at) = (model.workspace(), model.coefficients());
-        slipping(self.fault, || model.reduce(Watched::new(q), &mut work, &mut at)).map_err(refused(q))?;
+        slipping(self.fault, || {
+            model.reduce(Watched::new(q), &mut work, &mut at)
+        })
+        .map_err(refused(q))?;
         Ok(Coefficients {
             m: at.m.0,
             half_dm: at.half_dm.0,
@@ -346,7 +428,10 @@ impl Subject for Slipping<'_> {
         let model = &self.machine.model;
         let (mut work, mut actions) = (model.workspace(), model.actions());
         let [at, v, a] = [q, q_dot, q_ddot].map(|v| [Watched::new(v)]);
-        slipping(self.fault, || model.act(&at, &v, &a, &mut work, &mut actions)).map_err(refused(q))?;
+        slipping(self.fault, || {
+            model.act(&at, &v, &a, &mut work, &mut actions)
+        })
+        .map_err(refused(q))?;
         Ok(Actions {
             tau: actions.tau[0].0,
             reactions: actions.reactions.iter().map(|v| v.0).collect(),
@@ -381,7 +466,12 @@ fn plain_actions(actions: &Kinetostatic<Watched>) -> Kinetostatic<f64> {
 /// q̈ of Σ runs q̈ + rest = 0, by elimination with the largest pivot.
 fn solved(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f64>> {
     let n = runs.len();
-    let row = |i: usize| runs.iter().map(|run| run.tau[i]).chain([-rest[i]]).collect();
+    let row = |i: usize| {
+        runs.iter()
+            .map(|run| run.tau[i])
+            .chain([-rest[i]])
+            .collect()
+    };
     let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
     for c in 0..n {
         let pivot = (c..n).max_by(|&i, &j| rows[i][c].abs().total_cmp(&rows[j][c].abs()))?;
@@ -415,6 +505,19 @@ fn plain(plan: &Plan, pose: &Pose<Watched>) -> Pose<f64> {
     out
 }
 
+/// How far answers are apart, relative to the largest of each kind; infinitely where one is no number.
+fn apart(clean: &Answers, found: &Answers) -> f64 {
+    let mut worst = 0.0_f64;
+    for (clean, found) in clean.iter().zip(found) {
+        let largest = clean.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+        for (c, f) in clean.iter().zip(found).filter(|(c, f)| c != f) {
+            let by = (f - c).abs() / largest;
+            worst = worst.max(if by.is_nan() { f64::INFINITY } else { by });
+        }
+    }
+    worst
+}
+
 /// Some positions inside the range, or near the start where there are several actuators.
 fn positions(scene: &Scene, plan: &Plan) -> Vec<Vec<f64>> {
     let start = plan.start();
@@ -439,7 +542,10 @@ fn positions(scene: &Scene, plan: &Plan) -> Vec<Vec<f64>> {
         }
         (None, _) => dwell_geometry::Range::Full,
     };
-    spread(range, POSITIONS).into_iter().map(|q| vec![q]).collect()
+    spread(range, POSITIONS)
+        .into_iter()
+        .map(|q| vec![q])
+        .collect()
 }
 
 /// The frames at the start and at some positions, whole turns counted on the way.
@@ -454,13 +560,20 @@ fn walked(
     let first = plan.body_frames(&scene.mechanism, &pose);
     let (mut frames, mut all) = (first.clone(), Vec::new());
     for to in positions {
-        let far = at.iter().zip(to).map(|(a, b)| (b - a).abs()).fold(0.0, f64::max);
+        let far = at
+            .iter()
+            .zip(to)
+            .map(|(a, b)| (b - a).abs())
+            .fold(0.0, f64::max);
         let steps = (far / STRIDE).ceil().max(1.0);
         for k in 1..=steps as usize {
             let part = k as f64 / steps;
             let q: Vec<f64> = at.iter().zip(to).map(|(a, b)| a + part * (b - a)).collect();
             plan.place(&q, &mut pose).expect("a pose");
-            for (frame, next) in frames.iter_mut().zip(plan.body_frames(&scene.mechanism, &pose)) {
+            for (frame, next) in frames
+                .iter_mut()
+                .zip(plan.body_frames(&scene.mechanism, &pose))
+            {
                 let turns = ((frame[2] - next[2]) / TAU).round();
                 *frame = [next[0], next[1], next[2] + turns * TAU];
             }

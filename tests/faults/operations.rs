@@ -1,14 +1,11 @@
 //! Every sign and every term of every step of a plan, in the product's own lines.
 
-use crate::machine::Machine;
-use crate::verdict::{ENOUGH, Verdict};
-use crate::watched::{Place, Slip};
+use super::machine::{Machine, SAME};
+use super::verdict::{ENOUGH, Verdict};
+use super::watched::{Place, Slip};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// An answer that moves by less than this, relative to the largest of its kind, is the same answer:
-/// three digits above what the truths tell from rounding.
-const SAME: f64 = 1e-9;
 /// What became of a fault.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Outcome {

@@ -13,7 +13,9 @@ pub(crate) fn samples(folder: &Path, scene: &Scene) -> Vec<Sample> {
     let mechanism = &scene.mechanism;
     let index = |name: &str| {
         let reactions = mechanism.reactions();
-        reactions.iter().position(|&r| mechanism.reaction_name(r) == name)
+        reactions
+            .iter()
+            .position(|&r| mechanism.reaction_name(r) == name)
     };
     let sample = |s: &Value| {
         let pairs = s["reactions"].as_object().into_iter().flatten();

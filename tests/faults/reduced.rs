@@ -1,14 +1,16 @@
 //! Named faults in the reduced model: what has gone wrong in programs and papers, each a wrapper of the
 //! judged subject.
 
-use crate::verdict::Verdict;
-use crate::wrench::{Moving, Wrenches};
+use super::verdict::Verdict;
+use super::wrench::{Moving, Wrenches};
 use dwell_geometry::{Component, JointKind, Vec2};
 use dwell_kinetostatics::Reduced as _;
 use dwell_scene::Scene;
 use dwell_study::PlanSubject;
 use dwell_verify::truths::Sample;
-use dwell_verify::{Actions, Case, Coefficients, Finding, Subject, SubjectError, spread, verify_all};
+use dwell_verify::{
+    Actions, Case, Coefficients, Finding, Subject, SubjectError, spread, verify_all,
+};
 use std::f64::consts::FRAC_PI_2;
 
 /// Positions at which a fault is judged.
@@ -238,7 +240,14 @@ impl Faulty<'_> {
 
     /// What a body's inertia is short of in a fault, as a force at its centre and a couple.
     fn missing(&self, body: &Moving) -> Option<(Vec2, f64)> {
-        let Moving { mass, inertia, arm, spin, spin_rate, .. } = *body;
+        let Moving {
+            mass,
+            inertia,
+            arm,
+            spin,
+            spin_rate,
+            ..
+        } = *body;
         let centrifugal = arm * (-mass * spin * spin);
         let coriolis = body.slip.perp() * (2.0 * mass * body.carrier);
         let none = (Vec2::ZERO, 0.0);
@@ -261,12 +270,20 @@ impl Faulty<'_> {
 
 impl Subject for Faulty<'_> {
     fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
-        let lag = if self.fault == Some(Fault::PoseThatLags) { 1e-3 } else { 0.0 };
+        let lag = if self.fault == Some(Fault::PoseThatLags) {
+            1e-3
+        } else {
+            0.0
+        };
         self.subject(q).poses(q - lag)
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
-        let lag = if self.fault == Some(Fault::PoseThatLags) { 1e-3 } else { 0.0 };
+        let lag = if self.fault == Some(Fault::PoseThatLags) {
+            1e-3
+        } else {
+            0.0
+        };
         let mut c = self.subject(q).coefficients(q - lag)?;
         let Some(fault) = self.fault else {
             return Ok(c);
@@ -291,20 +308,28 @@ impl Subject for Faulty<'_> {
             Fault::HalfInertia => c.m = half,
             Fault::MisplacedBracket => {
                 // (F_E − (m12′ − ½ m1,q2) q̇²) / q̈ printed as (F_E − (m12′ − ½ m1,q2 q̇²)) / q̈: at q̇ = 0 m12′ stays.
-                c.a.iter_mut().zip(self.slopes(q)?).for_each(|(a, slope)| *a -= slope);
+                c.a.iter_mut()
+                    .zip(self.slopes(q)?)
+                    .for_each(|(a, slope)| *a -= slope);
             }
             Fault::NoSlopeAcross => c.b = self.slopes(q)?,
             Fault::WholeSlopeAcross => {
                 let slopes = self.slopes(q)?;
-                c.b.iter_mut().zip(slopes).for_each(|(b, slope)| *b = 2.0 * *b - slope);
+                c.b.iter_mut()
+                    .zip(slopes)
+                    .for_each(|(b, slope)| *b = 2.0 * *b - slope);
             }
             Fault::SlopeAcrossReversed => {
                 let slopes = self.slopes(q)?;
-                c.b.iter_mut().zip(slopes).for_each(|(b, slope)| *b = 2.0 * slope - *b);
+                c.b.iter_mut()
+                    .zip(slopes)
+                    .for_each(|(b, slope)| *b = 2.0 * slope - *b);
             }
             Fault::NoMixedSlope => {
                 let slopes = self.slopes(q)?;
-                c.b.iter_mut().zip(slopes).for_each(|(b, slope)| *b -= slope);
+                c.b.iter_mut()
+                    .zip(slopes)
+                    .for_each(|(b, slope)| *b -= slope);
             }
             Fault::OneReversed => {
                 // Of an inner joint, so that it cancels in the whole.
@@ -323,9 +348,14 @@ impl Subject for Faulty<'_> {
             Fault::MomentAboutTheOtherPoint | Fault::MomentForgotten | Fault::NormalThatStays => {
                 for (k, r) in reactions.iter().enumerate() {
                     let joint = &mechanism.joints[r.joint.0];
-                    let slides = matches!(joint.kind, JointKind::Prismatic { .. } | JointKind::Slot { .. });
+                    let slides = matches!(
+                        joint.kind,
+                        JointKind::Prismatic { .. } | JointKind::Slot { .. }
+                    );
                     match (fault, r.component) {
-                        (Fault::MomentForgotten, Component::Moment) if slides => (c.a[k], c.b[k]) = (0.0, 0.0),
+                        (Fault::MomentForgotten, Component::Moment) if slides => {
+                            (c.a[k], c.b[k]) = (0.0, 0.0)
+                        }
                         (Fault::MomentAboutTheOtherPoint, Component::Moment) if slides => {
                             let travel = self.model.wrenches.travel(q, r.joint)?;
                             c.a[k] += travel * c.a[k - 1];

@@ -1,6 +1,6 @@
 //! Where a place is, in words that stay when lines move.
 
-use crate::watched::Place;
+use super::watched::Place;
 use std::collections::HashMap;
 use std::path::Path;
 
@@ -36,7 +36,9 @@ impl Source {
         let name = |line: &'_ String| -> Option<(usize, usize)> {
             let at = line.find("fn ").filter(|&at| {
                 let before = line[..at].trim();
-                before.split(' ').all(|w| w.is_empty() || w.starts_with("pub"))
+                before
+                    .split(' ')
+                    .all(|w| w.is_empty() || w.starts_with("pub"))
             })?;
             let rest = &line[at + 3..];
             let end = rest.find(['<', '('])?;
@@ -51,7 +53,7 @@ impl Source {
     }
 
     /// `motion.rs speeds`.
-    pub(crate) fn step(&self, place: Place) -> String {
+    pub(crate) fn function_of(&self, place: Place) -> String {
         let file = place.file.rsplit('/').next().unwrap_or(place.file);
         format!("{file} {}", self.function(place))
     }

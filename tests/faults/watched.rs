@@ -134,7 +134,8 @@ fn slip(operation: Operation, first: Origin) -> (Option<Slip>, Origin) {
         operation: Some(operation),
         link: 0,
     };
-    if (first.line, first.column, first.operation) == (origin.line, origin.column, origin.operation) {
+    if (first.line, first.column, first.operation) == (origin.line, origin.column, origin.operation)
+    {
         origin.link = (first.link + 1).min(MOST_LINKS);
     }
     let here = || Place {
@@ -293,6 +294,10 @@ impl AddAssign for Watched {
 impl SubAssign for Watched {
     #[track_caller]
     fn sub_assign(&mut self, other: Self) {
-        *self = summed(self.0, -other.0, slip(Operation::Difference, Origin::default()));
+        *self = summed(
+            self.0,
+            -other.0,
+            slip(Operation::Difference, Origin::default()),
+        );
     }
 }

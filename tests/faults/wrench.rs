@@ -82,7 +82,9 @@ impl Wrenches {
         let mut answers = [self.model.actions(), self.model.actions()];
         for (out, [q_dot, q_ddot]) in answers.iter_mut().zip([[1.0, 0.0], [0.0, 1.0]]) {
             let mut work = self.model.workspace();
-            self.model.enter(0.0, &[q], &[q_dot], &mut work).map_err(refused)?;
+            self.model
+                .enter(0.0, &[q], &[q_dot], &mut work)
+                .map_err(refused)?;
             self.model.accelerate(&[q_ddot], &mut work);
             let mut magnitudes = Vec::new();
             for b in 0..self.masses.len() {
@@ -94,7 +96,9 @@ impl Wrenches {
             for (load, magnitude) in magnitudes.into_iter().enumerate() {
                 work.give(load, -magnitude);
             }
-            self.model.statics(0.0, &[q], &mut work, out).map_err(refused)?;
+            self.model
+                .statics(0.0, &[q], &mut work, out)
+                .map_err(refused)?;
         }
         Ok(Some(answers))
     }
@@ -122,10 +126,12 @@ impl Wrenches {
             let carrier = joint.bodies[1 - own];
             let slides = matches!(joint.kind, JointKind::Prismatic { .. });
             if slides && states.body(carrier).spin != 0.0 {
-                let [on, off] = [own, 1 - own].map(|i| states.point(joint.bodies[i], joint.points[i]));
+                let [on, off] =
+                    [own, 1 - own].map(|i| states.point(joint.bodies[i], joint.points[i]));
                 let spin = states.body(carrier).spin;
                 moving.carrier = spin;
-                moving.slip = on.velocity - off.velocity - (on.position - off.position).perp() * spin;
+                moving.slip =
+                    on.velocity - off.velocity - (on.position - off.position).perp() * spin;
             }
         }
         moving

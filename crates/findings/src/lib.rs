@@ -113,9 +113,15 @@ mod tests {
         assert!(met(1e-12, 1.1e-10).slack());
         // Nothing is seen, but 50 roundings are allowed for: 1.1e-14, and times the condition.
         assert!(!met(0.0, 1e-14).slack() && met(0.0, 1.2e-14).slack());
-        let ill = Finding { condition: 1e3, ..met(0.0, 1e-11) };
+        let ill = Finding {
+            condition: 1e3,
+            ..met(0.0, 1e-11)
+        };
         assert!(!ill.slack());
-        let integrated = Finding { integrated: true, ..met(1e-12, 1e-8) };
+        let integrated = Finding {
+            integrated: true,
+            ..met(1e-12, 1e-8)
+        };
         assert!(!integrated.slack());
         assert_eq!(integrated.number(), Some(3));
     }

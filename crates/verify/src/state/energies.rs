@@ -128,7 +128,10 @@ impl Judge<'_> {
             for (k, (claimed, force)) in claimed.zip(forces).enumerate() {
                 let Some(force) = force else { continue };
                 let (moment, name) = match reactions.get(k) {
-                    Some(&r) => (r.component == Component::Moment, self.mechanism.reaction_name(r)),
+                    Some(&r) => (
+                        r.component == Component::Moment,
+                        self.mechanism.reaction_name(r),
+                    ),
                     None => {
                         let actuator = &self.mechanism.actuators[k - driven];
                         (actuator.coordinate().is_angle(), actuator.name.clone())
@@ -136,14 +139,20 @@ impl Judge<'_> {
                 };
                 let arm = if moment { 1.0 / size } else { 1.0 };
                 let (value, own) = (force.value * arm, force.error * arm);
-                let tally = if k < driven { &mut released } else { &mut actions };
+                let tally = if k < driven {
+                    &mut released
+                } else {
+                    &mut actions
+                };
                 let scale = brought.max(value.abs());
                 let there = format!("{}, {name}", place(m));
                 tally.read(m, claimed * arm - value, own, scale, there);
             }
         }
         let mut released = released.judge(&RELEASED, self);
-        let shared = self.dense.unique[..driven].iter().filter(|&&unique| !unique);
+        let shared = self.dense.unique[..driven]
+            .iter()
+            .filter(|&&unique| !unique);
         match shared.count() {
             0 => {}
             n => released.over += &format!("; {n} reactions that joints share are not determined"),
@@ -166,7 +175,9 @@ impl Measured<'_> {
 
     /// Kinetic energy of the claimed velocities, J.
     fn claimed_energy(&self) -> f64 {
-        0.5 * self.dense.inertia(&self.closed, &self.claimed_dot, &self.claimed_dot)
+        0.5 * self
+            .dense
+            .inertia(&self.closed, &self.claimed_dot, &self.claimed_dot)
     }
 
     /// (3) for every row; none for those that are not determined.
@@ -206,7 +217,12 @@ impl Measured<'_> {
                 let rate = state.q_dot[i] + t * state.q_ddot[i];
                 x_dot.iter_mut().zip(u).for_each(|(v, u)| *v += u * rate);
             }
-            Some(speeds.iter().map(|u| dense.inertia(&closed, u, &x_dot)).collect())
+            Some(
+                speeds
+                    .iter()
+                    .map(|u| dense.inertia(&closed, u, &x_dot))
+                    .collect(),
+            )
         })
     }
 
