@@ -6,13 +6,18 @@ default:
 
 # All checks on all cases (or those named): pictures, tables and findings in reports/
 [group('main')]
-validate *cases: && size
+validate *cases: && size faults
     cargo run --release -- validate {{ cases }}
 
 # What a pose costs against the mechanism's size, and its errors: reports/size.png
 [group('main')]
 size:
     cargo run --release -p dwell-tests --example size
+
+# Deliberate faults, and which independent truths catch them: reports/faults.png, .md and .txt
+[group('main')]
+faults:
+    cargo run --release -p dwell-tests --example faults
 
 # All tests
 [group('main')]

@@ -17,6 +17,7 @@ mod derivatives;
 mod ends;
 mod equilibria;
 mod events;
+mod faults;
 mod findings;
 mod invariance;
 mod joints;

@@ -88,7 +88,7 @@ pub(crate) fn machines(scenes: Vec<Scene>) -> Vec<Machine> {
     all
 }
 
-/// The machines of the named faults of the reduced model.
+/// The machines of the named faults of the reduced model, that with two branches first.
 pub(crate) fn models() -> Vec<reduced::Model> {
     let single = scene("single-dwell");
     // The dyad of coupler and rocker the other way round, and what hangs on it.
@@ -113,8 +113,14 @@ pub(crate) fn models() -> Vec<reduced::Model> {
 }
 
 impl Study {
+    /// All faults on all machines.
     pub(crate) fn new() -> Self {
-        let (machines, models) = (machines(scenes()), models());
+        Self::of(scenes(), models())
+    }
+
+    /// All faults on some machines.
+    pub(crate) fn of(scenes: Vec<Scene>, models: Vec<reduced::Model>) -> Self {
+        let machines = machines(scenes);
         let states: Vec<&Machine> = machines.iter().filter(|m| m.by == By::States).collect();
         let moving = ["single-dwell", "double-pendulum"].map(scene);
         let judge_motion =
