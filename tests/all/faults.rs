@@ -39,7 +39,8 @@ const MACHINES: [&str; 3] = ["cross-slide", "planetary", "slider-crank-friction"
 fn every_fault_in_an_equation_is_caught_by_two_truths() {
     let models = study::models().into_iter();
     let some = models.filter(|m| ["single-dwell", "turning-rail"].contains(&m.scene.name.as_str()));
-    let study = Study::of(MACHINES.map(scene).to_vec(), some.collect());
+    let some: Vec<_> = some.collect();
+    let study = Study::of(MACHINES.map(scene).to_vec(), &some);
     assert_eq!(study.holes(), Vec::<String>::new());
     assert!(study.blind.is_empty(), "{:?}", study.blind);
     // It would be a bad sign if evaluating met few operations, or if few of their faults were felt.

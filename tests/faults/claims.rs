@@ -215,7 +215,7 @@ impl Fault {
             Self::ActionReversed => states.for_each(|s| s.tau.iter_mut().for_each(|t| *t = -*t)),
             Self::ActionForgotten => states.for_each(|s| s.tau[0] = 0.0),
             Self::ReactionsReversed => {
-                states.for_each(|s| s.reactions.iter_mut().for_each(|r| *r = -*r))
+                states.for_each(|s| s.reactions.iter_mut().for_each(|r| *r = -*r));
             }
             Self::NoTransport => states.for_each(|s| transport(machine.scene(), s)),
             Self::NoCurvature => {

@@ -354,7 +354,7 @@ impl Subject for Faulty<'_> {
                     );
                     match (fault, r.component) {
                         (Fault::MomentForgotten, Component::Moment) if slides => {
-                            (c.a[k], c.b[k]) = (0.0, 0.0)
+                            (c.a[k], c.b[k]) = (0.0, 0.0);
                         }
                         (Fault::MomentAboutTheOtherPoint, Component::Moment) if slides => {
                             let travel = self.model.wrenches.travel(q, r.joint)?;

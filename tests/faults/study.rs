@@ -115,11 +115,11 @@ pub(crate) fn models() -> Vec<reduced::Model> {
 impl Study {
     /// All faults on all machines.
     pub(crate) fn new() -> Self {
-        Self::of(scenes(), models())
+        Self::of(scenes(), &models())
     }
 
     /// All faults on some machines.
-    pub(crate) fn of(scenes: Vec<Scene>, models: Vec<reduced::Model>) -> Self {
+    pub(crate) fn of(scenes: Vec<Scene>, models: &[reduced::Model]) -> Self {
         let machines = machines(scenes);
         let states: Vec<&Machine> = machines.iter().filter(|m| m.by == By::States).collect();
         let moving = ["single-dwell", "double-pendulum"].map(scene);
@@ -139,7 +139,7 @@ impl Study {
                 rows: rows(
                     &reduced::Fault::ALL,
                     reduced::Fault::words,
-                    &models,
+                    models,
                     |model, fault| Some((model.scene.name.clone(), model.judge(Some(fault))?)),
                 ),
             },
