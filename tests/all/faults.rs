@@ -9,10 +9,14 @@ mod machine;
 mod motions;
 #[path = "../faults/operations.rs"]
 mod operations;
+#[path = "../faults/plain.rs"]
+mod plain;
 #[path = "../faults/published.rs"]
 mod published;
 #[path = "../faults/reduced.rs"]
 mod reduced;
+#[path = "../faults/standing.rs"]
+mod standing;
 #[path = "../faults/study.rs"]
 #[allow(dead_code, reason = "the whole study asks for more")]
 mod study;

@@ -1,24 +1,20 @@
 //! A case with its model, evaluated with or without a slip, and judged by the truths.
 
+use super::plain::{accelerations, plain_actions, plain_pose};
+use super::standing::{POSITIONS, positions, walked};
 use super::verdict::{ENOUGH, Verdict};
 use super::watched::{Place, Slip, Watched, noting, slipping};
 use dwell_findings::Finding;
-use dwell_geometry::{BodyId, Plan, Pose, Vec2};
+use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{Actions as Kinetostatic, Model, Workspace};
 use dwell_scene::Scene;
 use dwell_verify::{
     Actions, Case, Coefficients, State, Subject, SubjectError, judge_energies, judge_states,
-    load_acts, spread, verify_all,
+    load_acts, verify_all,
 };
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
-/// Positions or states at which a fault is judged.
-const POSITIONS: usize = 3;
-/// Between two positions no coordinate goes farther at once, rad or m: whole turns are counted.
-const STRIDE: f64 = 0.05;
-/// What is left out at both ends of a range, as a part of it.
-const MARGIN: f64 = 0.1;
 /// Speeds and accelerations of the states, by state and actuator.
 const SPEEDS: [[f64; 3]; POSITIONS] = [[1.0, -0.6, 0.4], [-0.8, 0.9, -0.5], [0.6, 0.7, 1.1]];
 const RATES: [[f64; 3]; POSITIONS] = [[0.7, 0.5, -0.9], [0.5, -1.1, 0.6], [-1.2, 0.8, 0.7]];
@@ -347,7 +343,7 @@ impl Machine {
         let mut bodies = self
             .model
             .plan()
-            .body_frames(mechanism, &plain(self.model.plan(), &work.pose));
+            .body_frames(mechanism, &plain_pose(self.model.plan(), &work.pose));
         for (frame, right) in bodies.iter_mut().zip(&self.frames[k]) {
             frame[2] += ((right[2] - frame[2]) / TAU).round() * TAU;
         }
@@ -406,7 +402,7 @@ impl Subject for Slipping<'_> {
         .map_err(refused(q))?;
         Ok(model
             .plan()
-            .body_frames(&scene.mechanism, &plain(model.plan(), &pose)))
+            .body_frames(&scene.mechanism, &plain_pose(model.plan(), &pose)))
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
@@ -446,23 +442,6 @@ fn refused<E: std::fmt::Display>(q: f64) -> impl Fn(E) -> SubjectError {
     }
 }
 
-/// The second derivatives of the frames of all bodies.
-fn accelerations(work: &Workspace<Watched>, bodies: usize) -> Vec<[f64; 3]> {
-    let of = |b: usize| {
-        let origin = work.states().point(BodyId(b), Vec2::ZERO).acceleration;
-        [origin.x, origin.y, work.states().body(BodyId(b)).spin_rate].map(|v| v.0)
-    };
-    (0..bodies).map(of).collect()
-}
-
-fn plain_actions(actions: &Kinetostatic<Watched>) -> Kinetostatic<f64> {
-    let plain = |values: &[Watched]| values.iter().map(|v| v.0).collect();
-    Kinetostatic {
-        tau: plain(&actions.tau),
-        reactions: plain(&actions.reactions),
-    }
-}
-
 /// q̈ of Σ runs q̈ + rest = 0, by elimination with the largest pivot.
 fn solved(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f64>> {
     let n = runs.len();
@@ -485,26 +464,6 @@ fn solved(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f64>> {
     (0..n).map(|i| Some(rows[i][n] / rows[i][i])).collect()
 }
 
-/// A pose in plain numbers, for what only reads positions.
-fn plain(plan: &Plan, pose: &Pose<Watched>) -> Pose<f64> {
-    let mut out = plan.pose::<f64>();
-    let numbers = |to: &mut Vec<f64>, from: &[Watched]| {
-        to.clear();
-        to.extend(from.iter().map(|v| v.0));
-    };
-    let vectors = |to: &mut Vec<Vec2>, from: &[Vec2<Watched>]| {
-        to.clear();
-        to.extend(from.iter().map(|v| dwell_geometry::vec2(v.x.0, v.y.0)));
-    };
-    numbers(&mut out.q, &pose.q);
-    vectors(&mut out.turn, &pose.turn);
-    numbers(&mut out.angle, &pose.angle);
-    vectors(&mut out.arm, &pose.arm);
-    numbers(&mut out.slide, &pose.slide);
-    numbers(&mut out.travel, &pose.travel);
-    out
-}
-
 /// How far answers are apart, relative to the largest of each kind; infinitely where one is no number.
 fn apart(clean: &Answers, found: &Answers) -> f64 {
     let mut worst = 0.0_f64;
@@ -516,70 +475,4 @@ fn apart(clean: &Answers, found: &Answers) -> f64 {
         }
     }
     worst
-}
-
-/// Some positions inside the range, or near the start where there are several actuators.
-fn positions(scene: &Scene, plan: &Plan) -> Vec<Vec<f64>> {
-    let start = plan.start();
-    if start.len() > 1 {
-        let near = |k: usize| {
-            let beside = |(i, q): (usize, &f64)| {
-                let by = if plan.is_angle(i) { 0.1 } else { 0.01 };
-                q + by * (k + 1) as f64 * if i % 2 == 0 { 1.0 } else { -1.0 }
-            };
-            start.iter().enumerate().map(beside).collect()
-        };
-        return (0..POSITIONS).map(near).collect();
-    }
-    let range = match (plan.range().limits(), &scene.sweep) {
-        (_, Some(sweep)) if sweep.range.is_some() => {
-            let [low, high] = sweep.range.unwrap_or_default();
-            dwell_geometry::Range::Between(low, high)
-        }
-        (Some((low, high)), _) => {
-            let margin = MARGIN * (high - low);
-            dwell_geometry::Range::Between(low + margin, high - margin)
-        }
-        (None, _) => dwell_geometry::Range::Full,
-    };
-    spread(range, POSITIONS)
-        .into_iter()
-        .map(|q| vec![q])
-        .collect()
-}
-
-/// The frames at the start and at some positions, whole turns counted on the way.
-fn walked(
-    scene: &Scene,
-    plan: &Plan,
-    positions: &[Vec<f64>],
-) -> (Vec<[f64; 3]>, Vec<Vec<[f64; 3]>>) {
-    let mut pose = plan.pose::<f64>();
-    let mut at = plan.start().to_vec();
-    plan.place(&at, &mut pose).expect("a start");
-    let first = plan.body_frames(&scene.mechanism, &pose);
-    let (mut frames, mut all) = (first.clone(), Vec::new());
-    for to in positions {
-        let far = at
-            .iter()
-            .zip(to)
-            .map(|(a, b)| (b - a).abs())
-            .fold(0.0, f64::max);
-        let steps = (far / STRIDE).ceil().max(1.0);
-        for k in 1..=steps as usize {
-            let part = k as f64 / steps;
-            let q: Vec<f64> = at.iter().zip(to).map(|(a, b)| a + part * (b - a)).collect();
-            plan.place(&q, &mut pose).expect("a pose");
-            for (frame, next) in frames
-                .iter_mut()
-                .zip(plan.body_frames(&scene.mechanism, &pose))
-            {
-                let turns = ((frame[2] - next[2]) / TAU).round();
-                *frame = [next[0], next[1], next[2] + turns * TAU];
-            }
-        }
-        at.clone_from(to);
-        all.push(frames.clone());
-    }
-    (first, all)
 }
