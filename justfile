@@ -6,7 +6,7 @@ default:
 
 # All checks on all cases (or those named): pictures, tables and findings in reports/
 [group('main')]
-validate *cases: && size
+validate *cases: && size faults
     cargo run --release -- validate {{ cases }}
 
 # The same with the extremes that take minutes: 1e5 revolutions
@@ -18,6 +18,11 @@ validate-long: && size
 [group('main')]
 size:
     cargo run --release -p dwell-tests --example size
+
+# Deliberate faults, and which independent truths catch them: reports/faults.png, .md and .txt
+[group('main')]
+faults:
+    cargo run --release -p dwell-tests --example faults
 
 # All tests
 [group('main')]

@@ -19,6 +19,7 @@ mod energies;
 mod equilibria;
 mod events;
 mod extremes;
+mod faults;
 mod findings;
 mod invariance;
 mod joints;

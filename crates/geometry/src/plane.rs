@@ -1,5 +1,8 @@
 //! Vectors of the plane. A direction (cos, sin) is a `Vec2` of unit length, and turns
 //! another vector by complex multiplication.
+//!
+//! Operators tell the line that uses them, not their own: a kind of number that watches its
+//! operations (the fault study of the test package) then sees the term that is meant.
 
 use crate::scalar::Scalar;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
@@ -48,6 +51,7 @@ impl Vec2<f64> {
 
     /// The same constants as another kind of number.
     #[inline]
+    #[track_caller]
     pub fn lift<T: Scalar>(self) -> Vec2<T> {
         vec2(T::lift(self.x), T::lift(self.y))
     }
@@ -56,36 +60,42 @@ impl Vec2<f64> {
 impl<T: Scalar> Vec2<T> {
     /// Zero, as any kind of number.
     #[inline]
+    #[track_caller]
     pub fn zero() -> Self {
         vec2(T::lift(0.0), T::lift(0.0))
     }
 
     /// Scalar product.
     #[inline]
+    #[track_caller]
     pub fn dot(self, other: Self) -> T {
         self.x * other.x + self.y * other.y
     }
 
     /// The out-of-plane component of the vector product, positive from `self` counter-clockwise to `other`.
     #[inline]
+    #[track_caller]
     pub fn cross(self, other: Self) -> T {
         self.x * other.y - self.y * other.x
     }
 
     /// The vector turned by +90°.
     #[inline]
+    #[track_caller]
     pub fn perp(self) -> Self {
         vec2(-self.y, self.x)
     }
 
     /// The vector turned by the rotation `by` = (cos, sin).
     #[inline]
+    #[track_caller]
     pub fn turn(self, by: Self) -> Self {
         vec2(self.x * by.x - self.y * by.y, self.x * by.y + self.y * by.x)
     }
 
     /// The vector turned back by the rotation `by` = (cos, sin).
     #[inline]
+    #[track_caller]
     pub fn turn_back(self, by: Self) -> Self {
         vec2(self.x * by.x + self.y * by.y, self.y * by.x - self.x * by.y)
     }
@@ -94,6 +104,7 @@ impl<T: Scalar> Vec2<T> {
 impl<T: Scalar> Add for Vec2<T> {
     type Output = Self;
     #[inline]
+    #[track_caller]
     fn add(self, o: Self) -> Self {
         vec2(self.x + o.x, self.y + o.y)
     }
@@ -102,6 +113,7 @@ impl<T: Scalar> Add for Vec2<T> {
 impl<T: Scalar> Sub for Vec2<T> {
     type Output = Self;
     #[inline]
+    #[track_caller]
     fn sub(self, o: Self) -> Self {
         vec2(self.x - o.x, self.y - o.y)
     }
@@ -110,6 +122,7 @@ impl<T: Scalar> Sub for Vec2<T> {
 impl<T: Scalar> Neg for Vec2<T> {
     type Output = Self;
     #[inline]
+    #[track_caller]
     fn neg(self) -> Self {
         vec2(-self.x, -self.y)
     }
@@ -118,6 +131,7 @@ impl<T: Scalar> Neg for Vec2<T> {
 impl<T: Scalar> Mul<T> for Vec2<T> {
     type Output = Self;
     #[inline]
+    #[track_caller]
     fn mul(self, k: T) -> Self {
         vec2(self.x * k, self.y * k)
     }
@@ -125,14 +139,18 @@ impl<T: Scalar> Mul<T> for Vec2<T> {
 
 impl<T: Scalar> AddAssign for Vec2<T> {
     #[inline]
+    #[track_caller]
     fn add_assign(&mut self, o: Self) {
-        *self = *self + o;
+        self.x += o.x;
+        self.y += o.y;
     }
 }
 
 impl<T: Scalar> SubAssign for Vec2<T> {
     #[inline]
+    #[track_caller]
     fn sub_assign(&mut self, o: Self) {
-        *self = *self - o;
+        self.x -= o.x;
+        self.y -= o.y;
     }
 }

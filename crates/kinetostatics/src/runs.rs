@@ -118,6 +118,7 @@ pub(crate) struct Runs<T, const N: usize> {
 }
 
 #[inline]
+#[track_caller]
 fn add<V: std::ops::AddAssign, const N: usize>(sum: &mut [V; N], more: [V; N]) {
     for (sum, more) in sum.iter_mut().zip(more) {
         *sum += more;
