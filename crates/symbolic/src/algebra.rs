@@ -79,6 +79,36 @@ pub(crate) fn is_plain(term: &Term) -> bool {
     }
 }
 
+/// What stands above and below, if a term is a quotient.
+pub(crate) fn quotient(term: &Term) -> Option<(Term, Term)> {
+    match term.as_ref() {
+        Node::Div(above, below) => Some((above.clone(), below.clone())),
+        Node::Neg(inner) => match inner.as_ref() {
+            Node::Div(above, below) => Some((-above.clone(), below.clone())),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// A term in which names stand for what they are; squares lose the signs of what they are of.
+pub(crate) fn replaced(term: &Term, by: &BTreeMap<String, Term>) -> Term {
+    let mut value = term.clone();
+    for name in names(term) {
+        if let Some(by) = by.get(&name) {
+            value = value.subs(name.as_str(), by);
+        }
+    }
+    let squares = value.map_nodes(&mut |node| match node.as_ref() {
+        Node::Pow(base, exponent) => match (base.as_ref(), exponent.as_ref()) {
+            (Node::Neg(inner), Node::Const(n)) if *n == 2.0 => Some(square(inner)),
+            _ => None,
+        },
+        _ => None,
+    });
+    squares.simplify()
+}
+
 /// The names that occur in a term.
 pub(crate) fn names(term: &Term) -> BTreeSet<String> {
     term.free_vars()

@@ -1,13 +1,15 @@
 //! The closed forms of the groups.
 
 use crate::algebra::{
-    Term, atan2, is_zero, names, number, plus, scaled, sqrt, square, symbol, times, zero,
+    Node, Term, atan2, is_zero, names, number, plus, scaled, sqrt, square, symbol, times, zero,
 };
 use crate::chains::bond_name;
 use crate::error::SymbolicError;
+use crate::sheet::Slopes;
 use crate::positions::{Pair, Positions, cross, dot, perp, rotated};
 use dwell_geometry::Vec2;
 use dwell_geometry::groups::Unknown;
+use dwell_geometry::lower::Owner;
 
 /// A vector that turns with a class: its squared length, and its angle in the class, rad, less that of
 /// `sign` times it.
@@ -104,10 +106,14 @@ impl Positions<'_> {
         let radicand = radicand.simplify();
         // Of h² = R the derivative is R′/2h.
         let half = |name: &String| {
-            let slope = radicand.diff(name.as_str()) / (number(2.0) * own.clone());
+            let slope = radicand.diff(name.as_str()) / number(2.0);
             (name.clone(), slope.simplify())
         };
-        let slopes = names(&radicand).iter().map(half).collect();
+        let slopes = Slopes {
+            divided: names(&radicand).iter().map(half).collect(),
+            over: own,
+            beside: Vec::new(),
+        };
         self.sheet
             .step_with(&code, sign * sqrt(radicand.clone()), slopes)
     }
@@ -167,7 +173,7 @@ impl Positions<'_> {
             .sheet
             .step(&code, &plus(&square(&pair[0]), &square(&pair[1])));
         let code = self.sheet.name("epsilon", &[&joint, &name]);
-        let slopes = turning(&codes, &pair, &square, 1.0);
+        let slopes = turning(&codes, &pair, &square);
         let angle = atan2(pair[1].clone(), pair[0].clone());
         let angle = self.sheet.step_with(&code, angle, slopes);
         Polar {
@@ -184,9 +190,9 @@ impl Positions<'_> {
         let name = self.frame_name(root);
         let code = self.sheet.name("theta", &[&name]);
         let codes = [0, 1].map(|i| to[i].to_string());
-        let mut slopes = turning(&codes, to, &polar.square, 1.0);
+        let mut slopes = turning(&codes, to, &polar.square);
         if let Some(varies) = &polar.varies {
-            slopes.push((varies.clone(), number(-1.0)));
+            slopes.beside.push((varies.clone(), number(-1.0)));
         }
         let [x, y] = [0, 1].map(|i| scaled(&to[i], polar.sign));
         let mut angle = atan2(y, x);
@@ -205,8 +211,8 @@ impl Positions<'_> {
         let code = self.sheet.name("D", &[&joint]);
         let distance = self.sheet.step(&code, &plus(&square(&d[0]), &square(&d[1])));
         let code = self.sheet.name("f", &[&joint]);
-        let along = (two.square.clone() - one.square.clone() - distance.clone())
-            / (number(2.0) * distance.clone());
+        let excess = two.square.clone() - one.square.clone();
+        let along = excess / (number(2.0) * distance.clone()) - number(0.5);
         let along = self.sheet.step(&code, &along);
         let (first, known) = (
             self.part_at_start(closure, |own, f| own.class(f) == classes[0], &[]),
@@ -303,6 +309,14 @@ impl Positions<'_> {
         }
     }
 
+    /// Notes the normal distance and the travel of a loop that closes along its normal only.
+    fn close(&mut self, closure: usize, normal: String, travel: &Term) {
+        let joint = self.joint(closure);
+        let code = self.sheet.name("s", &[&joint]);
+        let travel = self.sheet.step(&code, travel);
+        self.closed[closure].normal = Some((normal, travel));
+    }
+
     /// The axis of a loop that closes along its normal only: its angle's frame and its direction.
     fn axis(&mut self, closure: usize, angle: impl Fn(&Self, usize) -> Term) -> (Pair, Vec2) {
         let (_, frame, local) = self.chains[closure].axis.unwrap_or((0, 0, Vec2::IDENTITY));
@@ -329,7 +343,7 @@ impl Positions<'_> {
         let radicand = polar.square.clone() - square(&off);
         let root = self.root(("g", &[&joint]), &radicand, own.dot(at_start));
         let travel = plus(&dot(&axis, &d), &root);
-        self.closed[closure].normal = Some((code, travel));
+        self.close(closure, code, &travel);
         let level = axis == [number(1.0), number(0.0)];
         let r = if level {
             [root, off]
@@ -365,23 +379,23 @@ impl Positions<'_> {
         };
         let along = self.root(("g", &[&joint]), &radicand, branch);
         let travel = plus(&along, &dot(&axis, &w));
-        self.closed[closure].normal = Some((kappa.clone(), travel));
+        self.close(closure, kappa.clone(), &travel);
         let codes = [0, 1].map(|i| d[i].to_string());
-        let mut slopes = turning(&codes, d, &distance, 1.0);
+        let mut slopes = turning(&codes, d, &distance);
         let name = self.frame_name(root_frame);
         let mut angle = if passes {
-            slopes.push((kappa, number(-1.0) / along));
+            // ρ is √D here.
+            slopes.divided.push((kappa, -along));
             let [x, y] = [0, 1].map(|i| scaled(&d[i], if branch < 0.0 { -1.0 } else { 1.0 }));
             atan2(y, x)
         } else {
-            let over = |t: &Term| (t.clone() / distance.clone()).simplify();
-            slopes.push((kappa, over(&-along.clone())));
-            slopes.push((along.to_string(), over(&off)));
+            slopes.divided.push((kappa, -along.clone()));
+            slopes.divided.push((along.to_string(), off.clone()));
             atan2(d[1].clone(), d[0].clone()) - atan2(off, along)
         };
         if let Some(turned) = self.axis_angle(closure) {
             angle = angle - turned.0;
-            slopes.extend(turned.1);
+            slopes.beside.extend(turned.1);
         }
         let code = self.sheet.name("theta", &[&name]);
         let angle = self.sheet.step_with(&code, angle, slopes);
@@ -423,7 +437,7 @@ impl Positions<'_> {
         let travel = self.sheet.step(&name, &travel);
         self.travels[slide] = Some(travel.clone());
         let travelled = plus(&dot(&axis, &d), &times(&dot(&axis, &u), &travel));
-        self.closed[closure].normal = Some((code, travelled));
+        self.close(closure, code, &travelled);
     }
 
     /// Two slides travel until a loop closes.
@@ -458,34 +472,36 @@ impl Positions<'_> {
         unknown: Unknown,
         relation: usize,
     ) -> Result<(), SymbolicError> {
-        let row = self.plan.relation(relation);
+        let row = self.plan.relation(relation).clone();
         if row.law.is_some() {
-            return Err(self.none(group, "its relation has a law that is not linear"));
+            return Err(self.none(group, "its relation has a law"));
         }
-        let mut rest = zero();
-        let mut factor = 0.0;
+        let angular = row.angular;
+        let (mut rest, mut own) = (zero(), zero());
         for &(frame, by) in &row.of.turns {
+            let weight = self.weight(&row.owner, by, if angular { "" } else { "m" });
             if unknown == Unknown::Class(self.class(frame)) {
-                factor += by;
-                let relative = self.relative(frame);
-                rest = plus(&rest, &times(&number(by), &relative));
+                own = plus(&own, &weight);
+                rest = plus(&rest, &times(&weight, &self.relative(frame)));
             } else {
                 if !self.counts(frame) {
                     return Err(self.none(group, "it counts the turns of a dyad"));
                 }
-                rest = plus(&rest, &times(&number(by), &self.angle(frame)));
+                rest = plus(&rest, &times(&weight, &self.angle(frame)));
             }
         }
         for &(slide, by) in &row.of.slides {
+            let weight = self.weight(&row.owner, by, if angular { "rad/m" } else { "" });
             if unknown == Unknown::Slide(slide) {
-                factor += by;
+                own = plus(&own, &weight);
             } else {
                 let travel = self.travels[slide].clone().unwrap_or_else(zero);
-                rest = plus(&rest, &times(&number(by), &travel));
+                rest = plus(&rest, &times(&weight, &travel));
             }
         }
-        let constant = number(row.of.constant);
-        let value = (-(plus(&rest, &constant)) / number(factor)).simplify();
+        let constant = row.of.constant;
+        let constant = self.weight(&row.owner, constant, if angular { "rad" } else { "m" });
+        let value = (-(plus(&rest, &constant)) / own.clone()).simplify();
         let code = match unknown {
             Unknown::Class(class) => {
                 let root = self.plan.root_of(class);
@@ -500,8 +516,31 @@ impl Positions<'_> {
                 code
             }
         };
-        self.related[relation] = Some((code, -1.0 / factor));
+        self.related[relation] = Some((code, own.simplify()));
         Ok(())
+    }
+
+    /// A number of a relation as a constant; nothing and one need no name.
+    fn weight(&mut self, owner: &Owner, value: f64, unit: &'static str) -> Term {
+        if value == 0.0 || value.abs() == 1.0 {
+            return number(value);
+        }
+        let name = match *owner {
+            Owner::Joint(joint) => self.mechanism.joints[joint.0].name.clone(),
+            Owner::Actuator(actuator) => self.mechanism.actuators[actuator.0].name.clone(),
+        };
+        let known = self.weights.iter().find(|w| w.0 == value.abs() && w.1 == name);
+        let term = match known {
+            Some((.., term)) => term.clone(),
+            None => {
+                let k = self.number();
+                let meaning = format!("number of {name}");
+                let term = self.sheet.constant(("c", &[&k]), value.abs(), unit, meaning);
+                self.weights.push((value.abs(), name, term.clone()));
+                term
+            }
+        };
+        scaled(&term, value.signum())
     }
 
     /// Whether an angle is a linear function of the coordinate and of travels: no turn is lost.
@@ -520,18 +559,21 @@ impl Positions<'_> {
 }
 
 /// The slopes of an angle by the coordinates of what it points along.
-fn turning(codes: &[String; 2], to: &Pair, square: &Term, sign: f64) -> Vec<(String, Term)> {
-    let over = |t: &Term, sign: f64| scaled(&(t.clone() / square.clone()), sign).simplify();
-    vec![
-        (codes[1].clone(), over(&to[0], sign)),
-        (codes[0].clone(), over(&to[1], -sign)),
-    ]
+fn turning(codes: &[String; 2], to: &Pair, square: &Term) -> Slopes {
+    Slopes {
+        over: square.clone(),
+        divided: vec![
+            (codes[1].clone(), to[0].clone()),
+            (codes[0].clone(), -to[1].clone()),
+        ],
+        beside: Vec::new(),
+    }
 }
 
 fn square_of(term: &Term) -> Term {
-    if is_zero(term) {
-        zero()
-    } else {
-        square(term).simplify()
+    match term.as_ref() {
+        _ if is_zero(term) => zero(),
+        Node::Neg(inner) => square(inner).simplify(),
+        _ => square(term).simplify(),
     }
 }

@@ -1,6 +1,7 @@
 //! The closed forms of a mechanism: positions, m, ½m′, and a and b of a reaction, as named steps.
 
 use crate::algebra::{self, Term, number, plus, rate, square, symbol, times, zero};
+use crate::chains::bond_name;
 use crate::error::SymbolicError;
 use crate::positions::Positions;
 use crate::sheet::{Constant, Rate, Sheet, Step, needed};
@@ -137,17 +138,17 @@ impl<'a> Symbolic<'a> {
         if let Some(release) = &release {
             moved = sheet.differentiate(&base, Rate::Virtual, &mut virtuals, &release.shifts);
         }
-        let rates = Rates {
+        let derivatives = Rates {
             positions: &positions,
             by_q: &rates,
             moved: &virtuals,
             turned: release.as_ref().map(|r| r.turned.as_slice()),
         };
-        let results = self.results(&mut sheet, &rates);
+        let results = self.results(&mut sheet, &derivatives);
         let mut form = Form {
             coordinate: positions.coordinate(&sheet, &q),
             constants: Vec::new(),
-            quantities: positions.quantities(&sheet),
+            quantities: positions.quantities(&sheet, &rates),
             reaction: reaction.map(|r| positions.mechanism.reaction_name(r)),
             parts: vec![
                 (Part::Positions, base),
@@ -160,6 +161,7 @@ impl<'a> Symbolic<'a> {
         };
         let angle = positions.plan.is_angle(0);
         form.quantities.extend(inertial(&form.sheet, &results, reaction, angle));
+        form.inline();
         form.prune();
         Ok(form)
     }
@@ -168,24 +170,27 @@ impl<'a> Symbolic<'a> {
     fn results(&self, sheet: &mut Sheet, rates: &Rates<'_>) -> Vec<Step> {
         let mut sums: [Term; 4] = std::array::from_fn(|_| zero());
         for one in &self.masses {
-            let mut ways = Vec::new();
-            if let (Some(mass), Some(centre)) =
-                (&one.mass, &rates.positions.centres[one.body])
-            {
-                for code in centre {
-                    ways.push((mass, rates.of(&symbol(code))));
-                }
-            }
+            let mut ways: Vec<(&Term, Vec<[Term; 3]>)> = Vec::new();
             if let Some(inertia) = &one.inertia {
-                ways.push((inertia, rates.of_angle(one.body)));
+                ways.push((inertia, vec![rates.of_angle(one.body)]));
             }
-            for (weight, [first, second, moved]) in ways {
-                let each = [
-                    times_square(&first),
-                    times(&first, &second),
-                    times(&first, &moved),
-                    times(&second, &moved),
-                ];
+            if let (Some(mass), Some(centre)) = (&one.mass, &rates.positions.centres[one.body]) {
+                let both = centre.iter().map(|code| rates.of(&symbol(code)));
+                ways.push((mass, both.collect()));
+            }
+            for (weight, ways) in ways {
+                let mut each: [Term; 4] = std::array::from_fn(|_| zero());
+                for [first, second, moved] in &ways {
+                    let products = [
+                        times_square(first),
+                        times(first, second),
+                        times(first, moved),
+                        times(second, moved),
+                    ];
+                    for (sum, product) in each.iter_mut().zip(products) {
+                        *sum = plus(sum, &product);
+                    }
+                }
                 for (sum, each) in sums.iter_mut().zip(each) {
                     *sum = plus(sum, &times(weight, &each));
                 }
@@ -264,7 +269,7 @@ impl Positions<'_> {
     }
 
     /// Angles and travels, and the points of the bodies.
-    fn quantities(&self, sheet: &Sheet) -> Vec<Quantity> {
+    fn quantities(&self, sheet: &Sheet, moves: &BTreeMap<String, Term>) -> Vec<Quantity> {
         let quantity = |code: String, unit, meaning| Quantity {
             latex: sheet.latex(&code),
             code,
@@ -283,14 +288,33 @@ impl Positions<'_> {
                 travel.as_ref().and_then(own_name),
                 self.plan.driven_slides()[slide],
             ) {
-                found.push(quantity(code, "m", "travel".to_owned()));
+                let bond = self.plan.tree().slides[slide];
+                let name = bond_name(self.mechanism, self.plan, bond);
+                found.push(quantity(code, "m", format!("travel of {name}")));
             }
         }
-        for (body, root) in self.roots.iter().enumerate() {
-            if let (Some(root), true) = (root, body < self.mechanism.bodies.len()) {
-                for (code, axis) in root.iter().zip(["x", "y"]) {
+        for (closed, chain) in self.closed.iter().zip(&self.chains) {
+            if let Some(code) = closed.normal.as_ref().and_then(|n| own_name(&n.1)) {
+                let name = bond_name(self.mechanism, self.plan, chain.bond);
+                found.push(quantity(code, "m", format!("travel of {name}")));
+            }
+        }
+        let points = [
+            (&self.roots, "the point that carries"),
+            (&self.centres, "the centre of mass of"),
+        ];
+        for (points, what) in points {
+            for (body, point) in points.iter().enumerate() {
+                let (Some(point), true) = (point, body < self.mechanism.bodies.len()) else {
+                    continue;
+                };
+                let known = |code: &String| found.iter().any(|q: &Quantity| q.code == *code);
+                if !point.iter().any(|code| moves.contains_key(code)) || known(&point[0]) {
+                    continue;
+                }
+                for (code, axis) in point.iter().zip(["x", "y"]) {
                     let name = self.mechanism.body_name(BodyId(body));
-                    let meaning = format!("{axis} of the point that carries {name}");
+                    let meaning = format!("{axis} of {what} {name}");
                     found.push(quantity(code.clone(), "m", meaning));
                 }
             }
@@ -338,6 +362,19 @@ fn inertial(
 }
 
 impl Form {
+    /// Puts what is only a number or another name into the terms that it occurs in.
+    fn inline(&mut self) {
+        let mut plain: BTreeMap<String, Term> = BTreeMap::new();
+        for (_, steps) in &mut self.parts {
+            for step in steps.iter_mut() {
+                step.value = algebra::replaced(&step.value, &plain);
+                if algebra::is_plain(&step.value) {
+                    plain.insert(step.code.clone(), step.value.clone());
+                }
+            }
+        }
+    }
+
     /// Leaves out what no quantity needs.
     fn prune(&mut self) {
         let all: Vec<Step> = self.steps().cloned().collect();
@@ -367,10 +404,32 @@ impl Form {
     /// The quantities at a coordinate, rad or m, in their order. Where the mechanism cannot be closed
     /// they are not numbers.
     pub fn evaluate(&self, q: f64) -> Vec<f64> {
+        self.nudged(q, |_| 1.0)
+    }
+
+    /// How far the quantities move when the coordinate and the constants are off by a unit of rounding, each
+    /// one way or the other: what no evaluation can know better.
+    pub fn rounding(&self, q: f64) -> Vec<f64> {
+        let plain = self.evaluate(q);
+        let mut most = vec![0.0_f64; plain.len()];
+        for pattern in [0b0110_1001_u32, 0b0011_0101, 0b0101_1100] {
+            let nudge = |k: usize| {
+                let up = pattern >> (k % 8) & 1 == 1;
+                1.0 + if up { f64::EPSILON } else { -f64::EPSILON }
+            };
+            for (most, (value, plain)) in most.iter_mut().zip(self.nudged(q, nudge).iter().zip(&plain)) {
+                *most = most.max((value - plain).abs());
+            }
+        }
+        most
+    }
+
+    fn nudged(&self, q: f64, nudge: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut values: HashMap<&str, f64> = HashMap::new();
-        values.insert(&self.coordinate.code, q);
-        for constant in &self.constants {
-            values.insert(&constant.code, constant.value);
+        values.insert(&self.coordinate.code, q * nudge(0));
+        for (k, constant) in self.constants.iter().enumerate() {
+            let by = if constant.unit.is_empty() { 1.0 } else { nudge(k + 1) };
+            values.insert(&constant.code, constant.value * by);
         }
         for step in self.steps() {
             let value = algebra::value(&step.value, &values);

@@ -10,10 +10,13 @@ mod chains;
 mod dyads;
 mod error;
 mod form;
+mod listing;
 mod positions;
+mod print;
 mod release;
 mod sheet;
 
 pub use error::SymbolicError;
 pub use form::{Form, Part, Quantity, Symbolic};
+pub use print::Language;
 pub use sheet::Constant;

@@ -2,7 +2,7 @@
 //! the points that carry the bodies and their centres of mass.
 
 use crate::algebra::{Term, cos, is_zero, number, plus, scaled, sin, symbol, times, zero};
-use crate::chains::{Chain, between, bond_name, turned};
+use crate::chains::{Chain, Piece, between, bond_name, turned};
 use crate::error::SymbolicError;
 use crate::sheet::{Sheet, is_greek};
 use dwell_geometry::frames::Turning;
@@ -34,8 +34,10 @@ pub(crate) struct Positions<'a> {
     pub(crate) q: Term,
     pub(crate) chains: Vec<Chain>,
     pub(crate) closed: Vec<Closed>,
-    /// By relation: the step that solves it, and what it is shifted by for each unit of the relation.
-    pub(crate) related: Vec<Option<(String, f64)>>,
+    /// By relation: the step that solves it, and by what the relation grows with it.
+    pub(crate) related: Vec<Option<(String, Term)>>,
+    /// Numbers of relations: their size, whose they are, their names.
+    pub(crate) weights: Vec<(f64, String, Term)>,
     /// By body: the steps of its root; none for the ground.
     pub(crate) roots: Vec<Option<[String; 2]>>,
     /// By body with mass: the steps of its centre.
@@ -82,6 +84,7 @@ impl<'a> Positions<'a> {
             centres: vec![None; bodies],
             angles: vec![None; plan.frames().frames.len()],
             travels: vec![None; plan.tree().slides.len()],
+            weights: Vec::new(),
             vectors: HashMap::new(),
             numbered: 0,
             turn: pose.turn,
@@ -139,15 +142,23 @@ impl<'a> Positions<'a> {
         let level = (0..named)
             .find(|&b| attitudes[b].frame == frame && attitudes[b].offset == Vec2::IDENTITY);
         let any = level.or_else(|| (0..attitudes.len()).find(|&b| attitudes[b].frame == frame));
-        match any {
-            Some(body) if body < named => self.mechanism.body_name(BodyId(body)).to_owned(),
-            Some(body) => {
-                let place = self.plan.tree().place[body];
-                let bond = place.map(|p| self.plan.tree().carries[p].bond);
-                bond.map_or_else(String::new, |b| bond_name(self.mechanism, self.plan, b))
-            }
-            None => String::new(),
+        any.map_or_else(String::new, |body| self.part_name(body))
+    }
+
+    /// The name of a body, or of the joint that added it.
+    pub(crate) fn part_name(&self, body: usize) -> String {
+        if body < self.mechanism.bodies.len() {
+            return self.mechanism.body_name(BodyId(body)).to_owned();
         }
+        let place = self.plan.tree().place[body];
+        let bond = place.map(|p| self.plan.tree().carries[p].bond);
+        bond.map_or_else(String::new, |b| bond_name(self.mechanism, self.plan, b))
+    }
+
+    /// What a piece of a loop is.
+    pub(crate) fn meaning(&self, piece: &Piece) -> String {
+        let [from, to] = &piece.between;
+        format!("{}: from {from} to {to}", self.part_name(piece.body))
     }
 
     /// The next number for a constant.
@@ -178,9 +189,8 @@ impl<'a> Positions<'a> {
         if local == Vec2::ZERO {
             return [zero(), zero()];
         }
-        let name = self.frame_name(frame);
-        let meaning = format!("{name}: {meaning}");
         let k = self.number();
+        let meaning = meaning.to_owned();
         if local.y == 0.0 {
             let l = self.sheet.constant(("l", &[&k]), local.x, "m", meaning);
             return [l, zero()];
@@ -236,7 +246,7 @@ impl<'a> Positions<'a> {
         let chain = self.chains[closure].clone();
         let mut frames: Vec<(usize, Vec2, String)> = Vec::new();
         for piece in &chain.pieces {
-            let meaning = format!("from {} to {}", piece.between[0], piece.between[1]);
+            let meaning = self.meaning(piece);
             match frames.iter_mut().find(|f| f.0 == piece.frame) {
                 Some((_, sum, words)) => {
                     let joined = *sum + piece.local;
@@ -244,7 +254,7 @@ impl<'a> Positions<'a> {
                     let clean = |d: f64| if d.abs() <= rounding { 0.0 } else { d };
                     *sum = dwell_geometry::vec2(clean(joined.x), clean(joined.y));
                     let name = bond_name(self.mechanism, self.plan, chain.bond);
-                    *words = format!("in the loop of {name}");
+                    *words = format!("{}: in the loop of {name}", self.frame_name(piece.frame));
                 }
                 None => frames.push((piece.frame, piece.local, meaning)),
             }
@@ -325,7 +335,7 @@ impl<'a> Positions<'a> {
             let reached = tree.place[parent].map(|p| tree.carries[p].bond);
             let start = reached.map(|b| bond_name(self.mechanism, self.plan, b));
             let start = start.unwrap_or_else(|| "the origin".to_owned());
-            let arm = self.local(frame, local, &format!("from {start} to {joint}"));
+            let arm = self.local(frame, local, &format!("{}: from {start} to {joint}", self.part_name(parent)));
             let mut root = rotated(&arm, &self.angle(frame));
             if let Some(codes) = &self.roots[parent] {
                 root = add(&[symbol(&codes[0]), symbol(&codes[1])], &root);
@@ -353,10 +363,11 @@ impl<'a> Positions<'a> {
                 continue;
             }
             let joint = bond_name(self.mechanism, self.plan, carry.bond);
-            let arm = self.local(frame, local, &format!("from {joint} to the centre of mass"));
+            let name = self.part_name(body);
+            let meaning = format!("{name}: from {joint} to the centre of mass");
+            let arm = self.local(frame, local, &meaning);
             let arm = rotated(&arm, &self.angle(frame));
             let centre = add(&[symbol(&root[0]), symbol(&root[1])], &arm);
-            let name = self.mechanism.body_name(BodyId(body)).to_owned();
             self.centres[body] = Some(self.point(&["G", &name], &centre));
         }
     }

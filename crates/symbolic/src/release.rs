@@ -4,7 +4,7 @@
 //! which is all that a and b take of it, the known part of each loop is shifted by a sum over its pieces, and
 //! the points of the bodies are shifted by what carries them.
 
-use crate::algebra::{Term, number, plus, scaled, symbol, times, zero};
+use crate::algebra::{Term, number, scaled, symbol, times, zero};
 use crate::error::SymbolicError;
 use crate::positions::{Pair, Positions, add, perp, rotated};
 use dwell_geometry::frames::Coupler;
@@ -112,7 +112,7 @@ impl Positions<'_> {
         let chain = self.chains[closure].clone();
         let mut sum = [zero(), zero()];
         for piece in chain.pieces.iter().filter(|p| turned[p.body] != 0.0) {
-            let meaning = format!("from {} to {}", piece.between[0], piece.between[1]);
+            let meaning = self.meaning(piece);
             let pair = self.local(piece.frame, piece.local, &meaning);
             let pair = rotated(&pair, &self.angle(piece.frame));
             sum = add(&sum, &perp(&pair).map(|c| scaled(&c, turned[piece.body])));
@@ -223,7 +223,8 @@ impl Positions<'_> {
                 shift -= 1.0;
             }
             if shift != 0.0 {
-                shifts.insert(code.clone(), plus(&number(shift * by), &zero()));
+                let shift = number(-shift) / by.clone();
+                shifts.insert(code.clone(), shift.simplify());
             }
         }
     }

@@ -23,9 +23,30 @@ pub struct Constant {
 pub(crate) struct Step {
     pub(crate) code: String,
     pub(crate) value: Term,
-    /// Its derivatives by the names it is made of, where they are known in a shorter form than
-    /// differentiation gives: that of a root by its radicand, of an angle by its coordinates.
-    pub(crate) slopes: Option<Vec<(String, Term)>>,
+    /// Its derivatives, where they are known in a shorter form than differentiation gives.
+    pub(crate) slopes: Option<Slopes>,
+}
+
+/// The derivatives of a step by the names it is made of: that of a root by what is under it, of an angle
+/// by the coordinates of what it points along.
+#[derive(Debug, Clone)]
+pub(crate) struct Slopes {
+    /// What these are divided by.
+    pub(crate) over: Term,
+    pub(crate) divided: Vec<(String, Term)>,
+    /// Those that nothing divides.
+    pub(crate) beside: Vec<(String, Term)>,
+}
+
+impl Slopes {
+    fn rate(&self, rates: &BTreeMap<String, Term>) -> Term {
+        let divided = chain(&self.divided, rates);
+        let beside = chain(&self.beside, rates);
+        if algebra::is_zero(&divided) {
+            return beside;
+        }
+        plus(&(divided / self.over.clone()).simplify(), &beside).simplify()
+    }
 }
 
 /// What a name's derivative is.
@@ -134,12 +155,7 @@ impl Sheet {
     }
 
     /// Writes a step down whose derivatives are known.
-    pub(crate) fn step_with(
-        &mut self,
-        code: &str,
-        value: Term,
-        slopes: Vec<(String, Term)>,
-    ) -> Term {
+    pub(crate) fn step_with(&mut self, code: &str, value: Term, slopes: Slopes) -> Term {
         self.steps.push(Step {
             code: code.to_owned(),
             value,
@@ -160,8 +176,8 @@ impl Sheet {
         let mut found = Vec::new();
         for step in of {
             let mut value = match &step.slopes {
-                Some(slopes) => chain(slopes, rates),
-                None => rate(&step.value, rates),
+                Some(slopes) => slopes.rate(rates),
+                None => quotient(step, rates).unwrap_or_else(|| rate(&step.value, rates)),
             };
             if let Some(shift) = shifts.get(&step.code) {
                 value = plus(&value, shift).simplify();
@@ -184,6 +200,17 @@ impl Sheet {
         }
         found
     }
+}
+
+/// The derivative of y = N/D by its own name: (N′ − y D′)/D, which stays as short as it can.
+fn quotient(step: &Step, rates: &BTreeMap<String, Term>) -> Option<Term> {
+    let (above, below) = algebra::quotient(&step.value)?;
+    let by_below = times(&symbol(&step.code), &rate(&below, rates));
+    let above = plus(&rate(&above, rates), &-by_below).simplify();
+    if algebra::is_zero(&above) {
+        return Some(zero());
+    }
+    Some((above / below).simplify())
 }
 
 fn chain(slopes: &[(String, Term)], rates: &BTreeMap<String, Term>) -> Term {
