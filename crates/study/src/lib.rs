@@ -39,6 +39,7 @@ mod run;
 mod simulate;
 mod states;
 mod subject;
+mod symbolic;
 mod validate;
 mod words;
 
@@ -57,4 +58,6 @@ pub use run::{Command, Followed, run};
 pub use simulate::{Accuracy, simulate};
 pub use states::{Judged, judge_case};
 pub use subject::PlanSubject;
+pub use dwell_symbolic::Language;
+pub use symbolic::{Printed, symbolic, symbolic_findings};
 pub use validate::{Validation, validate};

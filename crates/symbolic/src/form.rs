@@ -20,6 +20,27 @@ pub struct Quantity {
     pub unit: &'static str,
     /// What it is.
     pub meaning: String,
+    /// What it is of, in terms of the plan.
+    pub of: Of,
+}
+
+/// What a quantity is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Of {
+    /// The angle of a frame.
+    Frame(usize),
+    /// The travel of a slide.
+    Slide(usize),
+    /// The travel of a loop that closes along its normal only.
+    Closure(usize),
+    /// The point that carries a body: x or y, 0 or 1.
+    Root(usize, usize),
+    /// The centre of mass of a body: x or y, 0 or 1.
+    Centre(usize, usize),
+    /// The coordinate.
+    Coordinate,
+    /// The inertia, or the reaction.
+    Result,
 }
 
 /// What a part of the steps is about.
@@ -265,22 +286,24 @@ impl Positions<'_> {
             latex: sheet.latex(code),
             unit: if angle { "rad" } else { "m" },
             meaning: format!("coordinate {}", self.mechanism.actuators[0].name),
+            of: Of::Coordinate,
         }
     }
 
     /// Angles and travels, and the points of the bodies.
     fn quantities(&self, sheet: &Sheet, moves: &BTreeMap<String, Term>) -> Vec<Quantity> {
-        let quantity = |code: String, unit, meaning| Quantity {
+        let quantity = |code: String, unit, meaning, of| Quantity {
             latex: sheet.latex(&code),
             code,
             unit,
             meaning,
+            of,
         };
         let mut found = Vec::new();
         for (frame, angle) in self.angles.iter().enumerate() {
             if let Some(code) = angle.as_ref().and_then(own_name) {
                 let meaning = format!("angle of {}", self.frame_name(frame));
-                found.push(quantity(code, "rad", meaning));
+                found.push(quantity(code, "rad", meaning, Of::Frame(frame)));
             }
         }
         for (slide, travel) in self.travels.iter().enumerate() {
@@ -290,20 +313,23 @@ impl Positions<'_> {
             ) {
                 let bond = self.plan.tree().slides[slide];
                 let name = bond_name(self.mechanism, self.plan, bond);
-                found.push(quantity(code, "m", format!("travel of {name}")));
+                let meaning = format!("travel of {name}");
+                found.push(quantity(code, "m", meaning, Of::Slide(slide)));
             }
         }
-        for (closed, chain) in self.closed.iter().zip(&self.chains) {
+        for (c, (closed, chain)) in self.closed.iter().zip(&self.chains).enumerate() {
             if let Some(code) = closed.normal.as_ref().and_then(|n| own_name(&n.1)) {
                 let name = bond_name(self.mechanism, self.plan, chain.bond);
-                found.push(quantity(code, "m", format!("travel of {name}")));
+                let meaning = format!("travel of {name}");
+                found.push(quantity(code, "m", meaning, Of::Closure(c)));
             }
         }
+        let root: fn(usize, usize) -> Of = Of::Root;
         let points = [
-            (&self.roots, "the point that carries"),
-            (&self.centres, "the centre of mass of"),
+            (&self.roots, "the point that carries", root),
+            (&self.centres, "the centre of mass of", Of::Centre),
         ];
-        for (points, what) in points {
+        for (points, what, of) in points {
             for (body, point) in points.iter().enumerate() {
                 let (Some(point), true) = (point, body < self.mechanism.bodies.len()) else {
                     continue;
@@ -312,10 +338,10 @@ impl Positions<'_> {
                 if !point.iter().any(|code| moves.contains_key(code)) || known(&point[0]) {
                     continue;
                 }
-                for (code, axis) in point.iter().zip(["x", "y"]) {
+                for (k, (code, axis)) in point.iter().zip(["x", "y"]).enumerate() {
                     let name = self.mechanism.body_name(BodyId(body));
                     let meaning = format!("{axis} of {what} {name}");
-                    found.push(quantity(code.clone(), "m", meaning));
+                    found.push(quantity(code.clone(), "m", meaning, of(body, k)));
                 }
             }
         }
@@ -357,6 +383,7 @@ fn inertial(
             latex: sheet.latex(&step.code),
             unit,
             meaning: what.to_owned(),
+            of: Of::Result,
         })
         .collect()
 }

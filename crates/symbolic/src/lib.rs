@@ -17,6 +17,6 @@ mod release;
 mod sheet;
 
 pub use error::SymbolicError;
-pub use form::{Form, Part, Quantity, Symbolic};
+pub use form::{Form, Of, Part, Quantity, Symbolic};
 pub use print::Language;
 pub use sheet::Constant;

@@ -177,7 +177,7 @@ impl<'a> Positions<'a> {
         let found = match self.vectors.get(&key) {
             Some(found) => found.clone(),
             None => {
-                let found = self.constant_pair(frame, forth, meaning);
+                let found = self.constant_pair(forth, meaning);
                 self.vectors.insert(key, found.clone());
                 found
             }
@@ -185,7 +185,7 @@ impl<'a> Positions<'a> {
         found.map(|c| if is_zero(&c) { c } else { scaled(&c, sign) })
     }
 
-    fn constant_pair(&mut self, frame: usize, local: Vec2, meaning: &str) -> Pair {
+    fn constant_pair(&mut self, local: Vec2, meaning: &str) -> Pair {
         if local == Vec2::ZERO {
             return [zero(), zero()];
         }
