@@ -34,5 +34,6 @@ mod repeatability;
 mod scaling;
 mod sketch;
 mod slides;
+mod symbolic;
 mod told;
 mod world;

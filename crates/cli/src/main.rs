@@ -94,7 +94,11 @@ fn run(options: Options) -> Result<bool, Report> {
             reaction,
         } => {
             let scene = read(scene)?;
-            told(dwell_study::symbolic(&scene, (*to).into(), reaction.as_deref()))?
+            told(dwell_study::symbolic(
+                &scene,
+                (*to).into(),
+                reaction.as_deref(),
+            ))?
         }
         Command::Kinematics(along) => follow(along, Run::Kinematics, &mut stopped)?,
         Command::Statics(along) => follow(along, Run::Statics, &mut stopped)?,

@@ -5,8 +5,8 @@ use crate::algebra::{
 };
 use crate::chains::bond_name;
 use crate::error::SymbolicError;
-use crate::sheet::Slopes;
 use crate::positions::{Pair, Positions, cross, dot, perp, rotated};
+use crate::sheet::Slopes;
 use dwell_geometry::Vec2;
 use dwell_geometry::groups::Unknown;
 use dwell_geometry::lower::Owner;
@@ -27,7 +27,7 @@ impl Positions<'_> {
         let plan = self.plan;
         let parts = plan.group(group);
         if parts.rows != parts.unknowns.len() {
-            return Err(self.none(group, "some of its constraints repeat others"));
+            return Err(self.none(group, "constraints repeat each other"));
         }
         let single = |closure: usize, slide: usize, own: &Self| {
             let passages = own.chains[closure].passages.iter();
@@ -65,7 +65,8 @@ impl Positions<'_> {
                 self.travels(group, [one, two], c);
                 Ok(())
             }
-            _ => Err(self.none(group, "it is no dyad")),
+            (.., []) => Err(self.none(group, "they are no dyad")),
+            _ => Err(self.none(group, "loops and relations are solved together")),
         }
     }
 
@@ -144,8 +145,7 @@ impl Positions<'_> {
                     "{name}: direction of its arm at {}, from its x axis",
                     self.joint(closure)
                 );
-                self.sheet
-                    .constant(("alpha", &[&k]), angle, "rad", meaning)
+                self.sheet.constant(("alpha", &[&k]), angle, "rad", meaning)
             };
             return Polar {
                 square,
@@ -209,7 +209,9 @@ impl Positions<'_> {
         let d = self.gap(group, closure, &[]);
         let [one, two] = classes.map(|class| self.polar(closure, class, &[]));
         let code = self.sheet.name("D", &[&joint]);
-        let distance = self.sheet.step(&code, &plus(&square(&d[0]), &square(&d[1])));
+        let distance = self
+            .sheet
+            .step(&code, &plus(&square(&d[0]), &square(&d[1])));
         let code = self.sheet.name("f", &[&joint]);
         let excess = two.square.clone() - one.square.clone();
         let along = excess / (number(2.0) * distance.clone()) - number(0.5);
@@ -269,7 +271,9 @@ impl Positions<'_> {
             );
             let u = rotated(&u, &self.relative(passage.frame));
             let code = self.sheet.name("D", &[&joint]);
-            let distance = self.sheet.step(&code, &plus(&square(&d[0]), &square(&d[1])));
+            let distance = self
+                .sheet
+                .step(&code, &plus(&square(&d[0]), &square(&d[1])));
             let off = cross(&w, &u);
             let branch = at_start + own_at_start.dot(along);
             let radicand = plus(&distance, &-square_of(&off));
@@ -371,7 +375,9 @@ impl Positions<'_> {
         let passes = w.iter().all(is_zero);
         let branch = self.gap_at_start(group, closure, &[]).dot(at_start);
         let code = self.sheet.name("D", &[&joint]);
-        let distance = self.sheet.step(&code, &plus(&square(&d[0]), &square(&d[1])));
+        let distance = self
+            .sheet
+            .step(&code, &plus(&square(&d[0]), &square(&d[1])));
         let radicand = if passes {
             distance.clone()
         } else {
@@ -445,10 +451,7 @@ impl Positions<'_> {
         let d = self.gap(group, closure, &slides);
         let [one, two] = slides.map(|s| self.along(closure, s));
         let area = cross(&one, &two);
-        let values = [
-            -(cross(&d, &two) / area.clone()),
-            -(cross(&one, &d) / area),
-        ];
+        let values = [-(cross(&d, &two) / area.clone()), -(cross(&one, &d) / area)];
         for (slide, value) in slides.into_iter().zip(values) {
             let name = self.travel_name(slide);
             self.travels[slide] = Some(self.sheet.step(&name, &value));
@@ -474,7 +477,7 @@ impl Positions<'_> {
     ) -> Result<(), SymbolicError> {
         let row = self.plan.relation(relation).clone();
         if row.law.is_some() {
-            return Err(self.none(group, "its relation has a law"));
+            return Err(self.none(group, "a relation has a law"));
         }
         let angular = row.angular;
         let (mut rest, mut own) = (zero(), zero());
@@ -485,7 +488,7 @@ impl Positions<'_> {
                 rest = plus(&rest, &times(&weight, &self.relative(frame)));
             } else {
                 if !self.counts(frame) {
-                    return Err(self.none(group, "it counts the turns of a dyad"));
+                    return Err(self.none(group, "a relation counts the turns of a dyad"));
                 }
                 rest = plus(&rest, &times(&weight, &self.angle(frame)));
             }
@@ -529,13 +532,18 @@ impl Positions<'_> {
             Owner::Joint(joint) => self.mechanism.joints[joint.0].name.clone(),
             Owner::Actuator(actuator) => self.mechanism.actuators[actuator.0].name.clone(),
         };
-        let known = self.weights.iter().find(|w| w.0 == value.abs() && w.1 == name);
+        let known = self
+            .weights
+            .iter()
+            .find(|w| w.0 == value.abs() && w.1 == name);
         let term = match known {
             Some((.., term)) => term.clone(),
             None => {
                 let k = self.number();
                 let meaning = format!("number of {name}");
-                let term = self.sheet.constant(("c", &[&k]), value.abs(), unit, meaning);
+                let term = self
+                    .sheet
+                    .constant(("c", &[&k]), value.abs(), unit, meaning);
                 self.weights.push((value.abs(), name, term.clone()));
                 term
             }

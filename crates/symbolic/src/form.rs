@@ -181,7 +181,8 @@ impl<'a> Symbolic<'a> {
             sheet,
         };
         let angle = positions.plan.is_angle(0);
-        form.quantities.extend(inertial(&form.sheet, &results, reaction, angle));
+        form.quantities
+            .extend(inertial(&form.sheet, &results, reaction, angle));
         form.inline();
         form.prune();
         Ok(form)
@@ -444,7 +445,10 @@ impl Form {
                 let up = pattern >> (k % 8) & 1 == 1;
                 1.0 + if up { f64::EPSILON } else { -f64::EPSILON }
             };
-            for (most, (value, plain)) in most.iter_mut().zip(self.nudged(q, nudge).iter().zip(&plain)) {
+            for (most, (value, plain)) in most
+                .iter_mut()
+                .zip(self.nudged(q, nudge).iter().zip(&plain))
+            {
                 *most = most.max((value - plain).abs());
             }
         }
@@ -455,7 +459,11 @@ impl Form {
         let mut values: HashMap<&str, f64> = HashMap::new();
         values.insert(&self.coordinate.code, q * nudge(0));
         for (k, constant) in self.constants.iter().enumerate() {
-            let by = if constant.unit.is_empty() { 1.0 } else { nudge(k + 1) };
+            let by = if constant.unit.is_empty() {
+                1.0
+            } else {
+                nudge(k + 1)
+            };
             values.insert(&constant.code, constant.value * by);
         }
         for step in self.steps() {

@@ -7,8 +7,8 @@ use crate::sheet::Step;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-/// Summands on one line of LaTeX.
-const ON_A_LINE: usize = 4;
+/// Characters of LaTeX on one line: two or three of them are one in print.
+const WIDTH: usize = 200;
 
 impl Form {
     /// The steps of each part as the inside of an `aligned` environment.
@@ -18,10 +18,13 @@ impl Form {
         let style = Style::Latex(&name, &is_constant);
         let line = |step: &Step| {
             let mut text = format!("{} &=", self.sheet.latex(&step.code));
+            let mut width = 0;
             for (k, (minus, one)) in style.summands(&step.value).iter().enumerate() {
-                if k > 0 && k % ON_A_LINE == 0 {
+                if width > 0 && width + one.len() > WIDTH {
                     text.push_str(" \\\\\n&\\quad");
+                    width = 0;
                 }
+                width += one.len();
                 text.push_str(match (k, minus) {
                     (0, false) => " ",
                     (_, false) => " + ",
@@ -43,6 +46,8 @@ impl Form {
     /// once. `name` is its name, and `about` is said above it.
     pub fn code(&self, language: Language, name: &str, about: &str) -> String {
         let lines = self.lines();
+        // A title may hold anything: it must not end the comment that it stands in.
+        let about = &about.replace(['\n', '\r'], " ").replace("*/", "* /");
         match language {
             Language::Rust => self.rust(name, about, &lines),
             Language::C => self.c(name, about, &lines),
@@ -102,7 +107,11 @@ impl Form {
         let style = Style::Code(Language::C);
         let mut text = format!("/* {about} */\n\n#include <math.h>\n\ntypedef struct {{\n");
         for q in &self.quantities {
-            let _ = writeln!(text, "    double {}; /* {}, {} */", q.code, q.meaning, q.unit);
+            let _ = writeln!(
+                text,
+                "    double {}; /* {}, {} */",
+                q.code, q.meaning, q.unit
+            );
         }
         let of = &self.coordinate;
         let _ = writeln!(

@@ -196,7 +196,9 @@ impl<'a> Positions<'a> {
             return [l, zero()];
         }
         if local.x == 0.0 {
-            let l = self.sheet.constant(("l", &[&k]), local.y, "m", meaning + ", across");
+            let l = self
+                .sheet
+                .constant(("l", &[&k]), local.y, "m", meaning + ", across");
             return [zero(), l];
         }
         let along = format!("{meaning}, along its x axis");
@@ -335,7 +337,11 @@ impl<'a> Positions<'a> {
             let reached = tree.place[parent].map(|p| tree.carries[p].bond);
             let start = reached.map(|b| bond_name(self.mechanism, self.plan, b));
             let start = start.unwrap_or_else(|| "the origin".to_owned());
-            let arm = self.local(frame, local, &format!("{}: from {start} to {joint}", self.part_name(parent)));
+            let arm = self.local(
+                frame,
+                local,
+                &format!("{}: from {start} to {joint}", self.part_name(parent)),
+            );
             let mut root = rotated(&arm, &self.angle(frame));
             if let Some(codes) = &self.roots[parent] {
                 root = add(&[symbol(&codes[0]), symbol(&codes[1])], &root);

@@ -232,10 +232,7 @@ impl Style<'_> {
 
     fn function(&self, name: &str, of: &[&Term]) -> String {
         let plain = || {
-            let all: Vec<String> = of
-                .iter()
-                .map(|t| self.write(t, Around::Nothing))
-                .collect();
+            let all: Vec<String> = of.iter().map(|t| self.write(t, Around::Nothing)).collect();
             all.join(", ")
         };
         match self {
@@ -252,7 +249,11 @@ impl Style<'_> {
                         .iter()
                         .map(|t| self.write(t, Around::Nothing))
                         .collect();
-                    format!("{}.{name}({})", self.write(one, Around::Tight), rest.join(", "))
+                    format!(
+                        "{}.{name}({})",
+                        self.write(one, Around::Tight),
+                        rest.join(", ")
+                    )
                 }
                 [] => String::new(),
             },

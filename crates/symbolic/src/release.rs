@@ -47,10 +47,7 @@ impl Positions<'_> {
         let Reaction { joint, component } = reaction;
         let refused = SymbolicError::Reaction(reaction);
         let (bond, relation) = self.plan.parts(joint);
-        let is_relation = matches!(
-            self.mechanism.joints[joint.0].kind,
-            JointKind::Relation(_)
-        );
+        let is_relation = matches!(self.mechanism.joints[joint.0].kind, JointKind::Relation(_));
         match (component, bond, relation) {
             (Component::Tooth | Component::Tangent | Component::Force, _, Some(relation)) => {
                 return Ok(Released::Relation(relation));
@@ -181,7 +178,11 @@ impl Positions<'_> {
             if let Released::Bond(released, along) = released
                 && *released == carry.bond
             {
-                let sign = if bond.bodies[1] == carry.body { 1.0 } else { -1.0 };
+                let sign = if bond.bodies[1] == carry.body {
+                    1.0
+                } else {
+                    -1.0
+                };
                 sum = add(&sum, &along.clone().map(|c| scaled(&c, sign)));
             }
             for (code, shift) in root.into_iter().zip(sum) {

@@ -115,12 +115,16 @@ impl Sheet {
             .get(of)
             .cloned()
             .unwrap_or_else(|| (upright(of), String::new()));
-        let (code, letter) = match rate {
+        let (mut code, letter) = match rate {
             Rate::First => (format!("{of}_d"), format!("{letter}'")),
             // Of a name that is a first derivative.
             Rate::Second => (format!("{of}d"), format!("{letter}'")),
             Rate::Virtual => (format!("{of}_v"), format!("\\delta {letter}")),
         };
+        // A body may be called like another one's derivative.
+        while self.latex.contains_key(&code) {
+            code.push('_');
+        }
         self.latex.insert(code.clone(), (letter, below));
         code
     }
@@ -274,5 +278,10 @@ fn upright(word: &str) -> String {
     if word.chars().all(|c| c.is_ascii_digit()) {
         return word.to_owned();
     }
-    format!("\\mathrm{{{}}}", word.replace('_', "\\_"))
+    let style = if word.chars().all(|c| c.is_ascii_alphanumeric()) {
+        "mathrm"
+    } else {
+        "text"
+    };
+    format!("\\{style}{{{}}}", word.replace('_', "\\_"))
 }
