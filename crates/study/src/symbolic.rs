@@ -146,7 +146,7 @@ fn explain(scene: &Scene, error: &SymbolicError) -> StudyError {
                 ),
                 Some(
                     "closed forms are those of mechanisms made of dyads; `dwell reduce` computes the \
-                     same quantities of any mechanism"
+                     same quantities of any mechanism of one coordinate"
                         .to_owned(),
                 ),
                 &joint_labels(joints, "closes the group"),

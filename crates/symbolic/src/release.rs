@@ -189,14 +189,14 @@ impl Positions<'_> {
                 shifts.insert(code, shift.simplify());
             }
         }
-        for body in 0..self.centres.len() {
+        for (body, &by) in turned.iter().enumerate() {
             let (Some(centre), Some(root)) = (self.centres[body].clone(), self.roots[body].clone())
             else {
                 continue;
             };
-            if turned[body] != 0.0 && centre != root {
+            if by != 0.0 && centre != root {
                 let arm = [0, 1].map(|i| symbol(&centre[i]) - symbol(&root[i]));
-                let arm = perp(&arm).map(|c| scaled(&c, turned[body]).simplify());
+                let arm = perp(&arm).map(|c| scaled(&c, by).simplify());
                 shifts.extend(centre.into_iter().zip(arm));
             }
         }

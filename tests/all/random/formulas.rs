@@ -6,20 +6,22 @@ use dwell_symbolic::{Symbolic, SymbolicError};
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, TestRunner};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 /// Mechanisms of one run.
 const COUNT: u32 = 250;
 /// What is allowed of the largest quantity: roundings, of which a long chain makes many.
 const TOLERANCE: f64 = 1e-12;
 /// And of what one unit of rounding in the lengths does to the forms themselves.
-const OF_ROUNDING: f64 = 100.0;
+const OF_ROUNDING: f64 = 30.0;
 
 /// What was met.
 #[derive(Debug, Default)]
 struct Met {
     held: u32,
     reactions: usize,
-    refused: u32,
+    /// What was in the way of how many, and how the plan solves it.
+    refused: BTreeMap<(&'static str, &'static str), u32>,
     worst: f64,
 }
 
@@ -28,8 +30,9 @@ fn hold(made: &Made, met: &mut Met) -> Result<(), String> {
     let plan = model.plan();
     let symbolic = match Symbolic::new(mechanism, &made.described.masses, plan) {
         Ok(symbolic) => symbolic,
-        Err(SymbolicError::Group { .. } | SymbolicError::Actuators(_)) => {
-            met.refused += 1;
+        Err(SymbolicError::Group { what, group, .. }) => {
+            let solved = plan.group_kinds()[group].1;
+            *met.refused.entry((what, solved)).or_default() += 1;
             return Ok(());
         }
         Err(other) => return Err(other.to_string()),
@@ -85,7 +88,7 @@ fn random_dyads_agree_with_their_closed_forms() {
     let result = runner.run(&seed(), |mut seed| {
         seed.drives.truncate(1);
         // Formulas of long chains are long, and show nothing more.
-        seed.steps.truncate(6);
+        seed.steps.truncate(5);
         let standing = seed.grown();
         let view = View::of(&standing, seed.views[0]);
         let Ok(made) = Made::new(&standing, &view) else {
@@ -99,5 +102,5 @@ fn random_dyads_agree_with_their_closed_forms() {
     if let Err(error) = result {
         panic!("{error}");
     }
-    assert!(met.held * 4 >= COUNT, "{met:?}");
+    assert!(met.held * 8 >= COUNT, "{met:?}");
 }
