@@ -38,5 +38,6 @@ mod rounding;
 mod scaling;
 mod sketch;
 mod slides;
+mod symbolic;
 mod told;
 mod world;

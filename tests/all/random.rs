@@ -1,6 +1,7 @@
 //! A thousand random mechanisms, which close because they are built around a pose: each is solved
 //! there and nearby, and held against the dense equations; or refused, and singular.
 
+mod formulas;
 mod grow;
 mod standing;
 

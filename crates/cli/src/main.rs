@@ -88,6 +88,18 @@ fn run(options: Options) -> Result<bool, Report> {
         Command::Linearise { scene, at } => {
             told(dwell_study::linearise(&read(scene)?, (*at).into()))?
         }
+        Command::Symbolic {
+            scene,
+            to,
+            reaction,
+        } => {
+            let scene = read(scene)?;
+            told(dwell_study::symbolic(
+                &scene,
+                (*to).into(),
+                reaction.as_deref(),
+            ))?
+        }
         Command::Kinematics(along) => follow(along, Run::Kinematics, &mut stopped)?,
         Command::Statics(along) => follow(along, Run::Statics, &mut stopped)?,
         Command::Kinetostatics(along) => follow(along, Run::Kinetostatics, &mut stopped)?,

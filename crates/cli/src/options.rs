@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use dwell_dynamics::Method;
-use dwell_study::About;
+use dwell_study::{About, Language, Printed};
 use std::path::PathBuf;
 
 /// The reduced-parameter dynamics of mechanisms, checked.
@@ -74,6 +74,17 @@ pub(crate) enum Command {
         /// About which state
         #[arg(long, value_enum, default_value_t = AboutName::Equilibrium)]
         at: AboutName,
+    },
+    /// Closed forms of a mechanism made of dyads: positions, m, ½m′ and a reaction's a and b, as LaTeX or code
+    Symbolic {
+        /// The scene file
+        scene: PathBuf,
+        /// In which language
+        #[arg(long, value_enum, default_value_t = PrintedName::Latex)]
+        to: PrintedName,
+        /// The reaction, such as A.x (the first that the scene requests, if absent)
+        #[arg(long, value_name = "NAME")]
+        reaction: Option<String>,
     },
     /// Positions, speeds and accelerations along the prescribed motion, the sweep or the range
     Kinematics(Along),
@@ -155,6 +166,29 @@ impl From<AboutName> for About {
         match name {
             AboutName::Equilibrium => Self::Equilibrium,
             AboutName::Start => Self::Start,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum PrintedName {
+    /// Markdown with formulas in LaTeX
+    Latex,
+    /// A function in Rust
+    Rust,
+    /// A function in C
+    C,
+    /// A function in Python
+    Python,
+}
+
+impl From<PrintedName> for Printed {
+    fn from(name: PrintedName) -> Self {
+        match name {
+            PrintedName::Latex => Self::Latex,
+            PrintedName::Rust => Self::Code(Language::Rust),
+            PrintedName::C => Self::Code(Language::C),
+            PrintedName::Python => Self::Code(Language::Python),
         }
     }
 }

@@ -12,7 +12,7 @@ use std::collections::VecDeque;
 
 /// An unknown of the position problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(crate) enum Unknown {
+pub enum Unknown {
     /// The angle of a class of bodies (never class 0).
     Class(usize),
     /// The travel of a slide that nothing drives.
@@ -21,15 +21,15 @@ pub(crate) enum Unknown {
 
 /// Unknowns that are solved together, and the equations that determine them.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Group {
+pub struct Group {
     /// The unknowns.
-    pub(crate) unknowns: Vec<Unknown>,
+    pub unknowns: Vec<Unknown>,
     /// Indices of the loops.
-    pub(crate) loops: Vec<usize>,
+    pub loops: Vec<usize>,
     /// Indices of the relations.
-    pub(crate) relations: Vec<usize>,
+    pub relations: Vec<usize>,
     /// Number of equations: more than unknowns where some only repeat what others say.
-    pub(crate) rows: usize,
+    pub rows: usize,
 }
 
 /// An equation, or one of a loop's two.

@@ -228,7 +228,7 @@ impl Plan {
     }
 
     /// The frame whose angle is a class's unknown.
-    pub(crate) fn root_of(&self, class: usize) -> usize {
+    pub fn root_of(&self, class: usize) -> usize {
         self.class_roots[class]
     }
 

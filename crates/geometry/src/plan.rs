@@ -376,7 +376,7 @@ impl Plan {
     }
 
     /// The relations between angles and travels, by index, their coupling evaluated by the plan.
-    pub(crate) fn relation(&self, index: usize) -> &Row {
+    pub fn relation(&self, index: usize) -> &Row {
         &self.relations[index]
     }
 

@@ -9,20 +9,28 @@ use dwell_laws::Law;
 
 /// A sum of frames' angles and slides' travels with factors, and a constant.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Terms {
-    pub(crate) turns: Vec<(usize, f64)>,
-    pub(crate) slides: Vec<(usize, f64)>,
-    pub(crate) constant: f64,
+pub struct Terms {
+    /// Frames, with the factor of each angle.
+    pub turns: Vec<(usize, f64)>,
+    /// Slides, with the factor of each travel.
+    pub slides: Vec<(usize, f64)>,
+    /// What is added, rad or m.
+    pub constant: f64,
 }
 
 /// A relation in terms of frames and slides.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Row {
-    pub(crate) owner: Owner,
-    pub(crate) of: Terms,
-    pub(crate) law: Option<(Law, Terms)>,
-    pub(crate) as_assembled: bool,
-    pub(crate) angular: bool,
+pub struct Row {
+    /// What it comes from.
+    pub owner: Owner,
+    /// The sum on its left, less its constant.
+    pub of: Terms,
+    /// The law and its argument, where there is one.
+    pub law: Option<(Law, Terms)>,
+    /// Whether its constant is what makes it hold at the start.
+    pub as_assembled: bool,
+    /// Whether it is in rad rather than in m.
+    pub angular: bool,
 }
 
 impl Terms {

@@ -41,7 +41,7 @@ pub(crate) type Labels = Vec<(Place, String)>;
 const BARELY: f64 = 1e-6;
 
 /// The largest coordinate of a point in its body, m.
-fn size(scene: &Scene) -> f64 {
+pub(crate) fn size(scene: &Scene) -> f64 {
     let points = scene.points.iter().flatten();
     points.fold(0.0, |m, (_, at)| m.max(at.x.abs()).max(at.y.abs()))
 }

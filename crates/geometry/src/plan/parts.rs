@@ -32,6 +32,11 @@ impl Plan {
             .collect()
     }
 
+    /// A group: its unknowns and its equations.
+    pub fn group(&self, group: usize) -> &Group {
+        &self.groups[group].group
+    }
+
     /// The bodies that a group places.
     pub fn group_bodies(&self, group: usize) -> Vec<BodyId> {
         self.bodies_of(&self.groups[group].group)
