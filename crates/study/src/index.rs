@@ -8,7 +8,7 @@ use dwell_report::{Block, Document, Files, png};
 use dwell_scene::Scene;
 
 /// The truths by number, in a word each.
-pub(crate) const TRUTHS: [&str; 10] = [
+pub(crate) const TRUTHS: [&str; 12] = [
     "0 closure",
     "1 energy",
     "2 slope",
@@ -19,6 +19,8 @@ pub(crate) const TRUTHS: [&str; 10] = [
     "7 balance",
     "8 bodies",
     "9 values",
+    "10 rounding",
+    "11 symbols",
 ];
 
 /// A case and what became of it: its report, or why there is none.
@@ -36,7 +38,7 @@ pub(crate) enum Word {
 }
 
 /// What a validated case says of every truth.
-pub(crate) fn words(done: &Validation) -> [Word; 10] {
+pub(crate) fn words(done: &Validation) -> [Word; TRUTHS.len()] {
     std::array::from_fn(|number| {
         let all = || done.outcome.findings.iter();
         let of = || all().filter(|f| f.number() == Some(number));

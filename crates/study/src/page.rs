@@ -110,7 +110,7 @@ pub(crate) fn of_states(
     );
     done("report");
     Ok(Validation {
-        silent: silent(&judged.findings, timed.err()),
+        silent: silent(scene, &judged.findings, timed.err()),
         outcome: Outcome {
             summary: verdicts(scene, &judged.findings),
             files,

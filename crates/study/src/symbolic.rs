@@ -385,7 +385,7 @@ impl<'a> Judge<'a> {
             }
             Finding {
                 key: key.to_owned(),
-                truth: "10 symbolic closed forms".to_owned(),
+                truth: "11 symbolic closed forms".to_owned(),
                 compared: compared.to_owned(),
                 over: format!("{} positions", self.at.len()),
                 absolute: worst.absolute,

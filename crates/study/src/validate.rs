@@ -18,6 +18,7 @@ use crate::rounding::{self, Rounding};
 use crate::simulate::Accuracy;
 use crate::states;
 use crate::subject::PlanSubject;
+use crate::symbolic::symbolic_findings;
 use dwell_findings::Finding;
 use dwell_kinetostatics::Reduced;
 use dwell_report::{Figure, Files};
@@ -50,13 +51,19 @@ pub struct Validation {
 
 /// Why some truths have no findings, where it is not said elsewhere.
 pub(crate) fn silent(
+    scene: &Scene,
     findings: &[Finding],
     period: Option<&'static str>,
 ) -> Vec<(usize, &'static str)> {
+    let closed = match scene.mechanism.actuators.len() {
+        1 => "no dyads",
+        _ => "several freedoms",
+    };
     let known = [
         (3, "reactions shared"),
         (5, period.unwrap_or("no period")),
         (9, "no values"),
+        (11, closed),
     ];
     let spoken = |number: usize| findings.iter().any(|f| f.number() == Some(number));
     known
@@ -154,7 +161,7 @@ pub fn validate(
         files.add(format!("{name}/{file}.csv"), table.csv()?);
     }
     let snapshot = snapshot(&prepared, &evidence);
-    let silent = silent(&evidence.findings, timed.err());
+    let silent = silent(scene, &evidence.findings, timed.err());
     files.add(format!("{name}.txt"), snapshot.clone());
     files.add(format!("{name}.json"), numbers(scene, &evidence)?);
     let document = document(&prepared, &reference, &pages, &evidence);
@@ -189,7 +196,8 @@ pub(crate) fn reduced(
         range,
         positions: spread(range, POSITIONS),
     };
-    let findings = dwell_verify::verify_all(&case, &subject, &reference.samples);
+    let mut findings = dwell_verify::verify_all(&case, &subject, &reference.samples);
+    findings.extend(symbolic_findings(scene)?);
     let mut curves = Vec::new();
     if let Ok(bench) = Bench::new(&case, &subject) {
         // Where ½m′ is largest, differences have most to get right.
