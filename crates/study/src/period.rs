@@ -200,7 +200,7 @@ mod tests {
             "[bodies.ground]\npoints = {{ A = [0, 0] }}\n[bodies.bar]\npoints = {{ A = [0, 0] }}\nmass = 2.0\n\
              center = [0.5, 0]\ninertia = 0.3\n[joints]\nA = {{ revolute = [\"ground.A\", \"bar.A\"] }}\n\
              [actuators]\nphi = {{ angle = [\"ground\", \"bar\"] }}\n[assembly]\nbar = -90\n\
-             [loads]\nweight = {{ gravity = 9.81 }}\n{more}\n[motion]\nspeed = {speed}\nduration = 1"
+             [loads]\nweight = {{ gravity = [0, -9.81] }}\n{more}\n[motion]\nspeed = {speed}\nduration = 1"
         );
         Scene::parse("pendulum.toml", &text).expect("a scene")
     }

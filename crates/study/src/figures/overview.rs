@@ -54,6 +54,7 @@ pub(crate) fn overview(verdicts: &[Verdict<'_>]) -> Figure {
             values: Axis::new("digits of agreement", "").within(DIGITS[0], DIGITS[1]),
             ..Grid::default()
         })],
+        provenance: format!("Dwell {}", env!("CARGO_PKG_VERSION")),
         ..Figure::default()
     }
 }
