@@ -52,7 +52,6 @@ pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
             "{}, each with its own truth and tolerance",
             count(findings.len(), "finding")
         ),
-        ..Figure::default()
     }
 }
 
