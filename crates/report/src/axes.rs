@@ -69,7 +69,7 @@ pub(crate) fn ticks_across(span: &Span, length: f64) -> Ticks {
 pub(crate) fn ticks_up(span: &Span, length: f64) -> Ticks {
     let room = if span.scale == Scale::Log { 44.0 } else { 62.0 };
     let most = (length / room).clamp(2.0, 11.0) as usize;
-    fit(span, most, |ticks| {
+    let crowded = |ticks: &Ticks| {
         let at: Vec<f64> = ticks
             .major
             .iter()
@@ -77,7 +77,13 @@ pub(crate) fn ticks_up(span: &Span, length: f64) -> Ticks {
             .collect();
         at.windows(2)
             .any(|pair| (pair[1] - pair[0]).abs() < LEADING * TICK)
-    })
+    };
+    let ticks = fit(span, most, crowded);
+    if ticks.major.len() > 1 {
+        return ticks;
+    }
+    // One value is no scale: closer together, then.
+    fit(span, (length / (LEADING * TICK)) as usize, crowded)
 }
 
 /// Room a vertical axis needs beside a plot of this height.
@@ -278,5 +284,17 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_low_plot_has_more_than_one_value_on_its_axis() {
+        fonts::ready().unwrap();
+        // Three ticks at the most would leave but the zero.
+        let span = Span {
+            scale: Scale::Linear,
+            low: -4900.0,
+            high: 4400.0,
+        };
+        assert!(ticks_up(&span, 240.0).major.len() > 1);
     }
 }

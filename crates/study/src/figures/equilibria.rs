@@ -80,7 +80,7 @@ pub(crate) fn equilibria(
         columns: 1,
         panels,
         provenance: format!(
-            "force at rest at {}, zeros by bracketing",
+            "the force at rest at {}, and its zeros",
             count(curves.q.len(), "position")
         ),
     }
