@@ -13,6 +13,7 @@ mod form;
 mod listing;
 mod positions;
 mod print;
+mod relations;
 mod release;
 mod sheet;
 
