@@ -55,6 +55,5 @@ pub(crate) fn overview(verdicts: &[Verdict<'_>]) -> Figure {
             ..Grid::default()
         })],
         provenance: format!("Dwell {}", env!("CARGO_PKG_VERSION")),
-        ..Figure::default()
     }
 }
