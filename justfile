@@ -17,12 +17,12 @@ validate-long: && size
 # What a pose costs against the mechanism's size, and its errors: reports/size.png
 [group('main')]
 size:
-    cargo run --release -p dwell-tests --example size
+    cargo run --release --example size
 
 # Deliberate faults, and which independent truths catch them: reports/faults.png, .md and .txt
 [group('main')]
 faults:
-    cargo run --release -p dwell-tests --example faults
+    cargo run --release --example faults
 
 # All tests
 [group('main')]

@@ -1,5 +1,5 @@
 //! What a pose of IFToMM's A02 costs against its size, and what its answers are worth towards the
-//! flat position: `cargo run --release -p dwell-tests --example size` writes `reports/size.png`.
+//! flat position: `cargo run --release --example size` writes `reports/size.png`.
 #![allow(
     clippy::expect_used,
     clippy::print_stdout,

@@ -1,4 +1,4 @@
-//! Writes the tolerances of the cases from measurement: `cargo run --release -p dwell-tests --example tolerances`
+//! Writes the tolerances of the cases from measurement: `cargo run --release --example tolerances`
 //! replaces `[tolerances]` in every `validation/*/case.toml`, or in those of the cases named. What has changed is
 //! to be read and explained before it is committed.
 #![allow(clippy::print_stdout, reason = "a study, run by hand")]

@@ -1,5 +1,5 @@
 //! The fault study: deliberate faults, each a wrapper around what is judged, and the independent truths
-//! that catch them. `cargo run --release -p dwell-tests --example faults` writes `reports/faults.png`,
+//! that catch them. `cargo run --release --example faults` writes `reports/faults.png`,
 //! `.md` and `.txt`, and fails if a fault in an equation is caught by fewer than two truths.
 //!
 //! ```text

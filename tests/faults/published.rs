@@ -7,8 +7,8 @@ use std::path::Path;
 
 /// The samples of m, ½m′, a and b.
 pub(crate) fn samples(folder: &Path, scene: &Scene) -> Vec<Sample> {
-    let text = std::fs::read_to_string(folder.join("reference.json")).expect("a reference");
-    let value: Value = serde_json::from_str(&text).expect("JSON");
+    let text = std::fs::read_to_string(folder.join("case.toml")).expect("a reference");
+    let value: Value = toml::from_str(&text).expect("TOML");
     let number = |v: &Value| v.as_str().and_then(|s| s.parse::<f64>().ok());
     let mechanism = &scene.mechanism;
     let index = |name: &str| {

@@ -202,6 +202,7 @@ fn summed(first: f64, second: f64, (slip, origin): (Option<Slip>, Origin)) -> Wa
 
 impl Scalar for Watched {
     const DERIVES: bool = false;
+    const EPSILON: f64 = f64::EPSILON;
     #[track_caller]
     fn lift(value: f64) -> Self {
         // Nothing can go wrong with nothing.

@@ -396,6 +396,8 @@ impl<'a> Judge<'a> {
                 worst: self.refused.clone().unwrap_or(worst.place),
                 tolerance,
                 why,
+                condition: (worst.own / f64::EPSILON).max(1.0),
+                integrated: false,
             }
         })
         .collect()

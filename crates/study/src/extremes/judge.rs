@@ -48,7 +48,7 @@ fn finding(measured: &Measured, key: &str) -> Finding {
         worst: String::new(),
         tolerance: 1.0,
         why: row.why.to_owned(),
-        pass: false,
+        ..Finding::default()
     }
 }
 
@@ -116,5 +116,6 @@ fn near(grid: &[Measured]) -> Finding {
         tolerance: allowed,
         why: "an estimate that is often far too large says nothing; now and then an error is small by chance".to_owned(),
         pass: !ratios.is_empty() && share <= allowed,
+        ..Finding::default()
     }
 }

@@ -64,7 +64,7 @@ fn pages(grid: &[Measured]) -> Vec<Figure> {
                      below 1 and in 95 % of all cells not above {MOST_TIMES}. What the results are held against:"
                 ),
                 columns: 2,
-                panels: Vec::new(),
+                ..Figure::default()
             });
         }
         if let Some(page) = pages.last_mut() {
