@@ -8,10 +8,10 @@ use super::verdict::{TRUTHS, Verdict};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// `faults.txt`: which truths catch what. Digits are left out, since they are not the same everywhere.
+/// `faults.txt`: which truths catch what. Digits and counts are left out: they are not the same everywhere, and
+/// each new line of the product changes them.
 pub(crate) fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String {
     let mut out = String::from(HEAD);
-    let _ = writeln!(out, "{}\n", summary(study));
     let _ = writeln!(out, "{:<58}  {:<18} truths", "fault", "on");
     let _ = writeln!(
         out,
@@ -34,15 +34,11 @@ pub(crate) fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String
     }
     let _ = writeln!(
         out,
-        "\nOperations, by function: faults, those that no answer shows, those that end in a refusal, and the fewest truths that catch one of the others"
+        "\nEvery sign, term and factor, by function: the fewest truths that catch a fault that an answer shows"
     );
     for (function, tally) in functions {
         let fewest = tally.fewest.map_or("-".to_owned(), |n| n.to_string());
-        let _ = writeln!(
-            out,
-            "  {function:<36} {:>4} {:>4} {:>4} {fewest:>3}",
-            tally.faults, tally.same, tally.refused
-        );
+        let _ = writeln!(out, "  {function:<36} {fewest:>3}");
     }
     out
 }
