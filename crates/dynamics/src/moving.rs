@@ -28,8 +28,6 @@ impl<'m> Moving<'m> {
         let mut weights = vec![1.0; machine.states()];
         let scale = machine.energy_scale(&work);
         weights[machine.first_work()..].fill(scale);
-        let n = machine.free().len();
-        weights[n..2 * n].fill(machine.speed_scale(&work));
         let zero = vec![Dual::lift(0.0); machine.states()];
         Ok(Self {
             machine,
@@ -48,18 +46,6 @@ impl<'m> Moving<'m> {
 }
 
 impl Machine {
-    /// A speed to measure speeds by, rad/s or m/s: without loads and laws that of the start, which only
-    /// scales time, else 1.
-    fn speed_scale(&self, work: &MachineWork<f64>) -> f64 {
-        let alone = self.model().loads().is_empty() && self.free().len() == work.q.len();
-        let fastest = work.q_dot.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-        if alone && fastest.is_normal() {
-            fastest
-        } else {
-            1.0
-        }
-    }
-
     /// An energy to measure works by, J: the kinetic one, or what the loads and drives do in one unit of
     /// the coordinates.
     fn energy_scale(&self, work: &MachineWork<f64>) -> f64 {

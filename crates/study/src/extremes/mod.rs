@@ -22,12 +22,13 @@ use crate::error::StudyError;
 use crate::outcome::Outcome;
 use rayon::prelude::*;
 
-/// The whole study.
+/// The whole study: `extremes`, or `extremes-long` with the rows that take minutes.
 ///
 /// # Errors
 /// [`StudyError`] where a picture cannot be drawn.
 pub fn study(long: bool) -> Result<Outcome, StudyError> {
-    outcome(&measure(rows(long)))
+    let name = if long { "extremes-long" } else { "extremes" };
+    outcome(&measure(rows(long)), name)
 }
 
 /// The rows of the grid; `long` for those that take minutes.

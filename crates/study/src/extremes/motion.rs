@@ -1,7 +1,7 @@
 //! Motions: speeds, tolerances, revolutions.
 
 use super::grid::{Reading, Row, Stated, Told, decades, refused};
-use super::moving::{free, kinetic};
+use super::moving::{free, kinetic, wrapped};
 use super::shapes::CRANK_ROCKER;
 use super::truth::{four_bar, root_of_inertia, wide};
 use dwell_dynamics::{DynamicsError, Method, Options, State};
@@ -18,6 +18,9 @@ const POINTS: usize = 256;
 const OF_A_STEP: f64 = 4.0;
 /// Steps of a turn at a tolerance of one.
 const OF_A_TURN: f64 = 8.0;
+
+/// Turns after which the angle is wrapped: its rounding is then that of a hundred turns.
+const WRAPPED: f64 = 100.0;
 
 /// What is reported of a motion at its end.
 const ENDS: [&str; 2] = ["angle", "energy"];
@@ -66,17 +69,27 @@ fn turned(
     options: &Options,
 ) -> Result<Vec<Told>, DynamicsError> {
     let [m, period] = *TURN;
-    let whole = period * wide(turns) / wide(speed);
+    let parts = (turns / WRAPPED).max(1.0);
+    let way = Wide::turns(turns / parts);
+    let whole = period * wide(turns / parts) / wide(speed);
+    let duration = whole.value();
     let start = State {
         t: 0.0,
         q: FROM,
         q_dot: speed,
     };
-    let twice = free(model, start, whole.value(), options)?;
+    let (twice, angle) = if parts > 1.0 {
+        let parts = (parts as usize, duration);
+        (wrapped(model, start, parts, way, options)?, wide(FROM))
+    } else {
+        (free(model, start, duration, options)?, wide(FROM) + way)
+    };
     // The plain end is not quite the whole of the turns.
-    let late = (wide(whole.value()) - whole) * wide(speed);
-    let angle = wide(FROM) + Wide::turns(turns) + late;
-    let (q, q_error) = twice.last(|y| y[0], 2.0 * f64::EPSILON * angle.value());
+    let late = (wide(duration) - whole) * wide(speed) * wide(parts);
+    let angle = angle + late;
+    // A last place of the angle is lost in each part, and of the time.
+    let rounding = 2.0 * f64::EPSILON * (way.value() + angle.value()) * parts.sqrt();
+    let (q, q_error) = twice.last(|y| y[0], rounding);
     let energy = wide(0.5) * m * wide(speed) * wide(speed);
     let rounding = 4.0 * f64::EPSILON * energy.value();
     let (e, e_error) = twice.last(|y| kinetic(model, y), rounding);

@@ -5,6 +5,7 @@ use crate::estimate;
 use dwell_dynamics::{
     DynamicsError, Guidance, Machine, Options, Point, Run, State, Until, follow, simulate,
 };
+use dwell_geometry::{Scalar, Wide};
 use dwell_kinetostatics::{Exact, Load, Reduced as _};
 
 /// Times of a motion at which its two runs are compared, the end among them.
@@ -47,6 +48,34 @@ pub(super) fn free(
     Ok(Twice {
         first: run(&options)?,
         again: run(&estimate::second(&options))?,
+    })
+}
+
+/// A motion without loads in parts of equal duration, s, each of which turns by `way`: the angle is wrapped
+/// after each, so that it keeps its digits. Compared are the ends of the parts.
+pub(super) fn wrapped(
+    model: &Exact,
+    start: State,
+    (parts, duration): (usize, f64),
+    way: Wide,
+    options: &Options,
+) -> Result<Twice, DynamicsError> {
+    let run = |options: &Options| -> Result<Vec<Vec<f64>>, DynamicsError> {
+        let mut at = start;
+        let mut ends = Vec::with_capacity(parts);
+        for _ in 0..parts {
+            let part = simulate(model, at, Until::Time(duration), options)?;
+            if let Some(end) = part.steps.last() {
+                let q = (Wide::lift(end.q) - way).value();
+                at = State { t: 0.0, q, ..*end };
+            }
+            ends.push(vec![at.q, at.q_dot]);
+        }
+        Ok(ends)
+    };
+    Ok(Twice {
+        first: run(options)?,
+        again: run(&estimate::second(options))?,
     })
 }
 

@@ -18,28 +18,29 @@ const REFUSED: f64 = 0.4;
 /// The ratios that a chart shows.
 const RATIOS: [f64; 2] = [0.1, 1e5];
 
-/// Everything that is written of the grid: `extremes.md`, `extremes.txt` and the folder `extremes/`.
+/// Everything that is written of the grid: `NAME.md`, `NAME.txt` and the folder `NAME/`.
 ///
 /// # Errors
 /// [`StudyError`] where a picture cannot be drawn.
-pub fn outcome(grid: &[Measured]) -> Result<Outcome, StudyError> {
+pub fn outcome(grid: &[Measured], name: &str) -> Result<Outcome, StudyError> {
     let findings = judge(grid);
     let pages = pages(grid);
     let pictures: Vec<Vec<u8>> = pages.par_iter().map(png).collect::<Result<_, _>>()?;
     let mut files = Files::new();
     for (page, picture) in pages.iter().zip(pictures) {
-        files.add(format!("extremes/{}.png", page.name), picture);
+        files.add(format!("{name}/{}.png", page.name), picture);
     }
     for measured in grid {
-        let name = format!("extremes/{}.csv", measured.row.key);
-        files.add(name, table(measured).csv()?);
+        let file = format!("{name}/{}.csv", measured.row.key);
+        files.add(file, table(measured).csv()?);
     }
-    files.add("extremes.txt", snapshot(grid, &findings));
-    files.add("extremes.md", document(grid, &pages, &findings).markdown());
+    files.add(format!("{name}.txt"), snapshot(grid, &findings));
+    let document = document(grid, name, &pages, &findings);
+    files.add(format!("{name}.md"), document.markdown());
     let passed = findings.iter().filter(|f| f.pass).count();
     Ok(Outcome {
         summary: format!(
-            "extremes: {passed} of {} findings pass, {} cells\n",
+            "{name}: {passed} of {} findings pass, {} cells\n",
             findings.len(),
             grid.iter().map(|m| m.cells.len()).sum::<usize>()
         ),
@@ -68,7 +69,10 @@ fn pages(grid: &[Measured]) -> Vec<Figure> {
             });
         }
         if let Some(page) = pages.last_mut() {
-            page.caption += &format!("\n{}: {}.", row.what, row.truth);
+            // Rows of one truth need it but once.
+            if !page.caption.contains(row.truth) {
+                page.caption += &format!("\n{}: {}.", row.what, row.truth);
+            }
             page.panels.push(digits(measured).into());
             page.panels.push(ratios(measured).into());
         }
@@ -205,7 +209,7 @@ fn snapshot(grid: &[Measured], findings: &[Finding]) -> String {
     text + "\n" + &stable(findings)
 }
 
-fn document(grid: &[Measured], pages: &[Figure], findings: &[Finding]) -> Document {
+fn document(grid: &[Measured], name: &str, pages: &[Figure], findings: &[Finding]) -> Document {
     let verdict = if all_pass(findings) {
         "pass"
     } else {
@@ -233,7 +237,7 @@ fn document(grid: &[Measured], pages: &[Figure], findings: &[Finding]) -> Docume
         },
     ];
     blocks.extend(pages.iter().map(|page| Block::Figure {
-        file: format!("extremes/{}.png", page.name),
+        file: format!("{name}/{}.png", page.name),
         alt: page.title.clone(),
         caption: page.title.clone(),
     }));

@@ -56,7 +56,7 @@ fn mass_ratio() -> Row {
         bars
     };
     Row {
-        parameter: ("mass of the coupler over its own", ""),
+        parameter: ("mass of the coupler, in parts of that at first", ""),
         why: "the parameters are sums over the bodies, each of which a well-shaped dyad magnifies by 8; 16 roundings",
         ..row(
             "mass-ratio",
