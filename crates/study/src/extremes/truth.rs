@@ -224,6 +224,13 @@ pub(crate) fn elliptic_e(k_square: Wide, complement: Wide) -> Wide {
 
 /// e^x, by its series at x/2ᵏ, squared k times.
 pub(crate) fn exponential(x: Wide) -> Wide {
+    // Of −1 and nearly 1 few digits would be left; beyond, a number has none at all.
+    if x.hi < -700.0 {
+        return wide(0.0);
+    }
+    if x.hi < 0.0 {
+        return wide(1.0) / exponential(-x);
+    }
     let halvings = (x.hi.abs().log2().ceil() + 8.0).clamp(0.0, 60.0) as i32;
     let small = x * wide(0.5_f64.powi(halvings));
     let (mut term, mut sum) = (small, small);
