@@ -54,11 +54,12 @@ fn val_squeezer() {
     let machine = machine(&scene, &[], &[]);
     let y = machine.start(&scene.assembly.start, &[0.0]);
     let (beta, speed) = (15.810_771_195_153_707_f64, 1_139.920_302_259_106_f64);
+    // Measured errors of angle (rad) and speed: 4e-12 and 6e-14, 7e-10 and 2e-11, 8e-8 and 2e-9, 8e-6 and 3e-7.
     for (method, tolerance, within) in [
-        (Method::Tsit45, 1e-13, 1e-10),
-        (Method::Bdf, 1e-13, 1e-9),
-        (Method::Esdirk34, 1e-11, 1e-7),
-        (Method::TrBdf2, 1e-9, 1e-4),
+        (Method::Tsit45, 1e-13, [1e-10, 2e-12]),
+        (Method::Bdf, 1e-13, [1e-9, 1e-10]),
+        (Method::Esdirk34, 1e-11, [2e-7, 1e-8]),
+        (Method::TrBdf2, 1e-9, [3e-5, 1e-6]),
     ] {
         let end = at(&machine, &y, 0.03, method, tolerance);
         println!(
@@ -68,20 +69,21 @@ fn val_squeezer() {
             end[1] / speed - 1.0
         );
         assert!(
-            (end[0] - beta).abs() < within,
+            (end[0] - beta).abs() < within[0],
             "{} {:e}",
             method.name(),
             end[0] - beta
         );
         assert!(
-            (end[1] / speed - 1.0).abs() < 100.0 * within,
+            (end[1] / speed - 1.0).abs() < within[1],
             "{} {}",
             method.name(),
             end[1]
         );
         // The motor's torque is constant: its work is that times the angle.
         let work = 0.033 * (end[0] - y[0]);
-        assert!((end[2] - work).abs() < within, "{} {work}", end[2]);
+        // It is integrated beside it, linearly: rounding, by every method.
+        assert!((end[2] - work).abs() < 1e-13, "{} {work}", end[2]);
     }
 }
 
@@ -221,9 +223,9 @@ fn jacobians_agree_with_differences() {
         for i in 0..n {
             let slope = (8.0 * (c[i] - b[i]) - (d[i] - a[i])) / (12.0 * h);
             let error = (slope - jacobian[i * n + j]).abs();
-            // Rounding over h, and h⁴ times a fifth derivative of order 10⁴.
+            // Rounding over h, and h⁴ times a fifth derivative of order 10⁴: measured 1.5e-12.
             assert!(
-                error < 1e-10 * scale,
+                error < 3e-11 * scale,
                 "∂{i}/∂{j}: {slope} {}",
                 jacobian[i * n + j]
             );
@@ -319,9 +321,9 @@ angle = ["ground", "wheel"]
     let plain = machine(&scene, &[], &[motor(0.0)]);
     let end = at(&plain, &plain.start(&[0.0], &[0.0]), t, Method::Bdf, 1e-12);
     let expected = u / kn * (1.0 - (-kn * kn / (r * inertia) * t).exp());
-    // BDF errs by hundreds of its tolerance.
+    // It has nearly come to its speed, and errs by less than its tolerance: 6e-13.
     assert!(
-        (end[1] / expected - 1.0).abs() < 1e-9,
+        (end[1] / expected - 1.0).abs() < 3e-11,
         "{} {expected}",
         end[1]
     );
@@ -331,14 +333,14 @@ angle = ["ground", "wheel"]
     let end = at(&coil, &coil.start(&[0.0], &[0.0]), t, Method::Tsit45, 1e-12);
     // From rest the current climbs within microseconds: the first step must be let become as short.
     let slowly = at(&coil, &coil.start(&[0.0], &[0.0]), t, Method::Bdf, 1e-10);
-    assert!((slowly[1] / end[1] - 1.0).abs() < 1e-7, "{}", slowly[1]);
+    assert!((slowly[1] / end[1] - 1.0).abs() < 1e-9, "{}", slowly[1]);
     let (b, c) = (r / l, kn * kn / (inertia * l));
     let root = (b * b / 4.0 - c).sqrt();
     let [s1, s2] = [-b / 2.0 + root, -b / 2.0 - root];
     let idle = u / kn;
     let expected = idle * (1.0 - (s2 * (s1 * t).exp() - s1 * (s2 * t).exp()) / (s2 - s1));
     assert!(
-        (end[1] / expected - 1.0).abs() < 1e-10,
+        (end[1] / expected - 1.0).abs() < 5e-13,
         "{} {expected}",
         end[1]
     );
@@ -460,9 +462,9 @@ fn reactions_are_the_sum_of_their_channels() {
         let pairs = [(&sum.tau, &total.tau), (&sum.reactions, &total.reactions)];
         for ((sum, total), scale) in pairs.into_iter().zip(scale) {
             for (k, (sum, total)) in sum.iter().zip(total).enumerate() {
-                // Rounding of some dozens of terms.
+                // Rounding of some dozens of terms: measured 5e-16.
                 assert!(
-                    (sum - total).abs() <= 1e-12 * scale,
+                    (sum - total).abs() <= 3e-14 * scale,
                     "{case} {k}: {sum} {total}"
                 );
             }
