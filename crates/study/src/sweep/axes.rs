@@ -5,7 +5,7 @@ use super::random::{normal, uniform};
 use dwell_scene::Scene;
 
 /// Most values of a grid.
-const MOST_VALUES: usize = 1_000_000;
+const MOST_VALUES: u64 = 1_000_000;
 
 const FORMS: &str = "write PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD), PATH~uniform(FROM,TO), \
                      PATH±TOLERANCE or PATH±PERCENT%";
@@ -21,6 +21,8 @@ pub(crate) struct Axis {
 /// How a number varies.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Kind {
+    /// Equal steps between two values, both among them.
+    Grid { from: f64, to: f64, count: u64 },
     /// These values, one after another.
     Listed(Vec<f64>),
     /// At random about a mean.
@@ -83,12 +85,13 @@ impl Axis {
 
     /// Whether it is drawn at random.
     pub(crate) fn is_random(&self) -> bool {
-        !matches!(self.kind, Kind::Listed(_))
+        matches!(self.kind, Kind::Normal { .. } | Kind::Uniform { .. })
     }
 
     /// How many values it lists; one where it is drawn at random.
     pub(crate) fn count(&self) -> u64 {
         match &self.kind {
+            Kind::Grid { count, .. } => *count,
             Kind::Listed(values) => values.len() as u64,
             Kind::Normal { .. } | Kind::Uniform { .. } => 1,
         }
@@ -97,6 +100,11 @@ impl Axis {
     /// Its value: the `place`th of those listed, or that of a `sample` of the `number`th axis.
     pub(crate) fn value(&self, place: u64, (seed, number, sample): (u64, u32, u64)) -> f64 {
         match &self.kind {
+            // Both ends to the last digit.
+            Kind::Grid { to, count, .. } if place + 1 == *count => *to,
+            Kind::Grid { from, to, count } => {
+                from + (to - from) * place as f64 / (count - 1) as f64
+            }
             // The place is below the count.
             Kind::Listed(values) => values.get(place as usize).copied().unwrap_or(f64::NAN),
             Kind::Normal { mean, deviation } => mean + deviation * normal(seed, number, sample),
@@ -116,6 +124,7 @@ impl Axis {
     pub(crate) fn exact(&self) -> String {
         let path = &self.path;
         match &self.kind {
+            Kind::Grid { from, to, count } => format!("{path}={from:?}:{to:?}:{count}"),
             Kind::Listed(values) => {
                 let values: Vec<String> = values.iter().map(|v| format!("{v:?}")).collect();
                 format!("{path}={}", values.join(","))
@@ -145,7 +154,7 @@ fn grid(how: &str, number: Number<'_>, refuse: Refuse<'_>) -> Result<Kind, Sweep
         return Err(refuse(reason, FORMS));
     };
     let (from, to) = (number(from)?, number(to)?);
-    let count: usize = count.trim().parse().map_err(|_| {
+    let count: u64 = count.trim().parse().map_err(|_| {
         let reason = format!("`{}` is not a count of values", count.trim());
         refuse(reason, "a whole number of 2 or more, the ends among them")
     })?;
@@ -159,12 +168,7 @@ fn grid(how: &str, number: Number<'_>, refuse: Refuse<'_>) -> Result<Kind, Sweep
         let reason = format!("the range from {from} to {to} is empty");
         return Err(refuse(reason, "a single value is written PATH=VALUE"));
     }
-    let at = |k: usize| {
-        let part = k as f64 / (count - 1) as f64;
-        // Both ends to the last digit.
-        from * (1.0 - part) + to * part
-    };
-    Ok(Kind::Listed((0..count).map(at).collect()))
+    Ok(Kind::Grid { from, to, count })
 }
 
 /// `normal(MEAN,SD)` or `uniform(FROM,TO)`.

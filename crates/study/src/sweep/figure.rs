@@ -114,25 +114,33 @@ fn shared(quantities: &[Quantity]) -> Vec<Shared<'_>> {
 }
 
 fn title(name: &str) -> String {
-    match name {
-        "m" => "Generalised inertia m".to_owned(),
-        "half_dm" => "½m′".to_owned(),
-        "range" => "Range of the coordinate".to_owned(),
-        "period" => "Period of the free motion".to_owned(),
-        "energy" => "Energy of the free motion".to_owned(),
+    let plain = match name {
+        "m" => "Generalised inertia m",
+        "m.least" => "Least m",
+        "m.most" => "Largest m",
+        "half_dm" => "½m′",
+        "half_dm.least" => "Least ½m′",
+        "half_dm.most" => "Largest ½m′",
+        "range" => "Range of the coordinate",
+        "range.from" => "Lower end of the range",
+        "range.to" => "Upper end of the range",
+        "period" => "Period of the free motion",
+        "energy" => "Energy of the free motion",
         other => match other.strip_suffix(".peak") {
-            Some(what) => format!("Largest {what}"),
-            None => other.to_owned(),
+            Some(what) => return format!("Largest |{what}|"),
+            None => other,
         },
-    }
+    };
+    plain.to_owned()
 }
 
 fn label(name: &str) -> &str {
     match name {
-        "half_dm" => "½m′",
+        "m.least" | "m.most" => "m",
+        "half_dm" | "half_dm.least" | "half_dm.most" => "½m′",
         "period" => "T",
         "energy" => "E",
-        "range" => "q",
+        "range" | "range.from" | "range.to" => "q",
         other => other.strip_suffix(".peak").unwrap_or(other),
     }
 }
@@ -275,7 +283,8 @@ fn histograms(prepared: &Prepared<'_>, rows: &[Row]) -> Vec<Option<Chart>> {
         }
         let numbers = values().filter(|v| v.is_finite());
         let total = numbers.clone().count();
-        let steps = ((total as f64).sqrt() as usize).clamp(STEPS[0], STEPS[1]);
+        // Rice's rule.
+        let steps = ((2.0 * (total as f64).cbrt()) as usize).clamp(STEPS[0], STEPS[1]);
         let mut counts = vec![0_usize; steps];
         for value in numbers {
             let step = (value - spread.least) / width * steps as f64;
@@ -298,11 +307,11 @@ fn histograms(prepared: &Prepared<'_>, rows: &[Row]) -> Vec<Option<Chart>> {
                 Mark::Band {
                     from,
                     to,
-                    label: "95 %".to_owned(),
+                    label: String::new(),
                 },
                 Mark::Vertical {
                     at: spread.mean,
-                    label: format!("mean {}", number(spread.mean)),
+                    label: format!("mean {}", number(spread.mean).replace('-', "−")),
                 },
             ],
             ..Chart::default()

@@ -15,6 +15,8 @@ mod point;
 mod random;
 mod spread;
 mod store;
+#[cfg(test)]
+mod tests;
 
 pub use design::Shard;
 pub use error::SweepError;

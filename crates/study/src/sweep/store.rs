@@ -216,7 +216,7 @@ fn compare(connection: &Connection, study: &Study) -> Result<(), Fault> {
         // The hash tells whether the text is the same, whatever ends its lines.
         if *key != TEXT && found != here {
             return Err(Fault::Differs(format!(
-                "its {} is {}, and not {}",
+                "its {}: {}, not {}",
                 key.replace('_', " "),
                 shown(found),
                 shown(here)
