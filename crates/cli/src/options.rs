@@ -117,7 +117,7 @@ pub(crate) enum Command {
         )]
         vary: Vec<String>,
         /// How often what is random is drawn
-        #[arg(long, value_name = "COUNT", allow_hyphen_values = true)]
+        #[arg(long, value_parser = whole, value_name = "COUNT", allow_hyphen_values = true)]
         samples: Option<u64>,
         /// Which random numbers
         #[arg(
@@ -252,6 +252,11 @@ fn fraction(text: &str) -> Result<f64, String> {
     } else {
         Err("expected a number between 0 and 2".to_owned())
     }
+}
+
+fn whole(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| "expected a whole number from 0 on".to_owned())
 }
 
 fn number(text: &str) -> Result<f64, String> {

@@ -51,7 +51,9 @@ fn kill_while_writing(bench: &Bench, arguments: &[&str], file: &Path, later: u64
     let size = |path: &Path| fs::metadata(path).map_or(0, |m| m.len());
     // The empty tables are below this, and a batch of rows is above it.
     let before = size(file).max(16 * 1024);
-    let mut run = bench.command(arguments).spawn().unwrap();
+    // One thread, so that a large machine is not done before it is killed.
+    let mut command = bench.command(arguments);
+    let mut run = command.env("RAYON_NUM_THREADS", "1").spawn().unwrap();
     let begun = Instant::now();
     loop {
         if run.try_wait().unwrap().is_some() {

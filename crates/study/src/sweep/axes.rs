@@ -51,14 +51,9 @@ impl Axis {
             return Err(refuse("does not say how it varies".to_owned(), FORMS));
         };
         let (path, how) = (given[..at].trim(), given[at + separator.len()..].trim());
-        let nominal = scene.value(path).map_err(|e| {
-            let known = scene.numbers();
-            let help = match known.len() {
-                0..=40 => format!("the scene's numbers are {}", known.join(", ")),
-                _ => e.help.clone().unwrap_or_default(),
-            };
-            refuse(e.message, &help)
-        })?;
+        let nominal = scene
+            .value(path)
+            .map_err(|e| refuse(e.message, &e.help.unwrap_or_default()))?;
         let number = |text: &str| -> Result<f64, SweepError> {
             let value: f64 = text
                 .trim()

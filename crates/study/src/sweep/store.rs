@@ -215,12 +215,10 @@ fn compare(connection: &Connection, study: &Study) -> Result<(), Fault> {
         let found = there.get(*key).map_or("", String::as_str);
         // The hash tells whether the text is the same, whatever ends its lines.
         if *key != TEXT && found != here {
-            return Err(Fault::Differs(format!(
-                "its {}: {}, not {}",
-                key.replace('_', " "),
-                shown(found),
-                shown(here)
-            )));
+            return Err(Fault::Differs(match *key {
+                "scene_sha256" => "the scene was changed since".to_owned(),
+                key => format!("its {key}: {}, not {}", shown(found), shown(here)),
+            }));
         }
     }
     Ok(())
