@@ -52,8 +52,8 @@ impl Design {
             }
             (_, samples) => samples.unwrap_or(1),
         };
-        let counts = axes.iter().map(Axis::count);
-        let points = counts.fold(Some(samples), |all: Option<u64>, n| all?.checked_mul(n));
+        let mut counts = axes.iter().map(Axis::count);
+        let points = counts.try_fold(samples, u64::checked_mul);
         match points {
             Some(points) if points <= MOST_POINTS => Ok(Self {
                 axes,

@@ -240,17 +240,15 @@ fn sorted(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
 /// Mean and limits of the samples over one axis.
 fn bands(prepared: &Prepared<'_>, rows: &[Row], over: usize) -> Vec<Option<Chart>> {
     let axis = &prepared.design.axes[over];
-    let mut values: Vec<f64> = rows.iter().map(|row| row.inputs[over]).collect();
-    values.sort_by(f64::total_cmp);
-    values.dedup();
+    let mut by_value: Vec<&Row> = rows.iter().collect();
+    by_value.sort_by(|a, b| a.inputs[over].total_cmp(&b.inputs[over]));
     let one = |(place, quantity): (usize, &Quantity)| {
-        let spreads: Vec<(f64, Spread)> = values
-            .iter()
-            .filter_map(|&x| {
-                let of = rows.iter().filter(|row| row.inputs[over] == x);
-                Some((x, Spread::of(of.map(|row| row.found.values[place]))?))
-            })
-            .collect();
+        let groups = by_value.chunk_by(|a, b| a.inputs[over] == b.inputs[over]);
+        let spread = |group: &[&Row]| {
+            let values = group.iter().map(|row| row.found.values[place]);
+            Some((group[0].inputs[over], Spread::of(values)?))
+        };
+        let spreads: Vec<(f64, Spread)> = groups.filter_map(spread).collect();
         let line = |name: &str, of: &dyn Fn(&Spread) -> f64| {
             let points = spreads.iter().map(|(x, spread)| [*x, of(spread)]);
             Series::line(name, points.collect()).color(Paint::Palette(0))

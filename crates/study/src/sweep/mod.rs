@@ -94,12 +94,17 @@ impl<'a> Prepared<'a> {
         }
         let exact: Vec<String> = design.axes.iter().map(axes::Axis::exact).collect();
         let shard = sweep.shard.map_or(WHOLE.to_owned(), |s| s.to_string());
+        // What draws nothing has none.
+        let seed = match design.is_random() {
+            true => design.seed.to_string(),
+            false => "none".to_owned(),
+        };
         let study = vec![
             ("scene", scene.name.clone()),
             ("scene_sha256", scene.hash()),
             ("axes", exact.join("; ")),
             ("samples", design.samples.to_string()),
-            ("seed", design.seed.to_string()),
+            ("seed", seed),
             ("results", results.join("; ")),
             ("points", design.points.to_string()),
             ("dwell", env!("CARGO_PKG_VERSION").to_owned()),
@@ -174,27 +179,22 @@ pub fn sweep(
         }
     }
     let mine = |k: &u64| sweep.shard.is_none_or(|shard| shard.has(*k));
-    let all = (0..prepared.design.points).filter(mine);
-    let pending: Vec<u64> = all.filter(|k| !there.contains(k)).collect();
+    let all = || (0..prepared.design.points).filter(mine);
     let taken = there.len() - before;
-    let computed = if sweep.export.is_some() {
-        0
-    } else {
+    let mut computed = 0;
+    if sweep.export.is_none() {
+        let pending: Vec<u64> = all().filter(|k| !there.contains(k)).collect();
         compute(&prepared, &mut store, &pending, progress)?;
-        pending.len()
+        computed = pending.len();
+    }
+    let rows = store.rows()?;
+    let counts = export::Counts {
+        found: before,
+        taken,
+        computed,
+        missing: all().count().saturating_sub(rows.len()),
     };
-    export::write_up(
-        &prepared,
-        sweep,
-        &path,
-        &store.rows()?,
-        export::Counts {
-            found: before,
-            taken,
-            computed,
-            missing: pending.len() - computed,
-        },
-    )
+    export::write_up(&prepared, sweep, &path, &rows, counts)
 }
 
 /// Computes points on all cores; one writer takes them as they come.

@@ -14,7 +14,7 @@ use std::path::Path;
 
 fn case(name: &str) -> Scene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-    Scene::read(&folder.join(name).join("scene.toml")).expect("a scene")
+    Scene::read(folder.join(name).join("scene.toml")).expect("a scene")
 }
 
 fn words(all: &[&str]) -> Vec<String> {
