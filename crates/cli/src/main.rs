@@ -10,7 +10,7 @@ mod validate;
 use clap::Parser;
 use dwell_findings::all_pass;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Accuracy, Command as Run, Followed, Outcome, Progress, Step, StudyError};
+use dwell_study::{Accuracy, Command as Run, Followed, Outcome, Progress, Step, StudyError, Sweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{Report, miette};
 use options::{Along, Command, Options};
@@ -107,6 +107,27 @@ fn run(options: Options) -> Result<bool, Report> {
             let scene = read(scene)?;
             told(dwell_study::calibrate(&scene, set.as_deref(), *period))?
         }
+        Command::Sweep {
+            scene,
+            vary,
+            samples,
+            seed,
+            want,
+            shard,
+            export,
+        } => {
+            let scene = read(scene)?;
+            let sweep = Sweep {
+                vary,
+                samples: *samples,
+                seed: *seed,
+                want,
+                shard: *shard,
+                export: export.map(Into::into),
+                folder: &out,
+            };
+            told(heard(|heard| dwell_study::sweep(&scene, &sweep, heard)))?
+        }
         Command::Validate {
             cases,
             folder,
@@ -162,17 +183,22 @@ fn followed(
     run: impl FnOnce(Progress<'_>) -> Result<Followed, StudyError>,
     stopped: &mut Option<Report>,
 ) -> Result<Outcome, Report> {
+    let followed = told(heard(run))?;
+    *stopped = followed.stopped.map(|e| Report::new(as_scene_error(e)));
+    Ok(followed.outcome)
+}
+
+/// Long work, with its progress shown.
+fn heard<T>(run: impl FnOnce(Progress<'_>) -> T) -> T {
     let bar = progress_bar();
     let heard = |step: Step<'_>| {
         bar.set_length(step.total as u64);
         bar.set_message(step.done.to_owned());
         bar.inc(1);
     };
-    let followed = run(&heard);
+    let done = run(&heard);
     bar.finish_and_clear();
-    let followed = told(followed)?;
-    *stopped = followed.stopped.map(|e| Report::new(as_scene_error(e)));
-    Ok(followed.outcome)
+    done
 }
 
 fn progress_bar() -> ProgressBar {
@@ -195,6 +221,10 @@ fn told<T>(result: Result<T, StudyError>) -> Result<T, Report> {
 fn as_scene_error(error: StudyError) -> SceneError {
     match error {
         StudyError::Scene(scene) => *scene,
+        StudyError::Sweep(sweep) => SceneError {
+            help: sweep.help(),
+            ..plain(sweep.to_string())
+        },
         other => plain(other.to_string()),
     }
 }

@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use dwell_dynamics::Method;
-use dwell_study::{About, Language, Printed};
+use dwell_study::{About, Exported, Language, Printed, Shard};
 use std::path::PathBuf;
 
 /// The reduced-parameter dynamics of mechanisms, checked.
@@ -103,6 +103,40 @@ pub(crate) enum Command {
         #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
         period: Option<f64>,
     },
+    /// A study of many variants of a scene, on all cores, kept in an SQLite file: a run that was ended goes on
+    Sweep {
+        /// The scene file
+        scene: PathBuf,
+        /// What varies, in the scene's unit: PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD),
+        /// PATH~uniform(FROM,TO), PATH±TOLERANCE or PATH±PERCENT%; may be given several times
+        #[arg(
+            long,
+            required = true,
+            value_name = "VARIATION",
+            allow_hyphen_values = true
+        )]
+        vary: Vec<String>,
+        /// How often what is random is drawn
+        #[arg(long, value_parser = whole, value_name = "COUNT", allow_hyphen_values = true)]
+        samples: Option<u64>,
+        /// Which random numbers
+        #[arg(
+            long,
+            default_value_t = 1,
+            value_name = "NUMBER",
+            allow_hyphen_values = true
+        )]
+        seed: u64,
+        /// Results, such as period or m.most, or all that begin so, such as m (all, if absent)
+        #[arg(long, value_name = "RESULT", value_delimiter = ',')]
+        want: Vec<String>,
+        /// Only this part of the points, such as 2/8, in a file of its own
+        #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
+        shard: Option<Shard>,
+        /// Compute nothing: write what is there, that of shards too
+        #[arg(long, value_enum, value_name = "FORM")]
+        export: Option<ExportName>,
+    },
     /// All checks on all cases, or on those named; exit status 1 if one fails
     Validate {
         /// Names of cases, or folders with a scene.toml; all cases if none
@@ -171,6 +205,23 @@ impl From<AboutName> for About {
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum ExportName {
+    /// Text, with the messages
+    Csv,
+    /// A NumPy archive
+    Npz,
+}
+
+impl From<ExportName> for Exported {
+    fn from(name: ExportName) -> Self {
+        match name {
+            ExportName::Csv => Self::Csv,
+            ExportName::Npz => Self::Npz,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
 pub(crate) enum PrintedName {
     /// Markdown with formulas in LaTeX
     Latex,
@@ -201,6 +252,11 @@ fn fraction(text: &str) -> Result<f64, String> {
     } else {
         Err("expected a number between 0 and 2".to_owned())
     }
+}
+
+fn whole(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| "expected a whole number from 0 on".to_owned())
 }
 
 fn number(text: &str) -> Result<f64, String> {

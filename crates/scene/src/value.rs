@@ -9,6 +9,7 @@ use crate::problem::{Problem, Problems, Span, choices};
 use crate::scene::Scene;
 use dwell_geometry::BodyId;
 use miette::NamedSource;
+use std::fmt::Write as _;
 use std::sync::Arc;
 
 /// A number of the scene that may be changed, and where it is written.
@@ -66,21 +67,44 @@ impl Scene {
     ///
     /// The number is replaced in the text and the text read again: whatever follows from the
     /// number follows here too, and a message about it shows the number it is about.
+    ///
+    /// # Errors
+    /// As [`with_values`](Self::with_values).
     pub fn with_value(&self, path: &str, value: f64) -> Result<Self, SceneError> {
-        let span = self.number(path)?.span.clone();
-        if !value.is_finite() {
-            let message = format!("{value} is not a value for `{path}`: it is not finite");
-            let label = (span, "this number".to_owned());
+        self.with_values(&[(path, value)])
+    }
+
+    /// The same with several numbers replaced at once; the text is read again but once.
+    ///
+    /// # Errors
+    /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
+    /// no sense with these numbers.
+    pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
+        let mut changes = Vec::with_capacity(values.len());
+        for &(path, value) in values {
+            let span = &self.number(path)?.span;
+            if !value.is_finite() {
+                let message = format!("{value} is not a value for `{path}`: it is not finite");
+                let label = (span.clone(), "this number".to_owned());
+                return Err(SceneError::at(&self.source, message, None, [label]));
+            }
+            changes.push((span, path, value));
+        }
+        changes.sort_by_key(|(span, ..)| span.start);
+        if let Some(twice) = changes.windows(2).find(|two| two[0].0 == two[1].0) {
+            let message = format!("`{}` is given two values", twice[0].1);
+            let label = (twice[0].0.clone(), "one number".to_owned());
             return Err(SceneError::at(&self.source, message, None, [label]));
         }
         let old = self.source.inner();
-        // The spans come from this very text; still, no slicing that could fail.
-        let (before, after) = (old.get(..span.start), old.get(span.end..));
-        let text = format!(
-            "{}{value:?}{}",
-            before.unwrap_or_default(),
-            after.unwrap_or_default()
-        );
+        let (mut text, mut from) = (String::with_capacity(old.len() + 24 * changes.len()), 0);
+        for (span, _, value) in changes {
+            // The spans come from this very text; still, no slicing that could fail.
+            text += old.get(from..span.start).unwrap_or_default();
+            let _ = write!(text, "{value:?}");
+            from = span.end;
+        }
+        text += old.get(from..).unwrap_or_default();
         let source = Arc::new(NamedSource::new(self.source.name(), text));
         Self::build(self.name.clone(), &source)
     }

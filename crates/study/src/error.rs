@@ -2,6 +2,7 @@
 
 use crate::ambiguous::ambiguous;
 use crate::run::broken_relation;
+use crate::sweep::SweepError;
 use crate::words::{count, number};
 use dwell_dynamics::MachineError;
 use dwell_geometry::{ActuatorId, AssemblyError, BodyId, JointId, Mechanism, StructureError};
@@ -19,6 +20,9 @@ pub enum StudyError {
     /// The report cannot be made.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// A sweep cannot be done.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
     /// A reference file cannot be read.
     #[error("{path}: {reason}")]
     Reference {

@@ -5,6 +5,7 @@
 //!       └─ Prepared (the model of what the scene requests) ───────────┼─ check, reduce, simulate,
 //!                                                                     │  calibrate, validate
 //!                                                                     └→ Outcome: words, files, findings
+//! Scene + values ── Design, Wanted ── points, each compiled once ── Store (SQLite) ── sweep
 //! Scene ── Driven (the machine: loads, drives, what is free) ── cycle, equilibria, linearise
 //! Scene ── Model under its loads ── Way (prescribed, swept or the range) ── Record ── run
 //! ```
@@ -45,6 +46,7 @@ mod run;
 mod simulate;
 mod states;
 mod subject;
+mod sweep;
 mod symbolic;
 mod validate;
 mod words;
@@ -65,5 +67,6 @@ pub use run::{Command, Followed, run};
 pub use simulate::{Accuracy, simulate};
 pub use states::{Judged, judge_case};
 pub use subject::PlanSubject;
+pub use sweep::{Exported, Shard, Sweep, SweepError, sweep};
 pub use symbolic::{Printed, symbolic, symbolic_findings};
 pub use validate::{Validation, validate};

@@ -5,3 +5,4 @@ mod along;
 mod bench;
 mod messages;
 mod results;
+mod sweep;

@@ -385,3 +385,77 @@ fn arguments() {
     );
     group.check("arguments");
 }
+
+#[test]
+fn sweeps() {
+    let mut group = Group::new();
+    group.bench.put("four-bar.toml", with(&[]));
+    for (title, vary) in [
+        ("an unknown number", "crank.inertai=1,2"),
+        ("a body without such a number", "ground.mass=1,2"),
+        ("no variation", "crank.inertia"),
+        ("an unfinished range", "crank.inertia=0.001:0.002"),
+        ("no values", "crank.inertia=0.001:0.002:0"),
+        ("an empty range", "crank.inertia=0.001:0.001:5"),
+        ("no number", "crank.inertia=0.001,NaN"),
+        ("no such distribution", "crank.inertia~gauss(0.001,1e-4)"),
+        ("no deviation", "crank.inertia~normal(0.001,0)"),
+        ("a range upside down", "crank.inertia~uniform(0.002,0.001)"),
+        ("no tolerance", "crank.inertia±0%"),
+        ("random, but how often", "crank.inertia±1%"),
+    ] {
+        group.refused(title, &["sweep", "four-bar.toml", "--vary", vary]);
+    }
+    let refused = |group: &mut Group, title: &str, more: &[&str]| {
+        let vary = [
+            "sweep",
+            "four-bar.toml",
+            "--vary",
+            "crank.inertia=0.001,0.002",
+        ];
+        group.refused(title, &[&vary[..], more].concat());
+    };
+    refused(
+        &mut group,
+        "the same number twice",
+        &["--vary", "crank.inertia=1,2"],
+    );
+    refused(&mut group, "samples of nothing", &["--samples", "100"]);
+    refused(&mut group, "samples below zero", &["--samples", "-1"]);
+    refused(&mut group, "a seed that is no number", &["--seed", "x"]);
+    refused(&mut group, "a shard too many", &["--shard", "3/2"]);
+    refused(
+        &mut group,
+        "the shard before the first",
+        &["--shard", "0/2"],
+    );
+    refused(&mut group, "no shard", &["--shard", "two"]);
+    refused(&mut group, "an unknown result", &["--want", "perod"]);
+    refused(&mut group, "an unknown form", &["--export", "xlsx"]);
+    refused(
+        &mut group,
+        "a shard and an export",
+        &["--shard", "1/2", "--export", "csv"],
+    );
+    group.refused("nothing varied", &["sweep", "four-bar.toml"]);
+    group.bench.put(
+        "text/four-bar-sweep.sqlite",
+        "my own notes, and long enough not to be a header".repeat(4),
+    );
+    refused(&mut group, "a file that is no database", &["--out", "text"]);
+    let own = [
+        "sweep",
+        "four-bar.toml",
+        "--vary",
+        "crank.inertia=0.001,0.002,0.003",
+    ];
+    let run = group.bench.run(&[&own[..], &["--out", "own"]].concat());
+    assert_eq!(run.status, Some(0), "{run:?}");
+    refused(&mut group, "a file of another study", &["--out", "own"]);
+    group
+        .bench
+        .put("four-bar.toml", with(&[("mass = 1.0", "mass = 1.5")]));
+    let changed = [&own[..], &["--out", "own"]].concat();
+    group.refused("a scene that was changed since", &changed);
+    group.check("sweeps");
+}

@@ -121,3 +121,19 @@ fn changing_a_number_is_fast() {
     println!("with_value: {each:?}");
     assert!(each.as_micros() < 300, "{each:?}");
 }
+
+#[test]
+fn several_numbers_change_at_once() {
+    let scene = parse(WHOLE).unwrap();
+    let both = [("rod.points.P[0]", 1e-7), ("crank.mass", 3.25)];
+    let at_once = scene.with_values(&both).unwrap();
+    let one_by_one = scene
+        .with_value("crank.mass", 3.25)
+        .and_then(|scene| scene.with_value("rod.points.P[0]", 1e-7))
+        .unwrap();
+    assert_eq!(at_once.source.inner(), one_by_one.source.inner());
+    assert_eq!(scene.with_values(&[]).unwrap().hash(), scene.hash());
+    let twice = [("crank.mass", 1.0), ("crank.mass", 2.0)];
+    let error = scene.with_values(&twice).unwrap_err();
+    assert!(error.message.contains("two values"), "{}", error.message);
+}

@@ -7,6 +7,7 @@ mod doubt;
 mod dyads;
 mod leverage;
 mod link;
+mod most;
 mod need;
 mod peaks;
 mod record;
@@ -17,11 +18,12 @@ mod way;
 
 pub(crate) use columns::{Column, Quantity};
 pub(crate) use link::Link;
+pub(crate) use most::most;
 pub(crate) use need::wanted;
 pub(crate) use record::{Record, model, model as loaded, with_loads};
 pub(crate) use select::{check as check_variables, is_named};
 pub(crate) use watch::broken_relation;
-pub(crate) use way::{Sample, Told, Way};
+pub(crate) use way::{Sample, Told, Way, over_range};
 
 use crate::error::StudyError;
 use crate::figures;

@@ -340,6 +340,12 @@ impl<'a> Way<'a> {
     }
 }
 
+/// The ends of the way over the range of the only actuator.
+pub(crate) fn over_range(scene: &Scene, plan: &Plan) -> [f64; 2] {
+    let Ends { from, to, .. } = ends(scene, plan);
+    [from, to]
+}
+
 /// The way over the range of the only actuator.
 fn ends(scene: &Scene, plan: &Plan) -> Ends {
     let start = plan.start()[0];

@@ -1,0 +1,235 @@
+//! Points against the other commands, references and theory.
+
+use super::design::Design;
+use super::error::SweepError;
+use super::point::Wanted;
+use super::spread::Spread;
+use crate::calibrate::find_value;
+use crate::prepare::Prepared;
+use crate::reduce::Sweep as Reduced;
+use dwell_scene::Scene;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::path::Path;
+
+fn case(name: &str) -> Scene {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
+    Scene::read(folder.join(name).join("scene.toml")).expect("a scene")
+}
+
+fn words(all: &[&str]) -> Vec<String> {
+    all.iter().map(|&word| word.to_owned()).collect()
+}
+
+fn names(wanted: &Wanted) -> Vec<&str> {
+    wanted.quantities.iter().map(|q| q.name.as_str()).collect()
+}
+
+/// The values of one point by name.
+fn at(scene: &Scene, wishes: &[&str], values: &[(&str, f64)]) -> Vec<f64> {
+    let wanted = Wanted::new(scene, &words(wishes)).expect("results");
+    let found = wanted.at(scene, values);
+    assert_eq!(found.message, None);
+    found.values
+}
+
+#[test]
+fn the_period_is_that_of_the_reference_and_of_calibrate() {
+    let scene = case("single-dwell");
+    let period = |inertia: f64| at(&scene, &["period"], &[("crank.inertia", inertia)])[0];
+    // 50 digits of an independent program; the sum of some tens of square roots errs by a few roundings.
+    let reference = 5.419_662_677_064_27;
+    assert!((period(0.626) - reference).abs() < 1e-14 * reference);
+    let found = find_value(&scene, "crank.inertia", 5.42).expect("a value");
+    assert!((period(found.found) - 5.42).abs() < 1e-14 * 5.42);
+}
+
+#[test]
+fn inertia_is_that_of_reduce_and_linear_in_the_cranks() {
+    let scene = case("single-dwell");
+    let prepared = Prepared::new(&scene).expect("a model");
+    let reduced = Reduced::new(&prepared).expect("a table");
+    let m = reduced.at.iter().map(|at| at.m);
+    let [least, most] = [
+        m.clone().fold(f64::INFINITY, f64::min),
+        m.fold(0.0, f64::max),
+    ];
+    let found = at(&scene, &["m"], &[("crank.inertia", 0.626)]);
+    assert_eq!(found, [least, most]);
+    // Of a crank on the ground its inertia is added to m: a rounding or two of m.
+    let heavier = at(&scene, &["m"], &[("crank.inertia", 1.626)]);
+    for (now, then) in heavier.iter().zip(found) {
+        assert!((now - then - 1.0).abs() < 4.0 * f64::EPSILON * now);
+    }
+}
+
+#[test]
+fn peaks_are_those_of_kinetostatics() {
+    let scene = case("slider-crank");
+    let peaks = at(
+        &scene,
+        &["phi.action", "guide.normal"],
+        &[("crank.mass", 2.0)],
+    );
+    let run = crate::run(&scene, crate::Command::Kinetostatics, None, &crate::silent);
+    let outcome = run.expect("a way").outcome;
+    let files = outcome.files.iter();
+    let table = files
+        .filter(|(name, _)| name.to_string_lossy().ends_with("kinetostatics.csv"))
+        .map(|(_, bytes)| String::from_utf8_lossy(bytes).into_owned())
+        .next()
+        .expect("a table");
+    let mut lines = table.lines();
+    let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| line.split(',').map(|v| v.parse().unwrap_or(0.0)).collect())
+        .collect();
+    let largest = |name: &str| {
+        let column = header.iter().position(|h| *h == name).expect("a column");
+        rows.iter().map(|r| r[column].abs()).fold(0.0, f64::max)
+    };
+    assert_eq!(
+        peaks,
+        [largest("phi.action [N m]"), largest("guide.normal [N]")]
+    );
+}
+
+#[test]
+fn sections_decide_what_there_is() {
+    let known = |name: &str| {
+        let scene = case(name);
+        let wanted = Wanted::new(&scene, &[]).expect("results");
+        names(&wanted).join(" ")
+    };
+    let reduced = "m.least m.most half_dm.least half_dm.most range.from range.to";
+    assert_eq!(known("single-dwell"), format!("{reduced} period energy"));
+    // A weight, and a motion that keeps its energy; no prescribed motion, so that peaks are those at rest.
+    assert!(known("pendulum-a01").starts_with(&format!("{reduced} period energy phi.action.peak")));
+    assert!(!known("slider-crank").contains("period"));
+    let wanted = Wanted::new(&case("single-dwell"), &words(&["perod"]));
+    let message = wanted.expect_err("no such result");
+    assert_eq!(message.to_string(), "this scene has no result `perod`");
+}
+
+#[test]
+fn a_pendulums_energy_is_its_height() {
+    // Level at rest: E = m g y with y = 0, where the potential of a weight is zero at the origin. T of a quarter
+    // turn's release is 4 √(l/g) K(sin 45°), with K(½) = 1.85407467730137 (the parameter is m = k²).
+    let found = at(
+        &case("pendulum-a01"),
+        &["period", "energy"],
+        &[("bar.mass", 3.0)],
+    );
+    let exact = 4.0 * (1.0 / 9.81_f64).sqrt() * 1.854_074_677_301_372;
+    // A few roundings of the quadrature, and those of the position at π.
+    assert!((found[0] - exact).abs() < 1e-13 * exact);
+    assert!(found[1].abs() < 1e-13);
+}
+
+#[test]
+fn a_linear_result_is_spread_as_what_it_follows_from() {
+    let scene = case("single-dwell");
+    let vary = words(&["crank.inertia~normal(0.626,0.002)", "coupler.mass±1%"]);
+    let samples = 4000;
+    let design = Design::new(&scene, &vary, Some(samples), 5).expect("a design");
+    let wanted = Wanted::new(&scene, &words(&["m.most"])).expect("results");
+    // m is linear in both: m = I + c₁ M + …; c₁ from two points.
+    let m = |inertia: f64, mass: f64| {
+        at(
+            &scene,
+            &["m.most"],
+            &[("crank.inertia", inertia), ("coupler.mass", mass)],
+        )[0]
+    };
+    let slope = m(0.626, 2.5) - m(0.626, 1.5);
+    let mean = m(0.626, 1.5);
+    let variance = 0.002_f64.powi(2) + (slope * 0.015).powi(2) / 3.0;
+    let values: Vec<f64> = (0..samples)
+        .into_par_iter()
+        .map(|k| {
+            let values = design.values(k);
+            let values = [("crank.inertia", values[0]), ("coupler.mass", values[1])];
+            wanted.at(&scene, &values).values[0]
+        })
+        .collect();
+    let spread = Spread::of(values.into_iter()).expect("values");
+    let deviation = variance.sqrt();
+    // Two standard errors: σ/√n of the mean, and no more than σ/√2n of the deviation of what is not peaked.
+    let error = deviation / (samples as f64).sqrt();
+    assert!((spread.mean - mean).abs() < 2.0 * error, "{spread:?}");
+    let found = spread.deviation.expect("samples");
+    assert!(
+        (found - deviation).abs() < 2.0 * error / 2_f64.sqrt(),
+        "{found} {deviation}"
+    );
+}
+
+#[test]
+fn points_are_all_combinations_with_the_same_samples() {
+    let scene = case("single-dwell");
+    let vary = words(&[
+        "crank.inertia=0.5:0.7:3",
+        "coupler.mass~uniform(1,2)",
+        "rocker.mass=0.7,0.8",
+    ]);
+    let design = Design::new(&scene, &vary, Some(4), 9).expect("a design");
+    assert_eq!(design.points, 24);
+    let all: Vec<Vec<f64>> = (0..24).map(|k| design.values(k)).collect();
+    let grid: Vec<[f64; 2]> = all.iter().step_by(4).map(|v| [v[0], v[2]]).collect();
+    let expected = [0.5, 0.6, 0.7].map(|a| [[a, 0.7], [a, 0.8]]).concat();
+    assert_eq!(grid, expected);
+    for four in all.chunks(4) {
+        let samples = |rows: &[Vec<f64>]| rows.iter().map(|v| v[1]).collect::<Vec<f64>>();
+        assert_eq!(samples(four), samples(&all[..4]));
+        assert!(four.iter().all(|v| (1.0..2.0).contains(&v[1])));
+    }
+    let different: BTreeSet<u64> = all[..4].iter().map(|v| v[1].to_bits()).collect();
+    assert_eq!(different.len(), 4);
+    // Another seed is another sample.
+    let other = Design::new(&scene, &vary, Some(4), 10).expect("a design");
+    assert_ne!(other.values(0)[1], all[0][1]);
+}
+
+#[test]
+fn nonsense_is_refused() {
+    let scene = case("single-dwell");
+    let refused = |vary: &str, samples: Option<u64>| {
+        let error = Design::new(&scene, &words(&[vary]), samples, 0).expect_err("nonsense");
+        assert!(matches!(
+            error,
+            SweepError::Axis { .. } | SweepError::Design(_)
+        ));
+    };
+    for vary in [
+        "crank.inertia",
+        "crank.inertia=",
+        "crank.inertia=1:2",
+        "crank.inertia=1:2:0",
+        "crank.inertia=1:2:1",
+        "crank.inertia=1:1:5",
+        "crank.inertia=1:2:-3",
+        "crank.inertia=1:2:99999999",
+        "crank.inertia=NaN:2:3",
+        "crank.inertia=1,inf",
+        "crank.inertia=1,,2",
+        "crank.innertia=1,2",
+        "=1,2",
+    ] {
+        refused(vary, None);
+    }
+    for vary in [
+        "crank.inertia~normal(1)",
+        "crank.inertia~normal(1,0)",
+        "crank.inertia~normal(1,NaN)",
+        "crank.inertia~uniform(2,1)",
+        "crank.inertia~gauss(2,1)",
+        "crank.inertia±0",
+        "crank.inertia±-1%",
+    ] {
+        refused(vary, Some(10));
+    }
+    refused("crank.inertia±1%", None);
+    refused("crank.inertia±1%", Some(0));
+    refused("crank.inertia=1,2", Some(3));
+    refused("crank.inertia±1%", Some(u64::MAX));
+}
