@@ -124,6 +124,9 @@ fn measure(case: &str) {
         Subject::new("bare cubic, m alone", |q| cubic.m(q)),
         Subject::new("bare cubic, m and m'/2", |q| cubic.both(q)),
         Subject::new("table, m and m'/2", |q| table.inertia(q, &mut ())),
+        Subject::new("… 1000 turns on", |q| {
+            table.inertia(q + 1000.0 * TAU, &mut ())
+        }),
         Subject::new("table, m, m'/2 and m''/2", |q| table.curvature(q, &mut ())),
         Subject::new("table, all coefficients", |q| {
             let done = table.coefficients(q, &mut (), &mut own).is_ok();

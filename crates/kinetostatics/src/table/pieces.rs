@@ -26,6 +26,21 @@ const MOST_TURNS: f64 = 1_048_576.0;
 const TAU_COARSE: f64 = 6.283_185_306_936_502_5;
 const TAU_FINE: f64 = 2.430_840_202_602_477e-10;
 
+/// Added to a number below 2^31 it leaves no room for a fraction, and the whole part in the last bits: a
+/// rounding to the nearest without a call.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
+
+/// Splits a count of cells, at least zero, into a cell and where in it from −1 to 1.
+#[inline]
+fn within(part: f64) -> (usize, f64) {
+    let middle = part - 0.5;
+    let cell = middle + WHOLE;
+    (
+        cell.to_bits() as u32 as usize,
+        2.0 * (middle - (cell - WHOLE)),
+    )
+}
+
 /// Equal cells over an extent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
@@ -39,6 +54,11 @@ pub(super) struct Grid {
     coarse: f64,
     fine: f64,
     per_cell: f64,
+    /// The largest number below that of the cells.
+    last: f64,
+    /// Parts of a cell by which a rounding may leave the extent: of a coordinate of many turns, those of
+    /// the turns it has.
+    slack: f64,
 }
 
 impl Grid {
@@ -57,6 +77,8 @@ impl Grid {
             coarse,
             fine,
             per_cell: cells as f64 / length,
+            last: (cells as f64).next_down(),
+            slack: if turns > 0 { 1e-3 } else { 1e-9 },
         }
     }
 
@@ -84,18 +106,27 @@ impl Grid {
     /// The cell of a coordinate, and where in it from −1 to 1.
     #[inline]
     pub(super) fn locate(&self, q: f64) -> Result<(usize, f64), PlaceError> {
-        // Adding it leaves no room for a fraction: a rounding without a call.
-        const WHOLE: f64 = 6_755_399_441_055_744.0;
+        let part = (q - self.from) * self.per_cell;
+        if part >= 0.0 && part < self.cells as f64 {
+            Ok(within(part))
+        } else {
+            self.turned(q)
+        }
+    }
+
+    /// The same for a coordinate that lies turns away, or at the very end, or nowhere.
+    #[inline]
+    fn turned(&self, q: f64) -> Result<(usize, f64), PlaceError> {
         let turns = (q * self.per_period - 0.5 + WHOLE) - WHOLE;
         let part = (((q - turns * self.coarse) - turns * self.fine) - self.from) * self.per_cell;
         let cells = self.cells as f64;
-        // A rounding beyond an end is still at the end.
-        let slack = 1e-9;
-        if !(part > -slack && part < cells + slack && turns.abs() < MOST_TURNS) {
+        let near = part >= -self.slack && part <= cells + self.slack;
+        if !(near && turns.abs() < MOST_TURNS) {
             return Err(self.outside(q));
         }
-        let cell = (part as u32 as usize).min(self.cells - 1);
-        Ok((cell, 2.0 * (part - cell as f64) - 1.0))
+        // A rounding beyond an end is still in the cell at the end.
+        let (cell, x) = within(part.clamp(0.0, self.last));
+        Ok((cell, x + 2.0 * (part - part.clamp(0.0, self.last))))
     }
 
     #[cold]
@@ -321,14 +352,21 @@ impl Columns {
         right.fill(0.0);
         for row in self.terms[cell * size..][..size].chunks_exact(self.width) {
             let (first, second) = row.split_at(left.len().min(row.len()));
-            for (out, term) in left.iter_mut().zip(first).chain(right.iter_mut().zip(second)) {
-                *out = *out * x + term;
-            }
+            horner(left, first, x);
+            horner(right, second, x);
         }
         Ok(())
     }
 
     pub(super) fn bytes(&self) -> usize {
         std::mem::size_of_val(self.terms.as_slice())
+    }
+}
+
+/// One step of Horner's scheme, of several polynomials side by side.
+#[inline]
+fn horner(sums: &mut [f64], terms: &[f64], x: f64) {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        *sum = *sum * x + term;
     }
 }
