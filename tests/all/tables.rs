@@ -6,6 +6,7 @@ use dwell_geometry::{PlaceError, Range};
 use dwell_kinetostatics::table::{FileError, Labels};
 use dwell_kinetostatics::{Coefficients, Entry, Exact, Extent, Model, Reduced, Table, TableError};
 use dwell_scene::Scene;
+use std::f64::consts::TAU;
 
 /// The golden section: steps of it fall on no grid.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
@@ -70,7 +71,7 @@ fn of_model(exact: &Exact, q: f64) -> Vec<f64> {
 /// no table can have more. Of a mechanism without ends, as far as it goes in four turns of something.
 fn asked(name: &str, exact: &Exact) -> (f64, Extent) {
     let accuracy = match name {
-        "n-four-bar-a02" => 2e-9,
+        "n-four-bar-a02" => 1e-8,
         "parallelogram-three-cranks" => 2e-8,
         _ => 1e-12,
     };
@@ -98,7 +99,11 @@ fn val_tables_keep_their_bounds() {
             assert_eq!(own.len(), table.bounds().len());
             for (k, bound) in table.bounds().iter().enumerate() {
                 let (off, most) = ((own[k] - truth[k]).abs(), bound.error * bound.scale);
-                assert!(off <= most, "{name}, {} at {q}: {off:e} > {most:e}", bound.of);
+                assert!(
+                    off <= most,
+                    "{name}, {} at {q}: {off:e} > {most:e}",
+                    bound.of
+                );
                 largest[k] = largest[k].max(truth[k].abs());
             }
         }
@@ -117,7 +122,12 @@ fn val_tables_keep_their_bounds() {
 fn half_the_slope_of_a_tables_m_is_its_other_column() {
     let (inner, outer) = (0.339_981_043_584_856_26, 0.861_136_311_594_052_6);
     let (heavy, light) = (0.652_145_154_862_546_1, 0.347_854_845_137_453_9);
-    let rule = [(-outer, light), (-inner, heavy), (inner, heavy), (outer, light)];
+    let rule = [
+        (-outer, light),
+        (-inner, heavy),
+        (inner, heavy),
+        (outer, light),
+    ];
     for (name, exact) in cases() {
         let table = table(&name, &exact);
         let at = |q: f64| table.inertia(q, &mut ()).expect("within");
@@ -136,7 +146,10 @@ fn half_the_slope_of_a_tables_m_is_its_other_column() {
             // Some roundings of m, and of q where m is steep.
             let rounding = 4e-15 * scale + 1e-15 * steep * cells as f64;
             let off = (at(right).0 - at(left).0 - climb).abs();
-            assert!(off < rounding, "{name}, cell {cell}: {off:e} > {rounding:e}");
+            assert!(
+                off < rounding,
+                "{name}, cell {cell}: {off:e} > {rounding:e}"
+            );
             if cell > 0 {
                 let across = at(start + 1e-9 * half).0 - at(start - 1e-9 * half).0;
                 let climb = 4e-9 * half * at(start).1;
@@ -149,29 +162,102 @@ fn half_the_slope_of_a_tables_m_is_its_other_column() {
         }
         // A turn gains nothing: the rounding of a mean, and of each cell's part in it.
         if table.turns().is_some() {
-            assert!(whole.abs() < 1e-15 * (scale + size), "{name}: a turn gains {whole:e}");
+            assert!(
+                whole.abs() < 1e-15 * (scale + size),
+                "{name}: a turn gains {whole:e}"
+            );
         }
     }
 }
 
-/// Of a free motion ½ m q̇² stays on the table what it was as well as on the exact model: over 1000 turns both
-/// drift alike, by what the integrator does, and the difference does not grow.
+/// Of a free motion ½ m q̇² drifts on the table as it does on the exact model, by what the integrator does:
+/// with equal steps over 1000 turns by the same to within roundings.
+#[test]
+fn val_equal_steps_gain_the_same_energy_on_a_table() {
+    for name in ["single-dwell", "crank-rocker"] {
+        let exact = case(name);
+        let table = table(name, &exact);
+        let start = State {
+            t: 0.0,
+            q: 0.0,
+            q_dot: 1.0,
+        };
+        let period = Orbit::new(&exact, start).expect("a period").period;
+        let [own, truth] = [stepped(&table, period), stepped(&exact, period)];
+        let apart: Vec<f64> = own.iter().zip(&truth).map(|(a, b)| (a - b).abs()).collect();
+        assert!(
+            truth[999].abs() > 1e-9,
+            "{name}: nothing to compare: {:e}",
+            truth[999]
+        );
+        // The places at which m is rounded are the same in every turn, so that some 1e-16 of it come back: a
+        // table whose turn gained its bound would be at 5e-10.
+        for (turn, apart) in apart.iter().enumerate() {
+            let most = 1e-14 + 2e-15 * turn as f64;
+            assert!(*apart < most, "{name}, turn {turn}: {apart:e} apart");
+        }
+    }
+}
+
+/// What the energy has gained after each of 1000 turns, as a part of it, by Runge and Kutta's rule of 4 in
+/// 400 steps a turn.
+fn stepped<R: Reduced>(model: &R, period: f64) -> Vec<f64> {
+    let mut equation = Equation::new(model);
+    let first = equation.energy(0.0, 1.0).expect("an energy");
+    let (h, mut y) = (period / 400.0, [0.0, 1.0]);
+    let mut gains = Vec::new();
+    for _ in 0..1000 {
+        for _ in 0..400 {
+            let mut slope = [0.0; 2];
+            let mut sum = [0.0; 2];
+            for (ahead, weight) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+                let [q, q_dot] = [0, 1].map(|i: usize| y[i] + ahead * h * slope[i]);
+                slope = [q_dot, equation.acceleration(q, q_dot).expect("within")];
+                sum = [0, 1].map(|i: usize| sum[i] + weight * slope[i] / 6.0);
+            }
+            y = [0, 1].map(|i: usize| y[i] + h * sum[i]);
+        }
+        // With the turns it has made, q would be rounded to 1e-12: by 1000 turns 1e-10 of energy.
+        y[0] -= TAU;
+        gains.push(equation.energy(y[0], y[1]).expect("within") / first - 1.0);
+    }
+    gains
+}
+
+/// An integrator that chooses its steps drifts alike on both.
 #[test]
 fn val_energy_drifts_on_a_table_as_on_the_exact_model() {
-    let start = State { t: 0.0, q: 0.0, q_dot: 1.0 };
+    let start = State {
+        t: 0.0,
+        q: 0.0,
+        q_dot: 1.0,
+    };
     let options = Options::new(Method::Tsit45, 1e-12);
     for name in ["single-dwell", "crank-rocker"] {
         let exact = case(name);
         let table = table(name, &exact);
         let turns = Until::Turns(1000);
         let [own, truth] = [
-            drift(&table, &simulate(&table, start, turns, &options).expect("a run").turns),
-            drift(&exact, &simulate(&exact, start, turns, &options).expect("a run").turns),
+            drift(
+                &table,
+                &simulate(&table, start, turns, &options)
+                    .expect("a run")
+                    .turns,
+            ),
+            drift(
+                &exact,
+                &simulate(&exact, start, turns, &options)
+                    .expect("a run")
+                    .turns,
+            ),
         ];
         let apart: Vec<f64> = own.iter().zip(&truth).map(|(a, b)| (a - b).abs()).collect();
-        println!("{name} {:e} {:e} apart {:e} {:e} {:e} bound {:e}", own[999], truth[999], apart[9], apart[99], apart[999], table.bound());
-        // Roundings of a million steps.
-        assert!(apart[999] < 1e-11, "{name}: {:e} apart", apart[999]);
+        // The steps are not the same: the errors they are chosen by are of the size of the table's.
+        assert!(
+            apart[999] < 0.1 * truth[999].abs(),
+            "{name}: {:e} apart",
+            apart[999]
+        );
         let turn = [Orbit::new(&table, start), Orbit::new(&exact, start)];
         let [own, truth] = turn.map(|turn| turn.expect("a period").period);
         assert!((own - truth).abs() < 1e-12 * truth, "{name}: {own} {truth}");
@@ -191,7 +277,9 @@ fn labels(exact: &Exact, scene: &Scene) -> Labels {
     Labels {
         scene: scene.hash(),
         coordinate: scene.mechanism.actuators[0].name.clone(),
-        reactions: reactions.map(|&r| scene.mechanism.reaction_name(r)).collect(),
+        reactions: reactions
+            .map(|&r| scene.mechanism.reaction_name(r))
+            .collect(),
         loads: scene.loads.iter().map(|l| l.name.clone()).collect(),
     }
 }
@@ -232,7 +320,12 @@ fn a_damaged_table_is_refused() {
     assert_eq!(refused(""), FileError::NoTable);
     assert_eq!(refused("table = 1\n"), FileError::NoTable);
     let later = text.replacen("dwell-table 1", "dwell-table 2", 1);
-    assert_eq!(refused(&later), FileError::Version { found: "2".to_owned() });
+    assert_eq!(
+        refused(&later),
+        FileError::Version {
+            found: "2".to_owned()
+        }
+    );
     let cut = &text[..text.len() / 2];
     assert_eq!(refused(cut), FileError::Truncated);
     assert_eq!(refused(&text.replacen("rad", "raD", 1)), FileError::Altered);
@@ -258,7 +351,10 @@ fn a_table_reaches_as_far_as_it_says() {
     for q in [from - 1e-6, to + 1e-6, 100.0, -1e300, f64::INFINITY] {
         let found = table.inertia(q, &mut ());
         assert!(
-            matches!(found, Err(PlaceError::OutOfRange { .. } | PlaceError::NotFinite { .. })),
+            matches!(
+                found,
+                Err(PlaceError::OutOfRange { .. } | PlaceError::NotFinite { .. })
+            ),
             "{q}"
         );
     }
@@ -275,7 +371,10 @@ fn a_table_reaches_as_far_as_it_says() {
         let truth = exact.inertia(q, &mut work).expect("a pose");
         // The exact model takes sines of q: its turns are exact. Three roundings of the table's part.
         let scale = table.bounds()[1].scale;
-        assert!((own.1 - truth.1).abs() < 2e-12 * scale, "{q}: {own:?} {truth:?}");
+        assert!(
+            (own.1 - truth.1).abs() < 2e-12 * scale,
+            "{q}: {own:?} {truth:?}"
+        );
     }
     for q in [f64::NAN, f64::INFINITY, 1e8] {
         assert!(table.inertia(q, &mut ()).is_err(), "{q}");
@@ -287,11 +386,22 @@ fn what_cannot_be_tabulated_says_why() {
     let exact = case("crank-rocker");
     for accuracy in [0.0, -1e-9, f64::NAN, 1e-15, 1.0] {
         let found = Table::new(&exact, accuracy, Extent::Whole);
-        assert!(matches!(found, Err(TableError::Accuracy { .. })), "{accuracy}");
+        assert!(
+            matches!(found, Err(TableError::Accuracy { .. })),
+            "{accuracy}"
+        );
     }
-    for (from, to) in [(1.0, 1.0), (2.0, 1.0), (f64::NAN, 1.0), (0.0, f64::INFINITY)] {
+    for (from, to) in [
+        (1.0, 1.0),
+        (2.0, 1.0),
+        (f64::NAN, 1.0),
+        (0.0, f64::INFINITY),
+    ] {
         let found = Table::new(&exact, 1e-6, Extent::Between(from, to));
-        assert!(matches!(found, Err(TableError::Extent { .. })), "{from} {to}");
+        assert!(
+            matches!(found, Err(TableError::Extent { .. })),
+            "{from} {to}"
+        );
     }
     let exact = case("class-three-six-bar");
     let found = Table::new(&exact, 1e-6, Extent::Between(0.0, 4.0));
@@ -301,7 +411,13 @@ fn what_cannot_be_tabulated_says_why() {
     // Next to its change points the exact ½m′ has nine digits.
     let found = Table::new(&case("parallelogram-three-cranks"), 1e-10, Extent::Whole);
     assert!(
-        matches!(found, Err(TableError::NotReached { what: Entry::HalfDm, .. })),
+        matches!(
+            found,
+            Err(TableError::NotReached {
+                what: Entry::HalfDm,
+                ..
+            })
+        ),
         "{found:?}"
     );
 }

@@ -153,7 +153,9 @@ fn measure(case: &str) {
         off[0],
         off[1]
     );
-    println!("{cells} cells of m and m'/2 in {bytes} bytes; {others} of a and b, {all} bytes in all");
+    println!(
+        "{cells} cells of m and m'/2 in {bytes} bytes; {others} of a and b, {all} bytes in all"
+    );
     let [alone, both] = [subjects[1].least, subjects[2].least];
     println!("                               ns   / cubic of m   / cubic of both");
     for Subject { name, least, .. } in &subjects {

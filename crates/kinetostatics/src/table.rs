@@ -109,13 +109,17 @@ pub enum TableError {
     #[error("the range has no ends: say from where to where the table is to reach")]
     Endless,
     /// A coefficient that is not the same a period later, such as that of a spring that winds up.
-    #[error("{what} does not come back after a turn: say from where to where the table is to reach")]
+    #[error(
+        "{what} does not come back after a turn: say from where to where the table is to reach"
+    )]
     NotPeriodic {
         /// Which.
         what: Entry,
     },
     /// The coefficients of the series do not fall to the accuracy.
-    #[error("not smooth enough for a table: with {points} samples, {left:.1e} of the largest value is left")]
+    #[error(
+        "not smooth enough for a table: with {points} samples, {left:.1e} of the largest value is left"
+    )]
     NotSmooth {
         /// Samples taken.
         points: usize,
@@ -244,15 +248,26 @@ impl Table {
         self.bounds.iter().fold(0.0, |most, b| most.max(b.error))
     }
 
-    /// Cells of m and ½m′, of the reactions, of the loads.
+    /// Cells of m and ½m′, of the reactions, of the loads; none where there are none.
     pub fn cells(&self) -> [usize; 3] {
-        [&self.inertia.grid, &self.reactions.grid, &self.loads.grid].map(|grid| grid.cells)
+        let of = |columns: &Columns| match columns.width {
+            0 => 0,
+            _ => columns.grid.cells,
+        };
+        [
+            self.inertia.grid.cells,
+            of(&self.reactions),
+            of(&self.loads),
+        ]
     }
 
     /// Bytes in memory: of m and ½m′, and of everything.
     pub fn bytes(&self) -> [usize; 2] {
         let inertia = self.inertia.bytes();
-        [inertia, inertia + self.reactions.bytes() + self.loads.bytes()]
+        [
+            inertia,
+            inertia + self.reactions.bytes() + self.loads.bytes(),
+        ]
     }
 
     /// Room for the channels of all loads.
@@ -300,12 +315,7 @@ impl Reduced for Table {
         self.inertia.curvature(q)
     }
 
-    fn coefficients(
-        &self,
-        q: f64,
-        (): &mut (),
-        out: &mut Coefficients,
-    ) -> Result<(), PlaceError> {
+    fn coefficients(&self, q: f64, (): &mut (), out: &mut Coefficients) -> Result<(), PlaceError> {
         (out.m, out.half_dm) = self.inertia.at(q)?;
         self.reactions.at(q, &mut out.a, &mut out.b)
     }
@@ -316,8 +326,8 @@ fn entries([reactions, loads]: [usize; 2]) -> [Vec<Entry>; 3] {
     let a = (0..reactions).map(|reaction| Entry::A { reaction });
     let b = (0..reactions).map(|reaction| Entry::B { reaction });
     let w = (0..loads).map(|load| Entry::W { load });
-    let c = (0..loads)
-        .flat_map(|load| (0..reactions).map(move |reaction| Entry::C { load, reaction }));
+    let c =
+        (0..loads).flat_map(|load| (0..reactions).map(move |reaction| Entry::C { load, reaction }));
     let inertia = vec![Entry::M, Entry::HalfDm];
     [inertia, a.chain(b).collect(), w.chain(c).collect()]
 }
@@ -350,7 +360,10 @@ fn fit_inertia(grid: Grid, accuracy: f64, source: &mut Source<'_>) -> Result<Fit
     let per_turn = TAU / grid.length;
     let scale = |largest: &[f64]| {
         let weighed = [largest[0], largest[1] / per_turn];
-        let [m, slope] = [weighed[0], fit::scales(&weighed, &|_, _| true)[1] * per_turn];
+        let [m, slope] = [
+            weighed[0],
+            fit::scales(&weighed, &|_, _| true)[1] * per_turn,
+        ];
         vec![m, slope]
     };
     let mut values = |q: f64, out: &mut [f64]| {

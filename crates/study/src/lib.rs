@@ -46,6 +46,7 @@ mod simulate;
 mod states;
 mod subject;
 mod symbolic;
+mod tabulate;
 mod validate;
 mod words;
 

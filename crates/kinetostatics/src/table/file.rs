@@ -104,7 +104,11 @@ impl Table {
         put(&mut text, "accuracy", [self.accuracy]);
         put(&mut text, "extent", [from, length]);
         put(&mut text, "turns", [f64::from(turns)]);
-        put(&mut text, "cells", [inertia, forces, pushes].map(|n| n as f64));
+        put(
+            &mut text,
+            "cells",
+            [inertia, forces, pushes].map(|n| n as f64),
+        );
         put(&mut text, "scales", self.bounds.iter().map(|b| b.scale));
         put(&mut text, "errors", self.bounds.iter().map(|b| b.error));
         for (m, slope) in self.inertia.seeds() {
@@ -190,6 +194,15 @@ impl<'a> Reader<'a> {
         let one = self.grid(&extent, turns)?;
         let cells = self.counts("cells", 3, MOST_CELLS)?;
         let counts = [reactions.len(), loads.len()];
+        let widths = [2 * counts[0], counts[1] * (1 + counts[0])];
+        let none = [false, widths[0] == 0, widths[1] == 0];
+        if cells
+            .iter()
+            .zip(none)
+            .any(|(&cells, none)| (cells == 0) != none)
+        {
+            return Err(self.wrong("cells of whatever there is"));
+        }
         let entries = entries(counts).concat();
         let scales = self.numbers("scales", entries.len())?;
         let errors = self.numbers("errors", entries.len())?;
@@ -206,8 +219,8 @@ impl<'a> Reader<'a> {
             accuracy,
             angle,
             inertia: Inertias::from_seeds(one.with(cells[0]), seeds.into_iter()),
-            reactions: self.columns("ab", one.with(cells[1]), 2 * counts[0])?,
-            loads: self.columns("wc", one.with(cells[2]), counts[1] * (1 + counts[0]))?,
+            reactions: self.columns("ab", one.with(cells[1].max(1)), widths[0])?,
+            loads: self.columns("wc", one.with(cells[2].max(1)), widths[1])?,
             counts,
             bounds: bounds.collect(),
         };
@@ -277,7 +290,11 @@ impl<'a> Reader<'a> {
             0 => {
                 self.line += 1;
                 let empty = self.lines.next() == Some(word);
-                return if empty { Ok(Vec::new()) } else { Err(self.wrong(word)) };
+                return if empty {
+                    Ok(Vec::new())
+                } else {
+                    Err(self.wrong(word))
+                };
             }
             _ => self.rest(word)?,
         };
@@ -310,11 +327,7 @@ impl<'a> Reader<'a> {
         Ok(self.counts(word, 1, most)?[0])
     }
 
-    fn names(
-        &mut self,
-        word: &'static str,
-        each: &'static str,
-    ) -> Result<Vec<String>, FileError> {
+    fn names(&mut self, word: &'static str, each: &'static str) -> Result<Vec<String>, FileError> {
         let count = self.count(word, u32::MAX as usize)?;
         let mut names = Vec::new();
         for _ in 0..count {

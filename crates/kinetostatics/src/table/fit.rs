@@ -12,8 +12,8 @@
 //! (an ellipse about the extent with half axes (ρ ± 1/ρ)/2; Trefethen 2013, chapter 8), and a piece of p
 //! terms on a cell of half width h errs as (h/2σ)^p.
 
-use super::pieces::{Grid, TERMS};
 use super::TableError;
+use super::pieces::{Grid, TERMS};
 use std::f64::consts::TAU;
 
 /// Samples of the first try and of the last, powers of two.
@@ -60,7 +60,9 @@ pub(super) fn fit(
             });
         }
         if points >= MOST {
-            let left = sizes[3 * sizes.len() / 4..].iter().fold(0.0, |s: f64, x| s.max(*x));
+            let left = sizes[3 * sizes.len() / 4..]
+                .iter()
+                .fold(0.0, |s: f64, x| s.max(*x));
             return Err(TableError::NotSmooth { points, left });
         }
     }
@@ -84,7 +86,11 @@ fn sample(
     known: Vec<Vec<f64>>,
     values: &mut Values<'_>,
 ) -> Result<Vec<Vec<f64>>, TableError> {
-    let count = if known.is_empty() { FEWEST } else { 2 * known.len() };
+    let count = if known.is_empty() {
+        FEWEST
+    } else {
+        2 * known.len()
+    };
     let mut known = known.into_iter();
     let mut finer: Vec<Vec<f64>> = Vec::with_capacity(count);
     let fresh = known.len() == 0;
@@ -207,6 +213,9 @@ mod tests {
         };
         let scale = |largest: &[f64]| largest.to_vec();
         let found = fit(grid, 1, 1e-8, &scale, &mut values);
-        assert!(matches!(found, Err(TableError::NotSmooth { points: MOST, .. })));
+        assert!(matches!(
+            found,
+            Err(TableError::NotSmooth { points: MOST, .. })
+        ));
     }
 }

@@ -17,7 +17,7 @@ pub(super) const NODES: usize = 4;
 /// Coefficients of a piece: its degree is one less.
 pub(super) const TERMS: usize = 2 * NODES;
 /// The zeros of (1 − x²) P₃′(x), Gauss's and Lobatto's places: between them the error is nearly even.
-const PLACES: [f64; NODES] = [-1.0, -0.447_213_595_499_957_94, 0.447_213_595_499_957_94, 1.0];
+const PLACES: [f64; NODES] = [-1.0, -0.447_213_595_499_957_9, 0.447_213_595_499_957_9, 1.0];
 /// Near the middles between places, where a piece is furthest off.
 pub(super) const BETWEEN: [f64; NODES - 1] = [-0.76, 0.0, 0.76];
 /// Turns that can be taken off without a rounding: 2π is split after 30 bits, and a machine may take 8 turns.
@@ -217,7 +217,10 @@ impl Inertias {
         }
         let off = known.iter().zip(&middle).map(|(known, m)| known - m);
         let off = off.sum::<f64>() / grid.cells as f64;
-        let seeds = middle.iter().zip(&slopes).map(|(m, slope)| (m + off, *slope));
+        let seeds = middle
+            .iter()
+            .zip(&slopes)
+            .map(|(m, slope)| (m + off, *slope));
         Ok(Self::from_seeds(grid, seeds))
     }
 
@@ -337,12 +340,7 @@ impl Columns {
 
     /// All columns at `q`, the first `left.len()` of them to `left`, the others to `right`.
     #[inline]
-    pub(super) fn at(
-        &self,
-        q: f64,
-        left: &mut [f64],
-        right: &mut [f64],
-    ) -> Result<(), PlaceError> {
+    pub(super) fn at(&self, q: f64, left: &mut [f64], right: &mut [f64]) -> Result<(), PlaceError> {
         let (cell, x) = self.grid.locate(q)?;
         let size = TERMS * self.width;
         if size == 0 {
