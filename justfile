@@ -39,6 +39,7 @@ lint:
 [group('care')]
 bench:
     cargo bench -p dwell-kinetostatics --bench reduced
+    cargo bench -p dwell-kinetostatics --bench table
 
 # What the build server runs
 [group('care')]

@@ -39,5 +39,6 @@ mod scaling;
 mod sketch;
 mod slides;
 mod symbolic;
+mod tables;
 mod told;
 mod world;

@@ -50,7 +50,7 @@ fn run(options: Options) -> Result<bool, Report> {
     let mut stopped = None;
     let outcome = match &command {
         Command::Check { scene } => told(dwell_study::check(&read(scene)?))?,
-        Command::Reduce { scene } => told(dwell_study::reduce(&read(scene)?))?,
+        Command::Reduce { scene, table } => told(dwell_study::reduce(&read(scene)?, *table))?,
         Command::Simulate {
             scene,
             method,

@@ -27,6 +27,9 @@ pub(crate) enum Command {
     Reduce {
         /// The scene file
         scene: PathBuf,
+        /// Also a table that gives everything back to this part of its largest value, such as 1e-12
+        #[arg(long, value_parser = part, value_name = "ACCURACY", allow_hyphen_values = true)]
+        table: Option<f64>,
     },
     /// Motion in time under loads and drives, with energies and reactions: tables and pictures
     Simulate {
@@ -271,6 +274,16 @@ fn tolerance(text: &str) -> Result<f64, String> {
         Ok(value)
     } else {
         Err("a tolerance is between 1e-14 and 1e-3".to_owned())
+    }
+}
+
+/// What a table can be asked for: double precision has 1e-14, and above 1e-2 it is none.
+fn part(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if (1e-14..=1e-2).contains(&value) {
+        Ok(value)
+    } else {
+        Err("a table's accuracy is between 1e-14 and 1e-2".to_owned())
     }
 }
 

@@ -16,6 +16,7 @@ pub mod reduced;
 mod rounding;
 mod runs;
 pub mod section;
+pub mod table;
 mod turns;
 
 pub use acts::{Act, By, LoadError, LoadState};
@@ -27,3 +28,4 @@ pub use mass::Mass;
 pub use model::{Actions, Model, ModelError, Workspace};
 pub use reduced::{Coefficients, Exact, ExactWork, Inertia, Reduced};
 pub use section::{Distribution, LinkForces, Section};
+pub use table::{Channels, Entry, Extent, Table, TableError};

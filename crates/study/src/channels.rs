@@ -11,8 +11,9 @@ use crate::figures::{extent, range_caption, reduced_at};
 use crate::motion_error::explain_motion;
 use crate::prepare::{Prepared, determined};
 use crate::run::with_loads;
-use dwell_kinetostatics::{KinetostaticsError, Load, LoadKind};
+use dwell_kinetostatics::{KinetostaticsError, Load, LoadKind, Model};
 use dwell_report::{Axis, Chart, Column, Figure, Panel, Series};
+use dwell_scene::Scene;
 
 /// Most curves of a chart.
 const TOGETHER: usize = 6;
@@ -42,6 +43,12 @@ fn units(kind: LoadKind) -> [&'static str; 3] {
     }
 }
 
+/// The model of what a scene requests, under its loads: they may act on what the inertia alone does not
+/// need.
+pub(crate) fn loaded(scene: &Scene) -> Result<Model, StudyError> {
+    with_loads(scene, determined(scene)?)
+}
+
 impl Channels {
     /// The channels of a prepared scene's loads at the coordinates `q`, rad; none without loads.
     pub(crate) fn new(prepared: &Prepared<'_>, q: &[f64]) -> Result<Option<Self>, StudyError> {
@@ -49,8 +56,7 @@ impl Channels {
         if scene.loads.is_empty() {
             return Ok(None);
         }
-        // Loads may act on what the inertia alone does not need.
-        let model = with_loads(scene, determined(scene)?)?;
+        let model = loaded(scene)?;
         let explain = |e: KinetostaticsError| explain_motion(scene, model.plan(), &e.into());
         let mut work = model.workspace();
         let mut actions = model.actions();

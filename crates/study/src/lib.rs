@@ -48,6 +48,7 @@ mod states;
 mod subject;
 mod sweep;
 mod symbolic;
+mod tabulate;
 mod validate;
 mod words;
 

@@ -7,6 +7,7 @@ use crate::motion_error::explain_place;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
 use crate::provenance::picture;
+use crate::tabulate::tabulate;
 use crate::words::digits;
 use dwell_kinetostatics::{Coefficients, Reduced};
 use dwell_report::{Axis, Column, Figure, Table};
@@ -134,37 +135,38 @@ pub(crate) fn coefficient_unit(unit: &str) -> &'static str {
     if unit == "N" { "kg m" } else { "kg m2" }
 }
 
-/// The reduced parameters of a scene over its range.
+/// The reduced parameters of a scene over its range, and a table of this accuracy, if one is wanted.
 ///
 /// # Errors
-/// [`StudyError`] when the mechanism cannot be put together or a figure cannot be drawn.
-pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
+/// [`StudyError`] when the mechanism cannot be put together, a figure cannot be drawn or a table not be
+/// made.
+pub fn reduce(scene: &Scene, table: Option<f64>) -> Result<Outcome, StudyError> {
     let prepared = Prepared::for_angle(scene, false)?;
     let sweep = Sweep::new(&prepared)?;
     let mut figures: Vec<Figure> = vec![figures::reduced(&prepared, &sweep)];
     let (coefficients, note) = figures::coefficients(&prepared, &sweep);
     figures.extend(coefficients);
     let channels = Channels::new(&prepared, &sweep.q)?;
-    let mut table = sweep.table(&prepared);
+    let mut sheet = sweep.table(&prepared);
     if let Some(channels) = &channels {
         let x = Axis::degrees(figures::coordinate_label(&prepared));
         figures.push(channels.figure(&prepared, &sweep.q, &x));
         for (column, values) in channels.columns(&prepared) {
-            table.columns.push(column);
-            for (row, value) in table.rows.iter_mut().zip(values) {
+            sheet.columns.push(column);
+            for (row, value) in sheet.rows.iter_mut().zip(values) {
                 row.push(value);
             }
         }
     }
     let errors = Errors::new(&prepared, &sweep)?;
-    table.columns.push(Column::new("relative_error", ""));
-    for (row, error) in table.rows.iter_mut().zip(&errors.rows) {
+    sheet.columns.push(Column::new("relative_error", ""));
+    for (row, error) in sheet.rows.iter_mut().zip(&errors.rows) {
         row.push(*error);
     }
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-reduced.{rest}", scene.name);
-    outcome.files.add(name("csv"), table.csv()?);
-    outcome.files.add(name("npz"), table.npz()?);
+    outcome.files.add(name("csv"), sheet.csv()?);
+    outcome.files.add(name("npz"), sheet.npz()?);
     for figure in &figures {
         let name = format!("{}-{}.png", scene.name, figure.name);
         outcome.files.add(name, picture(scene, figure)?);
@@ -193,5 +195,8 @@ pub fn reduce(scene: &Scene) -> Result<Outcome, StudyError> {
             "  no body with mass moves: no motion follows from this, and every reaction is zero\n";
     }
     outcome.summary += &prepared.told_shared();
+    if let Some(accuracy) = table {
+        tabulate(&prepared, accuracy, &mut outcome)?;
+    }
     Ok(outcome)
 }

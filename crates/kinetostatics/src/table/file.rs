@@ -1,0 +1,338 @@
+//! Tables as files: text, one thing a line, described in docs/table-format.md. Numbers are written with as
+//! many digits as it takes to read the same bits again. Of m only its values in the middles of the cells
+//! are kept: the rest is made from ½m′ as when the table was new.
+
+use super::bound::MOST_CELLS;
+use super::pieces::{Columns, Grid, Inertias, TERMS};
+use super::{Bound, Table, entries};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::str::{FromStr, Lines};
+use thiserror::Error;
+
+/// First word of every file.
+const NAME: &str = "dwell-table";
+/// The only version so far.
+const VERSION: u32 = 1;
+/// Most turns after which a mechanism comes back.
+const MOST_TURNS: u32 = 8;
+
+/// What a table is of: names that a model does not know. None may hold a line break.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Labels {
+    /// Tells the scene's text from every other: its hash.
+    pub scene: String,
+    /// The coordinate.
+    pub coordinate: String,
+    /// The reactions, in their order.
+    pub reactions: Vec<String>,
+    /// The loads, in their order.
+    pub loads: Vec<String>,
+}
+
+/// Why a table cannot be written or read.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum FileError {
+    /// Names that do not fit the table, or with a line break in them.
+    #[error("the names do not fit the table: {reactions} reactions and {loads} loads, a line each")]
+    Labels {
+        /// Reactions of the table.
+        reactions: usize,
+        /// Loads of the table.
+        loads: usize,
+    },
+    /// Not a table at all.
+    #[error("this is no table: its first line is not `dwell-table` and a version")]
+    NoTable,
+    /// A version that is not known here.
+    #[error("a table of version {found}: version {VERSION} is known")]
+    Version {
+        /// What the file says.
+        found: String,
+    },
+    /// The last line is missing: the file was cut short.
+    #[error("the table is cut short: its last line, `check`, is missing")]
+    Truncated,
+    /// The sum in the last line is not that of the lines before.
+    #[error("the table was altered, or damaged: its sum does not agree")]
+    Altered,
+    /// A line that is not what the format asks for.
+    #[error("line {line} of the table: expected {expected}")]
+    Line {
+        /// From one.
+        line: usize,
+        /// What should be there.
+        expected: &'static str,
+    },
+}
+
+impl Table {
+    /// The table as the text of a file.
+    ///
+    /// # Errors
+    /// [`FileError::Labels`] for names that do not fit.
+    pub fn to_text(&self, labels: &Labels) -> Result<String, FileError> {
+        let [reactions, loads] = self.counts;
+        let lists = [&labels.reactions, &labels.loads];
+        let mut names = lists.into_iter().flatten();
+        let broken = |name: &String| name.contains(['\n', '\r']);
+        let fits = lists.map(Vec::len) == self.counts
+            && !names.any(broken)
+            && !broken(&labels.scene)
+            && !broken(&labels.coordinate);
+        if !fits {
+            return Err(FileError::Labels { reactions, loads });
+        }
+        let Grid {
+            from,
+            length,
+            turns,
+            ..
+        } = self.inertia.grid;
+        let unit = if self.angle { "rad" } else { "m" };
+        let [inertia, forces, pushes] = self.cells();
+        let mut text = format!(
+            "{NAME} {VERSION}\nscene {}\ncoordinate {unit} {}\n",
+            labels.scene, labels.coordinate
+        );
+        for (word, list) in ["reaction", "load"].into_iter().zip(lists) {
+            put(&mut text, &format!("{word}s"), [list.len() as f64]);
+            for name in list {
+                text.push_str(&format!("{word} {name}\n"));
+            }
+        }
+        put(&mut text, "accuracy", [self.accuracy]);
+        put(&mut text, "extent", [from, length]);
+        put(&mut text, "turns", [f64::from(turns)]);
+        put(
+            &mut text,
+            "cells",
+            [inertia, forces, pushes].map(|n| n as f64),
+        );
+        put(&mut text, "scales", self.bounds.iter().map(|b| b.scale));
+        put(&mut text, "errors", self.bounds.iter().map(|b| b.error));
+        for (m, slope) in self.inertia.seeds() {
+            put(&mut text, "m", [m].into_iter().chain(slope));
+        }
+        for (word, columns) in [("ab", &self.reactions), ("wc", &self.loads)] {
+            for cell in columns.terms.chunks(TERMS * columns.width.max(1)) {
+                put(&mut text, word, cell.iter().copied());
+            }
+        }
+        let sum = sum(text.as_bytes());
+        text.push_str(&format!("check {sum:016x}\n"));
+        Ok(text)
+    }
+
+    /// The table that a text holds, and what it is of.
+    ///
+    /// # Errors
+    /// [`FileError`] for anything that is not a whole table as it was written.
+    pub fn from_text(text: &str) -> Result<(Self, Labels), FileError> {
+        let first = text.lines().next().unwrap_or_default();
+        let version = first.strip_prefix(NAME).and_then(|v| v.strip_prefix(' '));
+        let version = version.ok_or(FileError::NoTable)?;
+        if version != VERSION.to_string() {
+            return Err(FileError::Version {
+                found: version.to_owned(),
+            });
+        }
+        let whole = text.strip_suffix('\n').ok_or(FileError::Truncated)?;
+        let (_, last) = whole.rsplit_once('\n').ok_or(FileError::Truncated)?;
+        let stated = last.strip_prefix("check ").ok_or(FileError::Truncated)?;
+        let body = &text[..whole.len() - last.len()];
+        if format!("{:016x}", sum(body.as_bytes())) != stated {
+            return Err(FileError::Altered);
+        }
+        Reader {
+            lines: body.lines(),
+            line: 0,
+        }
+        .table()
+    }
+}
+
+/// A line of a word and numbers.
+fn put(text: &mut String, word: &str, numbers: impl IntoIterator<Item = f64>) {
+    text.push_str(word);
+    for number in numbers {
+        // Writing to a string does not fail.
+        let _ = write!(text, " {number:e}");
+    }
+    text.push('\n');
+}
+
+/// Fowler, Noll and Vo's sum of 64 bits (1a). Each byte's step can be undone, so no single altered byte
+/// leaves it as it was.
+fn sum(bytes: &[u8]) -> u64 {
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| {
+        (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// Takes a text line by line.
+struct Reader<'a> {
+    lines: Lines<'a>,
+    line: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn table(mut self) -> Result<(Table, Labels), FileError> {
+        self.rest(NAME)?;
+        let scene = self.rest("scene")?.to_owned();
+        let coordinate = self.rest("coordinate")?;
+        let (unit, coordinate) = coordinate
+            .split_once(' ')
+            .filter(|(unit, _)| ["rad", "m"].contains(unit))
+            .ok_or_else(|| self.wrong("rad or m, and a name"))?;
+        let (angle, coordinate) = (unit == "rad", coordinate.to_owned());
+        let reactions = self.names("reactions", "reaction")?;
+        let loads = self.names("loads", "load")?;
+        let accuracy = self.numbers("accuracy", 1)?[0];
+        let extent = self.numbers("extent", 2)?;
+        let turns = self.count("turns", MOST_TURNS as usize)? as u32;
+        let one = self.grid(&extent, turns)?;
+        let cells = self.counts("cells", 3, MOST_CELLS)?;
+        let counts = [reactions.len(), loads.len()];
+        let widths = [2 * counts[0], counts[1] * (1 + counts[0])];
+        let none = [false, widths[0] == 0, widths[1] == 0];
+        if cells
+            .iter()
+            .zip(none)
+            .any(|(&cells, none)| (cells == 0) != none)
+        {
+            return Err(self.wrong("cells of whatever there is"));
+        }
+        let entries = entries(counts).concat();
+        let scales = self.numbers("scales", entries.len())?;
+        let errors = self.numbers("errors", entries.len())?;
+        let known = entries.iter().zip(scales).zip(errors);
+        let bounds = known.map(|((&of, scale), error)| Bound { of, scale, error });
+        let mut seeds = Vec::new();
+        for _ in 0..cells[0] {
+            let numbers = self.numbers("m", 1 + TERMS)?;
+            let mut slope = [0.0; TERMS];
+            slope.copy_from_slice(&numbers[1..]);
+            seeds.push((numbers[0], slope));
+        }
+        let table = Table {
+            accuracy,
+            angle,
+            inertia: Inertias::from_seeds(one.with(cells[0]), seeds.into_iter()),
+            reactions: self.columns("ab", one.with(cells[1].max(1)), widths[0])?,
+            loads: self.columns("wc", one.with(cells[2].max(1)), widths[1])?,
+            counts,
+            bounds: bounds.collect(),
+        };
+        if self.lines.next().is_some() {
+            self.line += 1;
+            return Err(self.wrong("nothing after the last cell but `check`"));
+        }
+        let labels = Labels {
+            scene,
+            coordinate,
+            reactions,
+            loads,
+        };
+        Ok((table, labels))
+    }
+
+    /// The extent as a grid of one cell.
+    fn grid(&self, extent: &[f64], turns: u32) -> Result<Grid, FileError> {
+        let (from, length) = (extent[0], extent[1]);
+        let whole = turns == 0 || (from == 0.0 && length == TAU * f64::from(turns));
+        if whole && length > 0.0 && (from + length).is_finite() {
+            Ok(Grid::new(from, length, turns, 1))
+        } else {
+            Err(self.wrong("an extent that is not empty, and of whole turns if it repeats itself"))
+        }
+    }
+
+    fn columns(
+        &mut self,
+        word: &'static str,
+        grid: Grid,
+        width: usize,
+    ) -> Result<Columns, FileError> {
+        let mut terms = Vec::new();
+        if width > 0 {
+            for _ in 0..grid.cells {
+                terms.extend(self.numbers(word, TERMS * width)?);
+            }
+        }
+        Ok(Columns { grid, width, terms })
+    }
+
+    fn wrong(&self, expected: &'static str) -> FileError {
+        FileError::Line {
+            line: self.line,
+            expected,
+        }
+    }
+
+    /// What follows the word that the next line begins with.
+    fn rest(&mut self, word: &'static str) -> Result<&'a str, FileError> {
+        self.line += 1;
+        let line = self.lines.next().unwrap_or_default();
+        let rest = line.strip_prefix(word).and_then(|l| l.strip_prefix(' '));
+        rest.ok_or_else(|| self.wrong(word))
+    }
+
+    fn list<T: FromStr>(
+        &mut self,
+        word: &'static str,
+        count: usize,
+        fits: impl Fn(&T) -> bool,
+        expected: &'static str,
+    ) -> Result<Vec<T>, FileError> {
+        let rest = match count {
+            // Without a number there is no blank either.
+            0 => {
+                self.line += 1;
+                let empty = self.lines.next() == Some(word);
+                return if empty {
+                    Ok(Vec::new())
+                } else {
+                    Err(self.wrong(word))
+                };
+            }
+            _ => self.rest(word)?,
+        };
+        let numbers: Option<Vec<T>> = rest
+            .split(' ')
+            .map(|number| number.parse().ok().filter(&fits))
+            .collect();
+        numbers
+            .filter(|numbers| numbers.len() == count)
+            .ok_or_else(|| self.wrong(expected))
+    }
+
+    fn numbers(&mut self, word: &'static str, count: usize) -> Result<Vec<f64>, FileError> {
+        let expected = "finite numbers, as many as the counts say";
+        self.list(word, count, |n: &f64| n.is_finite(), expected)
+    }
+
+    fn counts(
+        &mut self,
+        word: &'static str,
+        count: usize,
+        most: usize,
+    ) -> Result<Vec<usize>, FileError> {
+        let whole = |n: &f64| n.fract() == 0.0 && (0.0..=most as f64).contains(n);
+        let found = self.list(word, count, whole, "whole numbers that are not too large")?;
+        Ok(found.into_iter().map(|n| n as usize).collect())
+    }
+
+    fn count(&mut self, word: &'static str, most: usize) -> Result<usize, FileError> {
+        Ok(self.counts(word, 1, most)?[0])
+    }
+
+    fn names(&mut self, word: &'static str, each: &'static str) -> Result<Vec<String>, FileError> {
+        let count = self.count(word, u32::MAX as usize)?;
+        let mut names = Vec::new();
+        for _ in 0..count {
+            names.push(self.rest(each)?.to_owned());
+        }
+        Ok(names)
+    }
+}

@@ -1,0 +1,370 @@
+//! Pieces of a table: equal cells, each with one polynomial about its middle. Finding the cell and
+//! evaluating it cost the same everywhere.
+//!
+//! A piece is Hermite's polynomial through values and slopes at [`NODES`] places of its cell, the ends
+//! among them, so that neighbours meet in value and slope. Of m only ½m′ is interpolated; m is its
+//! integral, and continuous. What a motion gains on the table where it leaves a cell it has therefore
+//! lost where it came in: energy cannot drift.
+
+use super::source::Source;
+use super::{Entry, TableError};
+use crate::reduced::Inertia;
+use dwell_geometry::{Dual, PlaceError};
+use std::f64::consts::TAU;
+
+/// Places of a cell where a function and its slope are taken from the exact model.
+pub(super) const NODES: usize = 4;
+/// Coefficients of a piece: its degree is one less.
+pub(super) const TERMS: usize = 2 * NODES;
+/// The zeros of (1 − x²) P₃′(x), Gauss's and Lobatto's places: between them the error is nearly even.
+const PLACES: [f64; NODES] = [-1.0, -0.447_213_595_499_957_9, 0.447_213_595_499_957_9, 1.0];
+/// Near the middles between places, where a piece is furthest off.
+pub(super) const BETWEEN: [f64; NODES - 1] = [-0.76, 0.0, 0.76];
+/// Turns that can be taken off without a rounding: 2π is split after 30 bits, and a machine may take 8 turns.
+const MOST_TURNS: f64 = 1_048_576.0;
+/// 2π to 30 bits, and the rest of it.
+const TAU_COARSE: f64 = 6.283_185_306_936_502_5;
+const TAU_FINE: f64 = 2.430_840_202_602_477e-10;
+
+/// Added to a number below 2^31 it leaves no room for a fraction, and the whole part in the last bits: a
+/// rounding to the nearest without a call.
+const WHOLE: f64 = 6_755_399_441_055_744.0;
+
+/// Splits a count of cells, at least zero, into a cell and where in it from −1 to 1.
+#[inline]
+fn within(part: f64) -> (usize, f64) {
+    let middle = part - 0.5;
+    let cell = middle + WHOLE;
+    (
+        cell.to_bits() as u32 as usize,
+        2.0 * (middle - (cell - WHOLE)),
+    )
+}
+
+/// Equal cells over an extent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Grid {
+    /// Where it begins, rad or m; zero of a full turn.
+    pub(super) from: f64,
+    pub(super) length: f64,
+    /// Turns after which everything comes back; zero if that never happens.
+    pub(super) turns: u32,
+    pub(super) cells: usize,
+    per_period: f64,
+    coarse: f64,
+    fine: f64,
+    per_cell: f64,
+    /// The largest number below that of the cells.
+    last: f64,
+    /// Parts of a cell by which a rounding may leave the extent: of a coordinate of many turns, those of
+    /// the turns it has.
+    slack: f64,
+}
+
+impl Grid {
+    pub(super) fn new(from: f64, length: f64, turns: u32, cells: usize) -> Self {
+        let count = f64::from(turns);
+        let (per_period, coarse, fine) = match turns {
+            0 => (0.0, 0.0, 0.0),
+            _ => (1.0 / (TAU * count), TAU_COARSE * count, TAU_FINE * count),
+        };
+        Self {
+            from,
+            length,
+            turns,
+            cells,
+            per_period,
+            coarse,
+            fine,
+            per_cell: cells as f64 / length,
+            last: (cells as f64).next_down(),
+            slack: if turns > 0 { 1e-3 } else { 1e-9 },
+        }
+    }
+
+    /// The same extent in other cells.
+    pub(super) fn with(self, cells: usize) -> Self {
+        Self::new(self.from, self.length, self.turns, cells)
+    }
+
+    /// Half the width of a cell.
+    pub(super) fn half(&self) -> f64 {
+        0.5 * self.length / self.cells as f64
+    }
+
+    /// The coordinate at `x` from −1 to 1 of a cell; both cells at an end find the same number.
+    pub(super) fn coordinate(&self, cell: usize, x: f64) -> f64 {
+        let part = cell as f64 + 0.5 * (x + 1.0);
+        let part = if self.turns > 0 && part >= self.cells as f64 {
+            0.0
+        } else {
+            part
+        };
+        self.from + self.length * (part / self.cells as f64)
+    }
+
+    /// The cell of a coordinate, and where in it from −1 to 1.
+    #[inline]
+    pub(super) fn locate(&self, q: f64) -> Result<(usize, f64), PlaceError> {
+        let part = (q - self.from) * self.per_cell;
+        if part >= 0.0 && part < self.cells as f64 {
+            Ok(within(part))
+        } else {
+            self.turned(q)
+        }
+    }
+
+    /// The same for a coordinate that lies turns away, or at the very end, or nowhere.
+    #[inline]
+    fn turned(&self, q: f64) -> Result<(usize, f64), PlaceError> {
+        let turns = (q * self.per_period - 0.5 + WHOLE) - WHOLE;
+        let part = (((q - turns * self.coarse) - turns * self.fine) - self.from) * self.per_cell;
+        let cells = self.cells as f64;
+        let near = part >= -self.slack && part <= cells + self.slack;
+        if !(near && turns.abs() < MOST_TURNS) {
+            return Err(self.outside(q));
+        }
+        // A rounding beyond an end is still in the cell at the end.
+        let (cell, x) = within(part.clamp(0.0, self.last));
+        Ok((cell, x + 2.0 * (part - part.clamp(0.0, self.last))))
+    }
+
+    #[cold]
+    fn outside(&self, q: f64) -> PlaceError {
+        if !q.is_finite() {
+            return PlaceError::NotFinite { q };
+        }
+        let most = MOST_TURNS * TAU;
+        let (from, to) = match self.turns {
+            0 => (self.from, self.from + self.length),
+            _ => (-most, most),
+        };
+        PlaceError::OutOfRange { q, from, to }
+    }
+}
+
+/// The coefficients, of rising powers of x, of Hermite's polynomial through `[value, slope]` (by x) at
+/// [`PLACES`]. Newton's divided differences: what neighbours have in common is taken off first, so
+/// rounding is that of the differences.
+fn hermite(data: &[[f64; 2]; NODES]) -> [f64; TERMS] {
+    let place = |i: usize| PLACES[i / 2];
+    let mut difference = [0.0; TERMS];
+    for (i, d) in difference.iter_mut().enumerate() {
+        *d = data[i / 2][0];
+    }
+    for order in 1..TERMS {
+        for i in (order..TERMS).rev() {
+            difference[i] = if order == 1 && i % 2 == 1 {
+                data[i / 2][1]
+            } else {
+                (difference[i] - difference[i - 1]) / (place(i) - place(i - order))
+            };
+        }
+    }
+    // From Newton's products to powers, the last factor first.
+    let mut powers = [0.0; TERMS];
+    for i in (0..TERMS).rev() {
+        for j in (1..TERMS).rev() {
+            powers[j] = powers[j - 1] - place(i) * powers[j];
+        }
+        powers[0] = difference[i] - place(i) * powers[0];
+    }
+    powers
+}
+
+/// Coefficients of m and ½m′ side by side, of rising powers.
+type Pair = [[f64; 2]; TERMS + 1];
+
+/// m and ½m′.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Inertias {
+    pub(super) grid: Grid,
+    cells: Vec<Pair>,
+}
+
+/// m at the middle of a cell and the coefficients of ½m′: all that a cell is made from.
+pub(super) type Seed = (f64, [f64; TERMS]);
+
+impl Inertias {
+    pub(super) fn new(grid: Grid, source: &mut Source<'_>) -> Result<Self, TableError> {
+        let half = grid.half();
+        let mut slopes = Vec::with_capacity(grid.cells);
+        let mut known = Vec::with_capacity(grid.cells);
+        for cell in 0..grid.cells {
+            let mut data = [[0.0; 2]; NODES];
+            for (data, &x) in data.iter_mut().zip(&PLACES) {
+                let at = source.inertia(grid.coordinate(cell, x))?;
+                *data = [at.half_dm, at.half_ddm * half];
+            }
+            known.push(source.inertia(grid.coordinate(cell, 0.0))?.m);
+            slopes.push(hermite(&data));
+        }
+        if grid.turns > 0 {
+            // What a whole turn would gain is truncation and rounding: its mean is taken out.
+            let gain: f64 = slopes.iter().map(|g| climb(g, half, [-1.0, 1.0])).sum();
+            for slope in &mut slopes {
+                slope[0] -= gain / (2.0 * grid.length);
+            }
+        }
+        // From middle to middle, so that the ends meet; then all of it to the mean of what is known.
+        let mut middle = Vec::with_capacity(grid.cells);
+        let mut m = 0.0;
+        for (cell, slope) in slopes.iter().enumerate() {
+            if let Some(before) = cell.checked_sub(1).and_then(|b| slopes.get(b)) {
+                m += climb(before, half, [0.0, 1.0]) + climb(slope, half, [-1.0, 0.0]);
+            }
+            middle.push(m);
+        }
+        let off = known.iter().zip(&middle).map(|(known, m)| known - m);
+        let off = off.sum::<f64>() / grid.cells as f64;
+        let seeds = middle
+            .iter()
+            .zip(&slopes)
+            .map(|(m, slope)| (m + off, *slope));
+        Ok(Self::from_seeds(grid, seeds))
+    }
+
+    /// The cells from m in their middles and ½m′.
+    pub(super) fn from_seeds(grid: Grid, seeds: impl Iterator<Item = Seed>) -> Self {
+        let half = grid.half();
+        let cell = |(m, slope): Seed| {
+            let mut cell = [[0.0; 2]; TERMS + 1];
+            cell[0][0] = m;
+            for (j, g) in slope.iter().enumerate() {
+                cell[j][1] = *g;
+                cell[j + 1][0] = 2.0 * half * g / (j + 1) as f64;
+            }
+            cell
+        };
+        Self {
+            grid,
+            cells: seeds.map(cell).collect(),
+        }
+    }
+
+    pub(super) fn seeds(&self) -> impl Iterator<Item = Seed> {
+        self.cells.iter().map(|cell| {
+            let mut slope = [0.0; TERMS];
+            for (s, pair) in slope.iter_mut().zip(cell) {
+                *s = pair[1];
+            }
+            (cell[0][0], slope)
+        })
+    }
+
+    #[inline]
+    pub(super) fn at(&self, q: f64) -> Result<(f64, f64), PlaceError> {
+        let (cell, x) = self.grid.locate(q)?;
+        let [m, half_dm] = both(&self.cells[cell], x);
+        Ok((m, half_dm))
+    }
+
+    pub(super) fn curvature(&self, q: f64) -> Result<Inertia, PlaceError> {
+        let (cell, x) = self.grid.locate(q)?;
+        let cell = &self.cells[cell];
+        let [m, half_dm] = both(cell, x);
+        let powers = (1..TERMS).rev();
+        let slope = powers.fold(0.0, |sum, j| sum * x + j as f64 * cell[j][1]);
+        Ok(Inertia {
+            m,
+            half_dm,
+            half_ddm: slope / self.grid.half(),
+        })
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        std::mem::size_of_val(self.cells.as_slice())
+    }
+}
+
+/// What m gains between two places of a cell of which ½m′ is known.
+fn climb(slope: &[f64; TERMS], half: f64, [from, to]: [f64; 2]) -> f64 {
+    let integral = |x: f64| {
+        let terms = slope.iter().enumerate().rev();
+        terms.fold(0.0, |sum, (j, g)| (sum + g / (j + 1) as f64) * x)
+    };
+    2.0 * half * (integral(to) - integral(from))
+}
+
+/// Both polynomials at once, in pairs of terms (Estrin): the pairs do not wait for each other.
+#[inline]
+fn both(c: &Pair, x: f64) -> [f64; 2] {
+    let add = |a: [f64; 2], b: [f64; 2], x: f64| [a[0] + b[0] * x, a[1] + b[1] * x];
+    let (x2, x4) = (x * x, (x * x) * (x * x));
+    let low = add(add(c[0], c[1], x), add(c[2], c[3], x), x2);
+    let high = add(add(c[4], c[5], x), add(c[6], c[7], x), x2);
+    add(low, add(high, c[8], x4), x4)
+}
+
+/// Any number of functions of the coordinate, side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Columns {
+    pub(super) grid: Grid,
+    pub(super) width: usize,
+    /// By cell, by falling power, by column.
+    pub(super) terms: Vec<f64>,
+}
+
+impl Columns {
+    pub(super) fn new(
+        grid: Grid,
+        which: &[Entry],
+        source: &mut Source<'_>,
+    ) -> Result<Self, TableError> {
+        let width = which.len();
+        let mut found = Self {
+            grid,
+            width,
+            terms: Vec::with_capacity(grid.cells * TERMS * width),
+        };
+        let half = grid.half();
+        let mut nodes = vec![vec![Dual::default(); width]; NODES];
+        for cell in 0..grid.cells {
+            for (node, &x) in nodes.iter_mut().zip(&PLACES) {
+                source.fill(which, grid.coordinate(cell, x), node)?;
+            }
+            let start = found.terms.len();
+            found.terms.resize(start + TERMS * width, 0.0);
+            for column in 0..width {
+                let mut data = [[0.0; 2]; NODES];
+                for (data, node) in data.iter_mut().zip(&nodes) {
+                    *data = [node[column].v, node[column].d * half];
+                }
+                for (j, term) in hermite(&data).into_iter().enumerate() {
+                    found.terms[start + (TERMS - 1 - j) * width + column] = term;
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// All columns at `q`, the first `left.len()` of them to `left`, the others to `right`.
+    #[inline]
+    pub(super) fn at(&self, q: f64, left: &mut [f64], right: &mut [f64]) -> Result<(), PlaceError> {
+        let (cell, x) = self.grid.locate(q)?;
+        let size = TERMS * self.width;
+        if size == 0 {
+            return Ok(());
+        }
+        left.fill(0.0);
+        right.fill(0.0);
+        for row in self.terms[cell * size..][..size].chunks_exact(self.width) {
+            let (first, second) = row.split_at(left.len().min(row.len()));
+            horner(left, first, x);
+            horner(right, second, x);
+        }
+        Ok(())
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        std::mem::size_of_val(self.terms.as_slice())
+    }
+}
+
+/// One step of Horner's scheme, of several polynomials side by side.
+#[inline]
+fn horner(sums: &mut [f64], terms: &[f64], x: f64) {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        *sum = *sum * x + term;
+    }
+}

@@ -1,0 +1,125 @@
+//! `dwell reduce --table`: the whole reduced model as a file that gives it back without the mechanism.
+
+use crate::channels::loaded;
+use crate::error::{StudyError, not_one_actuator};
+use crate::motion_error::explain_motion;
+use crate::outcome::Outcome;
+use crate::prepare::Prepared;
+use crate::words::number;
+use dwell_geometry::{Plan, Range};
+use dwell_kinetostatics::table::Labels;
+use dwell_kinetostatics::{Entry, Exact, Extent, Table, TableError};
+use dwell_scene::{Place, Scene};
+use std::f64::consts::TAU;
+
+/// Adds a table of everything that a scene requests to what a command yields: m, ½m′, a and b of the
+/// reactions, w and c of the loads, each to `accuracy` of its largest value.
+pub(crate) fn tabulate(
+    prepared: &Prepared<'_>,
+    accuracy: f64,
+    outcome: &mut Outcome,
+) -> Result<(), StudyError> {
+    let scene = prepared.scene;
+    let exact = Exact::new(loaded(scene)?).ok_or_else(|| not_one_actuator(scene))?;
+    let plan = exact.model().plan();
+    // What does not come back is shown over a turn, and tabulated where it is shown.
+    let extent = match plan.range() {
+        Range::Endless => Extent::Between(0.0, TAU),
+        _ => Extent::Whole,
+    };
+    let labels = Labels {
+        scene: scene.hash(),
+        coordinate: prepared.coordinate().to_owned(),
+        reactions: prepared
+            .reactions()
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect(),
+        loads: scene.loads.iter().map(|load| load.name.clone()).collect(),
+    };
+    let refused = |e: TableError| explain(scene, plan, &labels, &e);
+    let table = Table::new(&exact, accuracy, extent).map_err(refused)?;
+    let text = table.to_text(&labels).map_err(|e| {
+        let error = scene.error(e.to_string(), None, &[]);
+        StudyError::from(error)
+    })?;
+    outcome
+        .files
+        .add(format!("{}.table", scene.name), text.into_bytes());
+    outcome.summary += &told(&table);
+    Ok(())
+}
+
+/// Kind, extent, cells, memory and bound.
+fn told(table: &Table) -> String {
+    let [from, to] = table.extent();
+    let kind = match table.turns() {
+        Some(1) => "every turn".to_owned(),
+        Some(turns) => format!("every {turns} turns"),
+        None => format!("from {} to {} rad", number(from), number(to)),
+    };
+    let counts = table
+        .cells()
+        .into_iter()
+        .zip(["m and ½m′", "a and b", "w and c"]);
+    let cells: Vec<String> = counts
+        .filter(|(cells, _)| *cells > 0)
+        .map(|(cells, of)| format!("{cells} of {of}"))
+        .collect();
+    let [inertia, all] = table.bytes().map(|bytes| bytes.div_ceil(1024));
+    format!(
+        "  table of {kind}: cells {}; {inertia} kB for m and ½m′, {all} kB in all; off by at most {:.1e} of the largest value of each\n",
+        cells.join(", "),
+        table.bound()
+    )
+}
+
+/// A table's error with the names and places of the scene.
+fn explain(scene: &Scene, plan: &Plan, labels: &Labels, error: &TableError) -> StudyError {
+    let (message, help) = match *error {
+        TableError::Exact(e) => return explain_motion(scene, plan, &e.into()),
+        TableError::NotReached {
+            what,
+            reached,
+            accuracy,
+        } => (
+            format!(
+                "no table of {accuracy:e}: {} is known to {reached:.1e} of its largest value",
+                named(what, labels)
+            ),
+            "ask for less; next to change points and limit positions the model itself loses digits",
+        ),
+        TableError::NotPeriodic { what } => (
+            format!(
+                "no table: {} is not the same a turn later",
+                named(what, labels)
+            ),
+            "a load that winds up has no table of whole turns: leave it out",
+        ),
+        other => (other.to_string(), "ask for less, such as --table 1e-9"),
+    };
+    let labels = [(
+        Place::Actuator(dwell_geometry::ActuatorId(0)),
+        "over this coordinate".to_owned(),
+    )];
+    scene.error(message, Some(help.to_owned()), &labels).into()
+}
+
+/// A coefficient by the names of the scene.
+fn named(entry: Entry, labels: &Labels) -> String {
+    let name = |of: &[String], i: usize| of.get(i).cloned().unwrap_or_default();
+    let (reactions, loads) = (&labels.reactions, &labels.loads);
+    match entry {
+        Entry::M | Entry::HalfDm => entry.to_string(),
+        Entry::A { reaction } => format!("a of {}", name(reactions, reaction)),
+        Entry::B { reaction } => format!("b of {}", name(reactions, reaction)),
+        Entry::W { load } => format!("w of {}", name(loads, load)),
+        Entry::C { load, reaction } => {
+            format!(
+                "c of {} and {}",
+                name(reactions, reaction),
+                name(loads, load)
+            )
+        }
+    }
+}

@@ -1,0 +1,423 @@
+//! Tables of the reduced model: their bounds, that m and ½m′ belong together, and their files.
+
+use crate::world::{home, scene};
+use dwell_dynamics::{Equation, Method, Options, Orbit, State, Until, simulate};
+use dwell_geometry::{PlaceError, Range};
+use dwell_kinetostatics::table::{FileError, Labels};
+use dwell_kinetostatics::{Coefficients, Entry, Exact, Extent, Model, Reduced, Table, TableError};
+use dwell_scene::Scene;
+use std::f64::consts::TAU;
+
+/// The golden section: steps of it fall on no grid.
+const GOLDEN: f64 = 0.618_033_988_749_894_9;
+
+/// A scene's model with every reaction and all loads; none of several actuators.
+fn loaded(scene: &Scene) -> Option<Exact> {
+    let start = scene.assembly.to_start();
+    let all = scene.mechanism.reactions();
+    let model = Model::new(&scene.mechanism, &scene.masses, &start, &all).expect("a model");
+    let model = model.with_loads(&scene.mechanism, scene.loads.clone());
+    Exact::new(model.expect("loads"))
+}
+
+fn case(name: &str) -> Exact {
+    loaded(&scene(name)).expect("one actuator")
+}
+
+/// All cases of one actuator.
+fn cases() -> Vec<(String, Exact)> {
+    let folder = std::fs::read_dir(home().join("validation")).expect("a folder");
+    let name = |e: std::io::Result<std::fs::DirEntry>| e.expect("an entry").file_name();
+    let names = folder.map(|e| name(e).into_string().expect("a name"));
+    let found = names.filter_map(|name| Some((name.clone(), loaded(&scene(&name))?)));
+    let mut found: Vec<(String, Exact)> = found.collect();
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    found
+}
+
+/// Points of a table's extent that fall on none of its cells.
+fn points(table: &Table, count: usize) -> impl Iterator<Item = f64> {
+    let [from, to] = table.extent();
+    (0..count).map(move |i| from + (to - from) * (0.123_456_7 + GOLDEN * i as f64).fract())
+}
+
+/// The coefficients of a table in the order of its bounds.
+fn of_table(table: &Table, exact: &Exact, q: f64) -> Vec<f64> {
+    let (mut at, mut loads) = (exact.model().coefficients(), table.channel_room());
+    table.coefficients(q, &mut (), &mut at).expect("within");
+    table.channels(q, &mut loads).expect("within");
+    let Coefficients { m, half_dm, a, b } = at;
+    [vec![m, half_dm], a, b, loads.w, loads.c].concat()
+}
+
+/// The same of the exact model.
+fn of_model(exact: &Exact, q: f64) -> Vec<f64> {
+    let model = exact.model();
+    let (mut work, mut actions, mut at) =
+        (model.workspace(), model.actions(), model.coefficients());
+    model.reduce(q, &mut work, &mut at).expect("a pose");
+    let (mut w, mut c) = (Vec::new(), Vec::new());
+    model.enter(0.0, &[q], &[1.0], &mut work).expect("a pose");
+    for load in 0..model.loads().len() {
+        model.channel(load, &mut work, &mut actions).expect("a run");
+        w.push(-actions.tau[0]);
+        c.extend(&actions.reactions);
+    }
+    let Coefficients { m, half_dm, a, b } = at;
+    [vec![m, half_dm], a, b, w, c].concat()
+}
+
+/// What a case's table is asked for: where the exact ½m′ is known to fewer digits, next to change points,
+/// no table can have more. Of a mechanism without ends, as far as it goes in four turns of something.
+fn asked(name: &str, exact: &Exact) -> (f64, Extent) {
+    let accuracy = match name {
+        "n-four-bar-a02" => 1e-8,
+        "parallelogram-three-cranks" => 2e-8,
+        _ => 1e-12,
+    };
+    match exact.range() {
+        Range::Endless => (accuracy, Extent::Between(-1.0, 3.0)),
+        _ => (accuracy, Extent::Whole),
+    }
+}
+
+fn table(name: &str, exact: &Exact) -> Table {
+    let (accuracy, extent) = asked(name, exact);
+    Table::new(exact, accuracy, extent).unwrap_or_else(|e| panic!("{name}: {e}"))
+}
+
+/// Every coefficient of every case at 10 000 points that no part of the table was made or judged at.
+#[test]
+fn val_tables_keep_their_bounds() {
+    let mut seen = 0;
+    for (name, exact) in cases() {
+        let table = table(&name, &exact);
+        assert!(table.bound() <= table.accuracy(), "{name}");
+        let mut largest = vec![0.0_f64; table.bounds().len()];
+        for q in points(&table, 10_000) {
+            let (own, truth) = (of_table(&table, &exact, q), of_model(&exact, q));
+            assert_eq!(own.len(), table.bounds().len());
+            for (k, bound) in table.bounds().iter().enumerate() {
+                let (off, most) = ((own[k] - truth[k]).abs(), bound.error * bound.scale);
+                assert!(
+                    off <= most,
+                    "{name}, {} at {q}: {off:e} > {most:e}",
+                    bound.of
+                );
+                largest[k] = largest[k].max(truth[k].abs());
+            }
+        }
+        // The scale is the largest value, but for a coefficient that nearly vanishes.
+        for (bound, largest) in table.bounds().iter().zip(largest) {
+            assert!(largest <= 1.05 * bound.scale, "{name}, {}", bound.of);
+        }
+        seen += 1;
+    }
+    assert!(seen > 20, "{seen}");
+}
+
+/// Gauss's rule of four points, exact for a piece of ½m′, gives the difference of m within half a cell, and
+/// m has no steps where cells meet.
+#[test]
+fn half_the_slope_of_a_tables_m_is_its_other_column() {
+    let (inner, outer) = (0.339_981_043_584_856_26, 0.861_136_311_594_052_6);
+    let (heavy, light) = (0.652_145_154_862_546_1, 0.347_854_845_137_453_9);
+    let rule = [
+        (-outer, light),
+        (-inner, heavy),
+        (inner, heavy),
+        (outer, light),
+    ];
+    for (name, exact) in cases() {
+        let table = table(&name, &exact);
+        let at = |q: f64| table.inertia(q, &mut ()).expect("within");
+        let ([from, to], cells) = (table.extent(), table.cells()[0]);
+        let half = 0.5 * (to - from) / cells as f64;
+        let scale = table.bounds()[0].scale;
+        let (mut whole, mut size) = (0.0, 0.0);
+        for cell in 0..cells {
+            let start = from + 2.0 * half * cell as f64;
+            // Away from the ends, where a rounding of q may fall into the next cell.
+            let (left, right) = (start + 0.01 * half, start + 1.99 * half);
+            let (middle, reach) = (0.5 * (left + right), 0.5 * (right - left));
+            let sum = rule.map(|(x, weight)| weight * at(middle + reach * x).1);
+            let climb = 2.0 * reach * sum.iter().sum::<f64>();
+            let steep = 2.0 * half * sum.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
+            // Some roundings of m, and of q where m is steep.
+            let rounding = 4e-15 * scale + 1e-15 * steep * cells as f64;
+            let off = (at(right).0 - at(left).0 - climb).abs();
+            assert!(
+                off < rounding,
+                "{name}, cell {cell}: {off:e} > {rounding:e}"
+            );
+            if cell > 0 {
+                let across = at(start + 1e-9 * half).0 - at(start - 1e-9 * half).0;
+                let climb = 4e-9 * half * at(start).1;
+                let off = (across - climb).abs();
+                assert!(off < rounding, "{name}, at the start of {cell}: {off:e}");
+            }
+            let all = rule.map(|(x, weight)| weight * half * at(start + half + half * x).1);
+            whole += 2.0 * all.iter().sum::<f64>();
+            size += steep;
+        }
+        // A turn gains nothing: the rounding of a mean, and of each cell's part in it.
+        if table.turns().is_some() {
+            assert!(
+                whole.abs() < 1e-15 * (scale + size),
+                "{name}: a turn gains {whole:e}"
+            );
+        }
+    }
+}
+
+/// Of a free motion ½ m q̇² drifts on the table as it does on the exact model, by what the integrator does:
+/// with equal steps over 1000 turns by the same to within roundings.
+#[test]
+fn val_equal_steps_gain_the_same_energy_on_a_table() {
+    for name in ["single-dwell", "crank-rocker"] {
+        let exact = case(name);
+        let table = table(name, &exact);
+        let start = State {
+            t: 0.0,
+            q: 0.0,
+            q_dot: 1.0,
+        };
+        let period = Orbit::new(&exact, start).expect("a period").period;
+        let [own, truth] = [stepped(&table, period), stepped(&exact, period)];
+        let apart: Vec<f64> = own.iter().zip(&truth).map(|(a, b)| (a - b).abs()).collect();
+        assert!(
+            truth[999].abs() > 1e-9,
+            "{name}: nothing to compare: {:e}",
+            truth[999]
+        );
+        // The places at which m is rounded are the same in every turn, so that some 1e-16 of it come back: a
+        // table whose turn gained its bound would be at 5e-10.
+        for (turn, apart) in apart.iter().enumerate() {
+            let most = 1e-14 + 2e-15 * turn as f64;
+            assert!(*apart < most, "{name}, turn {turn}: {apart:e} apart");
+        }
+    }
+}
+
+/// What the energy has gained after each of 1000 turns, as a part of it, by Runge and Kutta's rule of 4 in
+/// 400 steps a turn.
+fn stepped<R: Reduced>(model: &R, period: f64) -> Vec<f64> {
+    let mut equation = Equation::new(model);
+    let first = equation.energy(0.0, 1.0).expect("an energy");
+    let (h, mut y) = (period / 400.0, [0.0, 1.0]);
+    let mut gains = Vec::new();
+    for _ in 0..1000 {
+        for _ in 0..400 {
+            let mut slope = [0.0; 2];
+            let mut sum = [0.0; 2];
+            for (ahead, weight) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+                let [q, q_dot] = [0, 1].map(|i: usize| y[i] + ahead * h * slope[i]);
+                slope = [q_dot, equation.acceleration(q, q_dot).expect("within")];
+                sum = [0, 1].map(|i: usize| sum[i] + weight * slope[i] / 6.0);
+            }
+            y = [0, 1].map(|i: usize| y[i] + h * sum[i]);
+        }
+        // With the turns it has made, q would be rounded to 1e-12: by 1000 turns 1e-10 of energy.
+        y[0] -= TAU;
+        gains.push(equation.energy(y[0], y[1]).expect("within") / first - 1.0);
+    }
+    gains
+}
+
+/// An integrator that chooses its steps drifts alike on both.
+#[test]
+fn val_energy_drifts_on_a_table_as_on_the_exact_model() {
+    let start = State {
+        t: 0.0,
+        q: 0.0,
+        q_dot: 1.0,
+    };
+    let options = Options::new(Method::Tsit45, 1e-12);
+    for name in ["single-dwell", "crank-rocker"] {
+        let exact = case(name);
+        let table = table(name, &exact);
+        let turns = Until::Turns(1000);
+        let [own, truth] = [
+            drift(
+                &table,
+                &simulate(&table, start, turns, &options)
+                    .expect("a run")
+                    .turns,
+            ),
+            drift(
+                &exact,
+                &simulate(&exact, start, turns, &options)
+                    .expect("a run")
+                    .turns,
+            ),
+        ];
+        let apart: Vec<f64> = own.iter().zip(&truth).map(|(a, b)| (a - b).abs()).collect();
+        // The steps are not the same: the errors they are chosen by are of the size of the table's.
+        assert!(
+            apart[999] < 0.1 * truth[999].abs(),
+            "{name}: {:e} apart",
+            apart[999]
+        );
+        let turn = [Orbit::new(&table, start), Orbit::new(&exact, start)];
+        let [own, truth] = turn.map(|turn| turn.expect("a period").period);
+        assert!((own - truth).abs() < 1e-12 * truth, "{name}: {own} {truth}");
+    }
+}
+
+/// By turn, what the energy has gained since the first, as a part of it.
+fn drift<R: Reduced>(model: &R, turns: &[State]) -> Vec<f64> {
+    let mut equation = Equation::new(model);
+    let mut energy = |s: &State| equation.energy(s.q, s.q_dot).expect("an energy");
+    let first = energy(&turns[0]);
+    turns.iter().map(|s| energy(s) / first - 1.0).collect()
+}
+
+fn labels(exact: &Exact, scene: &Scene) -> Labels {
+    let reactions = exact.model().reactions().iter();
+    Labels {
+        scene: scene.hash(),
+        coordinate: scene.mechanism.actuators[0].name.clone(),
+        reactions: reactions
+            .map(|&r| scene.mechanism.reaction_name(r))
+            .collect(),
+        loads: scene.loads.iter().map(|l| l.name.clone()).collect(),
+    }
+}
+
+/// A table that is read again is the same to the last bit, and so is what it gives.
+#[test]
+fn a_table_is_read_as_it_was_written() {
+    for (name, exact) in cases() {
+        let table = table(&name, &exact);
+        let labels = labels(&exact, &scene(&name));
+        let text = table.to_text(&labels).expect("a text");
+        let (read, known) = Table::from_text(&text).expect("a table");
+        assert_eq!((&read, &known), (&table, &labels), "{name}");
+        for q in points(&table, 50) {
+            let [own, again] = [&table, &read].map(|t| of_table(t, &exact, q));
+            let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&own), bits(&again), "{name} at {q}");
+        }
+        assert_eq!(read.to_text(&known).expect("a text"), text, "{name}");
+    }
+}
+
+/// Every byte that is altered and every end that is missing is noticed, and nothing panics.
+#[test]
+fn a_damaged_table_is_refused() {
+    let exact = case("slider-crank");
+    let table = Table::new(&exact, 1e-3, Extent::Whole).expect("a table");
+    let labels = labels(&exact, &scene("slider-crank"));
+    let text = table.to_text(&labels).expect("a text");
+    let refused = |text: &str| Table::from_text(text).expect_err("a damaged table");
+    for end in 0..text.len() {
+        assert!(text.is_ascii());
+        refused(&text[..end]);
+        let mut altered = text.clone().into_bytes();
+        altered[end] ^= 1;
+        refused(std::str::from_utf8(&altered).expect("ascii"));
+    }
+    assert_eq!(refused(""), FileError::NoTable);
+    assert_eq!(refused("table = 1\n"), FileError::NoTable);
+    let later = text.replacen("dwell-table 1", "dwell-table 2", 1);
+    assert_eq!(
+        refused(&later),
+        FileError::Version {
+            found: "2".to_owned()
+        }
+    );
+    let cut = &text[..text.len() / 2];
+    assert_eq!(refused(cut), FileError::Truncated);
+    assert_eq!(refused(&text.replacen("rad", "raD", 1)), FileError::Altered);
+    let mut odd = labels.clone();
+    odd.reactions[0] = "two\nlines".to_owned();
+    assert!(matches!(table.to_text(&odd), Err(FileError::Labels { .. })));
+    odd.reactions.clear();
+    assert!(matches!(table.to_text(&odd), Err(FileError::Labels { .. })));
+}
+
+/// Outside there is an error and no value; whole turns are taken off to the last digits of q.
+#[test]
+fn a_table_reaches_as_far_as_it_says() {
+    let exact = case("class-three-six-bar");
+    let table = table("class-three-six-bar", &exact);
+    let [from, to] = table.extent();
+    let (lowest, highest) = exact.range().limits().expect("limits");
+    assert!(lowest < from && to < highest && to - from > 0.9 * (highest - lowest));
+    assert_eq!(table.range(), Range::Followed(from, to));
+    for q in [from, to, 0.5 * (from + to)] {
+        assert!(table.inertia(q, &mut ()).is_ok(), "{q}");
+    }
+    for q in [from - 1e-6, to + 1e-6, 100.0, -1e300, f64::INFINITY] {
+        let found = table.inertia(q, &mut ());
+        assert!(
+            matches!(
+                found,
+                Err(PlaceError::OutOfRange { .. } | PlaceError::NotFinite { .. })
+            ),
+            "{q}"
+        );
+    }
+    let inner = Table::new(&exact, 1e-9, Extent::Between(0.0, 1.0)).expect("a table");
+    assert_eq!(inner.extent(), [0.0, 1.0]);
+    assert!(inner.cells()[0] < table.cells()[0] / 4);
+
+    let exact = case("crank-rocker");
+    let table = self::table("crank-rocker", &exact);
+    assert_eq!((table.range(), table.turns()), (Range::Full, Some(1)));
+    let mut work = exact.work();
+    for q in [-1e-300, -0.1, 6.283_185_307_179_587, -7.0, 1e3, -1e5, 6.5e6] {
+        let own = table.inertia(q, &mut ()).expect("a turn");
+        let truth = exact.inertia(q, &mut work).expect("a pose");
+        // The exact model takes sines of q: its turns are exact. Three roundings of the table's part.
+        let scale = table.bounds()[1].scale;
+        assert!(
+            (own.1 - truth.1).abs() < 2e-12 * scale,
+            "{q}: {own:?} {truth:?}"
+        );
+    }
+    for q in [f64::NAN, f64::INFINITY, 1e8] {
+        assert!(table.inertia(q, &mut ()).is_err(), "{q}");
+    }
+}
+
+#[test]
+fn what_cannot_be_tabulated_says_why() {
+    let exact = case("crank-rocker");
+    for accuracy in [0.0, -1e-9, f64::NAN, 1e-15, 1.0] {
+        let found = Table::new(&exact, accuracy, Extent::Whole);
+        assert!(
+            matches!(found, Err(TableError::Accuracy { .. })),
+            "{accuracy}"
+        );
+    }
+    for (from, to) in [
+        (1.0, 1.0),
+        (2.0, 1.0),
+        (f64::NAN, 1.0),
+        (0.0, f64::INFINITY),
+    ] {
+        let found = Table::new(&exact, 1e-6, Extent::Between(from, to));
+        assert!(
+            matches!(found, Err(TableError::Extent { .. })),
+            "{from} {to}"
+        );
+    }
+    let exact = case("class-three-six-bar");
+    let found = Table::new(&exact, 1e-6, Extent::Between(0.0, 4.0));
+    assert!(matches!(found, Err(TableError::Extent { .. })));
+    let found = Table::new(&case("planetary"), 1e-6, Extent::Whole);
+    assert_eq!(found, Err(TableError::Endless));
+    // Next to its change points the exact ½m′ has nine digits.
+    let found = Table::new(&case("parallelogram-three-cranks"), 1e-10, Extent::Whole);
+    assert!(
+        matches!(
+            found,
+            Err(TableError::NotReached {
+                what: Entry::HalfDm,
+                ..
+            })
+        ),
+        "{found:?}"
+    );
+}
