@@ -2,6 +2,7 @@
 
 pub mod acts;
 pub mod balance;
+pub mod batch;
 mod bearing;
 mod channels;
 mod friction;
@@ -19,6 +20,7 @@ pub mod section;
 mod turns;
 
 pub use acts::{Act, By, LoadError, LoadState};
+pub use batch::Batch;
 pub use balance::{PowerBalance, Shaking, Wrench};
 pub use kinetostatics::KinetostaticsError;
 pub use ledger::Ledger;
