@@ -64,7 +64,10 @@ impl<const N: usize> Scalar for Lanes<N> {
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         let both = self.0.map(f64::sin_cos);
-        (Self(both.map(|(sin, _)| sin)), Self(both.map(|(_, cos)| cos)))
+        (
+            Self(both.map(|(sin, _)| sin)),
+            Self(both.map(|(_, cos)| cos)),
+        )
     }
 
     #[inline]

@@ -53,8 +53,8 @@ impl Plan {
         self.place_from(q, pose, Guess::Seed)
     }
 
-    /// [`Plan::place`], [`Plan::speeds`] and [`Plan::accelerations`] in one pass over the groups: while a
-    /// group waits for its root, the one before it moves.
+    /// [`Plan::place`], [`Plan::speeds`] and [`Plan::accelerations`] in one pass over the groups: while
+    /// a group waits for its root, the one before it moves.
     ///
     /// # Errors
     /// [`PlaceError`] as [`Plan::place`]; the motion is then undefined.
@@ -211,7 +211,8 @@ impl Plan {
         self.place_steps(steps, pose, guess, |_, _| {})
     }
 
-    /// Does some steps, and something more with each group that is placed.
+    /// Does some steps, and something more with each group as soon as it and all its arms are placed: behind
+    /// the next group.
     #[inline(always)]
     fn place_steps<T: Scalar>(
         &self,
@@ -220,6 +221,7 @@ impl Plan {
         guess: Guess,
         mut placed: impl FnMut(usize, &Pose<T>),
     ) -> Result<(), PlaceError> {
+        let mut last = None;
         for step in steps {
             match step {
                 Step::Slide(slide, actuator) => pose.slide[*slide] = pose.q[*actuator],
@@ -236,9 +238,14 @@ impl Plan {
                     if self.groups[*g].counts {
                         self.count(*g, pose, guess)?;
                     }
-                    placed(*g, pose);
+                    if let Some(before) = last.replace(*g) {
+                        placed(before, pose);
+                    }
                 }
             }
+        }
+        if let Some(last) = last {
+            placed(last, pose);
         }
         Ok(())
     }
@@ -445,7 +452,14 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
         let kappa = -still.dot(local);
         let square = known.dot(known);
         let missing = || kappa.value().abs() - square.value().sqrt();
-        let reach = branch * root(square - kappa * kappa, |l| square.lane(l), group, q, missing)?;
+        let reach = branch
+            * root(
+                square - kappa * kappa,
+                |l| square.lane(l),
+                group,
+                q,
+                missing,
+            )?;
         let turned = (known * kappa + known.perp() * reach) * (T::lift(1.0) / square);
         // axis·D = reach.
         pose.travel[aim.closure] = reach + local.cross(still);
@@ -463,7 +477,14 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
         let kappa = -normal.dot(known);
         let square = length * length;
         let missing = || kappa.value().abs() - length.value();
-        let reach = branch * root(square - kappa * kappa, |l| square.lane(l), group, q, missing)?;
+        let reach = branch
+            * root(
+                square - kappa * kappa,
+                |l| square.lane(l),
+                group,
+                q,
+                missing,
+            )?;
         let arm = normal * kappa - along * reach;
         pose.travel[aim.closure] = along.dot(known) - reach;
         pose.arm[aim.found] = arm;

@@ -30,7 +30,10 @@ fn main() {
         agree(trio, &golden);
     }
     println!("m, m'/2, one reaction pair: ns a pose, of which the least; ratio to the hand");
-    println!("{:16}{:>8}{:>16}{:>16}", "", "by hand", "one by one", "in batches");
+    println!(
+        "{:16}{:>8}{:>16}{:>16}",
+        "", "by hand", "one by one", "in batches"
+    );
     for trio in &trios {
         let mut by_hand = vec![[0.0; 4]; golden.len()];
         let mut batch = Batch::default();
@@ -147,6 +150,10 @@ fn agree(trio: &Trio, q: &[f64]) {
     }
     for (name, k) in [("m", 0), ("m'/2", 1), ("a", 2), ("b", 3)] {
         let scaled = apart[k] / largest[k];
-        assert!(scaled < 1e-12, "{}: {name} differs by {scaled:e} of its largest", trio.name);
+        assert!(
+            scaled < 1e-12,
+            "{}: {name} differs by {scaled:e} of its largest",
+            trio.name
+        );
     }
 }

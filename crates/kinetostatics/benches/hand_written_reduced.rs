@@ -94,7 +94,8 @@ impl FourBar {
         let about_d = three.inertia + three.mass * dot(three.center, three.center);
         let r = turned(two.center, [u[0] / coupler, u[1] / coupler]);
         let [v2, a2] = rates([[-by, bx], [-bx, -by]], r, beta, beta2);
-        let m = fixed + two.mass * dot(v2, v2) + two.inertia * beta * beta + about_d * gamma * gamma;
+        let m =
+            fixed + two.mass * dot(v2, v2) + two.inertia * beta * beta + about_d * gamma * gamma;
         let half = two.mass * dot(v2, a2) + two.inertia * beta * beta2 + about_d * gamma * gamma2;
 
         let force = |v2: [f64; 2], beta: f64, gamma: f64| {
@@ -141,4 +142,3 @@ impl SliderCrank {
         [m, half, normal(v2, beta, x1), normal(a2, beta2, x2)]
     }
 }
-

@@ -20,8 +20,8 @@ pub mod section;
 mod turns;
 
 pub use acts::{Act, By, LoadError, LoadState};
-pub use batch::Batch;
 pub use balance::{PowerBalance, Shaking, Wrench};
+pub use batch::Batch;
 pub use kinetostatics::KinetostaticsError;
 pub use ledger::Ledger;
 pub use load::{Friction, Guide, Load, LoadKind, Magnitude, Signal};

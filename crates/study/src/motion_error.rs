@@ -266,7 +266,10 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
             "start within the range; `dwell check` shows it",
         ),
         PlaceError::Apart { q } => (
-            format!("the poses from {phi} = {} {unit} on must be evaluated one by one", number(q)),
+            format!(
+                "the poses from {phi} = {} {unit} on must be evaluated one by one",
+                number(q)
+            ),
             "evaluate this mechanism in plain numbers",
         ),
         PlaceError::NotFinite { q } => (

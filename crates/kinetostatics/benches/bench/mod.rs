@@ -28,7 +28,11 @@ pub(crate) struct Subject<'a> {
 impl<'a> Subject<'a> {
     /// Evaluates at `q` over the turn, or from the start a little to both sides of it where a
     /// mechanism does not turn fully.
-    pub(crate) fn new(name: impl Into<String>, (from, width): (f64, f64), mut at: impl FnMut(f64) + 'a) -> Self {
+    pub(crate) fn new(
+        name: impl Into<String>,
+        (from, width): (f64, f64),
+        mut at: impl FnMut(f64) + 'a,
+    ) -> Self {
         let mut phase = 0.1;
         let evaluate = Box::new(move || {
             for _ in 0..EVALUATIONS {
@@ -101,4 +105,3 @@ pub(crate) fn reactions(scene: &Scene, name: &str) -> Vec<Reaction> {
     assert_eq!(found.len(), 1, "{name}");
     found
 }
-
