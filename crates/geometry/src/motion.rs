@@ -71,96 +71,62 @@ impl Plan {
 
     /// Velocities for the actuators' speeds `q_dot` (rad/s).
     pub fn speeds<T: Scalar>(&self, pose: &Pose<T>, q_dot: &[T], motion: &mut Motion<T>) {
-        self.drive_speeds(q_dot, motion);
-        for (group, assur) in self.groups.iter().enumerate() {
-            if !assur.skipped {
-                self.group_speeds(group, pose, q_dot, motion);
-            }
-        }
-    }
-
-    /// What the actuators drive themselves.
-    #[inline]
-    pub(crate) fn drive_speeds<T: Scalar>(&self, q_dot: &[T], motion: &mut Motion<T>) {
         propagate(&self.driven, q_dot, &mut motion.turn);
         self.drive_slides(q_dot, &mut motion.slide);
-    }
-
-    #[inline]
-    pub(crate) fn group_speeds<T: Scalar>(
-        &self,
-        group: usize,
-        pose: &Pose<T>,
-        q_dot: &[T],
-        motion: &mut Motion<T>,
-    ) {
-        let (assur, inverse) = (&self.groups[group], pose.inverse[group]);
-        match &assur.kind {
-            Kind::Pin(pin) => {
-                let rate = arms_rate(&pin.known, pose, motion);
-                let [r1, r2] = pin.arms.map(|a| pose.arm[a]);
-                motion.turn[pin.frames[0]] = -(rate.dot(r2) * inverse);
-                motion.turn[pin.frames[1]] = rate.dot(r1) * inverse;
+        for (assur, &inverse) in self.groups.iter().zip(&pose.inverse) {
+            if assur.skipped {
+                continue;
             }
-            Kind::Aim(aim) => {
-                motion.turn[aim.frame] = T::lift(0.0);
-                let rate = arms_rate(&aim.arms, pose, motion);
-                let rate = row_rate(rate, aim.axis, pose.travel[aim.closure], pose, motion);
-                motion.turn[aim.frame] = -(rate * inverse);
+            match &assur.kind {
+                Kind::Pin(pin) => {
+                    let rate = arms_rate(&pin.known, pose, motion);
+                    let [r1, r2] = pin.arms.map(|a| pose.arm[a]);
+                    motion.turn[pin.frames[0]] = -(rate.dot(r2) * inverse);
+                    motion.turn[pin.frames[1]] = rate.dot(r1) * inverse;
+                }
+                Kind::Aim(aim) => {
+                    motion.turn[aim.frame] = T::lift(0.0);
+                    let rate = arms_rate(&aim.arms, pose, motion);
+                    let rate = row_rate(rate, aim.axis, pose.travel[aim.closure], pose, motion);
+                    motion.turn[aim.frame] = -(rate * inverse);
+                }
+                Kind::Solved(solved) => self.solved_speeds(assur, solved, pose, q_dot, motion),
             }
-            Kind::Solved(solved) => self.solved_speeds(assur, solved, pose, q_dot, motion),
+            propagate(&assur.driven, q_dot, &mut motion.turn);
         }
-        propagate(&assur.driven, q_dot, &mut motion.turn);
     }
 
     /// Accelerations for the actuators' accelerations `q_ddot` (rad/s²), at the velocities that
     /// [`Plan::speeds`] left in `motion`.
     pub fn accelerations<T: Scalar>(&self, pose: &Pose<T>, q_ddot: &[T], motion: &mut Motion<T>) {
-        self.drive_accelerations(q_ddot, motion);
-        for (group, assur) in self.groups.iter().enumerate() {
-            if !assur.skipped {
-                self.group_accelerations(group, pose, q_ddot, motion);
-            }
-        }
-    }
-
-    /// What the actuators drive themselves.
-    #[inline]
-    pub(crate) fn drive_accelerations<T: Scalar>(&self, q_ddot: &[T], motion: &mut Motion<T>) {
         propagate(&self.driven, q_ddot, &mut motion.turn_rate);
         self.drive_slides(q_ddot, &mut motion.slide_rate);
-    }
-
-    #[inline]
-    pub(crate) fn group_accelerations<T: Scalar>(
-        &self,
-        group: usize,
-        pose: &Pose<T>,
-        q_ddot: &[T],
-        motion: &mut Motion<T>,
-    ) {
-        let (assur, inverse) = (&self.groups[group], pose.inverse[group]);
-        match &assur.kind {
-            Kind::Pin(pin) => {
-                let (_, known) = arms_rates(&pin.known, pose, motion);
-                let [r1, r2] = pin.arms.map(|a| pose.arm[a]);
-                let [w1, w2] = pin.frames.map(|f| motion.turn[f]);
-                let rest = known - (r1 * (w1 * w1) + r2 * (w2 * w2));
-                motion.turn_rate[pin.frames[0]] = -(rest.dot(r2) * inverse);
-                motion.turn_rate[pin.frames[1]] = rest.dot(r1) * inverse;
+        for (assur, &inverse) in self.groups.iter().zip(&pose.inverse) {
+            if assur.skipped {
+                continue;
             }
-            Kind::Aim(aim) => {
-                motion.turn_rate[aim.frame] = T::lift(0.0);
-                let rates = arms_rates(&aim.arms, pose, motion);
-                let travel = pose.travel[aim.closure];
-                let rate = row_acceleration(rates, aim.axis, travel, pose, motion);
-                motion.turn_rate[aim.frame] = -(rate * inverse);
+            match &assur.kind {
+                Kind::Pin(pin) => {
+                    let (_, known) = arms_rates(&pin.known, pose, motion);
+                    let [r1, r2] = pin.arms.map(|a| pose.arm[a]);
+                    let [w1, w2] = pin.frames.map(|f| motion.turn[f]);
+                    let rest = known - (r1 * (w1 * w1) + r2 * (w2 * w2));
+                    motion.turn_rate[pin.frames[0]] = -(rest.dot(r2) * inverse);
+                    motion.turn_rate[pin.frames[1]] = rest.dot(r1) * inverse;
+                }
+                Kind::Aim(aim) => {
+                    motion.turn_rate[aim.frame] = T::lift(0.0);
+                    let rates = arms_rates(&aim.arms, pose, motion);
+                    let travel = pose.travel[aim.closure];
+                    let rate = row_acceleration(rates, aim.axis, travel, pose, motion);
+                    motion.turn_rate[aim.frame] = -(rate * inverse);
+                }
+                Kind::Solved(solved) => {
+                    self.solved_accelerations(assur, solved, pose, q_ddot, motion);
+                }
             }
-            Kind::Solved(solved) => {
-                self.solved_accelerations(assur, solved, pose, q_ddot, motion);
-            }
+            propagate(&assur.driven, q_ddot, &mut motion.turn_rate);
         }
-        propagate(&assur.driven, q_ddot, &mut motion.turn_rate);
     }
 
     /// The loops' multipliers for given moments on the frames and forces along the slides, by

@@ -3,7 +3,6 @@
 use crate::error::PlaceError;
 use crate::groups::Unknown;
 use crate::large::LARGE;
-use crate::motion::Motion;
 use crate::plan::{Aim, Closure, Driven, How, Kind, Pin, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
 use crate::scalar::{Scalar, agreed};
@@ -46,49 +45,6 @@ impl Plan {
     /// # Errors
     /// [`PlaceError`] when a group cannot close there, is singular, or `q` is out of range.
     pub fn place<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
-        self.within(q)?;
-        if self.goes_along() {
-            return self.place_along(q, pose);
-        }
-        self.place_from(q, pose, Guess::Seed)
-    }
-
-    /// [`Plan::place`], [`Plan::speeds`] and [`Plan::accelerations`] in one pass over the groups: while
-    /// a group waits for its root, the one before it moves.
-    ///
-    /// # Errors
-    /// [`PlaceError`] as [`Plan::place`]; the motion is then undefined.
-    pub fn place_moving<T: Scalar>(
-        &self,
-        q: &[T],
-        [q_dot, q_ddot]: [&[T]; 2],
-        pose: &mut Pose<T>,
-        motion: &mut Motion<T>,
-    ) -> Result<(), PlaceError> {
-        self.within(q)?;
-        if self.goes_along() {
-            self.place_along(q, pose)?;
-            self.speeds(pose, q_dot, motion);
-            self.accelerations(pose, q_ddot, motion);
-            return Ok(());
-        }
-        set(q, pose)?;
-        self.drive_speeds(q_dot, motion);
-        self.drive_accelerations(q_ddot, motion);
-        self.place_steps(&self.steps, pose, Guess::Seed, |group, pose| {
-            self.group_speeds(group, pose, q_dot, motion);
-            self.group_accelerations(group, pose, q_ddot, motion);
-        })
-    }
-
-    /// Whether a pose is found by following the way from the start.
-    fn goes_along(&self) -> bool {
-        self.actuators() > 1 && self.groups.iter().any(|g| g.remembers && !g.skipped)
-    }
-
-    /// That there may be a pose at `q`.
-    #[inline]
-    fn within<T: Scalar>(&self, q: &[T]) -> Result<(), PlaceError> {
         if T::LANES > 1 && !self.placed_in_lanes() {
             return Err(PlaceError::Apart { q: q[0].value() });
         }
@@ -99,7 +55,10 @@ impl Plan {
                 self.range.fold(q)?;
             }
         }
-        Ok(())
+        if self.actuators() > 1 && self.groups.iter().any(|g| g.remembers && !g.skipped) {
+            return self.place_along(q, pose);
+        }
+        self.place_from(q, pose, Guess::Seed)
     }
 
     /// Whether every group is placed by a closed form whose decisions can be asked of every lane: no steps
@@ -175,7 +134,14 @@ impl Plan {
         pose: &mut Pose<T>,
         guess: Guess,
     ) -> Result<(), PlaceError> {
-        set(q, pose)?;
+        for (own, &value) in pose.q.iter_mut().zip(q) {
+            for q in (0..T::LANES).map(|lane| value.lane(lane)) {
+                if !q.is_finite() {
+                    return Err(PlaceError::NotFinite { q });
+                }
+            }
+            *own = value;
+        }
         self.place_from_here(&self.steps, pose, guess)
     }
 
@@ -208,20 +174,6 @@ impl Plan {
         pose: &mut Pose<T>,
         guess: Guess,
     ) -> Result<(), PlaceError> {
-        self.place_steps(steps, pose, guess, |_, _| {})
-    }
-
-    /// Does some steps, and something more with each group as soon as it and all its arms are placed: behind
-    /// the next group.
-    #[inline(always)]
-    fn place_steps<T: Scalar>(
-        &self,
-        steps: &[Step],
-        pose: &mut Pose<T>,
-        guess: Guess,
-        mut placed: impl FnMut(usize, &Pose<T>),
-    ) -> Result<(), PlaceError> {
-        let mut last = None;
         for step in steps {
             match step {
                 Step::Slide(slide, actuator) => pose.slide[*slide] = pose.q[*actuator],
@@ -238,14 +190,8 @@ impl Plan {
                     if self.groups[*g].counts {
                         self.count(*g, pose, guess)?;
                     }
-                    if let Some(before) = last.replace(*g) {
-                        placed(before, pose);
-                    }
                 }
             }
-        }
-        if let Some(last) = last {
-            placed(last, pose);
         }
         Ok(())
     }
@@ -332,20 +278,6 @@ impl Plan {
     fn ground_root(&self) -> Vec2 {
         self.tree.roots[self.lowered.ground]
     }
-}
-
-/// Notes the coordinates.
-#[inline]
-fn set<T: Scalar>(q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
-    for (own, &value) in pose.q.iter_mut().zip(q) {
-        for q in (0..T::LANES).map(|lane| value.lane(lane)) {
-            if !q.is_finite() {
-                return Err(PlaceError::NotFinite { q });
-            }
-        }
-        *own = value;
-    }
-    Ok(())
 }
 
 /// Turns a frame by its actuator's coordinate.

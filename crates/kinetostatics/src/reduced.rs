@@ -122,8 +122,9 @@ impl Model {
             pose, motion, unit, ..
         } = work;
         let (zero, one) = (T::lift(0.0), T::lift(1.0));
-        self.plan()
-            .place_moving(&[q], [&[one], &[zero]], pose, motion)?;
+        self.plan().place(&[q], pose)?;
+        self.plan().speeds(pose, &[one], motion);
+        self.plan().accelerations(pose, &[zero], motion);
         unit.evaluate(self, pose, Unit(motion));
         [out.half_dm, out.m] = unit.tau(self, 0);
         for (k, (a, b)) in out.a.iter_mut().zip(&mut out.b).enumerate() {
