@@ -6,6 +6,7 @@
     reason = "tests, of which clippy knows only the functions with the attribute"
 )]
 
+mod batches;
 mod branches;
 mod cases;
 mod cases_states;

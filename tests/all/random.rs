@@ -5,8 +5,9 @@ mod formulas;
 mod grow;
 mod standing;
 
+use crate::batches::alike;
 use dwell_geometry::{BodyId, JointKind, Vec2};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Model, ModelError};
+use dwell_kinetostatics::{Exact, Load, LoadKind, Magnitude, Model, ModelError};
 use dwell_verify::{State, judge_states, load_acts, rank};
 use grow::{Step, step};
 use proptest::prelude::*;
@@ -295,6 +296,7 @@ fn judge(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
     }
     dense(one, &said, condition, tally)?;
     repeated(one, &standing, &views[0], &steps, &said)?;
+    batched(one, &steps)?;
     let [mine, others] =
         [(one, &said, &views[0]), (two, &other, &views[1])].map(|(made, said, view)| {
             let acts = said
@@ -366,6 +368,17 @@ fn repeated(
         }
     }
     Ok(())
+}
+
+/// The reduced model at several coordinates side by side, against each alone.
+fn batched(made: &Made, steps: &[Vec<f64>]) -> Result<(), String> {
+    let Some(exact) = Exact::new(made.model.clone()) else {
+        return Ok(());
+    };
+    let start = made.described.start.q[0];
+    let q: Vec<f64> = steps.iter().map(|step| start + step[0]).collect();
+    let q: Vec<f64> = q.iter().copied().cycle().take(9).collect();
+    alike(&exact, &q).map(|_| ())
 }
 
 /// Against the dense equations.

@@ -199,7 +199,8 @@ impl Plan {
             }
             PlaceError::OtherBranch { .. }
             | PlaceError::OutOfRange { .. }
-            | PlaceError::NotFinite { .. } => AssemblyError::CannotClose {
+            | PlaceError::NotFinite { .. }
+            | PlaceError::Apart { .. } => AssemblyError::CannotClose {
                 bodies,
                 joints,
                 gap: f64::NAN,

@@ -56,7 +56,7 @@ impl Plan {
                 let square = radius.dot(radius);
                 let missing = || off.value().abs() - square.value().sqrt();
                 let q = pose.q[0].value();
-                let size = square.value().max(off.value() * off.value());
+                let size = |l| square.lane(l).max(off.lane(l) * off.lane(l));
                 let reach = branch * root(square - off * off, size, group, q, missing)?;
                 let travel = reach - from.dot(along);
                 pose.slide[slide] = travel;
@@ -85,7 +85,7 @@ impl Plan {
                 };
                 let missing = || kappa.value().abs() - square.value().sqrt();
                 let q = pose.q[0].value();
-                let size = square.value().max(kappa.value() * kappa.value());
+                let size = |l| square.lane(l).max(kappa.lane(l) * kappa.lane(l));
                 let reach = branch * root(square - kappa * kappa, size, group, q, missing)?;
                 pose.turn[self.root_of(class)] = if line_turns {
                     turned(normal, known * kappa + known.perp() * reach)
@@ -191,7 +191,7 @@ fn triangle<T: Scalar>(
         (distance - sum.value()).max(gap.value().abs() - distance)
     };
     let q = pose.q[0].value();
-    let size = square.value() * square.value();
+    let size = |lane| square.lane(lane) * square.lane(lane);
     let reach = root(rest, size, group, q, missing)? * half * branch;
     let across = known.perp() * reach;
     let excess = -(gap * sum);

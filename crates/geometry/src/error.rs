@@ -159,6 +159,13 @@ pub enum PlaceError {
         /// The coordinate.
         q: f64,
     },
+    /// Poses side by side were asked for ([`Lanes`](crate::Lanes)) of a mechanism whose groups go different
+    /// ways at different coordinates: each is to be evaluated alone.
+    #[error("the poses at q = {q} and beside it can only be evaluated one by one")]
+    Apart {
+        /// The first of the coordinates.
+        q: f64,
+    },
 }
 
 impl PlaceError {
@@ -169,7 +176,7 @@ impl PlaceError {
             | Self::Singular { group, .. }
             | Self::OtherBranch { group, .. }
             | Self::NotClosed { group, .. } => Some(group),
-            Self::OutOfRange { .. } | Self::NotFinite { .. } => None,
+            Self::OutOfRange { .. } | Self::NotFinite { .. } | Self::Apart { .. } => None,
         }
     }
 }

@@ -14,13 +14,9 @@ pub(crate) const LARGE: usize = 40;
 /// layout as [`small::factor`](crate::small::factor) leaves.
 pub(crate) fn factor(a: &mut [f64], pivots: &mut [usize]) -> Factored {
     let n = pivots.len();
-    let singular = Factored {
-        sign: 0.0,
-        measure: 0.0,
-    };
     // faer divides by a zero pivot and knows no NaN.
     if !a.iter().all(|v| v.is_finite()) {
-        return singular;
+        return Factored::NONE;
     }
     let (mut order, mut inverse) = (vec![0_usize; n], vec![0_usize; n]);
     // Sequential: another crate of the program turns faer's threads on.
@@ -55,7 +51,7 @@ pub(crate) fn factor(a: &mut [f64], pivots: &mut [usize]) -> Factored {
     for k in 0..n {
         let pivot = a[k * n + k];
         if !pivot.is_finite() {
-            return singular;
+            return Factored::NONE;
         }
         factored.sign *= if pivot == 0.0 { 0.0 } else { pivot.signum() };
         least = least.min(pivot.abs());

@@ -5,6 +5,7 @@ mod construct;
 pub mod error;
 pub mod frames;
 pub mod groups;
+mod lanes;
 mod large;
 mod locate;
 pub mod lower;
@@ -30,6 +31,7 @@ mod ways;
 pub mod wide;
 
 pub use error::{AssemblyError, PlaceError, StructureError};
+pub use lanes::Lanes;
 pub use mechanism::{
     Actuator, ActuatorId, Body, BodyId, Component, Coordinate, Drive, Joint, JointId, JointKind,
     Mechanism, Reaction, Relation, Told,

@@ -2,9 +2,10 @@
 
 use crate::error::PlaceError;
 use crate::groups::Unknown;
+use crate::large::LARGE;
 use crate::plan::{Aim, Closure, Driven, How, Kind, Pin, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, agreed};
 use crate::tree::Arm;
 use std::f64::consts::TAU;
 
@@ -44,14 +45,35 @@ impl Plan {
     /// # Errors
     /// [`PlaceError`] when a group cannot close there, is singular, or `q` is out of range.
     pub fn place<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
+        if T::LANES > 1 && !self.placed_in_lanes() {
+            return Err(PlaceError::Apart { q: q[0].value() });
+        }
         // Outside its range a closed form may close again, but on a branch that cannot be reached.
-        if self.range.limits().is_some() && q[0].value().is_finite() {
-            self.range.fold(q[0].value())?;
+        if self.range.limits().is_some() {
+            let lanes = (0..T::LANES).map(|lane| q[0].lane(lane));
+            for q in lanes.filter(|q| q.is_finite()) {
+                self.range.fold(q)?;
+            }
         }
         if self.actuators() > 1 && self.groups.iter().any(|g| g.remembers && !g.skipped) {
             return self.place_along(q, pose);
         }
         self.place_from(q, pose, Guess::Seed)
+    }
+
+    /// Whether every group is placed by a closed form whose decisions can be asked of every lane: no steps
+    /// until something has converged, no counted turns, no law of a value.
+    pub fn placed_in_lanes(&self) -> bool {
+        self.groups.iter().filter(|g| !g.skipped).all(|assur| {
+            let straight = match &assur.kind {
+                Kind::Pin(_) | Kind::Aim(_) => true,
+                Kind::Solved(solved) => {
+                    solved.how != How::Newton && !solved.tall() && solved.columns < LARGE
+                }
+            };
+            let of = &assur.group.relations;
+            straight && !assur.counts && of.iter().all(|&r| self.relations[r].law.is_none())
+        })
     }
 
     /// Follows the straight way from the start to `q`: with several actuators there is no row of
@@ -113,8 +135,10 @@ impl Plan {
         guess: Guess,
     ) -> Result<(), PlaceError> {
         for (own, &value) in pose.q.iter_mut().zip(q) {
-            if !value.value().is_finite() {
-                return Err(PlaceError::NotFinite { q: value.value() });
+            for q in (0..T::LANES).map(|lane| value.lane(lane)) {
+                if !q.is_finite() {
+                    return Err(PlaceError::NotFinite { q });
+                }
             }
             *own = value;
         }
@@ -303,7 +327,7 @@ fn place_pin<T: Scalar>(
     let square = known.dot(known);
     // (2 × area)² by factors that keep their digits near a stretched or folded triangle.
     let rest = (sum2 - square) * (square - gap2);
-    let size = square.value() * square.value();
+    let size = |lane| square.lane(lane) * square.lane(lane);
     let q = pose.q[0].value();
     let missing = || {
         let distance = square.value().sqrt();
@@ -360,7 +384,14 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
         let kappa = -still.dot(local);
         let square = known.dot(known);
         let missing = || kappa.value().abs() - square.value().sqrt();
-        let reach = branch * root(square - kappa * kappa, square.value(), group, q, missing)?;
+        let reach = branch
+            * root(
+                square - kappa * kappa,
+                |l| square.lane(l),
+                group,
+                q,
+                missing,
+            )?;
         let turned = (known * kappa + known.perp() * reach) * (T::lift(1.0) / square);
         // axis·D = reach.
         pose.travel[aim.closure] = reach + local.cross(still);
@@ -378,7 +409,14 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
         let kappa = -normal.dot(known);
         let square = length * length;
         let missing = || kappa.value().abs() - length.value();
-        let reach = branch * root(square - kappa * kappa, square.value(), group, q, missing)?;
+        let reach = branch
+            * root(
+                square - kappa * kappa,
+                |l| square.lane(l),
+                group,
+                q,
+                missing,
+            )?;
         let arm = normal * kappa - along * reach;
         pose.travel[aim.closure] = along.dot(known) - reach;
         pose.arm[aim.found] = arm;
@@ -389,19 +427,31 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
     Ok(())
 }
 
-/// Square root of what is left of a length, or the error that says how much is missing, m.
+/// Square root of what is left of a length, or the error that says how much is missing, m. The `size` it is
+/// small against is asked lane by lane.
+#[inline]
 pub(crate) fn root<T: Scalar>(
     rest: T,
+    size: impl Fn(usize) -> f64,
+    group: usize,
+    q: f64,
+    missing: impl Fn() -> f64,
+) -> Result<T, PlaceError> {
+    let least = singular::<T>();
+    if agreed::<T>(|lane| rest.lane(lane) > least * least * size(lane)) == Some(true) {
+        return Ok(rest.sqrt());
+    }
+    no_root(rest.value(), size(0), group, q, missing)
+}
+
+#[cold]
+fn no_root<T>(
+    value: f64,
     size: f64,
     group: usize,
     q: f64,
     missing: impl Fn() -> f64,
 ) -> Result<T, PlaceError> {
-    let value = rest.value();
-    let least = singular::<T>();
-    if value > least * least * size {
-        return Ok(rest.sqrt());
-    }
     if value.is_nan() {
         return Err(PlaceError::NotFinite { q });
     }

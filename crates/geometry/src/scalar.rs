@@ -29,6 +29,13 @@ pub trait Scalar:
     fn lift(value: f64) -> Self;
     /// The value alone, on which every decision (pivot, convergence, limit) is made.
     fn value(self) -> f64;
+    /// How many numbers such a one holds side by side.
+    const LANES: usize = 1;
+    /// The value in one of them.
+    #[inline]
+    fn lane(self, _lane: usize) -> f64 {
+        self.value()
+    }
     /// Square root.
     fn sqrt(self) -> Self;
     /// Sine and cosine together.
@@ -47,6 +54,16 @@ pub trait Scalar:
     /// A function of this number, from its value and first three derivatives at
     /// [`value`](Self::value).
     fn through(self, derivatives: &[f64; 4]) -> Self;
+}
+
+/// What a test of each lane says; none where lanes disagree. A decision that must be the same for all
+/// numbers side by side is made by this: where it is not, each of them goes its way alone.
+#[inline]
+pub(crate) fn agreed<T: Scalar>(test: impl Fn(usize) -> bool) -> Option<bool> {
+    let first = test(0);
+    (1..T::LANES)
+        .all(|lane| test(lane) == first)
+        .then_some(first)
 }
 
 impl Scalar for f64 {

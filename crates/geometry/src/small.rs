@@ -1,15 +1,23 @@
 //! Elimination with partial pivoting for a few unknowns, in any kind of number.
 
 use crate::large;
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, agreed};
 
 /// Outcome of a factorisation, on which the caller judges singularity and branch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factored {
     /// Sign of the determinant, +1, −1 or 0.
     pub sign: f64,
-    /// Smallest pivot over the largest.
+    /// Smallest pivot over the largest, of all lanes.
     pub measure: f64,
+}
+
+impl Factored {
+    /// Of what cannot be factored: a singular matrix, or lanes that need different exchanges.
+    pub(crate) const NONE: Self = Self {
+        sign: 0.0,
+        measure: 0.0,
+    };
 }
 
 /// Factors the row-major n×n matrix `a` in place, with the row exchanges in `pivots`.
@@ -30,8 +38,11 @@ pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> Factore
     for k in 0..n {
         let mut best = k;
         for i in k + 1..n {
-            if a[i * n + k].value().abs() > a[best * n + k].value().abs() {
-                best = i;
+            let (new, old) = (a[i * n + k], a[best * n + k]);
+            match agreed::<T>(|lane| new.lane(lane).abs() > old.lane(lane).abs()) {
+                Some(true) => best = i,
+                Some(false) => {}
+                None => return Factored::NONE,
             }
         }
         pivots[k] = best;
@@ -42,21 +53,25 @@ pub(crate) fn eliminate<T: Scalar>(a: &mut [T], pivots: &mut [usize]) -> Factore
             }
         }
         let pivot = a[k * n + k];
-        let size = pivot.value();
-        sign *= if size > 0.0 {
+        let Some(positive) = agreed::<T>(|lane| pivot.lane(lane) > 0.0) else {
+            return Factored::NONE;
+        };
+        sign *= if positive {
             1.0
-        } else if size < 0.0 {
+        } else if pivot.value() < 0.0 {
             -1.0
         } else {
             0.0
         };
-        // `min` would discard a NaN; a pivot that is no number must end as "singular".
-        least = if size.is_nan() {
-            0.0
-        } else {
-            least.min(size.abs())
-        };
-        most = most.max(size.abs());
+        for size in (0..T::LANES).map(|lane| pivot.lane(lane)) {
+            // `min` would discard a NaN; a pivot that is no number must end as "singular".
+            least = if size.is_nan() {
+                0.0
+            } else {
+                least.min(size.abs())
+            };
+            most = most.max(size.abs());
+        }
         for i in k + 1..n {
             let ratio = a[i * n + k] / pivot;
             a[i * n + k] = ratio;

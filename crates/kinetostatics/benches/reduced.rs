@@ -4,10 +4,12 @@
 //! coordinate every time (steps of the golden angle); the ratios are those of the fastest turns.
 //! The hand-written evaluators are first held against Dwell's values.
 
+mod bench;
 mod hand_written;
 mod hand_written_four_bar;
 mod hand_written_general;
 
+use bench::{Case, STEP, Subject, TURN, TURNS, reactions, stop};
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{Exact, Model, Reduced};
 use dwell_scene::Scene;
@@ -16,54 +18,6 @@ use hand_written_four_bar::{FourBar, SCENE, with_a_dyad};
 use hand_written_general::General;
 use std::f64::consts::TAU;
 use std::hint::black_box;
-use std::path::Path;
-use std::time::Instant;
-
-/// Evaluations in one turn of a subject: some tenths of a millisecond, so that a turn is often
-/// left alone by the rest of the machine.
-const EVALUATIONS: usize = 2000;
-/// Turns of each subject.
-const TURNS: usize = 400;
-/// Golden angle, rad: an irrational part of a turn.
-const STEP: f64 = TAU * 0.618_033_988_749_894_9;
-
-/// One row of the table.
-struct Subject<'a> {
-    name: &'static str,
-    evaluate: Box<dyn FnMut() + 'a>,
-    turns: Vec<f64>,
-}
-
-impl<'a> Subject<'a> {
-    /// Evaluates at `q` over the turn, or from the start a little to both sides of it where a
-    /// mechanism does not turn fully.
-    fn new(name: &'static str, (from, width): (f64, f64), mut at: impl FnMut(f64) + 'a) -> Self {
-        let mut phase = 0.1;
-        let evaluate = Box::new(move || {
-            for _ in 0..EVALUATIONS {
-                at(black_box(from + width * phase));
-                phase += STEP / TAU;
-                if phase >= 1.0 {
-                    phase -= 1.0;
-                }
-            }
-        });
-        Self {
-            name,
-            evaluate,
-            turns: Vec::with_capacity(TURNS),
-        }
-    }
-
-    fn take_turn(&mut self) {
-        let start = Instant::now();
-        (self.evaluate)();
-        let ns = start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64;
-        self.turns.push(ns);
-    }
-}
-
-const TURN: (f64, f64) = (0.0, TAU);
 
 fn main() {
     let dwell = Case::read("single-dwell");
@@ -213,51 +167,6 @@ fn print(subjects: &mut [Subject<'_>]) {
         let (own, any) = (least / hand, least / general);
         println!("{name:42}{median:7.1}  {least:7.1}{own:7.2}{any:8.2}");
     }
-}
-
-/// A validation case.
-struct Case {
-    scene: Scene,
-}
-
-impl Case {
-    fn read(name: &str) -> Self {
-        let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
-        let path = home.join(name).join("scene.toml");
-        match Scene::read(path) {
-            Ok(scene) => Self { scene },
-            Err(error) => stop(name, &error.to_string()),
-        }
-    }
-
-    fn model(&self, reactions: &[Reaction]) -> Exact {
-        let Scene {
-            mechanism, masses, ..
-        } = &self.scene;
-        let start = self.scene.assembly.to_start();
-        let model = Model::new(mechanism, masses, &start, reactions);
-        let exact = model.map(Exact::new).map_err(|e| e.to_string());
-        match exact {
-            Ok(Some(exact)) => exact,
-            Ok(None) => stop(&self.scene.name, "it has several actuators"),
-            Err(error) => stop(&self.scene.name, &error),
-        }
-    }
-}
-
-fn stop(case: &str, why: &str) -> ! {
-    eprintln!("{case}: {why}");
-    std::process::exit(1)
-}
-
-fn reactions(scene: &Scene, name: &str) -> Vec<Reaction> {
-    let mechanism = &scene.mechanism;
-    let all = mechanism.reactions().into_iter();
-    let found: Vec<_> = all
-        .filter(|&r| mechanism.reaction_name(r) == name)
-        .collect();
-    assert_eq!(found.len(), 1, "{name}");
-    found
 }
 
 fn coefficients<'a>(name: &'static str, range: (f64, f64), model: &'a Exact) -> Subject<'a> {

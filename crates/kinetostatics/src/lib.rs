@@ -2,6 +2,7 @@
 
 pub mod acts;
 pub mod balance;
+pub mod batch;
 mod bearing;
 mod channels;
 mod friction;
@@ -21,6 +22,7 @@ mod turns;
 
 pub use acts::{Act, By, LoadError, LoadState};
 pub use balance::{PowerBalance, Shaking, Wrench};
+pub use batch::Batch;
 pub use kinetostatics::KinetostaticsError;
 pub use ledger::Ledger;
 pub use load::{Friction, Guide, Load, LoadKind, Magnitude, Signal};

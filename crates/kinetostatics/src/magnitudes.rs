@@ -5,7 +5,7 @@ use crate::kinetostatics::{KinetostaticsError, Loaded};
 use crate::load::{Magnitude, Signal};
 use crate::model::{Model, Workspace};
 use dwell_geometry::measure::{BodyStates, Measured};
-use dwell_geometry::{Mechanism, Scalar};
+use dwell_geometry::{Mechanism, PlaceError, Scalar};
 use dwell_laws::Expression;
 
 /// What a magnitude depends on, ready to be measured.
@@ -35,6 +35,10 @@ impl Loads {
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
     ) -> Result<(), KinetostaticsError> {
+        if T::LANES > 1 && !self.loads.is_empty() {
+            // Laws, dry friction and slack springs decide by one value.
+            return Err(PlaceError::Apart { q: f64::NAN }.into());
+        }
         for (i, load) in self.loads.iter().enumerate() {
             if matches!(load.magnitude, Magnitude::Given(_)) {
                 continue;

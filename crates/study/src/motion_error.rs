@@ -265,6 +265,13 @@ pub(crate) fn explain_place(scene: &Scene, plan: &Plan, error: &PlaceError) -> S
             ),
             "start within the range; `dwell check` shows it",
         ),
+        PlaceError::Apart { q } => (
+            format!(
+                "the poses from {phi} = {} {unit} on must be evaluated one by one",
+                number(q)
+            ),
+            "evaluate this mechanism in plain numbers",
+        ),
         PlaceError::NotFinite { q } => (
             format!("{phi} = {q} {unit} is not a finite number"),
             "check the numbers of the motion",

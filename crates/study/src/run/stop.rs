@@ -185,7 +185,9 @@ impl Stop {
             PlaceError::OtherBranch { .. } => {
                 format!("{who} can be placed on another assembly branch only beyond")
             }
-            PlaceError::NotClosed { .. } => format!("{who} could not be placed beyond"),
+            PlaceError::NotClosed { .. } | PlaceError::Apart { .. } => {
+                format!("{who} could not be placed beyond")
+            }
             PlaceError::OutOfRange { .. } if group.is_some() => {
                 format!(
                     "{who} are in line there, at the end of the range, and cannot follow beyond"

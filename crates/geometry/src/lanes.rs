@@ -1,0 +1,145 @@
+//! Several plain numbers side by side: a plan evaluated in them gives as many poses at once.
+//!
+//! Every operation is done in each lane as it is done to a plain number, so each lane's results are those
+//! of the plain evaluation to the last bit. The compiler makes vector instructions of it.
+//!
+//! A decision must hold in all lanes alike. The closed forms ask every lane; where lanes disagree, or one of
+//! them errs, [`Plan::place`](crate::Plan::place) gives an error, and each coordinate is to be evaluated alone.
+//! Other groups are refused beforehand ([`PlaceError::Apart`](crate::PlaceError::Apart)).
+
+use crate::scalar::Scalar;
+use std::array;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// `N` plain numbers side by side.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lanes<const N: usize>(pub [f64; N]);
+
+impl<const N: usize> Default for Lanes<N> {
+    fn default() -> Self {
+        Self([0.0; N])
+    }
+}
+
+impl<const N: usize> Lanes<N> {
+    /// A function of each lane.
+    #[inline(always)]
+    fn each(self, of: impl Fn(f64) -> f64) -> Self {
+        Self(self.0.map(of))
+    }
+
+    /// A function of two numbers, lane by lane.
+    #[inline(always)]
+    fn both(self, other: Self, of: impl Fn(f64, f64) -> f64) -> Self {
+        Self(array::from_fn(|lane| of(self.0[lane], other.0[lane])))
+    }
+}
+
+impl<const N: usize> Scalar for Lanes<N> {
+    const DERIVES: bool = false;
+    const EPSILON: f64 = f64::EPSILON;
+    const LANES: usize = N;
+
+    #[inline(always)]
+    fn lift(value: f64) -> Self {
+        Self([value; N])
+    }
+
+    /// The first lane's.
+    #[inline(always)]
+    fn value(self) -> f64 {
+        self.0[0]
+    }
+
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.each(f64::sqrt)
+    }
+
+    #[inline]
+    fn sin_cos(self) -> (Self, Self) {
+        let both = self.0.map(f64::sin_cos);
+        (
+            Self(both.map(|(sin, _)| sin)),
+            Self(both.map(|(_, cos)| cos)),
+        )
+    }
+
+    #[inline]
+    fn atan2(self, other: Self) -> Self {
+        self.both(other, f64::atan2)
+    }
+
+    /// Derivatives at one value say nothing of the others: no group with a law is placed in lanes, and
+    /// what comes of it elsewhere is no number.
+    #[inline]
+    fn through(self, derivatives: &[f64; 4]) -> Self {
+        let first = self.0[0];
+        self.each(|value| {
+            if value == first {
+                derivatives[0]
+            } else {
+                f64::NAN
+            }
+        })
+    }
+}
+
+impl<const N: usize> Add for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, o: Self) -> Self {
+        self.both(o, |a, b| a + b)
+    }
+}
+
+impl<const N: usize> Sub for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, o: Self) -> Self {
+        self.both(o, |a, b| a - b)
+    }
+}
+
+impl<const N: usize> Mul for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, o: Self) -> Self {
+        self.both(o, |a, b| a * b)
+    }
+}
+
+impl<const N: usize> Div for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, o: Self) -> Self {
+        self.both(o, |a, b| a / b)
+    }
+}
+
+impl<const N: usize> Neg for Lanes<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.each(|a| -a)
+    }
+}
+
+impl<const N: usize> AddAssign for Lanes<N> {
+    #[inline(always)]
+    fn add_assign(&mut self, o: Self) {
+        *self = *self + o;
+    }
+}
+
+impl<const N: usize> SubAssign for Lanes<N> {
+    #[inline(always)]
+    fn sub_assign(&mut self, o: Self) {
+        *self = *self - o;
+    }
+}

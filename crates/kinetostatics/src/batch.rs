@@ -1,0 +1,173 @@
+//! The reduced model at many coordinates: several poses side by side in each thread, blocks of them on all
+//! threads. Every value is that of a single evaluation, to the last bit.
+
+use crate::model::{Model, Workspace};
+use crate::reduced::{Coefficients, Exact};
+use dwell_geometry::{Lanes, PlaceError};
+
+/// Poses side by side. (Two to a vector register of the plainest x86-64: four keep its units busy.)
+const LANES: usize = 4;
+/// Coordinates that one thread does at a time: the working memory it takes is small beside them.
+const BLOCK: usize = 1024;
+
+/// The coefficients at many coordinates, each kind in one piece.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Batch {
+    /// By coordinate: m, kg m².
+    pub m: Vec<f64>,
+    /// By coordinate: ½m′, kg m².
+    pub half_dm: Vec<f64>,
+    /// Those of all reactions at the first coordinate, then at the second: a, kg m or kg m².
+    pub a: Vec<f64>,
+    /// In the same order: b, kg m or kg m².
+    pub b: Vec<f64>,
+    /// Where there is no pose: the place of the coordinate, and why. The values there are no numbers.
+    pub errors: Vec<(usize, PlaceError)>,
+}
+
+/// A part of a batch to be filled; the place of its first coordinate.
+struct Part<'a> {
+    first: usize,
+    q: &'a [f64],
+    m: &'a mut [f64],
+    half_dm: &'a mut [f64],
+    a: &'a mut [f64],
+    b: &'a mut [f64],
+}
+
+impl<'a> Part<'a> {
+    fn split(self, at: usize, reactions: usize) -> [Self; 2] {
+        let (q0, q1) = self.q.split_at(at);
+        let (m0, m1) = self.m.split_at_mut(at);
+        let (half_dm0, half_dm1) = self.half_dm.split_at_mut(at);
+        let (a0, a1) = self.a.split_at_mut(at * reactions);
+        let (b0, b1) = self.b.split_at_mut(at * reactions);
+        let part = |first, q, m, half_dm, a, b| Self {
+            first,
+            q,
+            m,
+            half_dm,
+            a,
+            b,
+        };
+        [
+            part(self.first, q0, m0, half_dm0, a0, b0),
+            part(self.first + at, q1, m1, half_dm1, a1, b1),
+        ]
+    }
+}
+
+/// One thread's working memory: for several poses at once, and for one where they part.
+struct Both {
+    lanes: Workspace<Lanes<LANES>>,
+    several: Coefficients<Lanes<LANES>>,
+    plain: Workspace<f64>,
+    one: Coefficients,
+}
+
+impl Exact {
+    /// All coefficients at many coordinates `q` (rad or m), on all threads; `out` is made to fit, and keeps
+    /// its storage from one batch to the next. Where there is no pose, [`Batch::errors`] says so.
+    pub fn reduce_all(&self, q: &[f64], out: &mut Batch) {
+        self.model().reduce_all(q, out);
+    }
+}
+
+impl Model {
+    fn reduce_all(&self, q: &[f64], out: &mut Batch) {
+        let each = q.len() * self.reactions().len();
+        for (values, count) in [
+            (&mut out.m, q.len()),
+            (&mut out.half_dm, q.len()),
+            (&mut out.a, each),
+            (&mut out.b, each),
+        ] {
+            values.clear();
+            values.resize(count, f64::NAN);
+        }
+        out.errors = self.reduce_part(Part {
+            first: 0,
+            q,
+            m: &mut out.m,
+            half_dm: &mut out.half_dm,
+            a: &mut out.a,
+            b: &mut out.b,
+        });
+    }
+
+    /// Halves it among the threads down to a block.
+    fn reduce_part(&self, part: Part<'_>) -> Vec<(usize, PlaceError)> {
+        let blocks = part.q.len().div_ceil(BLOCK);
+        if blocks < 2 {
+            return self.reduce_block(part);
+        }
+        let [one, two] = part.split(blocks / 2 * BLOCK, self.reactions().len());
+        let (mut errors, more) = rayon::join(|| self.reduce_part(one), || self.reduce_part(two));
+        errors.extend(more);
+        errors
+    }
+
+    fn reduce_block(&self, part: Part<'_>) -> Vec<(usize, PlaceError)> {
+        let reactions = self.reactions().len();
+        let in_lanes = self.plan().placed_in_lanes();
+        let mut work = Both {
+            lanes: self.workspace(),
+            several: self.coefficients(),
+            plain: self.workspace(),
+            one: self.coefficients(),
+        };
+        let mut errors = Vec::new();
+        let mut rest = part;
+        while !rest.q.is_empty() {
+            let count = rest.q.len().min(LANES);
+            let [mut now, later] = rest.split(count, reactions);
+            if !(in_lanes && self.reduce_lanes(&mut now, &mut work)) {
+                self.reduce_singly(&mut now, &mut work, &mut errors);
+            }
+            rest = later;
+        }
+        errors
+    }
+
+    /// As many poses as there are lanes, if all of them go the same way.
+    fn reduce_lanes(&self, part: &mut Part<'_>, work: &mut Both) -> bool {
+        let Ok(q) = <[f64; LANES]>::try_from(part.q) else {
+            return false;
+        };
+        let out = &mut work.several;
+        if self.reduce(Lanes(q), &mut work.lanes, out).is_err() {
+            return false;
+        }
+        part.m.copy_from_slice(&out.m.0);
+        part.half_dm.copy_from_slice(&out.half_dm.0);
+        let reactions = out.a.len();
+        for (values, to) in [(&out.a, &mut *part.a), (&out.b, &mut *part.b)] {
+            for (k, value) in values.iter().enumerate() {
+                for (lane, value) in value.0.into_iter().enumerate() {
+                    to[lane * reactions + k] = value;
+                }
+            }
+        }
+        true
+    }
+
+    fn reduce_singly(
+        &self,
+        part: &mut Part<'_>,
+        work: &mut Both,
+        errors: &mut Vec<(usize, PlaceError)>,
+    ) {
+        let out = &mut work.one;
+        let reactions = out.a.len();
+        for (i, &q) in part.q.iter().enumerate() {
+            match self.reduce(q, &mut work.plain, out) {
+                Ok(()) => {
+                    (part.m[i], part.half_dm[i]) = (out.m, out.half_dm);
+                    part.a[i * reactions..][..reactions].copy_from_slice(&out.a);
+                    part.b[i * reactions..][..reactions].copy_from_slice(&out.b);
+                }
+                Err(error) => errors.push((part.first + i, error)),
+            }
+        }
+    }
+}
