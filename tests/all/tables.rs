@@ -190,10 +190,10 @@ fn val_equal_steps_gain_the_same_energy_on_a_table() {
             "{name}: nothing to compare: {:e}",
             truth[999]
         );
-        // The places at which m is rounded are the same in every turn, so that some 1e-16 of it come back: a
-        // table whose turn gained its bound would be at 5e-10.
+        // The places at which m is rounded are the same in every turn, so that some 1e-16 of it come back
+        // each time. A table whose turn gained its bound would be at 5e-10 in the end.
         for (turn, apart) in apart.iter().enumerate() {
-            let most = 1e-14 + 2e-15 * turn as f64;
+            let most = table.bound() + 2e-15 * turn as f64;
             assert!(*apart < most, "{name}, turn {turn}: {apart:e} apart");
         }
     }

@@ -28,6 +28,24 @@ fn check_describes_the_single_dwell_and_writes_nothing() {
     settings.bind(|| insta::assert_snapshot!("check-single-dwell", run.out));
 }
 
+/// Also of a mechanism without ends, over the turn that is shown.
+#[test]
+fn reduce_makes_a_table_that_needs_no_mechanism() {
+    let bench = Bench::new();
+    for (name, of) in [
+        ("crank-rocker", "every turn"),
+        ("planetary", "0 to 6.28319"),
+    ] {
+        let run = bench.run(&["reduce", &case(name), "--table", "1e-9", "--out", "o"]);
+        assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+        assert!(run.out.contains(of), "{}", run.out);
+        assert_eq!(
+            first_line(&bench, &format!("o/{name}.table")),
+            "dwell-table 1"
+        );
+    }
+}
+
 #[test]
 fn reduce_writes_a_table_with_units_and_pictures() {
     let bench = Bench::new();
