@@ -210,8 +210,8 @@ fn chains(thread: &ThreadPool) {
             });
             thread.install(|| {
                 time(&mut spent[1], || {
-                    exact.reduce_all(black_box(&q), &mut batch)
-                })
+                    exact.reduce_all(black_box(&q), &mut batch);
+                });
             });
             for (least, spent) in least.iter_mut().zip(spent) {
                 *least = least.min(spent * part);
