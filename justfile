@@ -35,11 +35,10 @@ lint:
     cargo fmt --all --check
     cargo clippy --release --workspace --all-targets -- -D warnings
 
-# Exact evaluation against hand-written closed forms, as ratios of one run
+# Exact evaluation against hand-written closed forms, one by one and in batches, as ratios of one run
 [group('care')]
 bench:
-    cargo bench -p dwell-kinetostatics --bench reduced
-    cargo bench -p dwell-kinetostatics --bench table
+    cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table
 
 # What the build server runs
 [group('care')]

@@ -1,68 +1,137 @@
-//! m, ½m′ and one reaction pair: by hand, one pose at a time, and in batches; then what the number of requested
-//! reactions costs. Values are held against each other first; times are ratios of one run.
+//! m, ½m′ and one reaction pair by hand, one pose at a time and in batches; what a pose costs with the size of the
+//! mechanism and with the number of requested reactions. Values are held against each other and asserted; times
+//! are printed as ratios of one run.
+//!
+//! The subjects take turns, at other coordinates in every turn: in no order (steps of the golden angle), where the
+//! branches of the sine cannot be foreseen, and in order, as a sweep has them.
 
 mod bench;
 mod hand_written_general;
 mod hand_written_reduced;
 
-use bench::{Case, EVALUATIONS, STEP, Subject, TURN, TURNS, reactions, stop};
-use dwell_kinetostatics::{Batch, Exact, Reduced};
+use bench::{Case, EVALUATIONS, STEP, reactions, stop};
+use dwell_geometry::{
+    Actuator, Body as Named, BodyId, Drive, Joint, JointKind, Mechanism, Reaction, Start, Vec2,
+    vec2,
+};
+use dwell_kinetostatics::{Batch, Exact, Mass, Model, Reduced};
 use dwell_scene::Scene;
 use hand_written_general::General;
 use hand_written_reduced::{Body, FourBar, SliderCrank};
-use std::f64::consts::TAU;
+use rayon::ThreadPool;
+use std::f64::consts::{FRAC_PI_2, TAU};
 use std::hint::black_box;
 use std::time::Instant;
 
-/// A mechanism three ways: by hand, and by Dwell.
-struct Trio {
+/// Turns of each subject.
+const TURNS: usize = 200;
+/// The chains: numbers of four-bars.
+const CHAINS: [usize; 7] = [1, 3, 10, 30, 100, 300, 1000];
+
+/// By hand: from coordinates to m, ½m′, a and b; one after another where each coordinate has something of the last
+/// m, as an integrator's has, or as the processor likes.
+type ByHand = Box<dyn Fn(&[f64], Option<f64>, &mut [[f64; 4]])>;
+
+/// A mechanism by hand and by Dwell.
+struct Pair {
     name: &'static str,
-    hand: Box<dyn Fn(&[f64], &mut [[f64; 4]])>,
-    one: Exact,
+    hand: ByHand,
+    exact: Exact,
+}
+
+/// One thread, and all of them.
+struct Threads {
+    one: ThreadPool,
+    all: ThreadPool,
 }
 
 fn main() {
-    let trios = [single_dwell(), four_bar(), slider_crank()];
-    let golden: Vec<f64> = (0..EVALUATIONS)
-        .map(|k| (0.1 + k as f64 * STEP).rem_euclid(TAU))
-        .collect();
-    for trio in &trios {
-        agree(trio, &golden);
+    let pool = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        pool.unwrap_or_else(|e| stop("threads", &e.to_string()))
+    };
+    let threads = Threads {
+        one: pool(1),
+        all: pool(0),
+    };
+    let pairs = [single_dwell(), four_bar(), slider_crank()];
+    for pair in &pairs {
+        agree(pair, &coordinates(0, false));
     }
-    println!("m, m'/2, one reaction pair: ns a pose, of which the least; ratio to the hand");
     println!(
-        "{:16}{:>8}{:>16}{:>16}",
-        "", "by hand", "one by one", "in batches"
+        "m, m'/2 and one reaction pair: least ns a pose; ratios to the hand (in batches: to both)"
     );
-    for trio in &trios {
-        let mut by_hand = vec![[0.0; 4]; golden.len()];
-        let mut batch = Batch::default();
-        let (mut work, mut out) = (trio.one.work(), trio.one.model().coefficients());
-        let mut least = [f64::INFINITY; 3];
-        for _ in 0..TURNS {
-            time(&mut least[0], || {
-                (trio.hand)(black_box(&golden), &mut by_hand);
+    let count = format!("batches, {} threads", threads.all.current_num_threads());
+    println!(
+        "{:26}{:^24}{:^25}{:^23}{count:^23}",
+        "", "each waits: hand, Dwell", "none waits: hand, Dwell", "batches, 1 thread"
+    );
+    for pair in &pairs {
+        for ordered in [false, true] {
+            compare(pair, ordered, &threads);
+        }
+    }
+    chains(&threads.one);
+    requested();
+}
+
+/// Coordinates over a turn for one turn of the subjects, none of them met before.
+fn coordinates(turn: usize, ordered: bool) -> Vec<f64> {
+    let phase = 0.1 + turn as f64 * STEP / 3.0;
+    let step = if ordered {
+        TAU / EVALUATIONS as f64
+    } else {
+        STEP
+    };
+    let all = (0..EVALUATIONS).map(|k| phase + k as f64 * step);
+    all.map(|q| q.rem_euclid(TAU)).collect()
+}
+
+fn compare(pair: &Pair, ordered: bool, threads: &Threads) {
+    let exact = &pair.exact;
+    let mut by_hand = vec![[0.0; 4]; EVALUATIONS];
+    let (mut batch, mut work) = (Batch::default(), exact.work());
+    let mut out = exact.model().coefficients();
+    let mut least = [f64::INFINITY; 6];
+    for turn in 0..TURNS {
+        let q = coordinates(turn, ordered);
+        for waiting in [true, false] {
+            // Nothing, but the processor does not know.
+            let part = waiting.then(|| black_box(0.0));
+            let at = usize::from(!waiting);
+            time(&mut least[at], || {
+                (pair.hand)(black_box(&q), part, &mut by_hand);
                 black_box(&by_hand);
             });
-            time(&mut least[1], || {
-                for &q in black_box(&golden) {
-                    black_box(trio.one.coefficients(q, &mut work, &mut out).is_ok());
+            time(&mut least[2 + at], || {
+                for &q in black_box(&q) {
+                    let q = part.map_or(q, |part| q + part * out.m);
+                    black_box(exact.coefficients(q, &mut work, &mut out).is_ok());
                     black_box(&out);
                 }
             });
-            time(&mut least[2], || {
-                trio.one.reduce_all(black_box(&golden), &mut batch);
-                black_box(&batch);
+        }
+        for (pool, least) in [&threads.one, &threads.all]
+            .into_iter()
+            .zip(&mut least[4..])
+        {
+            pool.install(|| {
+                time(least, || {
+                    exact.reduce_all(black_box(&q), &mut batch);
+                    black_box(&batch);
+                });
             });
         }
-        let [hand, one, all] = least;
-        println!(
-            "{:16}{hand:8.1}{one:9.1}{:7.2}{all:9.1}{:7.2}",
-            trio.name,
-            one / hand,
-            all / hand
-        );
     }
+    let [hand_waits, hand, waits, one, lanes, all] = least;
+    let order = if ordered { "in order" } else { "in no order" };
+    print!("{:14}{order:12}", pair.name);
+    print!("{hand_waits:8.1}{waits:9.1}{:7.2}", waits / hand_waits);
+    print!("{hand:9.1}{one:9.1}{:7.2}", one / hand);
+    for ns in [lanes, all] {
+        print!("{ns:9.1}{:7.2}{:7.2}", ns / hand_waits, ns / hand);
+    }
+    println!();
 }
 
 fn time(least: &mut f64, act: impl FnOnce()) {
@@ -71,20 +140,155 @@ fn time(least: &mut f64, act: impl FnOnce()) {
     *least = least.min(start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64);
 }
 
-fn every(at: impl Fn(f64) -> [f64; 4] + 'static) -> Box<dyn Fn(&[f64], &mut [[f64; 4]])> {
-    Box::new(move |q, out| {
-        for (&q, out) in q.iter().zip(out) {
-            *out = at(q);
+/// IFToMM's A02: N four-bars in a row, all links 1 m and 1 kg. Its m is (4 N + 1)/3, whatever the angle.
+fn chain(n: usize) -> Exact {
+    let body = |_| Named {
+        name: "link".into(),
+    };
+    let pin = |bodies: [usize; 2], points: [Vec2; 2]| Joint {
+        name: "pin".into(),
+        bodies: bodies.map(BodyId),
+        points,
+        kind: JointKind::Revolute,
+    };
+    let tip = vec2(1.0, 0.0);
+    let mut joints = vec![pin([0, 1], [Vec2::ZERO; 2])];
+    for i in 1..=n {
+        let [before, coupler, link] = [2 * i - 1, 2 * i, 2 * i + 1];
+        joints.extend([
+            pin([before, coupler], [tip, Vec2::ZERO]),
+            pin([coupler, link], [tip, tip]),
+            pin([0, link], [vec2(i as f64, 0.0), Vec2::ZERO]),
+        ]);
+    }
+    let mechanism = Mechanism {
+        bodies: (0..2 * n + 2).map(body).collect(),
+        joints,
+        actuators: vec![Actuator {
+            name: "theta".into(),
+            bodies: [BodyId(0), BodyId(1)],
+            drive: Drive::Angle,
+        }],
+        ..Mechanism::default()
+    };
+    let bar = Mass {
+        mass: 1.0,
+        center: vec2(0.5, 0.0),
+        inertia: 1.0 / 12.0,
+    };
+    let start = Start {
+        q: vec![FRAC_PI_2],
+        rough: (0..2 * n + 2)
+            .map(|b| Some(if b % 2 == 1 { FRAC_PI_2 } else { 0.0 }))
+            .collect(),
+        ..Start::default()
+    };
+    let model = Model::new(&mechanism, &vec![bar; 2 * n + 2], &start, &[]);
+    let model = model.unwrap_or_else(|e| stop("chain", &e.to_string()));
+    Exact::new(model).unwrap_or_else(|| stop("chain", "it has several actuators"))
+}
+
+/// What a group costs in chains of more and more of them.
+fn chains(thread: &ThreadPool) {
+    println!("\nm and m'/2 of a chain of N four-bars (A02): least ns a group");
+    println!("{:>8}{:>16}{:>16}", "N", "one by one", "in batches");
+    for n in CHAINS {
+        let exact = chain(n);
+        let (mut work, mut batch) = (exact.work(), Batch::default());
+        let count = (EVALUATIONS / n).max(64);
+        let mut least = [f64::INFINITY; 2];
+        for turn in 0..TURNS / 10 {
+            // Clear of the flat positions, where it is singular.
+            let at = |k: usize| 0.5 + 2.0 * ((k + turn * count) as f64 * STEP / TAU).fract();
+            let q: Vec<f64> = (0..count).map(at).collect();
+            let part = EVALUATIONS as f64 / (count * n) as f64;
+            let mut spent = [f64::INFINITY; 2];
+            time(&mut spent[0], || {
+                for &q in black_box(&q) {
+                    black_box(exact.inertia(q, &mut work).is_ok());
+                }
+            });
+            thread.install(|| {
+                time(&mut spent[1], || {
+                    exact.reduce_all(black_box(&q), &mut batch);
+                });
+            });
+            for (least, spent) in least.iter_mut().zip(spent) {
+                *least = least.min(spent * part);
+            }
+            let m = (4.0 * n as f64 + 1.0) / 3.0;
+            for (k, &q) in q.iter().enumerate() {
+                let one = exact.inertia(q, &mut work).ok();
+                assert_eq!(one, Some((batch.m[k], batch.half_dm[k])), "{n} at {q}");
+                // A rounding of a link is handed on N times, divided by sin q each time.
+                let [off, slope] = [batch.m[k] - m, batch.half_dm[k]].map(|v| v.abs() / m);
+                assert!(
+                    off < 1e-11 && slope < 1e-11,
+                    "{n} at {q}: {off:e} {slope:e}"
+                );
+            }
+        }
+        println!("{n:8}{:16.1}{:16.1}", least[0], least[1]);
+    }
+}
+
+/// What more requested reactions of the single-dwell cost; those of more are the same to the last bit.
+fn requested() {
+    let case = Case::read("single-dwell");
+    let every = case.scene.mechanism.reactions();
+    let models = [0, 1, 4, every.len()].map(|count| {
+        let some: Vec<Reaction> = every[every.len() - count..].to_vec();
+        case.model(&some)
+    });
+    let mut works = models.each_ref().map(|model| model.work());
+    let mut outs = models.each_ref().map(|model| model.model().coefficients());
+    let mut least = [f64::INFINITY; 4];
+    for turn in 0..TURNS {
+        let q = coordinates(turn, false);
+        for (i, model) in models.iter().enumerate() {
+            time(&mut least[i], || {
+                for &q in black_box(&q) {
+                    black_box(model.coefficients(q, &mut works[i], &mut outs[i]).is_ok());
+                    black_box(&outs[i]);
+                }
+            });
+        }
+        let [.., all] = &outs;
+        for out in &outs {
+            let from = all.a.len() - out.a.len();
+            assert_eq!((out.m, out.half_dm), (all.m, all.half_dm));
+            assert_eq!((&out.a[..], &out.b[..]), (&all.a[from..], &all.b[from..]));
+        }
+    }
+    println!("\nsingle-dwell, by requested reactions: least ns a pose, ratio to none");
+    for (model, ns) in models.iter().zip(least) {
+        println!("{:8}{ns:16.1}{:16.2}", model.reactions(), ns / least[0]);
+    }
+}
+
+fn every(at: impl Fn(f64) -> [f64; 4] + 'static) -> ByHand {
+    Box::new(move |q, part, out| match part {
+        Some(part) => {
+            let mut last = 0.0;
+            for (&q, out) in q.iter().zip(out) {
+                *out = at(q + part * last);
+                last = out[0];
+            }
+        }
+        None => {
+            for (&q, out) in q.iter().zip(out) {
+                *out = at(q);
+            }
         }
     })
 }
 
-fn single_dwell() -> Trio {
+fn single_dwell() -> Pair {
     let case = Case::read("single-dwell");
     let general = General::new();
-    Trio {
+    Pair {
         name: "single-dwell",
-        one: case.model(&reactions(&case.scene, "slide.normal")),
+        exact: case.model(&reactions(&case.scene, "slide.normal")),
         hand: every(move |q| general.at(q)),
     }
 }
@@ -100,20 +304,20 @@ fn body(scene: &Scene, name: &str) -> Body {
     }
 }
 
-fn four_bar() -> Trio {
+fn four_bar() -> Pair {
     let case = Case::read("crank-rocker");
     let hand = FourBar {
         bars: [1.0, 3.5, 3.0, 4.0],
         bodies: ["crank", "coupler", "rocker"].map(|name| body(&case.scene, name)),
     };
-    Trio {
+    Pair {
         name: "four-bar",
-        one: case.model(&reactions(&case.scene, "C.x")),
+        exact: case.model(&reactions(&case.scene, "C.x")),
         hand: every(move |q| hand.at(q)),
     }
 }
 
-fn slider_crank() -> Trio {
+fn slider_crank() -> Pair {
     let case = Case::read("slider-crank");
     let hand = SliderCrank {
         bars: [0.08, 0.28],
@@ -121,28 +325,28 @@ fn slider_crank() -> Trio {
         bodies: ["crank", "rod"].map(|name| body(&case.scene, name)),
         piston: body(&case.scene, "piston").mass,
     };
-    Trio {
+    Pair {
         name: "slider-crank",
-        one: case.model(&reactions(&case.scene, "guide.normal")),
+        exact: case.model(&reactions(&case.scene, "guide.normal")),
         hand: every(move |q| hand.at(q)),
     }
 }
 
-/// Holds all three against each other: the batch against single evaluations to the last bit, both against the
+/// Holds all against each other: the batch against single evaluations to the last bit, both against the
 /// hand to rounding.
-fn agree(trio: &Trio, q: &[f64]) {
+fn agree(pair: &Pair, q: &[f64]) {
     let mut truth = vec![[0.0; 4]; q.len()];
-    (trio.hand)(q, &mut truth);
+    (pair.hand)(q, None, &mut truth);
     let mut batch = Batch::default();
-    trio.one.reduce_all(q, &mut batch);
-    let (mut work, mut out) = (trio.one.work(), trio.one.model().coefficients());
+    pair.exact.reduce_all(q, &mut batch);
+    let (mut work, mut out) = (pair.exact.work(), pair.exact.model().coefficients());
     let (mut largest, mut apart) = ([0.0_f64; 4], [0.0_f64; 4]);
     for (i, &q) in q.iter().enumerate() {
-        let done = trio.one.coefficients(q, &mut work, &mut out);
-        done.unwrap_or_else(|e| stop(trio.name, &e.to_string()));
+        let done = pair.exact.coefficients(q, &mut work, &mut out);
+        done.unwrap_or_else(|e| stop(pair.name, &e.to_string()));
         let one = [out.m, out.half_dm, out.a[0], out.b[0]];
         let all = [batch.m[i], batch.half_dm[i], batch.a[i], batch.b[i]];
-        assert_eq!(one, all, "{} at {q}", trio.name);
+        assert_eq!(one, all, "{} at {q}", pair.name);
         for k in 0..4 {
             largest[k] = largest[k].max(truth[i][k].abs());
             apart[k] = apart[k].max((one[k] - truth[i][k]).abs());
@@ -153,7 +357,7 @@ fn agree(trio: &Trio, q: &[f64]) {
         assert!(
             scaled < 1e-12,
             "{}: {name} differs by {scaled:e} of its largest",
-            trio.name
+            pair.name
         );
     }
 }

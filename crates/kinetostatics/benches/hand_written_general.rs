@@ -45,7 +45,7 @@ impl General {
 
     /// m, ½m′ (kg·m²), and a (kg·m), b (kg·m) of the guide's normal force on the slider,
     /// at the crank angle `phi` (rad).
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at(&self, phi: f64) -> [f64; 4] {
         let (sin, cos) = phi.sin_cos();
         let (bx, by) = (self.crank * cos, self.crank * sin);

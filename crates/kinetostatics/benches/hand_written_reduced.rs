@@ -35,7 +35,7 @@ pub(crate) struct SliderCrank {
 }
 
 /// First and second derivative of a point that turns with a body about `at`'s.
-#[inline]
+#[inline(always)]
 fn rates(at: [[f64; 2]; 2], [rx, ry]: [f64; 2], w: f64, alpha: f64) -> [[f64; 2]; 2] {
     let [one, two] = at;
     [
@@ -47,17 +47,17 @@ fn rates(at: [[f64; 2]; 2], [rx, ry]: [f64; 2], w: f64, alpha: f64) -> [[f64; 2]
     ]
 }
 
-#[inline]
+#[inline(always)]
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-#[inline]
+#[inline(always)]
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-#[inline]
+#[inline(always)]
 fn turned([x, y]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 2] {
     [cos * x - sin * y, sin * x + cos * y]
 }
@@ -65,7 +65,7 @@ fn turned([x, y]: [f64; 2], [cos, sin]: [f64; 2]) -> [f64; 2] {
 impl FourBar {
     /// m, ½m′ (kg m²), and a, b (kg m) of the force of the coupler on the rocker along x, with C above the
     /// line from B to D.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at(&self, phi: f64) -> [f64; 4] {
         let (sin, cos) = phi.sin_cos();
         let [crank, coupler, rocker, base] = self.bars;
@@ -111,14 +111,13 @@ impl SliderCrank {
     /// m, ½m′ (kg m²), and a, b (kg m) of the normal force of the guide on the piston, with the piston to the
     /// right. The moments of the rod about B leave u×P = K for the force P of the piston on the rod, whose part
     /// along the guide is −m_p ẍ.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at(&self, phi: f64) -> [f64; 4] {
         let (sin, cos) = phi.sin_cos();
         let [crank, rod] = self.bars;
         let (bx, by) = (crank * cos, crank * sin);
         let uy = self.offset - by;
         let ux = (rod * rod - uy * uy).sqrt();
-        let u = [ux, uy];
 
         // The height of C stays: bx + β′ ux = 0 and its derivative.
         let inv = 1.0 / ux;

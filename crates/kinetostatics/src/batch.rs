@@ -3,12 +3,14 @@
 
 use crate::model::{Model, Workspace};
 use crate::reduced::{Coefficients, Exact};
-use dwell_geometry::{Lanes, PlaceError};
+use dwell_geometry::{Lanes, PlaceError, Scalar};
 
 /// Poses side by side. (Two to a vector register of the plainest x86-64: four keep its units busy.)
 const LANES: usize = 4;
-/// Coordinates that one thread does at a time: the working memory it takes is small beside them.
+/// Fewest coordinates that one thread does at a time: the working memory it takes is small beside them.
 const BLOCK: usize = 1024;
+/// Blocks for each thread, so that none waits long for the last one.
+const SHARES: usize = 4;
 
 /// The coefficients at many coordinates, each kind in one piece.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -23,6 +25,27 @@ pub struct Batch {
     pub b: Vec<f64>,
     /// Where there is no pose: the place of the coordinate, and why. The values there are no numbers.
     pub errors: Vec<(usize, PlaceError)>,
+}
+
+impl Batch {
+    /// The coefficients at the `i`th coordinate; no numbers where there is none.
+    pub fn at(&self, i: usize) -> Coefficients {
+        let reactions = self.a.len() / self.m.len().max(1);
+        let one = |of: &[f64]| of.get(i).copied().unwrap_or(f64::NAN);
+        let all = |of: &[f64]| {
+            of.iter()
+                .skip(i * reactions)
+                .take(reactions)
+                .copied()
+                .collect()
+        };
+        Coefficients {
+            m: one(&self.m),
+            half_dm: one(&self.half_dm),
+            a: all(&self.a),
+            b: all(&self.b),
+        }
+    }
 }
 
 /// A part of a batch to be filled; the place of its first coordinate.
@@ -57,12 +80,13 @@ impl<'a> Part<'a> {
     }
 }
 
-/// One thread's working memory: for several poses at once, and for one where they part.
-struct Both {
-    lanes: Workspace<Lanes<LANES>>,
-    several: Coefficients<Lanes<LANES>>,
-    plain: Workspace<f64>,
-    one: Coefficients,
+/// Working memory with room for its results.
+struct Room<T>(Workspace<T>, Coefficients<T>);
+
+impl<T: Scalar> Room<T> {
+    fn new(model: &Model) -> Self {
+        Self(model.workspace(), model.coefficients())
+    }
 }
 
 impl Exact {
@@ -85,24 +109,32 @@ impl Model {
             values.clear();
             values.resize(count, f64::NAN);
         }
-        out.errors = self.reduce_part(Part {
+        let part = Part {
             first: 0,
             q,
             m: &mut out.m,
             half_dm: &mut out.half_dm,
             a: &mut out.a,
             b: &mut out.b,
-        });
+        };
+        let shares = match rayon::current_num_threads() {
+            1 => 1,
+            threads => SHARES * threads,
+        };
+        out.errors = self.reduce_part(part, BLOCK.max(q.len().div_ceil(shares)));
     }
 
     /// Halves it among the threads down to a block.
-    fn reduce_part(&self, part: Part<'_>) -> Vec<(usize, PlaceError)> {
-        let blocks = part.q.len().div_ceil(BLOCK);
+    fn reduce_part(&self, part: Part<'_>, block: usize) -> Vec<(usize, PlaceError)> {
+        let blocks = part.q.len().div_ceil(block);
         if blocks < 2 {
             return self.reduce_block(part);
         }
-        let [one, two] = part.split(blocks / 2 * BLOCK, self.reactions().len());
-        let (mut errors, more) = rayon::join(|| self.reduce_part(one), || self.reduce_part(two));
+        let [one, two] = part.split(blocks / 2 * block, self.reactions().len());
+        let (mut errors, more) = rayon::join(
+            || self.reduce_part(one, block),
+            || self.reduce_part(two, block),
+        );
         errors.extend(more);
         errors
     }
@@ -110,19 +142,20 @@ impl Model {
     fn reduce_block(&self, part: Part<'_>) -> Vec<(usize, PlaceError)> {
         let reactions = self.reactions().len();
         let in_lanes = self.plan().placed_in_lanes();
-        let mut work = Both {
-            lanes: self.workspace(),
-            several: self.coefficients(),
-            plain: self.workspace(),
-            one: self.coefficients(),
-        };
+        // For several poses at once, and for one where they part; few blocks need both.
+        let mut lanes = in_lanes.then(|| Room::new(self));
+        let mut plain = None;
         let mut errors = Vec::new();
         let mut rest = part;
         while !rest.q.is_empty() {
             let count = rest.q.len().min(LANES);
             let [mut now, later] = rest.split(count, reactions);
-            if !(in_lanes && self.reduce_lanes(&mut now, &mut work)) {
-                self.reduce_singly(&mut now, &mut work, &mut errors);
+            let together = lanes
+                .as_mut()
+                .is_some_and(|room| self.reduce_lanes(&mut now, room));
+            if !together {
+                let room = plain.get_or_insert_with(|| Room::new(self));
+                self.reduce_singly(&mut now, room, &mut errors);
             }
             rest = later;
         }
@@ -130,12 +163,12 @@ impl Model {
     }
 
     /// As many poses as there are lanes, if all of them go the same way.
-    fn reduce_lanes(&self, part: &mut Part<'_>, work: &mut Both) -> bool {
+    fn reduce_lanes(&self, part: &mut Part<'_>, room: &mut Room<Lanes<LANES>>) -> bool {
         let Ok(q) = <[f64; LANES]>::try_from(part.q) else {
             return false;
         };
-        let out = &mut work.several;
-        if self.reduce(Lanes(q), &mut work.lanes, out).is_err() {
+        let Room(work, out) = room;
+        if self.reduce(Lanes(q), work, out).is_err() {
             return false;
         }
         part.m.copy_from_slice(&out.m.0);
@@ -154,13 +187,13 @@ impl Model {
     fn reduce_singly(
         &self,
         part: &mut Part<'_>,
-        work: &mut Both,
+        room: &mut Room<f64>,
         errors: &mut Vec<(usize, PlaceError)>,
     ) {
-        let out = &mut work.one;
+        let Room(work, out) = room;
         let reactions = out.a.len();
         for (i, &q) in part.q.iter().enumerate() {
-            match self.reduce(q, &mut work.plain, out) {
+            match self.reduce(q, work, out) {
                 Ok(()) => {
                     (part.m[i], part.half_dm[i]) = (out.m, out.half_dm);
                     part.a[i * reactions..][..reactions].copy_from_slice(&out.a);

@@ -9,7 +9,7 @@ use crate::prepare::Prepared;
 use crate::provenance::picture;
 use crate::tabulate::tabulate;
 use crate::words::digits;
-use dwell_kinetostatics::{Coefficients, Reduced};
+use dwell_kinetostatics::{Batch, Coefficients};
 use dwell_report::{Axis, Column, Figure, Table};
 use dwell_scene::Scene;
 use rayon::prelude::*;
@@ -91,16 +91,13 @@ impl Errors {
 impl Sweep {
     pub(crate) fn new(prepared: &Prepared<'_>) -> Result<Self, StudyError> {
         let model = &prepared.model;
-        let mut work = model.work();
         let q = prepared.sweep(POSITIONS);
-        let mut at = Vec::with_capacity(q.len());
-        for &q in &q {
-            let mut here = model.model().coefficients();
-            model
-                .coefficients(q, &mut work, &mut here)
-                .map_err(|e| explain_place(prepared.scene, model.model().plan(), &e))?;
-            at.push(here);
+        let mut batch = Batch::default();
+        model.reduce_all(&q, &mut batch);
+        if let Some((_, error)) = batch.errors.first() {
+            return Err(explain_place(prepared.scene, model.model().plan(), error));
         }
+        let at = (0..q.len()).map(|i| batch.at(i)).collect();
         Ok(Self { q, at })
     }
 
