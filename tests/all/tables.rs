@@ -329,7 +329,7 @@ fn a_damaged_table_is_refused() {
     let cut = &text[..text.len() / 2];
     assert_eq!(refused(cut), FileError::Truncated);
     assert_eq!(refused(&text.replacen("rad", "raD", 1)), FileError::Altered);
-    let mut odd = labels.clone();
+    let mut odd = labels;
     odd.reactions[0] = "two\nlines".to_owned();
     assert!(matches!(table.to_text(&odd), Err(FileError::Labels { .. })));
     odd.reactions.clear();
