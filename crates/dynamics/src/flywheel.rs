@@ -10,6 +10,20 @@ use crate::options::Options;
 const MOST_TRIALS: usize = 40;
 const NEAR: f64 = 1e-9;
 
+impl Machine {
+    /// The same machine with a flywheel (kg m² or kg) along a free coordinate, in place of any it had there.
+    #[must_use]
+    pub fn with_flywheel(mut self, free: usize, inertia: f64) -> Self {
+        self.flywheels[free] = inertia;
+        self
+    }
+
+    /// The flywheel along a free coordinate, kg m² or kg.
+    pub fn flywheel(&self, free: usize) -> f64 {
+        self.flywheels[free]
+    }
+}
+
 /// A flywheel for a wanted fluctuation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flywheel {

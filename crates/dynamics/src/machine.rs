@@ -53,7 +53,7 @@ pub struct Machine {
     /// Where it crosses change points.
     pub(crate) bridges: Vec<Span>,
     /// By free coordinate: inertia along it beside that of the bodies and rotors, kg m² or kg.
-    flywheels: Vec<f64>,
+    pub(crate) flywheels: Vec<f64>,
 }
 
 /// Why a machine cannot be built.
@@ -116,18 +116,6 @@ impl Machine {
     /// The free coordinates, by actuator.
     pub fn free(&self) -> &[usize] {
         &self.free
-    }
-
-    /// The same machine with a flywheel (kg m² or kg) along a free coordinate, in place of any it had there.
-    #[must_use]
-    pub fn with_flywheel(mut self, free: usize, inertia: f64) -> Self {
-        self.flywheels[free] = inertia;
-        self
-    }
-
-    /// The flywheel along a free coordinate, kg m² or kg.
-    pub fn flywheel(&self, free: usize) -> f64 {
-        self.flywheels[free]
     }
 
     /// Number of drives.

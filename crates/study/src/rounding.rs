@@ -2,7 +2,7 @@
 //! longest tells the errors of the others.
 
 use crate::error::StudyError;
-use crate::run::loaded;
+use crate::run::model;
 use dwell_findings::Finding;
 use dwell_geometry::{Scalar, Wide};
 use dwell_kinetostatics::{KinetostaticsError, Model};
@@ -50,7 +50,7 @@ impl Rounding {
     /// # Errors
     /// [`StudyError`] when the mechanism cannot be put together.
     pub(crate) fn new(scene: &Scene, states: &[State]) -> Result<Self, StudyError> {
-        let model = loaded(scene)?;
+        let model = model(scene)?;
         let wide: Vec<Option<Vec<Wide>>> = states
             .par_iter()
             .map(|state| evaluate(&model, state).ok())

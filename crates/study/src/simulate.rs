@@ -9,7 +9,7 @@ pub(crate) use rows::{BALANCE, KINETIC, POTENTIAL};
 use crate::error::{StudyError, explain_machine, explain_model};
 use crate::motion_error::explain_motion;
 use crate::outcome::Progress;
-use crate::run::{Command, Followed, Way, check_variables, loaded, write_up};
+use crate::run::{Command, Followed, Way, check_variables, model, write_up};
 use crate::words::digits;
 use dwell_dynamics::atlas::{Atlas, AtlasError, Chart, Journey, Site, Why};
 use dwell_dynamics::{
@@ -179,7 +179,7 @@ impl<'a> Free<'a> {
         driven: &'a Scene,
         motion: &'a Motion,
     ) -> Result<Self, StudyError> {
-        let shown = loaded(driven)?;
+        let shown = model(driven)?;
         check_variables(driven, &shown)?;
         let machine = machine(scene, motion, &[])?;
         Ok(Self {

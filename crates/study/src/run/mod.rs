@@ -20,7 +20,7 @@ pub(crate) use columns::{Column, Quantity};
 pub(crate) use link::Link;
 pub(crate) use most::most;
 pub(crate) use need::wanted;
-pub(crate) use record::{Record, model, model as loaded, with_loads};
+pub(crate) use record::{Record, model, with_loads};
 pub(crate) use select::{check as check_variables, is_named};
 pub(crate) use watch::broken_relation;
 pub(crate) use way::{Sample, Told, Way, over_range};
