@@ -12,7 +12,9 @@ const MOST: f64 = 16.0;
 /// Difference, tolerance and what is between them, of every finding, by truth.
 pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
     let mut groups: Vec<Group> = Vec::new();
-    for finding in findings {
+    let mut findings_by_truth: Vec<&Finding> = findings.iter().collect();
+    findings_by_truth.sort_by_key(|finding| (finding.number(), finding.truth.as_str()));
+    for finding in findings_by_truth {
         match groups
             .iter_mut()
             .find(|group| group.heading == finding.truth)
@@ -24,8 +26,6 @@ pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
             }),
         }
     }
-    // Truths are numbered.
-    groups.sort_by(|a, b| a.heading.cmp(&b.heading));
     let columns = [
         "relative difference",
         "tolerance",
