@@ -44,7 +44,9 @@ fn rewritten(case: &Path) -> Result<usize, Box<dyn Error>> {
     let done = dwell_study::validate(&scene, &bare, &dwell_study::silent)?;
     std::fs::remove_dir_all(&bare)?;
     let mut wanted: BTreeMap<&str, f64> = BTreeMap::new();
-    let exact = done.outcome.findings.iter().filter(|f| !f.integrated);
+    // Of the integrated ones only truth 6 has a bound by case: the others are factors of an integrator's tolerance.
+    let bound = |f: &&Finding| !f.integrated || f.number() == Some(6);
+    let exact = done.outcome.findings.iter().filter(bound);
     for finding in exact.filter(|f| f.tolerance > 0.0 && f.relative.is_finite()) {
         let most = wanted.entry(&finding.key).or_default();
         *most = most.max(tolerance(finding));
