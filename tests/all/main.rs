@@ -43,4 +43,5 @@ mod slides;
 mod symbolic;
 mod tables;
 mod told;
+mod within;
 mod world;

@@ -57,6 +57,7 @@ fn run(options: Options) -> Result<bool, Report> {
             rtol,
             atol,
             max_step,
+            accuracy: wanted,
             every,
         } => {
             let accuracy = Accuracy {
@@ -67,7 +68,10 @@ fn run(options: Options) -> Result<bool, Report> {
                 every: *every,
             };
             let scene = read(scene)?;
-            let simulate = |heard: Progress<'_>| dwell_study::simulate(&scene, &accuracy, heard);
+            let simulate = |heard: Progress<'_>| match *wanted {
+                Some(wanted) => dwell_study::simulate_within(&scene, wanted, *every, heard),
+                None => dwell_study::simulate(&scene, &accuracy, heard),
+            };
             followed(simulate, &mut stopped)?
         }
         Command::Cycle {

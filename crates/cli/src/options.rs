@@ -47,6 +47,11 @@ pub(crate) enum Command {
         /// Longest step, s (as long as the tolerance lets it be, if absent)
         #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
         max_step: Option<f64>,
+        /// In place of method and tolerance: how near the result must be, in rad and parts of the largest, such as 1e-6;
+        /// or draft (1e-3), standard (1e-6), precise (1e-9), reference (1e-12). What meets it at the least cost is picked
+        #[arg(long, value_parser = wanted, value_name = "ACCURACY", allow_hyphen_values = true,
+              conflicts_with_all = ["method", "rtol", "atol", "max_step"])]
+        accuracy: Option<f64>,
         /// Time between the samples of the table, s (a thousandth of the motion, if absent)
         #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
         every: Option<f64>,
@@ -277,6 +282,23 @@ fn tolerance(text: &str) -> Result<f64, String> {
         Ok(value)
     } else {
         Err("a tolerance is between 1e-14 and 1e-3".to_owned())
+    }
+}
+
+/// What a result can be asked for: a number, or a preset by its name.
+fn wanted(text: &str) -> Result<f64, String> {
+    let preset = dwell_study::PRESETS.iter().find(|(name, _)| *name == text);
+    let value = match preset {
+        Some((_, value)) => *value,
+        None => number(text).map_err(|_| {
+            let names = dwell_study::PRESETS.map(|(name, _)| name).join(", ");
+            format!("expected a number such as 1e-6, or one of {names}")
+        })?,
+    };
+    if (1e-13..=1e-2).contains(&value) {
+        Ok(value)
+    } else {
+        Err("an accuracy is between 1e-13 and 1e-2".to_owned())
     }
 }
 

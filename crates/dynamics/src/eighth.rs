@@ -35,6 +35,8 @@ const OWN: f64 = -(0.125 - 0.2 * BEFORE);
 const BEFORE: f64 = 0.04;
 /// Below this part of the tolerance an error is no guide.
 const TINY: f64 = 1e-4;
+/// h |λ| up to which the method is stable on the real axis (Hairer and Wanner 1996, IV.2).
+const STABLE: f64 = 6.1;
 /// What is left of a step in which an evaluation failed.
 const FAILED: f64 = 0.25;
 /// A step that ends within this part of itself before the end is stretched to it.
@@ -59,6 +61,7 @@ pub(crate) fn integrate(
         shortest,
         before: TINY,
         rejected: 0,
+        stiff: 0,
         taken: 0,
     };
     let failed = steps.all(end, options, watch).err();
@@ -68,6 +71,7 @@ pub(crate) fn integrate(
         statistics: Statistics {
             steps: steps.taken,
             rejected: steps.rejected,
+            stiff: steps.stiff,
             evaluations: steps.stages.evaluations,
             ..Statistics::default()
         },
@@ -85,6 +89,7 @@ struct Steps<'s> {
     /// Error of the step before, in units of the tolerance.
     before: f64,
     rejected: usize,
+    stiff: usize,
     taken: usize,
 }
 
@@ -149,6 +154,8 @@ impl Steps<'_> {
                 let factor = SAFETY * error.powf(OWN) * self.before.powf(BEFORE);
                 self.before = error.max(TINY);
                 self.taken += 1;
+                self.stiff +=
+                    usize::from(self.stages.stiffness(h, (self.tolerance.1, &self.to.y)) > STABLE);
                 return Ok(factor.clamp(LEAST, most) * h);
             }
             self.rejected += 1;
@@ -207,8 +214,9 @@ struct Stages<'s> {
     lost: Vec<f64>,
     /// The same with that of the step just taken.
     losing: Vec<f64>,
-    /// The state at a stage, and its rates.
+    /// The state at a stage, that of the twelfth, and rates.
     stage: Vec<f64>,
+    twelfth: Vec<f64>,
     out: Vec<f64>,
     /// By state, the interpolant's coefficients.
     terms: Vec<[f64; TERMS]>,
@@ -231,6 +239,7 @@ impl<'s> Stages<'s> {
             lost: zeros.clone(),
             losing: zeros.clone(),
             stage: zeros.clone(),
+            twelfth: zeros.clone(),
             out: zeros,
             terms: vec![[0.0; TERMS]; n],
             evaluations: 1,
@@ -243,6 +252,7 @@ impl<'s> Stages<'s> {
             self.at(row, from, h);
             self.evaluate(k + 1, from.t + place * h)?;
         }
+        self.twelfth.copy_from_slice(&self.stage);
         for (i, rates) in self.rates.iter().enumerate() {
             // What rounding took off the sum before is put back (Kahan).
             self.increment[i] = h * STEP.sum(rates) - self.lost[i];
@@ -288,6 +298,20 @@ impl<'s> Stages<'s> {
         }
         let n = self.rates.len() as f64;
         h * fifth / ((fifth + 0.01 * third) * n).sqrt()
+    }
+
+    /// h |λ| of the largest eigenvalue, from two states at the end of the step: the stage's and the step's.
+    fn stiffness(&self, h: f64, (absolute, end): (&[f64], &[f64])) -> f64 {
+        let [mut rates, mut apart] = [0.0; 2];
+        for (i, all) in self.rates.iter().enumerate() {
+            rates += ((all[LAST] - all[LAST - 1]) / absolute[i]).powi(2);
+            apart += ((end[i] - self.twelfth[i]) / absolute[i]).powi(2);
+        }
+        if apart > 0.0 {
+            h * (rates / apart).sqrt()
+        } else {
+            0.0
+        }
     }
 
     /// The end of a step becomes the start of the next.

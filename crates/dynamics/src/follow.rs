@@ -6,16 +6,20 @@
 
 use crate::driver::{Dense, Next, integrate};
 use crate::error::DynamicsError;
+use crate::free::State;
 use crate::machine::{Machine, MachineWork};
 use crate::moving::Moving;
 use crate::options::{Options, Statistics};
+use crate::orbit::Orbit;
 use crate::root;
-use crate::system::Point;
+use crate::system::{Point, System};
 use dwell_geometry::BodyId;
 use dwell_geometry::measure::Measured;
 use dwell_kinetostatics::{Actions, Model, Workspace};
 use std::f64::consts::TAU;
 
+/// Parts of a period between which an orbit is looked at; each is looked at as a step is.
+const PARTS: f64 = 64.0;
 /// Points of a step between which a sign is looked at.
 const LOOKS: usize = 4;
 
@@ -86,16 +90,90 @@ pub fn follow(
     options: &Options,
     events: &[Event],
 ) -> Result<Trace, DynamicsError> {
-    let mut record = Record::new(start.t, events);
-    let mut watcher = record.on(machine, shown, start)?;
-    let mut trace = watcher.trace(start, options);
     let mut moving = Moving::new(machine, start.t, &start.y)?;
+    follow_by(
+        &mut moving,
+        Shown { machine, shown },
+        start,
+        end,
+        options,
+        events,
+    )
+}
+
+/// A machine and the model of it in which events look for reactions.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'m> {
+    /// What moves.
+    pub machine: &'m Machine,
+    /// The same mechanism with the same loads (the drives' among them).
+    pub shown: &'m Model,
+}
+
+/// The same, with the rates of another system of the machine's states: a table of it.
+///
+/// # Errors
+/// As [`follow`].
+pub fn follow_by(
+    system: &mut dyn System,
+    of: Shown<'_>,
+    start: &Point,
+    end: f64,
+    options: &Options,
+    events: &[Event],
+) -> Result<Trace, DynamicsError> {
+    let mut record = Record::new(start.t, events);
+    let mut watcher = record.on(of.machine, of.shown, start)?;
+    let mut trace = watcher.trace(start, options);
     let mut watch = |before: &Point, now: &Point, dense: Dense<'_>| {
         watcher.step(&mut trace, options, before, now, dense)
     };
-    let ended = integrate(&mut moving, start, Some(end), options, &mut watch)?;
+    let ended = integrate(system, start, Some(end), options, &mut watch)?;
     trace.failed = ended.failed;
     trace.statistics = ended.statistics;
+    Ok(trace)
+}
+
+/// The same along an orbit of the machine, which is known at every time: no integration. Events are looked for in
+/// equal parts of its period.
+///
+/// # Errors
+/// [`DynamicsError`] where the start cannot be evaluated, or an option cannot be used.
+pub fn follow_orbit(
+    orbit: &Orbit,
+    of: Shown<'_>,
+    end: f64,
+    options: &Options,
+    events: &[Event],
+) -> Result<Trace, DynamicsError> {
+    options.check()?;
+    let point = |t: f64| {
+        let State { q, q_dot, .. } = orbit.at(t);
+        Point {
+            t,
+            y: vec![q, q_dot],
+        }
+    };
+    let start = point(orbit.start().t);
+    let mut record = Record::new(start.t, events);
+    let mut watcher = record.on(of.machine, of.shown, &start)?;
+    let mut trace = watcher.trace(&start, options);
+    trace.statistics.evaluations = orbit.points;
+    let part = orbit.period / PARTS;
+    let mut before = start;
+    while before.t < end {
+        let now = point((before.t + part).min(end));
+        let mut dense = |t: f64, y: &mut [f64]| {
+            y.copy_from_slice(&point(t).y);
+            Ok(())
+        };
+        let next = watcher.step(&mut trace, options, &before, &now, &mut dense)?;
+        trace.statistics.steps += 1;
+        if next == Next::Stop || trace.statistics.steps >= options.budget {
+            break;
+        }
+        before = now;
+    }
     Ok(trace)
 }
 

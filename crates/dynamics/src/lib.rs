@@ -36,7 +36,7 @@ pub use equilibrium::{Equilibrium, Mode, Stability, at_rest, equilibria, equilib
 pub use error::DynamicsError;
 pub use fate::{Fate, fate};
 pub use flywheel::{Flywheel, flywheel};
-pub use follow::{Event, Occurrence, Trace, Trigger, follow};
+pub use follow::{Event, Occurrence, Shown, Trace, Trigger, follow, follow_by, follow_orbit};
 pub use free::{Run, State, Until, simulate};
 pub use linear::{Linear, linearise};
 pub use machine::{Guidance, Machine, MachineError, MachineWork, Worker, all_loads};

@@ -103,6 +103,8 @@ pub struct Statistics {
     pub steps: usize,
     /// Steps rejected for their error.
     pub rejected: usize,
+    /// Of those taken by the explicit method of order 8, those that only stability keeps from being longer.
+    pub stiff: usize,
     /// Evaluations of the equation of motion.
     pub evaluations: usize,
     /// Evaluations of its Jacobian.

@@ -180,6 +180,11 @@ impl Orbit {
         })
     }
 
+    /// Where it starts.
+    pub fn start(&self) -> State {
+        self.start
+    }
+
     /// The first time (s), not before the start, at which the coordinate is `q` (rad or m), by (3); of a
     /// turning motion also the time before. None where a swing never comes.
     pub fn time_at(&self, q: f64) -> Option<f64> {

@@ -65,7 +65,7 @@ pub use outcome::{Outcome, Progress, Step, silent};
 pub use prepare::Prepared;
 pub use reduce::reduce;
 pub use run::{Command, Followed, run};
-pub use simulate::{Accuracy, simulate};
+pub use simulate::{Accuracy, PRESETS, simulate, simulate_within};
 pub use states::{Judged, judge_case};
 pub use subject::PlanSubject;
 pub use sweep::{Exported, Shard, Sweep, SweepError, sweep};

@@ -1,7 +1,9 @@
 //! `dwell simulate`: the free motion of a machine in time, under its loads and drives.
 
+mod apart;
 mod error;
 mod rows;
+mod within;
 mod words;
 
 pub(crate) use rows::{BALANCE, KINETIC, POTENTIAL};
@@ -60,6 +62,14 @@ impl Accuracy {
     }
 }
 
+/// Accuracies by name. What each costs is measured in docs/performance.md.
+pub const PRESETS: [(&str, f64); 4] = [
+    ("draft", 1e-3),
+    ("standard", 1e-6),
+    ("precise", 1e-9),
+    ("reference", 1e-12),
+];
+
 /// Samples of a motion where the command does not say how far apart.
 const SAMPLES: f64 = 1000.0;
 /// Most samples of a motion.
@@ -67,7 +77,7 @@ const MOST_SAMPLES: f64 = 100_000.0;
 /// Changes of coordinate that are told.
 const TOLD: usize = 6;
 
-/// The free motion of a scene.
+/// The free motion of a scene, by a method and a tolerance.
 ///
 /// # Errors
 /// [`StudyError`] when the scene has no motion, or its start cannot be evaluated. What ends the motion
@@ -77,6 +87,58 @@ pub fn simulate(
     accuracy: &Accuracy,
     progress: Progress<'_>,
 ) -> Result<Followed, StudyError> {
+    let compute = |run: &Free<'_>, duration: f64, every: f64| {
+        let options = Options {
+            absolute: accuracy.absolute,
+            longest: accuracy.longest,
+            every: Some(every),
+            ..Options::new(accuracy.method, accuracy.relative)
+        };
+        let moved = run.follow(scene, duration, &options)?;
+        let error = run.estimated(scene, &moved, &options)?;
+        Ok(Computed {
+            how: accuracy.told(),
+            told: run.hint(&moved, accuracy) + &error,
+            accuracy: None,
+            moved,
+        })
+    };
+    simulated(scene, accuracy.every, progress, &compute)
+}
+
+/// The free motion of a scene to a wanted accuracy, by what reaches it at the least cost: all coordinates within
+/// so many rad (lengths: parts of their largest change), energy and reactions within this part of their largest.
+///
+/// # Errors
+/// As [`simulate`]. That the accuracy is not reached is in [`Followed::stopped`].
+pub fn simulate_within(
+    scene: &Scene,
+    wanted: f64,
+    every: Option<f64>,
+    progress: Progress<'_>,
+) -> Result<Followed, StudyError> {
+    let compute =
+        |run: &Free<'_>, duration: f64, every: f64| run.within(scene, wanted, duration, every);
+    simulated(scene, every, progress, &compute)
+}
+
+/// A motion that was computed, and what is to be said of it.
+struct Computed {
+    moved: Moved,
+    /// By what, as figures and the summary tell it.
+    how: String,
+    /// What else is told.
+    told: String,
+    /// Of a wanted accuracy: it, and the estimated error.
+    accuracy: Option<[f64; 2]>,
+}
+
+fn simulated(
+    scene: &Scene,
+    every: Option<f64>,
+    progress: Progress<'_>,
+    compute: &dyn Fn(&Free<'_>, f64, f64) -> Result<Computed, StudyError>,
+) -> Result<Followed, StudyError> {
     let Some(motion) = &scene.motion else {
         return Err(no_motion(scene));
     };
@@ -85,37 +147,42 @@ pub fn simulate(
     driven.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
     let run = Free::new(scene, &driven, motion)?;
     let duration = run.duration()?;
-    let every = accuracy.every.unwrap_or(duration / SAMPLES);
-    let options = Options {
-        absolute: accuracy.absolute,
-        longest: accuracy.longest,
-        every: Some(every.max(duration / MOST_SAMPLES)),
-        ..Options::new(accuracy.method, accuracy.relative)
-    };
+    let every = every.unwrap_or(duration / SAMPLES);
+    let computed = compute(&run, duration, every.max(duration / MOST_SAMPLES))?;
+    let Computed { moved, how, .. } = &computed;
     let explain = |e: &DynamicsError| explain_motion(&driven, run.shown.plan(), e);
-    let moved = run.follow(scene, duration, &options)?;
     if let Some(error) = moved.failed.as_ref().filter(|_| moved.end() == 0.0) {
         return Err(explain(error));
     }
-    let told = run.told();
-    let samples = run.samples(&moved).map_err(|e| explain(&e))?;
-    let error = run.estimated(scene, &samples, moved.end(), &options);
+    let samples = run.samples(moved).map_err(|e| explain(&e))?;
     let led = motion.laws.iter().map(Option::is_some).collect();
     let charts = moved.charts.iter().map(|c| c.shown.clone()).collect();
-    let mut way = Way::free(run.shown.plan(), samples, told, led, charts);
-    way.how = accuracy.told();
+    let mut way = Way::free(run.shown.plan(), samples, run.told(), led, charts);
+    way.how.clone_from(how);
     let mut followed = write_up(&driven, &run.shown, &way, Command::Simulate, progress)?;
     let outcome = &mut followed.outcome;
     if moved.occurrences().next().is_some() {
         let name = format!("{}-motion-events.csv", scene.name);
-        outcome.files.add(name, run.event_table(&moved).csv()?);
+        outcome.files.add(name, run.event_table(moved).csv()?);
     }
-    outcome.summary += &run.summary(&moved, accuracy, duration);
-    outcome.summary += &error;
+    outcome.summary += &run.summary(moved, how, duration);
+    outcome.summary += &computed.told;
     if let Some(error) = &moved.failed {
         followed.stopped = Some(explain(error));
+    } else if let Some([wanted, error]) = computed.accuracy
+        && error > wanted
+    {
+        followed.stopped = Some(too_fine(scene, wanted, error));
     }
     Ok(followed)
+}
+
+fn too_fine(scene: &Scene, wanted: f64, error: f64) -> StudyError {
+    let message =
+        format!("an accuracy of {wanted:e} is not reached: the estimated error is {error:.1e}");
+    let help = "what was reached is written; ask for that, or for a shorter motion";
+    let label = (Place::Length, "errors grow with its length".to_owned());
+    scene.error(message, Some(help.to_owned()), &[label]).into()
 }
 
 fn no_motion(scene: &Scene) -> StudyError {
@@ -155,6 +222,18 @@ pub(crate) struct Moved {
 }
 
 impl Moved {
+    /// A motion in the mechanism's own coordinate alone.
+    fn in_one(trace: Trace) -> Self {
+        Self {
+            charts: Vec::new(),
+            own: Vec::new(),
+            changes: Vec::new(),
+            failed: trace.failed.clone(),
+            statistics: trace.statistics,
+            legs: vec![(0, trace)],
+        }
+    }
+
     pub(crate) fn occurrences(&self) -> impl Iterator<Item = (usize, &Occurrence)> {
         self.legs
             .iter()
@@ -209,14 +288,7 @@ impl<'a> Free<'a> {
                 &events,
             );
             let trace = trace.map_err(|e| explain(&e))?;
-            return Ok(Moved {
-                charts: Vec::new(),
-                own: Vec::new(),
-                changes: Vec::new(),
-                failed: trace.failed.clone(),
-                statistics: trace.statistics,
-                legs: vec![(0, trace)],
-            });
+            return Ok(Moved::in_one(trace));
         }
         let at = scene.assembly.to_start();
         let site = Site {

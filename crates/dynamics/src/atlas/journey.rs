@@ -175,6 +175,7 @@ fn sum(a: Statistics, b: Statistics) -> Statistics {
     Statistics {
         steps: a.steps + b.steps,
         rejected: a.rejected + b.rejected,
+        stiff: a.stiff + b.stiff,
         evaluations: a.evaluations + b.evaluations,
         jacobians: a.jacobians + b.jacobians,
         factorisations: a.factorisations + b.factorisations,

@@ -1,9 +1,11 @@
 //! The estimated error of a motion: a second run at a tenth of the tolerance, compared where both were sampled.
 
 use super::{Free, Moved};
+use crate::error::StudyError;
 use crate::estimate;
+use crate::motion_error::explain_motion;
 use crate::run::Sample;
-use dwell_dynamics::Options;
+use dwell_dynamics::{DynamicsError, Options};
 use dwell_scene::Scene;
 use std::fmt::Write as _;
 
@@ -12,10 +14,15 @@ impl Free<'_> {
     pub(super) fn estimated(
         &self,
         scene: &Scene,
-        samples: &[Sample],
-        duration: f64,
+        moved: &Moved,
         options: &Options,
-    ) -> String {
+    ) -> Result<String, StudyError> {
+        let duration = moved.end();
+        if duration == 0.0 {
+            return Ok(String::new());
+        }
+        let explain = |e: &DynamicsError| explain_motion(self.scene, self.shown.plan(), e);
+        let samples = &self.samples(moved).map_err(|e| explain(&e))?;
         let finer = estimate::second(options);
         let tried = if finer.method == options.method {
             "a tenth of the tolerance".to_owned()
@@ -34,7 +41,8 @@ impl Free<'_> {
         let same = pairs.iter().take_while(|(a, b)| a.t == b.t).count();
         let pairs = &pairs[..same];
         let Some(((first, _), (last, _))) = pairs.first().zip(pairs.last()) else {
-            return format!("  no error can be estimated: a second run, at {tried}, fails\n");
+            let none = format!("  no error can be estimated: a second run, at {tried}, fails\n");
+            return Ok(none);
         };
         let until = |of: &dyn Fn(&Sample) -> f64, rounding: f64| {
             let [one, two] = [0, 1].map(|side| {
@@ -71,7 +79,7 @@ impl Free<'_> {
             let error = until(&balance, 4.0 * f64::EPSILON * largest) / largest;
             let _ = write!(text, " {error:.1e} of the largest kinetic energy,");
         }
-        text + &format!(" from a second run at {tried}\n")
+        Ok(text + &format!(" from a second run at {tried}\n"))
     }
 
     /// The relative rounding error of the speed at the start, from that of the only coordinate's inertia.

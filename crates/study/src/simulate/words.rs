@@ -44,7 +44,7 @@ impl Free<'_> {
         }
     }
 
-    pub(super) fn summary(&self, moved: &Moved, accuracy: &Accuracy, duration: f64) -> String {
+    pub(super) fn summary(&self, moved: &Moved, how: &str, duration: f64) -> String {
         let end = moved.end();
         // Writing to a string cannot fail.
         let mut text = String::new();
@@ -53,13 +53,7 @@ impl Free<'_> {
         } else {
             format!("{} s", digits(end, 7))
         };
-        let _ = writeln!(
-            text,
-            "  {reached} by {} at relative {:e} and absolute {:e}",
-            accuracy.method.name(),
-            accuracy.relative,
-            accuracy.absolute,
-        );
+        let _ = writeln!(text, "  {reached} by {how}");
         for (i, event) in self.motion.events.iter().enumerate() {
             let times: Vec<_> = moved.occurrences().filter(|(_, o)| o.event == i).collect();
             let first = times
@@ -87,7 +81,7 @@ impl Free<'_> {
             "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations",
             work.steps, work.rejected, work.evaluations, work.jacobians, work.factorisations,
         );
-        text + &self.fate() + &self.energy(moved) + &self.hint(moved, accuracy, end)
+        text + &self.fate() + &self.energy(moved)
     }
 
     /// How well the energies add up.
@@ -123,9 +117,10 @@ impl Free<'_> {
 
     /// Whether another method would be far cheaper, by how long this one's steps are against what its
     /// accuracy and its stability ask for.
-    fn hint(&self, moved: &Moved, accuracy: &Accuracy, end: f64) -> String {
+    pub(super) fn hint(&self, moved: &Moved, accuracy: &Accuracy) -> String {
+        let end = moved.end();
         let other = if accuracy.method.implicit() {
-            Method::Tsit45
+            Method::Dop853
         } else {
             Method::Bdf
         };
