@@ -43,8 +43,8 @@ fn panel(runs: &[Run], case: &str) -> Panel {
     });
     Panel::from(Chart {
         title: case.into(),
-        x: Axis::log("wall time", "s"),
-        y: Axis::log("error of the crank angle", "rad"),
+        x: Axis::log("wall time", "s").within(2e-5, 60.0),
+        y: Axis::log("error of the crank angle", "rad").within(1e-15, 10.0),
         series: series.into(),
         marks: vec![Mark::Horizontal {
             at: FLOOR,
