@@ -210,7 +210,7 @@ def main(cases: Path, out: Path):
             for steps in (n for n in STEPS if n <= most):
                 best, turned_by, spent, times = math.inf, math.nan, 0.0, 0
                 # The first is the warm-up: a run of ten seconds needs none.
-                while times < 2 or (spent < 2.0 and times < 6):
+                while times < 2 or (spent < 1.0 and times < 6):
                     try:
                         wall, turned_by = run(m, steps)
                     except exudyn.SolverError as refused:  # its Newton method may not converge at the longest step

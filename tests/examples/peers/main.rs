@@ -48,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(&reports)?;
     let figure = page::figure(&runs);
     std::fs::write(reports.join("peers.png"), dwell_report::png(&figure)?)?;
-    let document = page::document(&runs, &made, claims);
+    let document = page::document(&runs, &made, &claims);
     std::fs::write(reports.join("peers.md"), document.markdown())?;
     Ok(())
 }

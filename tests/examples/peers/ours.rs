@@ -16,8 +16,8 @@ pub(crate) const QUADRATURE: &str = "Dwell, quadrature";
 pub(crate) const FROM_TEXT: &str = "from the scene's text: quadrature";
 
 /// A time is the least of as many runs as fit into this, but of no fewer and no more than these.
-const SPENT: Duration = Duration::from_millis(100);
-const FEWEST: usize = 3;
+const SPENT: Duration = Duration::from_millis(250);
+const FEWEST: usize = 5;
 const MOST: usize = 2000;
 /// A method that takes longer than this is not asked for more digits, s.
 const LONG: f64 = 0.2;
@@ -65,11 +65,14 @@ impl Motion {
 
 /// All runs of a case.
 pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), Box<dyn Error>> {
-    let text: toml::Table = std::fs::read_to_string(folder.join("case.toml"))?.parse()?;
-    let period = text["free_motion"]["period_s"].as_str();
+    let known: toml::Table = std::fs::read_to_string(folder.join("case.toml"))?.parse()?;
+    let period = known["free_motion"]["period_s"].as_str();
     let period: f64 = period.ok_or("no period")?.parse()?;
     let file = folder.join("scene.toml");
-    let scene = Scene::read(&file)?;
+    let name = file.display().to_string();
+    let text = std::fs::read_to_string(&file)?;
+    let read = || Scene::parse(&name, &text);
+    let scene = read()?;
     let motion = scene.motion.as_ref().ok_or("no motion")?;
     let start = State {
         t: 0.0,
@@ -83,31 +86,36 @@ pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), B
     };
     let exact = compiled(&scene)?;
 
-    let mut runs = Vec::new();
-    for method in Method::ALL {
-        let exactly = |options: &Options| motion.integrate(&exact, options).ok();
-        runs.extend(tolerances(&motion, EXACT, method, &exactly));
-        let tabulated = |options: &Options| {
-            let table =
-                Table::new(&exact, (PART * options.relative).max(FINEST), Extent::Whole).ok()?;
-            motion.integrate(&table, options).ok()
-        };
-        runs.extend(tolerances(&motion, TABLE, method, &tabulated));
-    }
+    let mut runs = integrators(&motion, &exact);
     let (wall, (q, points)) = least(|| motion.quadrature(&exact))?;
     runs.push(motion.run(QUADRATURE, format!("{points} points"), (wall, q)));
-    let (wall, (q, _)) = least(|| -> Result<_, Box<dyn Error>> {
-        Ok(motion.quadrature(&compiled(&Scene::read(&file)?)?)?)
-    })?;
+    let (wall, (q, _)) =
+        least(|| -> Result<_, Box<dyn Error>> { Ok(motion.quadrature(&compiled(&read()?)?)?) })?;
     runs.push(motion.run(FROM_TEXT, format!("{points} points"), (wall, q)));
 
     let stages = Stages {
         case: case.to_owned(),
-        read: least(|| Scene::read(&file))?.0,
+        read: least(read)?.0,
         built: least(|| compiled(&scene))?.0,
         table: least(|| Table::new(&exact, 1e-11, Extent::Whole))?.0,
     };
     Ok((runs, stages))
+}
+
+/// Every method on exact evaluation, and on a table that is built in the same time.
+fn integrators(motion: &Motion, exact: &Exact) -> Vec<Run> {
+    let mut runs = Vec::new();
+    for method in Method::ALL {
+        let exactly = |options: &Options| motion.integrate(exact, options).ok();
+        runs.extend(tolerances(motion, EXACT, method, &exactly));
+        let tabulated = |options: &Options| {
+            let accuracy = (PART * options.relative).max(FINEST);
+            let table = Table::new(exact, accuracy, Extent::Whole).ok()?;
+            motion.integrate(&table, options).ok()
+        };
+        runs.extend(tolerances(motion, TABLE, method, &tabulated));
+    }
+    runs
 }
 
 /// The reduced model without reactions: the motion needs none.

@@ -55,7 +55,7 @@ fn panel(runs: &[Run], case: &str) -> Panel {
 }
 
 /// Everything that was measured.
-pub(crate) fn document(runs: &[Run], made: &[Stages], claims: Vec<String>) -> Document {
+pub(crate) fn document(runs: &[Run], made: &[Stages], claims: &[String]) -> Document {
     let mut blocks = vec![
         Block::Figure {
             file: "peers.png".into(),
