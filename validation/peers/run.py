@@ -1,6 +1,6 @@
 """Dwell beside Exudyn, Pinocchio and MuJoCo, in one run: `python3 validation/peers/run.py`, or `just peers`.
 
-Installs the three into a scratch environment, measures them on two cases, then Dwell, and writes reports/peers.md and .png.
+Installs the three into a scratch environment, measures them on two cases, then Dwell, and writes reports/peers.csv (theirs), .md and .png.
 Needs Python 3.11 or later on x86-64 Linux, the network and about five minutes.
 """
 
@@ -24,8 +24,7 @@ def main():
         python = scratch / "env" / "bin" / "python"
         subprocess.run([python, "-m", "pip", "install", "--quiet", *PACKAGES], check=True)
         print("load:", *(f"{load:.1f}" for load in os.getloadavg()), flush=True)
-        # Exudyn writes a folder where it stands.
-        theirs = scratch / "theirs.csv"
+        theirs = HOME / "reports" / "peers.csv"
         subprocess.run([python, "-W", "ignore", HERE / "peers.py", HERE.parent, theirs], cwd=scratch, check=True)
         subprocess.run([*example, theirs], cwd=HOME, check=True)
         print("load:", *(f"{load:.1f}" for load in os.getloadavg()))

@@ -73,7 +73,7 @@ fn line(runs: &[Run], claim: &Claim) -> String {
 }
 
 /// The time a curve takes to an error, by powers between its runs.
-fn time_at(curve: &[&Run], error: f64) -> Option<f64> {
+fn time_at(curve: &[Run], error: f64) -> Option<f64> {
     let last = curve.len().checked_sub(2)?;
     if curve[0].error < error || curve[last + 1].error > BEYOND * error {
         return None;
@@ -81,7 +81,7 @@ fn time_at(curve: &[&Run], error: f64) -> Option<f64> {
     let k = (0..=last)
         .find(|&k| curve[k + 1].error <= error)
         .unwrap_or(last);
-    let [from, to] = [curve[k], curve[k + 1]];
+    let [from, to] = [&curve[k], &curve[k + 1]];
     let part = (error / from.error).ln() / (to.error / from.error).ln();
     Some(from.wall * (to.wall / from.wall).powf(part))
 }

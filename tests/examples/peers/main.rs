@@ -72,9 +72,19 @@ fn read(text: &str) -> Result<Vec<Run>, Box<dyn Error>> {
 }
 
 /// The runs of a case and a tool (by the beginning of its name) that nothing quicker surpasses, the quickest first.
-fn front<'r>(runs: &'r [Run], case: &str, tool: &str) -> Vec<&'r Run> {
+///
+/// An error may pass through zero on its way down. So a run counts with the largest error of itself and of all finer
+/// runs of its method.
+fn front(runs: &[Run], case: &str, tool: &str) -> Vec<Run> {
     let of = |run: &&Run| run.case == case && run.tool.starts_with(tool);
-    let mut all: Vec<&Run> = runs.iter().filter(of).collect();
+    let mut all: Vec<Run> = runs.iter().filter(of).cloned().collect();
+    // What is before the comma is the method, before the equals sign the step; they stand from coarse to fine.
+    let method = |run: &Run| run.setting.split([',', '=']).next().map(str::to_owned);
+    for k in (1..all.len()).rev() {
+        if method(&all[k - 1]) == method(&all[k]) {
+            all[k - 1].error = all[k - 1].error.max(all[k].error);
+        }
+    }
     all.sort_by(|a, b| a.wall.total_cmp(&b.wall));
     let mut least = f64::INFINITY;
     all.retain(|run| {

@@ -23,7 +23,7 @@ pub(crate) fn figure(runs: &[Run]) -> Figure {
         title: "Ten periods of free motion: error against time".into(),
         caption: "Least times of one run on one machine. Exudyn, Pinocchio (a Python loop) and MuJoCo: the integration alone. Dwell: \
                   integrators on exact evaluation; integrators on a table, with its building; the quadrature; and the quadrature from \
-                  the scene's text on, with reading and building. A curve has its tool's best: what a quicker run surpasses is left out."
+                  the scene's text on, with reading and building. A curve has its tool's best: what a quicker run surpasses is left out, and what is accurate by chance."
             .into(),
         columns: 2,
         panels: CASES.map(|case| panel(runs, case)).into(),
