@@ -40,6 +40,11 @@ lint:
 bench:
     cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table
 
+# Beside Exudyn, Pinocchio and MuJoCo: installs them into a scratch environment; reports/peers.md and .png
+[group('care')]
+peers:
+    python3 validation/peers/run.py
+
 # What the build server runs
 [group('care')]
 ci: lint test validate

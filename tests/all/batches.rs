@@ -2,10 +2,9 @@
 
 use crate::cases::CASES;
 use crate::changes::{Rng, Setup, positions};
-use crate::world::home;
+use crate::world::{cases, scene};
 use dwell_geometry::{Lanes, PlaceError};
 use dwell_kinetostatics::{Batch, Coefficients, Exact, Reduced};
-use dwell_scene::Scene;
 
 /// Holds a batch against single evaluations, bit for bit, and gives the part of its fours that go together.
 pub(crate) fn alike(model: &Exact, q: &[f64]) -> Result<f64, String> {
@@ -56,14 +55,7 @@ pub(crate) fn alike(model: &Exact, q: &[f64]) -> Result<f64, String> {
 
 /// The reduced models of every case of one actuator.
 fn models() -> Vec<(String, Exact)> {
-    let mut folders: Vec<_> = std::fs::read_dir(home().join("validation"))
-        .expect("the cases")
-        .map(|entry| entry.expect("a folder").path().join("scene.toml"))
-        .collect();
-    folders.sort();
-    let read = folders
-        .iter()
-        .map(|path| Scene::read(path).expect("a scene"));
+    let read = cases().into_iter().map(|case| scene(&case));
     let scenes = CASES.iter().map(|case| case.scene()).chain(read);
     scenes
         .filter(|scene| scene.mechanism.actuators.len() == 1)

@@ -1,7 +1,7 @@
 //! Every case of `validation/`: judged in states of motion, by its reference, and by deliberate
 //! faults that must be found.
 
-use crate::world::{home, scene};
+use crate::world::{cases, home, scene};
 use dwell_findings::Finding;
 use dwell_geometry::Mechanism;
 use dwell_scene::Scene;
@@ -27,19 +27,6 @@ const PROMISED: f64 = 1e-12;
 
 fn folder(case: &str) -> PathBuf {
     home().join("validation").join(case)
-}
-
-/// The names of all cases.
-fn cases() -> Vec<String> {
-    let entries = std::fs::read_dir(home().join("validation")).expect("a folder");
-    let name = |e: std::io::Result<std::fs::DirEntry>| {
-        let name = e.expect("an entry").file_name();
-        name.into_string().expect("a name")
-    };
-    let mut cases: Vec<String> = entries.map(name).collect();
-    cases.sort();
-    assert!(cases.len() >= 25, "{cases:?}");
-    cases
 }
 
 fn judged(scene: &Scene, folder: &Path) -> Judged {

@@ -1,6 +1,6 @@
 //! The findings of `dwell validate` on every case: verdicts and digits, and how far within them the numbers are.
 
-use crate::world::{home, scene};
+use crate::world::{cases, home, scene};
 use dwell_findings::{Finding, all_pass};
 use dwell_scene::Scene;
 use dwell_study::{Validation, silent, validate};
@@ -11,18 +11,6 @@ use std::panic::catch_unwind;
 fn validated(scene: &Scene, case: &str) -> Validation {
     let folder = home().join("validation").join(case);
     validate(scene, &folder, &silent).unwrap_or_else(|e| panic!("{case}: {e}"))
-}
-
-/// The folders of `validation/` that hold a scene.
-fn cases() -> Vec<String> {
-    let folders = std::fs::read_dir(home().join("validation")).expect("the cases");
-    let folders = folders.map(|entry| entry.expect("a folder"));
-    let cases = folders.filter(|folder| folder.path().join("scene.toml").is_file());
-    let mut names: Vec<String> = cases
-        .map(|folder| folder.file_name().into_string().expect("a name"))
-        .collect();
-    names.sort();
-    names
 }
 
 /// Digits that every machine reproduces, in steps of three: the difference, four times as large (its last bits are a machine's

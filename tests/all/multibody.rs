@@ -1,7 +1,7 @@
 //! Every motion of `validation/` against the full multibody equations and published values, and by
 //! deliberate faults that must be found.
 
-use crate::world::{home, scene};
+use crate::world::{cases, home, scene};
 use dwell_findings::Finding;
 use dwell_scene::Scene;
 use dwell_study::{FreeRun, free_run};
@@ -51,13 +51,10 @@ fn failed(findings: &[Finding]) -> bool {
 
 #[test]
 fn val_every_motion_by_the_multibody_equations() {
-    let with_motion = std::fs::read_dir(home().join("validation")).expect("a folder");
-    let name = |e: std::io::Result<std::fs::DirEntry>| e.expect("an entry").file_name();
-    let mut dynamic: Vec<String> = with_motion
-        .map(|e| name(e).into_string().expect("a name"))
+    let dynamic: Vec<String> = cases()
+        .into_iter()
         .filter(|case| scene(case).motion.is_some())
         .collect();
-    dynamic.sort();
     assert_eq!(dynamic, DYNAMIC);
     for case in DYNAMIC {
         let scene = scene(case);

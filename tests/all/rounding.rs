@@ -1,15 +1,12 @@
 //! Numbers of 32 digits and of 7: what rounding does, and that nothing plain is left in what judges it.
 
-use crate::world::{home, scene};
+use crate::world::{cases, scene};
 use dwell_geometry::{Scalar, Wide};
 use dwell_kinetostatics::{Model, Workspace};
 use dwell_scene::Scene;
 
 /// The cases of one actuator whose relations have no laws: those are evaluated in plain numbers.
 fn models() -> Vec<(String, Model, Vec<f64>)> {
-    let folder = std::fs::read_dir(home().join("validation")).expect("a folder");
-    let name = |e: std::io::Result<std::fs::DirEntry>| e.expect("an entry").file_name();
-    let names = folder.map(|e| name(e).into_string().expect("a name"));
     let model = |name: String| {
         let scene: Scene = scene(&name);
         let start = scene.assembly.to_start();
@@ -22,7 +19,8 @@ fn models() -> Vec<(String, Model, Vec<f64>)> {
         let at = |k: usize| range[0] + (range[1] - range[0]) * k as f64 / 7.0;
         (name, model, (0..8).map(at).collect::<Vec<f64>>())
     };
-    let all = names.filter(|name| name != "cam").map(model);
+    let plain = cases().into_iter().filter(|name| name != "cam");
+    let all = plain.map(model);
     all.filter(|(_, model, _)| model.plan().actuators() == 1)
         .collect()
 }

@@ -2,7 +2,7 @@
 //! compiled and run.
 
 use crate::cases::CASES;
-use crate::world::{home, model, scene};
+use crate::world::{cases, home, model, scene};
 use dwell_kinetostatics::Reduced;
 use dwell_scene::Scene;
 use dwell_study::{Language, Printed, StudyError, symbolic, symbolic_findings};
@@ -39,9 +39,7 @@ const DYADS: [&str; 19] = [
 #[test]
 fn every_reaction_of_every_dyad_case_agrees() {
     let mut found = Vec::new();
-    for entry in std::fs::read_dir(home().join("validation")).expect("a folder") {
-        let name = entry.expect("an entry").file_name();
-        let name = name.to_str().expect("a name").to_owned();
+    for name in cases() {
         if hold(&scene(&name)) {
             found.push(name);
         }

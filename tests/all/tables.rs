@@ -1,6 +1,6 @@
 //! Tables of the reduced model: their bounds, that m and ½m′ belong together, and their files.
 
-use crate::world::{home, scene};
+use crate::world::{self, scene};
 use dwell_dynamics::{Equation, Method, Options, Orbit, State, Until, simulate};
 use dwell_geometry::{PlaceError, Range};
 use dwell_kinetostatics::table::{FileError, Labels};
@@ -26,13 +26,10 @@ fn case(name: &str) -> Exact {
 
 /// All cases of one actuator.
 fn cases() -> Vec<(String, Exact)> {
-    let folder = std::fs::read_dir(home().join("validation")).expect("a folder");
-    let name = |e: std::io::Result<std::fs::DirEntry>| e.expect("an entry").file_name();
-    let names = folder.map(|e| name(e).into_string().expect("a name"));
-    let found = names.filter_map(|name| Some((name.clone(), loaded(&scene(&name))?)));
-    let mut found: Vec<(String, Exact)> = found.collect();
-    found.sort_by(|a, b| a.0.cmp(&b.0));
-    found
+    let names = world::cases().into_iter();
+    names
+        .filter_map(|name| Some((name.clone(), loaded(&scene(&name))?)))
+        .collect()
 }
 
 /// Points of a table's extent that fall on none of its cells.

@@ -10,6 +10,19 @@ pub(crate) fn home() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
+/// The cases: folders of `validation/` that hold a scene.
+pub(crate) fn cases() -> Vec<String> {
+    let entries = std::fs::read_dir(home().join("validation")).expect("a folder");
+    let folders = entries.map(|entry| entry.expect("an entry"));
+    let mut names: Vec<String> = folders
+        .filter(|folder| folder.path().join("scene.toml").is_file())
+        .map(|folder| folder.file_name().into_string().expect("a name"))
+        .collect();
+    names.sort();
+    assert!(names.len() >= 25, "{names:?}");
+    names
+}
+
 /// The scene of a case in `validation/`.
 pub(crate) fn scene(case: &str) -> Scene {
     let path = home().join("validation").join(case).join("scene.toml");

@@ -52,7 +52,8 @@ fn scenes() -> Vec<Scene> {
     };
     let cases = names(home().join("validation"))
         .into_iter()
-        .map(|p| p.join("scene.toml"));
+        .map(|p| p.join("scene.toml"))
+        .filter(|p| p.is_file());
     let paths: Vec<PathBuf> = cases
         .chain(names(home().join("tests/faults/scenes")))
         .collect();

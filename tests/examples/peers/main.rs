@@ -1,0 +1,96 @@
+//! Ten periods of two mechanisms by Dwell, beside what full multibody codes took in the same hour: `validation/peers/run.py`
+//! measures those and calls `cargo run --release --example peers -- THEIRS.csv`, which writes `reports/peers.md` and `.png`.
+#![allow(clippy::print_stdout, reason = "a study, run by hand")]
+
+mod claims;
+mod ours;
+mod page;
+
+use std::error::Error;
+use std::f64::consts::PI;
+use std::path::Path;
+
+/// The mechanisms: cases of `validation/`.
+const CASES: [&str; 2] = ["crank-rocker", "single-dwell"];
+/// Periods of a run.
+const PERIODS: f64 = 10.0;
+/// A crank angle of ten turns is known to one rounding, rad: a smaller error is no error.
+const FLOOR: f64 = 2.0 * PI * PERIODS * f64::EPSILON;
+
+/// A run of ten periods.
+#[derive(Debug, Clone, PartialEq)]
+struct Run {
+    case: String,
+    /// What integrated it, with its version.
+    tool: String,
+    /// Method, step, tolerance.
+    setting: String,
+    /// Least time of all repetitions, s.
+    wall: f64,
+    /// Of the crank angle at the end, rad.
+    error: f64,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let file = std::env::args().nth(1);
+    let theirs = file.ok_or("say where what the others took is: a CSV file")?;
+    let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let mut runs = read(&std::fs::read_to_string(theirs)?)?;
+    let mut made = Vec::new();
+    for case in CASES {
+        let (own, stages) = ours::measure(case, &home.join("validation").join(case))?;
+        runs.extend(own);
+        made.push(stages);
+    }
+    let claims = claims::all(&runs);
+    println!("{}", claims.join("\n"));
+    let reports = home.join("reports");
+    std::fs::create_dir_all(&reports)?;
+    let figure = page::figure(&runs);
+    std::fs::write(reports.join("peers.png"), dwell_report::png(&figure)?)?;
+    let document = page::document(&runs, &made, &claims);
+    std::fs::write(reports.join("peers.md"), document.markdown())?;
+    Ok(())
+}
+
+/// Rows of mechanism, tool, setting, wall time, error.
+fn read(text: &str) -> Result<Vec<Run>, Box<dyn Error>> {
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let &[case, tool, setting, wall, error] = cells.as_slice() else {
+            return Err(format!("not five cells: {line}").into());
+        };
+        Ok(Run {
+            case: case.to_owned(),
+            tool: tool.to_owned(),
+            setting: setting.to_owned(),
+            wall: wall.trim().parse()?,
+            error: error.trim().parse::<f64>()?.max(FLOOR),
+        })
+    };
+    text.lines().skip(1).map(row).collect()
+}
+
+/// The runs of a case and a tool (by the beginning of its name) that nothing quicker surpasses, the quickest first.
+///
+/// An error may pass through zero on its way down. So a run counts with the largest error of itself and of all finer
+/// runs of its method.
+fn front(runs: &[Run], case: &str, tool: &str) -> Vec<Run> {
+    let of = |run: &&Run| run.case == case && run.tool.starts_with(tool);
+    let mut all: Vec<Run> = runs.iter().filter(of).cloned().collect();
+    // What is before the comma is the method, before the equals sign the step; they stand from coarse to fine.
+    let method = |run: &Run| run.setting.split([',', '=']).next().map(str::to_owned);
+    for k in (1..all.len()).rev() {
+        if method(&all[k - 1]) == method(&all[k]) {
+            all[k - 1].error = all[k - 1].error.max(all[k].error);
+        }
+    }
+    all.sort_by(|a, b| a.wall.total_cmp(&b.wall));
+    let mut least = f64::INFINITY;
+    all.retain(|run| {
+        let better = run.error < least;
+        least = least.min(run.error);
+        better
+    });
+    all
+}
