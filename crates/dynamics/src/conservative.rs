@@ -37,10 +37,18 @@ pub(crate) trait Conservative {
     /// Whether the coordinate is an angle.
     fn turns(&self) -> bool;
 
+    /// Whether there is no potential, so that it goes on as it began.
+    fn level(&self) -> bool {
+        false
+    }
+
     /// After how many radians everything is as it was; none if that never happens.
     fn repeats(&mut self, q: f64) -> Result<Option<f64>, DynamicsError> {
         if !self.turns() || self.range().limits().is_some() {
             return Ok(None);
+        }
+        if self.level() && self.range() == Range::Full {
+            return Ok(Some(TAU));
         }
         let mut here = Vec::with_capacity(COMPARED.len());
         for part in COMPARED {
@@ -90,6 +98,10 @@ impl<R: Reduced> Conservative for Unloaded<'_, R> {
 
     fn turns(&self) -> bool {
         !matches!(self.model.range(), Range::Stroke(..))
+    }
+
+    fn level(&self) -> bool {
+        true
     }
 }
 

@@ -130,6 +130,15 @@ impl<'a> Flight<'a> {
         if self.kinetic == 0.0 && self.in_equilibrium(ends, period)? {
             return Ok(Fate::Rests);
         }
+        if let (true, None, Some(period)) = (self.field.level(), ends, period)
+            && self.kinetic > 0.0
+        {
+            return Ok(Fate::Turns {
+                top: self.q,
+                spare: self.kinetic,
+                period,
+            });
+        }
         let ahead = if q_dot == 0.0 {
             self.start.force.signum()
         } else {

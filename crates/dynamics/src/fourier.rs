@@ -86,21 +86,61 @@ pub(crate) fn refine<V>(
     Ok(finer)
 }
 
-/// Fourier coefficients (c_k, s_k), k = 1 … below half the number of points.
+/// Fourier coefficients (c_k, s_k), k = 1 … below half the number of points, which is a power of two (Cooley and
+/// Tukey 1965).
 fn harmonics(values: &[f64]) -> Vec<[f64; 2]> {
     let n = values.len();
-    let table: Vec<(f64, f64)> = (0..n)
+    let bits = n.trailing_zeros();
+    let turned = |i: usize| i.reverse_bits() >> (usize::BITS - bits);
+    let mut sums: Vec<[f64; 2]> = (0..n).map(|i| [values[turned(i)], 0.0]).collect();
+    let table: Vec<(f64, f64)> = (0..n / 2)
         .map(|i| (TAU * i as f64 / n as f64).sin_cos())
         .collect();
-    (1..n / 2)
-        .map(|k| {
-            let mut sum = [0.0; 2];
-            for (i, value) in values.iter().enumerate() {
-                let (sin, cos) = table[i * k % n];
-                sum[0] += value * cos;
-                sum[1] += value * sin;
+    let mut half = 1;
+    while half < n {
+        for block in sums.chunks_exact_mut(2 * half) {
+            let (low, high) = block.split_at_mut(half);
+            for (k, (a, b)) in low.iter_mut().zip(high).enumerate() {
+                let (sin, cos) = table[k * (n / (2 * half))];
+                let along = [b[0] * cos - b[1] * sin, b[0] * sin + b[1] * cos];
+                *b = [a[0] - along[0], a[1] - along[1]];
+                *a = [a[0] + along[0], a[1] + along[1]];
             }
-            sum.map(|s| 2.0 * s / n as f64)
-        })
+        }
+        half *= 2;
+    }
+    sums.truncate(n / 2);
+    sums.drain(1..)
+        .map(|sum| sum.map(|s| 2.0 * s / n as f64))
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A function with known coefficients, at a count of points that holds all of them.
+    #[test]
+    fn harmonics_are_those_of_the_function() {
+        let of = |k: usize| [1.0 / (1.0 + k as f64), (k as f64).sin()];
+        for n in [32, 64, 256] {
+            let value = |i: usize| {
+                let phase = TAU * i as f64 / n as f64;
+                let terms = (1..n / 2).map(|k| {
+                    let (sin, cos) = (k as f64 * phase).sin_cos();
+                    of(k)[0] * cos + of(k)[1] * sin
+                });
+                0.3 + terms.sum::<f64>()
+            };
+            let values: Vec<f64> = (0..n).map(value).collect();
+            for (k, found) in harmonics(&values).iter().enumerate() {
+                let [c, s] = of(k + 1);
+                // The phases of the test are rounded at some hundred radians.
+                assert!(
+                    (found[0] - c).abs() < 1e-13 && (found[1] - s).abs() < 1e-13,
+                    "{n} {k}"
+                );
+            }
+        }
+    }
 }

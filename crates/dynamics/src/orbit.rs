@@ -69,8 +69,21 @@ impl Orbit {
     /// [`DynamicsError::NoInertia`], or [`DynamicsError::NotResolved`] when the inertia varies too
     /// sharply.
     pub fn new<R: Reduced>(model: &R, start: State) -> Result<Self, DynamicsError> {
+        Self::within(model, start, 0.0)
+    }
+
+    /// The same with a rule of only so many points that what it leaves is below this part of the mean: the time
+    /// then errs by about this part of a period.
+    ///
+    /// # Errors
+    /// As [`Orbit::new`].
+    pub fn within<R: Reduced>(
+        model: &R,
+        start: State,
+        accuracy: f64,
+    ) -> Result<Self, DynamicsError> {
         let work = model.work();
-        Self::of(&mut Unloaded { model, work }, start)
+        Self::of(&mut Unloaded { model, work }, start, accuracy)
     }
 
     /// The motion of a machine of one freedom whose loads all have a potential.
@@ -79,17 +92,21 @@ impl Orbit {
     /// As [`Orbit::new`]; [`DynamicsError::NotConservative`], [`DynamicsError::Creeps`],
     /// [`DynamicsError::GoesOn`].
     pub fn loaded(machine: &Machine, start: State) -> Result<Self, DynamicsError> {
-        Self::of(&mut Loaded::new(machine)?, start)
+        Self::of(&mut Loaded::new(machine)?, start, 0.0)
     }
 
-    fn of(field: &mut dyn Conservative, start: State) -> Result<Self, DynamicsError> {
+    fn of(
+        field: &mut dyn Conservative,
+        start: State,
+        accuracy: f64,
+    ) -> Result<Self, DynamicsError> {
         let range = field.range();
         let (flight, fate) = Flight::new(&mut *field, start)?;
         let (held, kinetic) = (flight.start, flight.kinetic);
         match fate {
             Fate::Turns { period, .. } => {
                 let along = period * start.q_dot.signum();
-                Self::turning(field, start, (held, kinetic), along, fate)
+                Self::turning(field, (start, held, kinetic), (along, fate), accuracy)
             }
             Fate::Swings { between } => Self::swinging(field, start, (held, kinetic), between),
             Fate::Creeps { to: q } => Err(DynamicsError::Creeps { q }),
@@ -104,10 +121,9 @@ impl Orbit {
 
     fn turning(
         field: &mut dyn Conservative,
-        start: State,
-        (held, kinetic): (Held, f64),
-        along: f64,
-        fate: Fate,
+        (start, held, kinetic): (State, Held, f64),
+        (along, fate): (f64, Fate),
+        accuracy: f64,
     ) -> Result<Self, DynamicsError> {
         // The same position without its whole turns, which would cost it digits.
         let first = start.q % along;
@@ -124,7 +140,7 @@ impl Orbit {
             let points = known.len();
             let size = values.iter().sum::<f64>() / points as f64;
             let series = Series::new(&values, size);
-            let (slowness, points) = if series.resolved {
+            let (slowness, points) = if series.resolved || series.left < accuracy {
                 (Slowness::Even(series), points)
             } else if points >= MANY {
                 let panels = Panels::new(|phase| {

@@ -19,6 +19,10 @@ pub(crate) const FROM_TEXT: &str = "from the scene's text: quadrature";
 const SPENT: Duration = Duration::from_millis(250);
 const FEWEST: usize = 5;
 const MOST: usize = 2000;
+/// What the rules of a quadrature leave, as a part of the mean.
+const RULES: [f64; 5] = [1e-4, 1e-6, 1e-9, 1e-12, 0.0];
+/// Times at which a rule is compared with that of all digits.
+const COMPARED: u32 = 23;
 /// A method that takes longer than this is not asked for more digits, s.
 const LONG: f64 = 0.2;
 /// A table is built to this part of the integrator's tolerance, but to no better than rounding lets it be.
@@ -57,9 +61,25 @@ impl Motion {
         Ok(run.steps.last().map_or(f64::NAN, |last| last.q))
     }
 
-    fn quadrature(&self, model: &impl Reduced) -> Result<(f64, usize), DynamicsError> {
-        let orbit = Orbit::new(model, self.start)?;
-        Ok((orbit.at(self.end).q, orbit.points))
+    /// The same by quadrature, with its rule.
+    fn quadrature(
+        &self,
+        model: &impl Reduced,
+        accuracy: f64,
+    ) -> Result<(f64, Orbit), DynamicsError> {
+        let orbit = Orbit::within(model, self.start, accuracy)?;
+        Ok((orbit.at(self.end).q, orbit))
+    }
+
+    /// A run by quadrature. At a whole number of periods a rule is at its best, so it counts with what it is
+    /// off in between, too, beside the rule with all digits.
+    fn by_rule(&self, tool: &str, (wall, (q, orbit)): (f64, (f64, Orbit)), all: &Orbit) -> Run {
+        let mut run = self.run(tool, format!("{} points", orbit.points), (wall, q));
+        for k in 0..COMPARED {
+            let t = self.end * (f64::from(k) + 0.37) / f64::from(COMPARED);
+            run.error = run.error.max((orbit.at(t).q - all.at(t).q).abs());
+        }
+        run
     }
 }
 
@@ -87,11 +107,21 @@ pub(crate) fn measure(case: &str, folder: &Path) -> Result<(Vec<Run>, Stages), B
     let exact = compiled(&scene)?;
 
     let mut runs = integrators(&motion, &exact);
-    let (wall, (q, points)) = least(|| motion.quadrature(&exact))?;
-    runs.push(motion.run(QUADRATURE, format!("{points} points"), (wall, q)));
-    let (wall, (q, _)) =
-        least(|| -> Result<_, Box<dyn Error>> { Ok(motion.quadrature(&compiled(&read()?)?)?) })?;
-    runs.push(motion.run(FROM_TEXT, format!("{points} points"), (wall, q)));
+    let all = Orbit::new(&exact, start)?;
+    let mut points = 0;
+    for accuracy in RULES {
+        let measured = least(|| motion.quadrature(&exact, accuracy))?;
+        let orbit = &measured.1.1;
+        if orbit.points == points {
+            continue;
+        }
+        points = orbit.points;
+        runs.push(motion.by_rule(QUADRATURE, measured, &all));
+        let whole = || -> Result<_, Box<dyn Error>> {
+            Ok(motion.quadrature(&compiled(&read()?)?, accuracy)?)
+        };
+        runs.push(motion.by_rule(FROM_TEXT, least(whole)?, &all));
+    }
 
     let stages = Stages {
         case: case.to_owned(),
