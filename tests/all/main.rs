@@ -40,6 +40,7 @@ mod scaling;
 mod sketch;
 mod slides;
 mod symbolic;
+mod tabled;
 mod tables;
 mod told;
 mod world;

@@ -10,7 +10,7 @@ use crate::machine::{Machine, MachineWork};
 use crate::moving::Moving;
 use crate::options::{Options, Statistics};
 use crate::root;
-use crate::system::Point;
+use crate::system::{Point, System};
 use dwell_geometry::BodyId;
 use dwell_geometry::measure::Measured;
 use dwell_kinetostatics::{Actions, Model, Workspace};
@@ -86,14 +86,31 @@ pub fn follow(
     options: &Options,
     events: &[Event],
 ) -> Result<Trace, DynamicsError> {
+    let mut moving = Moving::new(machine, start.t, &start.y)?;
+    follow_by(&mut moving, machine, shown, start, end, options, events)
+}
+
+/// Follows a machine by another system of the same states, such as its [table](crate::Tabled); what events
+/// look at is the machine's own.
+///
+/// # Errors
+/// As [`follow`].
+pub fn follow_by<S: System>(
+    system: &mut S,
+    machine: &Machine,
+    shown: &Model,
+    start: &Point,
+    end: f64,
+    options: &Options,
+    events: &[Event],
+) -> Result<Trace, DynamicsError> {
     let mut record = Record::new(start.t, events);
     let mut watcher = record.on(machine, shown, start)?;
     let mut trace = watcher.trace(start, options);
-    let mut moving = Moving::new(machine, start.t, &start.y)?;
     let mut watch = |before: &Point, now: &Point, dense: Dense<'_>| {
         watcher.step(&mut trace, options, before, now, dense)
     };
-    let ended = integrate(&mut moving, start, Some(end), options, &mut watch)?;
+    let ended = integrate(system, start, Some(end), options, &mut watch)?;
     trace.failed = ended.failed;
     trace.statistics = ended.statistics;
     Ok(trace)

@@ -24,6 +24,7 @@ mod panels;
 pub mod root;
 mod swing;
 pub mod system;
+pub mod tabled;
 
 pub use atlas::{Atlas, AtlasError, Change, Chart, Journey, Leg, Site, Tracked, Why};
 pub use bridge::{Bridge, BridgeError};
@@ -35,7 +36,7 @@ pub use equilibrium::{Equilibrium, Mode, Stability, at_rest, equilibria, equilib
 pub use error::DynamicsError;
 pub use fate::{Fate, fate};
 pub use flywheel::{Flywheel, flywheel};
-pub use follow::{Event, Occurrence, Trace, Trigger, follow};
+pub use follow::{Event, Occurrence, Trace, Trigger, follow, follow_by};
 pub use free::{Run, State, Until, simulate};
 pub use linear::{Linear, linearise};
 pub use machine::{Guidance, Machine, MachineError, MachineWork, Worker, all_loads};
@@ -43,3 +44,4 @@ pub use moving::Moving;
 pub use options::{Method, Options, Statistics};
 pub use orbit::Orbit;
 pub use system::{Point, System};
+pub use tabled::{NotTabled, OnTable, Tabled};

@@ -110,7 +110,6 @@ fn named(entry: Entry, labels: &Labels) -> String {
     let name = |of: &[String], i: usize| of.get(i).cloned().unwrap_or_default();
     let (reactions, loads) = (&labels.reactions, &labels.loads);
     match entry {
-        Entry::M | Entry::HalfDm => entry.to_string(),
         Entry::A { reaction } => format!("a of {}", name(reactions, reaction)),
         Entry::B { reaction } => format!("b of {}", name(reactions, reaction)),
         Entry::W { load } => format!("w of {}", name(loads, load)),
@@ -121,5 +120,6 @@ fn named(entry: Entry, labels: &Labels) -> String {
                 name(loads, load)
             )
         }
+        _ => entry.to_string(),
     }
 }
