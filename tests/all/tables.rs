@@ -253,7 +253,8 @@ fn stepped<R: Reduced>(model: &R, period: f64) -> Vec<f64> {
     gains
 }
 
-/// An integrator that chooses its steps drifts alike on both.
+/// An integrator that chooses its steps drifts alike on both. Its tolerance is a hundred times the table's
+/// error: else that would have a say in the choice.
 #[test]
 fn val_energy_drifts_on_a_table_as_on_the_exact_model() {
     let start = State {
@@ -261,7 +262,7 @@ fn val_energy_drifts_on_a_table_as_on_the_exact_model() {
         q: 0.0,
         q_dot: 1.0,
     };
-    let options = Options::new(Method::Tsit45, 1e-12);
+    let options = Options::new(Method::Tsit45, 1e-10);
     for name in ["single-dwell", "crank-rocker"] {
         let exact = case(name);
         let table = table(name, &exact);
