@@ -38,7 +38,7 @@ lint:
 # Exact evaluation against hand-written closed forms, one by one and in batches, as ratios of one run
 [group('care')]
 bench:
-    cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table
+    cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table --bench kinds
 
 # What the build server runs
 [group('care')]
