@@ -130,7 +130,7 @@ pub enum TableError {
     },
     /// The coefficients of the series do not fall to the accuracy.
     #[error(
-        "not smooth enough for a table: with {points} samples, {left:.1e} of the largest value is left"
+        "not smooth enough for a table over so much: {points} samples leave {left:.1e} of the largest value"
     )]
     NotSmooth {
         /// Samples taken.

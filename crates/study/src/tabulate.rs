@@ -115,14 +115,14 @@ fn explain(scene: &Scene, plan: &Plan, labels: &Labels, error: &TableError) -> S
         ),
         TableError::NotSmooth { .. } => (
             error.to_string(),
-            "ask for less, such as --table 1e-9, or for a part of the range with --from and --to",
+            "ask for less, or for a smaller part of the range with --from and --to, away from limit positions",
         ),
         TableError::Extent { from, to } => {
             let why = match plan.range().limits() {
                 Some((least, most)) if from < to => {
                     format!("the range is {}", between(scene, least, most))
                 }
-                _ => "it ends before it begins".to_owned(),
+                _ => "its end must be beyond its beginning".to_owned(),
             };
             (
                 format!("no table {}: {why}", between(scene, from, to)),

@@ -424,11 +424,18 @@ fn tables() {
             "scene.toml",
             &["--from", "10deg", "--to", "20deg"],
         ),
+        (
+            "up to a limit position",
+            "limited.toml",
+            &["--from", "0", "--to", "1.3715642395"],
+        ),
         ("many turns", "scene.toml", &["--from", "0", "--to", "1e5"]),
     ] {
         let arguments = ["reduce", scene, "--table", "1e-9"];
         group.refused(title, &[&arguments, rest].concat());
     }
+    let arguments = ["reduce", "limited.toml", "--table", "1e-14"];
+    group.refused("more than there is next to limit positions", &arguments);
     let arguments = ["reduce", "scene.toml", "--from", "0", "--to", "1"];
     group.refused("an extent of no table", &arguments);
     group.check("tables");
