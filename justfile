@@ -38,7 +38,7 @@ lint:
 # Exact evaluation against hand-written closed forms, one by one and in batches, as ratios of one run
 [group('care')]
 bench:
-    cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table
+    cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table --bench kinds
 
 # Beside Exudyn, Pinocchio and MuJoCo: installs them into a scratch environment; reports/peers.md and .png
 [group('care')]

@@ -41,6 +41,7 @@ mod scaling;
 mod sketch;
 mod slides;
 mod symbolic;
+mod tabled;
 mod tables;
 mod told;
 mod within;

@@ -117,6 +117,41 @@ fn val_tables_keep_their_bounds() {
 /// m has no steps where cells meet.
 #[test]
 fn half_the_slope_of_a_tables_m_is_its_other_column() {
+    for (name, exact) in cases() {
+        let table = table(&name, &exact);
+        let at = |q: f64| table.inertia(q, &mut ()).expect("within").into();
+        put_together(&Sums {
+            name: &name,
+            at: &at,
+            extent: table.extent(),
+            cells: table.cells()[0],
+            scale: table.bounds()[0].scale,
+            comes_back: table.turns().is_some(),
+        });
+    }
+}
+
+/// A function of a table and half its slope.
+pub(crate) struct Sums<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) at: &'a dyn Fn(f64) -> [f64; 2],
+    pub(crate) extent: [f64; 2],
+    pub(crate) cells: usize,
+    /// Largest value.
+    pub(crate) scale: f64,
+    pub(crate) comes_back: bool,
+}
+
+/// Holds a function against the sum of its slope, cell by cell.
+pub(crate) fn put_together(sums: &Sums<'_>) {
+    let &Sums {
+        name,
+        at,
+        extent: [from, to],
+        cells,
+        scale,
+        comes_back,
+    } = sums;
     let (inner, outer) = (0.339_981_043_584_856_26, 0.861_136_311_594_052_6);
     let (heavy, light) = (0.652_145_154_862_546_1, 0.347_854_845_137_453_9);
     let rule = [
@@ -125,73 +160,75 @@ fn half_the_slope_of_a_tables_m_is_its_other_column() {
         (inner, heavy),
         (outer, light),
     ];
-    for (name, exact) in cases() {
-        let table = table(&name, &exact);
-        let at = |q: f64| table.inertia(q, &mut ()).expect("within");
-        let ([from, to], cells) = (table.extent(), table.cells()[0]);
-        let half = 0.5 * (to - from) / cells as f64;
-        let scale = table.bounds()[0].scale;
-        let (mut whole, mut size) = (0.0, 0.0);
-        for cell in 0..cells {
-            let start = from + 2.0 * half * cell as f64;
-            // Away from the ends, where a rounding of q may fall into the next cell.
-            let (left, right) = (start + 0.01 * half, start + 1.99 * half);
-            let (middle, reach) = (0.5 * (left + right), 0.5 * (right - left));
-            let sum = rule.map(|(x, weight)| weight * at(middle + reach * x).1);
-            let climb = 2.0 * reach * sum.iter().sum::<f64>();
-            let steep = 2.0 * half * sum.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
-            // Some roundings of m, and of q where m is steep.
-            let rounding = 4e-15 * scale + 1e-15 * steep * cells as f64;
-            let off = (at(right).0 - at(left).0 - climb).abs();
-            assert!(
-                off < rounding,
-                "{name}, cell {cell}: {off:e} > {rounding:e}"
-            );
-            if cell > 0 {
-                let across = at(start + 1e-9 * half).0 - at(start - 1e-9 * half).0;
-                let climb = 4e-9 * half * at(start).1;
-                let off = (across - climb).abs();
-                assert!(off < rounding, "{name}, at the start of {cell}: {off:e}");
-            }
-            let all = rule.map(|(x, weight)| weight * half * at(start + half + half * x).1);
-            whole += 2.0 * all.iter().sum::<f64>();
-            size += steep;
+    let half = 0.5 * (to - from) / cells as f64;
+    let (mut whole, mut size) = (0.0, 0.0);
+    for cell in 0..cells {
+        let start = from + 2.0 * half * cell as f64;
+        // Away from the ends, where a rounding of q may fall into the next cell.
+        let (left, right) = (start + 0.01 * half, start + 1.99 * half);
+        let (middle, reach) = (0.5 * (left + right), 0.5 * (right - left));
+        let sum = rule.map(|(x, weight)| weight * at(middle + reach * x)[1]);
+        let climb = 2.0 * reach * sum.iter().sum::<f64>();
+        let steep = 2.0 * half * sum.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
+        // Some roundings of m, and of q where m is steep.
+        let rounding = 4e-15 * scale + 1e-15 * steep * cells as f64;
+        let off = (at(right)[0] - at(left)[0] - climb).abs();
+        assert!(
+            off < rounding,
+            "{name}, cell {cell}: {off:e} > {rounding:e}"
+        );
+        if cell > 0 {
+            let across = at(start + 1e-9 * half)[0] - at(start - 1e-9 * half)[0];
+            let climb = 4e-9 * half * at(start)[1];
+            let off = (across - climb).abs();
+            assert!(off < rounding, "{name}, at the start of {cell}: {off:e}");
         }
-        // A turn gains nothing: the rounding of a mean, and of each cell's part in it.
-        if table.turns().is_some() {
-            assert!(
-                whole.abs() < 1e-15 * (scale + size),
-                "{name}: a turn gains {whole:e}"
-            );
-        }
+        let all = rule.map(|(x, weight)| weight * half * at(start + half + half * x)[1]);
+        whole += 2.0 * all.iter().sum::<f64>();
+        size += steep;
+    }
+    // A turn gains nothing: the rounding of a mean, and of each cell's part in it.
+    if comes_back {
+        assert!(
+            whole.abs() < 1e-15 * (scale + size),
+            "{name}: a turn gains {whole:e}"
+        );
     }
 }
 
 /// Of a free motion ½ m q̇² drifts on the table as it does on the exact model, by what the integrator does:
-/// with equal steps over 1000 turns by the same to within roundings.
+/// with equal steps over 1000 turns by the same to within roundings, however coarse the table.
 #[test]
 fn val_equal_steps_gain_the_same_energy_on_a_table() {
     for name in ["single-dwell", "crank-rocker"] {
         let exact = case(name);
-        let table = table(name, &exact);
         let start = State {
             t: 0.0,
             q: 0.0,
             q_dot: 1.0,
         };
         let period = Orbit::new(&exact, start).expect("a period").period;
-        let [own, truth] = [stepped(&table, period), stepped(&exact, period)];
-        let apart: Vec<f64> = own.iter().zip(&truth).map(|(a, b)| (a - b).abs()).collect();
+        let truth = stepped(&exact, period);
         assert!(
             truth[999].abs() > 1e-9,
             "{name}: nothing to compare: {:e}",
             truth[999]
         );
-        // The places at which m is rounded are the same in every turn, so that some 1e-16 of it come back
-        // each time. A table whose turn gained its bound would be at 5e-10 in the end.
-        for (turn, apart) in apart.iter().enumerate() {
-            let most = table.bound() + 2e-15 * turn as f64;
-            assert!(*apart < most, "{name}, turn {turn}: {apart:e} apart");
+        for accuracy in [1e-4, 1e-12] {
+            let table = Table::new(&exact, accuracy, Extent::Whole).expect("a table");
+            let own = stepped(&table, period);
+            for (turn, (own, truth)) in own.iter().zip(&truth).enumerate() {
+                // Truncation differs as higher derivatives do: 0.01 of the bound is met on the coarse table. The
+                // places at which m is rounded are the same in every turn, so that some 1e-16 of it come back
+                // each time. Interpolating m on its own gained 2 and 60 bounds, keeping what a turn gains 20
+                // and 70.
+                let most = 0.02 * table.bound() + 2e-15 * (turn + 2) as f64;
+                let apart = (own - truth).abs();
+                assert!(
+                    apart < most,
+                    "{name}, {accuracy:e}, turn {turn}: {apart:e} apart"
+                );
+            }
         }
     }
 }
@@ -221,7 +258,8 @@ fn stepped<R: Reduced>(model: &R, period: f64) -> Vec<f64> {
     gains
 }
 
-/// An integrator that chooses its steps drifts alike on both.
+/// An integrator that chooses its steps drifts alike on both. Its tolerance is a hundred times the table's
+/// error: else that would have a say in the choice.
 #[test]
 fn val_energy_drifts_on_a_table_as_on_the_exact_model() {
     let start = State {
@@ -229,7 +267,7 @@ fn val_energy_drifts_on_a_table_as_on_the_exact_model() {
         q: 0.0,
         q_dot: 1.0,
     };
-    let options = Options::new(Method::Tsit45, 1e-12);
+    let options = Options::new(Method::Tsit45, 1e-10);
     for name in ["single-dwell", "crank-rocker"] {
         let exact = case(name);
         let table = table(name, &exact);

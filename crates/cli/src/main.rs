@@ -10,7 +10,9 @@ mod validate;
 use clap::Parser;
 use dwell_findings::all_pass;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Accuracy, Command as Run, Followed, Outcome, Progress, Step, StudyError, Sweep};
+use dwell_study::{
+    Accuracy, Command as Run, Followed, Outcome, Progress, Step, StudyError, Sweep, Tabulation,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{Report, miette};
 use options::{Along, Command, Options};
@@ -50,7 +52,18 @@ fn run(options: Options) -> Result<bool, Report> {
     let mut stopped = None;
     let outcome = match &command {
         Command::Check { scene } => told(dwell_study::check(&read(scene)?))?,
-        Command::Reduce { scene, table } => told(dwell_study::reduce(&read(scene)?, *table))?,
+        Command::Reduce {
+            scene,
+            table,
+            from,
+            to,
+        } => {
+            let tabulation = table.map(|accuracy| Tabulation {
+                accuracy,
+                between: from.zip(*to),
+            });
+            told(dwell_study::reduce(&read(scene)?, tabulation))?
+        }
         Command::Simulate {
             scene,
             method,

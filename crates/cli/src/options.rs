@@ -30,6 +30,12 @@ pub(crate) enum Command {
         /// Also a table that gives everything back to this part of its largest value, such as 1e-12
         #[arg(long, value_parser = part, value_name = "ACCURACY", allow_hyphen_values = true)]
         table: Option<f64>,
+        /// The table begins here, in the scene's unit (over all turns, or all but 2 % of the range at each end, if absent)
+        #[arg(long, requires_all = ["table", "to"], value_parser = finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+        from: Option<f64>,
+        /// The table ends here
+        #[arg(long, requires_all = ["table", "from"], value_parser = finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+        to: Option<f64>,
     },
     /// Motion in time under loads and drives, with energies and reactions: tables and pictures
     Simulate {
@@ -272,6 +278,15 @@ fn whole(text: &str) -> Result<u64, String> {
 
 fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_owned())
+}
+
+fn finite(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err("not a finite number".to_owned())
+    }
 }
 
 /// A tolerance that an integrator can keep: below 1e-14 none of them can in double precision, and

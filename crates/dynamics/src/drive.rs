@@ -9,7 +9,7 @@
 //! Without inductance the current of (1) follows at once: the motor's torque falls in a line with its
 //! speed. A regulator at its limit stops integrating what would drive it further beyond.
 
-use dwell_geometry::measure::{BodyStates, Measured};
+use dwell_geometry::measure::Measured;
 use dwell_geometry::{Coordinate, Mechanism, Scalar};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 
@@ -198,14 +198,8 @@ impl Driven {
     }
 
     /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state, for
-    /// the action, voltage or speed that it is given.
-    pub(crate) fn act<T: Scalar>(
-        &self,
-        given: T,
-        states: &BodyStates<T>,
-        state: Option<T>,
-    ) -> (T, T) {
-        let [_, speed, _] = states.measure(self.measured);
+    /// the action, voltage or speed that it is given and the coordinate's speed.
+    pub(crate) fn act<T: Scalar>(&self, given: T, speed: T, state: Option<T>) -> (T, T) {
         let zero = T::lift(0.0);
         match self.law {
             Law::Action => (given, zero),

@@ -25,6 +25,7 @@ mod panels;
 pub mod root;
 mod swing;
 pub mod system;
+pub mod tabled;
 
 pub use atlas::{Atlas, AtlasError, Change, Chart, Journey, Leg, Site, Tracked, Why};
 pub use bridge::{Bridge, BridgeError};
@@ -44,3 +45,4 @@ pub use moving::Moving;
 pub use options::{Method, Options, Statistics};
 pub use orbit::Orbit;
 pub use system::{Point, System};
+pub use tabled::{NotTabled, OnTable, Tabled};

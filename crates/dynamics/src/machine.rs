@@ -240,7 +240,8 @@ impl Machine {
             let given = self
                 .model
                 .sense(drive.load, &drive.given, t, &mut work.inner)?;
-            let (action, rate) = drive.act(given + work.input[d], work.inner.states(), state);
+            let [_, speed, _] = work.inner.states().measure(drive.measured);
+            let (action, rate) = drive.act(given + work.input[d], speed, state);
             work.action[d] = action;
             work.inner.give(drive.load, action);
             if let Some(s) = drive.state {

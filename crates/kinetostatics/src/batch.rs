@@ -95,6 +95,11 @@ impl Exact {
     pub fn reduce_all(&self, q: &[f64], out: &mut Batch) {
         self.model().reduce_all(q, out);
     }
+
+    /// m and ½m′ alone at many coordinates, as [`Exact::reduce_all`] does.
+    pub fn inertia_all(&self, q: &[f64], out: &mut Batch) {
+        self.bare().reduce_all(q, out);
+    }
 }
 
 impl Model {

@@ -16,7 +16,7 @@
 use crate::kinetostatics::KinetostaticsError;
 use crate::model::{Actions, Model, Workspace};
 use crate::runs::{Prescribed, Pushed, Still};
-use dwell_geometry::Scalar;
+use dwell_geometry::{PlaceError, Scalar};
 
 impl Model {
     /// Enters a state: coordinates `q` (rad or m) and speeds `q_dot` at time `t` (s). The states of the
@@ -32,6 +32,22 @@ impl Model {
         q_dot: &[T],
         work: &mut Workspace<T>,
     ) -> Result<(), KinetostaticsError> {
+        self.enter_shape(q, q_dot, work)?;
+        let loaded = &mut work.loaded;
+        self.loads.magnitudes(t, &loaded.states, &mut loaded.loads)
+    }
+
+    /// Enters coordinates (rad or m) and speeds as [`Model::enter`] does, without the magnitudes: what a
+    /// channel or a measure needs.
+    ///
+    /// # Errors
+    /// [`PlaceError`] when there is no pose at `q`.
+    pub fn enter_shape<T: Scalar>(
+        &self,
+        q: &[T],
+        q_dot: &[T],
+        work: &mut Workspace<T>,
+    ) -> Result<(), PlaceError> {
         let Workspace {
             pose,
             motion,
@@ -42,7 +58,7 @@ impl Model {
         self.plan.speeds(pose, q_dot, motion);
         loaded.q_dot.copy_from_slice(q_dot);
         loaded.states.fill(&self.plan, pose, motion);
-        self.loads.magnitudes(t, &loaded.states, &mut loaded.loads)
+        Ok(())
     }
 
     /// Enters a state whose pose and motion (with accelerations) the caller has put into `work`.

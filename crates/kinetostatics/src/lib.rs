@@ -26,6 +26,7 @@ pub use batch::Batch;
 pub use kinetostatics::KinetostaticsError;
 pub use ledger::Ledger;
 pub use load::{Friction, Guide, Load, LoadKind, Magnitude, Signal};
+pub use magnitudes::Sense;
 pub use mass::Mass;
 pub use model::{Actions, Model, ModelError, Workspace};
 pub use reduced::{Coefficients, Exact, ExactWork, Inertia, Reduced};

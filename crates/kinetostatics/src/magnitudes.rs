@@ -10,9 +10,12 @@ use dwell_laws::Expression;
 
 /// What a magnitude depends on, ready to be measured.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Sense {
+pub enum Sense {
+    /// Time, s.
     Time,
+    /// A coordinate, rad or m.
     Value(Measured),
+    /// Its speed, rad/s or m/s.
     Speed(Measured),
 }
 
@@ -70,7 +73,12 @@ impl Magnitude {
             *number = sense.of(t, states);
             *value = number.value();
         }
-        let (numbers, values) = (&numbers[..senses.len()], &values[..senses.len()]);
+        self.of(&numbers[..senses.len()], &values[..senses.len()])
+    }
+
+    /// The magnitude where its [signals](Self::signals) have these numbers, and the numbers these values.
+    /// Friction, and what is given, is zero.
+    pub fn of<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
         match (self, numbers) {
             (Self::Constant(value), _) => T::lift(*value),
             (Self::Law(_, law), &[x, ..]) => x.through(&law.at(x.value())),
@@ -82,6 +90,11 @@ impl Magnitude {
 }
 
 impl Model {
+    /// What a load's magnitude depends on, in the order of its [signals](Magnitude::signals).
+    pub fn senses(&self, load: usize) -> &[Sense] {
+        self.loads.senses.get(load).map_or(&[], Vec::as_slice)
+    }
+
     /// What a load of [`Magnitude::Given`] is given from, at time `t` (s) and the state entered: a
     /// magnitude of the same signals, such as the voltage of a motor.
     ///

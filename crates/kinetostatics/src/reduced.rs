@@ -102,6 +102,10 @@ impl Exact {
     pub fn model(&self) -> &Model {
         &self.model
     }
+
+    pub(crate) fn bare(&self) -> &Model {
+        &self.bare
+    }
 }
 
 impl Model {

@@ -12,28 +12,22 @@
 mod bound;
 mod file;
 mod fit;
+mod make;
 mod pieces;
 mod source;
 
 pub use file::{FileError, Labels};
+pub use make::{Fill, Maker, Slopes};
+pub use pieces::{Columns, Curve};
+pub use source::Inertias;
 
 use crate::kinetostatics::KinetostaticsError;
 use crate::reduced::{Coefficients, Exact, Inertia, Reduced};
 use dwell_geometry::{Dual, PlaceError, Range};
-use fit::Fit;
-use pieces::{Columns, Grid, Inertias};
+use pieces::Grid;
 use source::Source;
-use std::f64::consts::TAU;
 use std::fmt;
 use thiserror::Error;
-
-/// Part of a limited range that is left out at each end, if no extent is given: the inertia grows as one
-/// over the distance to a limit position, and everything is measured by its largest value.
-const LEFT_OUT: f64 = 0.02;
-/// A coefficient that a whole turn changes by more than this part of its scale does not come back.
-const SAME: f64 = 1e-9;
-/// Where they are compared, in parts of a period.
-const COMPARED: [f64; 5] = [0.0, 0.131, 0.292, 0.583, 0.877];
 
 /// Over which coordinates a table reaches.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +38,7 @@ pub enum Extent {
     Between(f64, f64),
 }
 
-/// A coefficient of the reduced model.
+/// A function of the coordinate that a table may hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Entry {
     /// m.
@@ -73,6 +67,20 @@ pub enum Entry {
         /// Index of the reaction.
         reaction: usize,
     },
+    /// V, the potential of all loads that have one.
+    V,
+    /// ½V′.
+    HalfDv,
+    /// Something measured that loads or drives depend on, less what it gains evenly with q.
+    S {
+        /// Its index.
+        measured: usize,
+    },
+    /// Its derivative by q.
+    Ds {
+        /// Its index.
+        measured: usize,
+    },
 }
 
 impl fmt::Display for Entry {
@@ -84,6 +92,10 @@ impl fmt::Display for Entry {
             Self::B { reaction } => write!(f, "b of reaction {reaction}"),
             Self::W { load } => write!(f, "w of load {load}"),
             Self::C { load, reaction } => write!(f, "c of load {load} and reaction {reaction}"),
+            Self::V => write!(f, "the potential V"),
+            Self::HalfDv => write!(f, "the slope of the potential, ½V′"),
+            Self::S { measured } => write!(f, "measured coordinate {measured}"),
+            Self::Ds { measured } => write!(f, "the slope of measured coordinate {measured}"),
         }
     }
 }
@@ -118,7 +130,7 @@ pub enum TableError {
     },
     /// The coefficients of the series do not fall to the accuracy.
     #[error(
-        "not smooth enough for a table: with {points} samples, {left:.1e} of the largest value is left"
+        "not smooth enough for a table over so much: {points} samples leave {left:.1e} of the largest value"
     )]
     NotSmooth {
         /// Samples taken.
@@ -173,7 +185,7 @@ pub struct Channels {
 pub struct Table {
     accuracy: f64,
     angle: bool,
-    inertia: Inertias,
+    inertia: Curve,
     reactions: Columns,
     loads: Columns,
     /// How many reactions and loads.
@@ -189,27 +201,16 @@ impl Table {
     /// # Errors
     /// [`TableError`] when there is nothing to reach over, or the accuracy cannot be kept.
     pub fn new(exact: &Exact, accuracy: f64, extent: Extent) -> Result<Self, TableError> {
-        if !(1e-14..=1e-2).contains(&accuracy) {
-            return Err(TableError::Accuracy { accuracy });
-        }
-        let grid = reach(exact.range(), extent)?;
+        let mut maker = Maker::new(exact.range(), extent, accuracy)?;
         let mut source = Source::new(exact);
-        let mut bounds = Vec::new();
-
         let model = exact.model();
         let counts = [model.reactions().len(), model.loads().len()];
-        let [both, reactions, loads] = entries(counts);
-        let fit = fit_inertia(grid, accuracy, &mut source)?;
-        let made = bound::size::<Inertias>(grid, &both, &fit, accuracy, &mut source)?;
-        let inertia = note(&mut bounds, &both, &fit, made);
-
+        let (both, reactions, loads) = entries(counts);
+        let inertia = maker.curve(both, &mut exact.slopes())?;
+        let alike = |one, other| source::alike(exact, one, other);
         let mut columns = |which: &[Entry]| {
-            if which.is_empty() {
-                return Columns::new(grid, which, &mut source);
-            }
-            let fit = fit_columns(grid, accuracy, which, &mut source)?;
-            let made = bound::size::<Columns>(grid, which, &fit, accuracy, &mut source)?;
-            Ok(note(&mut bounds, which, &fit, made))
+            let mut fill = |q: f64, out: &mut [Dual]| source.fill(which, q, out);
+            maker.columns(which, &alike, &mut fill)
         };
         Ok(Self {
             accuracy,
@@ -218,7 +219,7 @@ impl Table {
             reactions: columns(&reactions)?,
             loads: columns(&loads)?,
             counts,
-            bounds,
+            bounds: maker.bounds(),
         })
     }
 
@@ -250,14 +251,10 @@ impl Table {
 
     /// Cells of m and ½m′, of the reactions, of the loads; none where there are none.
     pub fn cells(&self) -> [usize; 3] {
-        let of = |columns: &Columns| match columns.width {
-            0 => 0,
-            _ => columns.grid.cells,
-        };
         [
-            self.inertia.grid.cells,
-            of(&self.reactions),
-            of(&self.loads),
+            self.inertia.cells(),
+            self.reactions.cells(),
+            self.loads.cells(),
         ]
     }
 
@@ -308,7 +305,7 @@ impl Reduced for Table {
 
     #[inline]
     fn inertia(&self, q: f64, (): &mut ()) -> Result<(f64, f64), PlaceError> {
-        self.inertia.at(q)
+        self.inertia.at(q).map(<(f64, f64)>::from)
     }
 
     fn curvature(&self, q: f64, (): &mut ()) -> Result<Inertia, PlaceError> {
@@ -316,121 +313,18 @@ impl Reduced for Table {
     }
 
     fn coefficients(&self, q: f64, (): &mut (), out: &mut Coefficients) -> Result<(), PlaceError> {
-        (out.m, out.half_dm) = self.inertia.at(q)?;
+        [out.m, out.half_dm] = self.inertia.at(q)?;
         self.reactions.at(q, &mut out.a, &mut out.b)
     }
 }
 
 /// The coefficients in their order: m and ½m′, those of the reactions, those of the loads.
-fn entries([reactions, loads]: [usize; 2]) -> [Vec<Entry>; 3] {
+fn entries([reactions, loads]: [usize; 2]) -> ([Entry; 2], Vec<Entry>, Vec<Entry>) {
     let a = (0..reactions).map(|reaction| Entry::A { reaction });
     let b = (0..reactions).map(|reaction| Entry::B { reaction });
     let w = (0..loads).map(|load| Entry::W { load });
     let c =
         (0..loads).flat_map(|load| (0..reactions).map(move |reaction| Entry::C { load, reaction }));
-    let inertia = vec![Entry::M, Entry::HalfDm];
-    [inertia, a.chain(b).collect(), w.chain(c).collect()]
-}
-
-/// The extent as a grid of one cell.
-fn reach(range: Range, extent: Extent) -> Result<Grid, TableError> {
-    let (from, to) = match (extent, range.period(), range.limits()) {
-        (Extent::Whole, Some(period), _) => {
-            let turns = (period / TAU).round() as u32;
-            return Ok(Grid::new(0.0, period, turns, 1));
-        }
-        (Extent::Whole, None, None) => return Err(TableError::Endless),
-        (Extent::Whole, None, Some((from, to))) => {
-            let margin = LEFT_OUT * (to - from);
-            (from + margin, to - margin)
-        }
-        (Extent::Between(from, to), _, limits) => {
-            let inside = limits.is_none_or(|(lowest, highest)| lowest <= from && to <= highest);
-            if !(inside && from < to && (to - from).is_finite()) {
-                return Err(TableError::Extent { from, to });
-            }
-            (from, to)
-        }
-    };
-    Ok(Grid::new(from, to - from, 0, 1))
-}
-
-fn fit_inertia(grid: Grid, accuracy: f64, source: &mut Source<'_>) -> Result<Fit, TableError> {
-    // m over a radian of a turn, or as much of an extent, is of the kind of ½m′.
-    let per_turn = TAU / grid.length;
-    let scale = |largest: &[f64]| {
-        let weighed = [largest[0], largest[1] / per_turn];
-        let [m, slope] = [
-            weighed[0],
-            fit::scales(&weighed, &|_, _| true)[1] * per_turn,
-        ];
-        vec![m, slope]
-    };
-    let mut values = |q: f64, out: &mut [f64]| {
-        let at = source.inertia(q)?;
-        out.copy_from_slice(&[at.m, at.half_dm]);
-        Ok(())
-    };
-    fit::fit(grid, 2, accuracy, &scale, &mut values)
-}
-
-fn fit_columns(
-    grid: Grid,
-    accuracy: f64,
-    which: &[Entry],
-    source: &mut Source<'_>,
-) -> Result<Fit, TableError> {
-    let alike: Vec<bool> = which
-        .iter()
-        .flat_map(|&one| which.iter().map(move |&other| (one, other)))
-        .map(|(one, other)| source.alike(one, other))
-        .collect();
-    let width = which.len();
-    let scale = |largest: &[f64]| fit::scales(largest, &|i, j| alike[i * width + j]);
-    let mut here = vec![Dual::default(); width];
-    let mut values = |q: f64, out: &mut [f64]| {
-        source.fill(which, q, &mut here)?;
-        for (out, here) in out.iter_mut().zip(&here) {
-            *out = here.v;
-        }
-        Ok(())
-    };
-    if grid.turns > 0 {
-        comes_back(grid, which, &scale, &mut values)?;
-    }
-    fit::fit(grid, width, accuracy, &scale, &mut values)
-}
-
-/// Refuses coefficients that are not the same a period later.
-fn comes_back(
-    grid: Grid,
-    which: &[Entry],
-    scale: &dyn Fn(&[f64]) -> Vec<f64>,
-    values: &mut fit::Values<'_>,
-) -> Result<(), TableError> {
-    let (mut here, mut later) = (vec![0.0; which.len()], vec![0.0; which.len()]);
-    let (mut largest, mut apart) = (here.clone(), here.clone());
-    for part in COMPARED {
-        let q = grid.from + part * grid.length;
-        values(q, &mut here)?;
-        values(q + grid.length, &mut later)?;
-        for k in 0..which.len() {
-            largest[k] = here[k].abs().max(largest[k]);
-            apart[k] = (here[k] - later[k]).abs().max(apart[k]);
-        }
-    }
-    let scales = scale(&largest);
-    let gone = (0..which.len()).find(|&k| apart[k] > SAME * scales[k]);
-    match gone {
-        Some(k) => Err(TableError::NotPeriodic { what: which[k] }),
-        None => Ok(()),
-    }
-}
-
-/// Takes down the bounds of what was made.
-fn note<P>(bounds: &mut Vec<Bound>, which: &[Entry], fit: &Fit, made: (P, Vec<f64>)) -> P {
-    let (pieces, errors) = made;
-    let known = which.iter().zip(&fit.scales).zip(errors);
-    bounds.extend(known.map(|((&of, &scale), error)| Bound { of, scale, error }));
-    pieces
+    let inertia = [Entry::M, Entry::HalfDm];
+    (inertia, a.chain(b).collect(), w.chain(c).collect())
 }

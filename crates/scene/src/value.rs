@@ -63,6 +63,11 @@ impl Scene {
         (unit.written(si), &unit.name)
     }
 
+    /// A length or an angle in the scene's unit, as one of SI: m or rad.
+    pub fn si(&self, written: f64, is_angle: bool) -> f64 {
+        self.units.of(is_angle).si(written)
+    }
+
     /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
     ///
     /// The number is replaced in the text and the text read again: whatever follows from the

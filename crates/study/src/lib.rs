@@ -70,4 +70,5 @@ pub use states::{Judged, judge_case};
 pub use subject::PlanSubject;
 pub use sweep::{Exported, Shard, Sweep, SweepError, sweep};
 pub use symbolic::{Printed, symbolic, symbolic_findings};
+pub use tabulate::Tabulation;
 pub use validate::{Validation, validate};

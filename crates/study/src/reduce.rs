@@ -7,7 +7,7 @@ use crate::motion_error::explain_place;
 use crate::outcome::Outcome;
 use crate::prepare::Prepared;
 use crate::provenance::picture;
-use crate::tabulate::tabulate;
+use crate::tabulate::{Tabulation, tabulate};
 use crate::words::digits;
 use dwell_kinetostatics::{Batch, Coefficients};
 use dwell_report::{Axis, Column, Figure, Table};
@@ -132,12 +132,12 @@ pub(crate) fn coefficient_unit(unit: &str) -> &'static str {
     if unit == "N" { "kg m" } else { "kg m2" }
 }
 
-/// The reduced parameters of a scene over its range, and a table of this accuracy, if one is wanted.
+/// The reduced parameters of a scene over its range, and a table, if one is wanted.
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be put together, a figure cannot be drawn or a table not be
 /// made.
-pub fn reduce(scene: &Scene, table: Option<f64>) -> Result<Outcome, StudyError> {
+pub fn reduce(scene: &Scene, table: Option<Tabulation>) -> Result<Outcome, StudyError> {
     let prepared = Prepared::for_angle(scene, false)?;
     let sweep = Sweep::new(&prepared)?;
     let mut figures: Vec<Figure> = vec![figures::reduced(&prepared, &sweep)];
@@ -192,8 +192,8 @@ pub fn reduce(scene: &Scene, table: Option<f64>) -> Result<Outcome, StudyError> 
             "  no body with mass moves: no motion follows from this, and every reaction is zero\n";
     }
     outcome.summary += &prepared.told_shared();
-    if let Some(accuracy) = table {
-        tabulate(&prepared, accuracy, &mut outcome)?;
+    if let Some(wanted) = table {
+        tabulate(&prepared, &wanted, &mut outcome)?;
     }
     Ok(outcome)
 }

@@ -12,20 +12,31 @@ use dwell_kinetostatics::{Entry, Exact, Extent, Table, TableError};
 use dwell_scene::{Place, Scene};
 use std::f64::consts::TAU;
 
+/// A table that is wanted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tabulation {
+    /// As a part of the largest value of each coefficient.
+    pub accuracy: f64,
+    /// From where to where, in the scene's unit; none for all turns, or all but 2 % of a range at each end.
+    pub between: Option<(f64, f64)>,
+}
+
 /// Adds a table of everything that a scene requests to what a command yields: m, ½m′, a and b of the
-/// reactions, w and c of the loads, each to `accuracy` of its largest value.
+/// reactions, w and c of the loads, each to the wanted part of its largest value.
 pub(crate) fn tabulate(
     prepared: &Prepared<'_>,
-    accuracy: f64,
+    wanted: &Tabulation,
     outcome: &mut Outcome,
 ) -> Result<(), StudyError> {
     let scene = prepared.scene;
     let exact = Exact::new(loaded(scene)?).ok_or_else(|| not_one_actuator(scene))?;
     let plan = exact.model().plan();
     // What does not come back is shown over a turn, and tabulated where it is shown.
-    let extent = match plan.range() {
-        Range::Endless => Extent::Between(0.0, TAU),
-        _ => Extent::Whole,
+    let si = |written: f64| scene.si(written, plan.is_angle(0));
+    let extent = match (wanted.between, plan.range()) {
+        (Some((from, to)), _) => Extent::Between(si(from), si(to)),
+        (None, Range::Endless) => Extent::Between(0.0, TAU),
+        (None, _) => Extent::Whole,
     };
     let labels = Labels {
         scene: scene.hash(),
@@ -38,7 +49,7 @@ pub(crate) fn tabulate(
         loads: scene.loads.iter().map(|load| load.name.clone()).collect(),
     };
     let refused = |e: TableError| explain(scene, plan, &labels, &e);
-    let table = Table::new(&exact, accuracy, extent).map_err(refused)?;
+    let table = Table::new(&exact, wanted.accuracy, extent).map_err(refused)?;
     let text = table.to_text(&labels).map_err(|e| {
         let error = scene.error(e.to_string(), None, &[]);
         StudyError::from(error)
@@ -46,17 +57,17 @@ pub(crate) fn tabulate(
     outcome
         .files
         .add(format!("{}.table", scene.name), text.into_bytes());
-    outcome.summary += &told(&table);
+    outcome.summary += &told(scene, &table);
     Ok(())
 }
 
 /// Kind, extent, cells, memory and bound.
-fn told(table: &Table) -> String {
+fn told(scene: &Scene, table: &Table) -> String {
     let [from, to] = table.extent();
     let kind = match table.turns() {
         Some(1) => "every turn".to_owned(),
         Some(turns) => format!("every {turns} turns"),
-        None => format!("from {} to {} rad", number(from), number(to)),
+        None => between(scene, from, to),
     };
     let counts = table
         .cells()
@@ -72,6 +83,12 @@ fn told(table: &Table) -> String {
         cells.join(", "),
         table.bound()
     )
+}
+
+/// An extent in the scene's unit.
+fn between(scene: &Scene, from: f64, to: f64) -> String {
+    let [(from, unit), (to, _)] = [from, to].map(|q| scene.written(q, true));
+    format!("from {} to {} {unit}", number(from), number(to))
 }
 
 /// A table's error with the names and places of the scene.
@@ -94,8 +111,24 @@ fn explain(scene: &Scene, plan: &Plan, labels: &Labels, error: &TableError) -> S
                 "no table: {} is not the same a turn later",
                 named(what, labels)
             ),
-            "a load that winds up has no table of whole turns: leave it out",
+            "a load that winds up has a table over a part of its turns: say --from and --to",
         ),
+        TableError::NotSmooth { .. } => (
+            error.to_string(),
+            "ask for less, or for a smaller part of the range with --from and --to, away from limit positions",
+        ),
+        TableError::Extent { from, to } => {
+            let why = match plan.range().limits() {
+                Some((least, most)) if from < to => {
+                    format!("the range is {}", between(scene, least, most))
+                }
+                _ => "its end must be beyond its beginning".to_owned(),
+            };
+            (
+                format!("no table {}: {why}", between(scene, from, to)),
+                "give --from and --to within the range, in the scene's unit of angles",
+            )
+        }
         other => (other.to_string(), "ask for less, such as --table 1e-9"),
     };
     let labels = [(
@@ -110,7 +143,6 @@ fn named(entry: Entry, labels: &Labels) -> String {
     let name = |of: &[String], i: usize| of.get(i).cloned().unwrap_or_default();
     let (reactions, loads) = (&labels.reactions, &labels.loads);
     match entry {
-        Entry::M | Entry::HalfDm => entry.to_string(),
         Entry::A { reaction } => format!("a of {}", name(reactions, reaction)),
         Entry::B { reaction } => format!("b of {}", name(reactions, reaction)),
         Entry::W { load } => format!("w of {}", name(loads, load)),
@@ -121,5 +153,6 @@ fn named(entry: Entry, labels: &Labels) -> String {
                 name(loads, load)
             )
         }
+        _ => entry.to_string(),
     }
 }

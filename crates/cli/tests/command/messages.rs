@@ -387,6 +387,61 @@ fn arguments() {
 }
 
 #[test]
+fn tables() {
+    let mut group = Group::new();
+    group.bench.put("scene.toml", with(&[]));
+    group.bench.put("limited.toml", with(&LIMITED));
+    let spring =
+        "\n[loads]\nspring = { torsion = [\"ground\", \"crank\"], stiffness = 2, free = 0 }\n";
+    group.bench.put("winds.toml", with(&[]) + spring);
+    for accuracy in ["0", "1e-20", "1", "-1e-9", "fine", "nan"] {
+        group.refused(
+            &format!("an accuracy of {accuracy}"),
+            &["reduce", "scene.toml", "--table", accuracy],
+        );
+    }
+    for (title, scene, rest) in [
+        ("a load that winds up", "winds.toml", &[][..]),
+        (
+            "beyond the range",
+            "limited.toml",
+            &["--from", "0", "--to", "400"],
+        ),
+        (
+            "from the end to the beginning",
+            "scene.toml",
+            &["--from", "2", "--to", "1"],
+        ),
+        ("nothing", "scene.toml", &["--from", "1", "--to", "1"]),
+        ("no end", "scene.toml", &["--from", "1"]),
+        (
+            "an infinite end",
+            "scene.toml",
+            &["--from", "-1", "--to", "inf"],
+        ),
+        (
+            "a unit",
+            "scene.toml",
+            &["--from", "10deg", "--to", "20deg"],
+        ),
+        (
+            "up to a limit position",
+            "limited.toml",
+            &["--from", "0", "--to", "1.3715642395"],
+        ),
+        ("many turns", "scene.toml", &["--from", "0", "--to", "1e5"]),
+    ] {
+        let arguments = ["reduce", scene, "--table", "1e-9"];
+        group.refused(title, &[&arguments, rest].concat());
+    }
+    let arguments = ["reduce", "limited.toml", "--table", "1e-14"];
+    group.refused("more than there is next to limit positions", &arguments);
+    let arguments = ["reduce", "scene.toml", "--from", "0", "--to", "1"];
+    group.refused("an extent of no table", &arguments);
+    group.check("tables");
+}
+
+#[test]
 fn sweeps() {
     let mut group = Group::new();
     group.bench.put("four-bar.toml", with(&[]));

@@ -46,6 +46,22 @@ fn reduce_makes_a_table_that_needs_no_mechanism() {
     }
 }
 
+/// Over a part of the turn, in the scene's unit: degrees here.
+#[test]
+fn reduce_makes_a_table_of_a_part_of_the_turn() {
+    let bench = Bench::new();
+    let scene = case("slotted-rocker");
+    let extent = ["--from", "-30", "--to", "90"];
+    let arguments = [
+        &["reduce", &scene, "--table", "1e-9", "--out", "o"],
+        &extent[..],
+    ]
+    .concat();
+    let run = bench.run(&arguments);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert!(run.out.contains("from -30 to 90 deg"), "{}", run.out);
+}
+
 #[test]
 fn reduce_writes_a_table_with_units_and_pictures() {
     let bench = Bench::new();

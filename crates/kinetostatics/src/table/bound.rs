@@ -2,8 +2,8 @@
 //! and measured again elsewhere.
 
 use super::fit::{FEWEST_CELLS, Fit};
-use super::pieces::{BETWEEN, Columns, Grid, Inertias, TERMS};
-use super::source::Source;
+use super::make::{Fill, Slopes};
+use super::pieces::{BETWEEN, Columns, Curve, Grid, TERMS};
 use super::{Entry, TableError};
 use dwell_geometry::Dual;
 
@@ -11,8 +11,11 @@ use dwell_geometry::Dual;
 /// other points was 1.1 times that where the pieces decide; where the rounding of the exact model does,
 /// next to limit positions, 2.2 times.
 const MARGIN: f64 = 4.0;
-/// Points at which the pieces are looked at again, steps of the golden section.
-const CHECKED: usize = 4096;
+/// Points at which the pieces are looked at again, steps of the golden section: so many by cell, but no
+/// fewer and no more than these.
+const CHECKED_BY_CELL: usize = 8;
+const FEWEST_CHECKED: usize = 256;
+const MOST_CHECKED: usize = 4096;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Most cells: 10 megabytes for m and ½m′.
 pub(super) const MOST_CELLS: usize = 65_536;
@@ -21,59 +24,57 @@ const TRIES: usize = 10;
 /// A table is made again with fewer cells if its bound is this part of the accuracy.
 const GENEROUS: f64 = 0.05;
 
-/// Something that can be made of any number of cells and held against the exact model.
-pub(super) trait Pieces: Sized {
+/// Something that can be made of any number of cells and held against what it is made from.
+pub(super) trait Pieces<S: ?Sized>: Sized {
     /// It in cells.
-    fn make(grid: Grid, source: &mut Source<'_>, which: &[Entry]) -> Result<Self, TableError>;
+    fn make(grid: Grid, width: usize, source: &mut S) -> Result<Self, TableError>;
 
-    /// Its errors at a coordinate, each raised to `most` if larger.
-    fn compare(
-        &self,
-        q: f64,
-        source: &mut Source<'_>,
-        which: &[Entry],
-        most: &mut [f64],
-    ) -> Result<(), TableError>;
+    /// Its errors at some coordinates, each raised to `most` if larger.
+    fn compare(&self, q: &[f64], source: &mut S, most: &mut [f64]) -> Result<(), TableError>;
 }
 
-impl Pieces for Inertias {
-    fn make(grid: Grid, source: &mut Source<'_>, _: &[Entry]) -> Result<Self, TableError> {
+impl<'a> Pieces<dyn Slopes + 'a> for Curve {
+    fn make(grid: Grid, _: usize, source: &mut (dyn Slopes + 'a)) -> Result<Self, TableError> {
         Self::new(grid, source)
     }
 
     fn compare(
         &self,
-        q: f64,
-        source: &mut Source<'_>,
-        _: &[Entry],
+        q: &[f64],
+        source: &mut (dyn Slopes + 'a),
         most: &mut [f64],
     ) -> Result<(), TableError> {
-        let (exact, (m, half_dm)) = (source.inertia(q)?, self.at(q)?);
-        let errors = [m - exact.m, half_dm - exact.half_dm];
-        raise(most, errors.into_iter());
+        for (&q, exact) in q.iter().zip(source.many(q)?) {
+            let own = self.at(q)?;
+            raise(
+                most,
+                own.into_iter().zip(exact).map(|(own, exact)| own - exact),
+            );
+        }
         Ok(())
     }
 }
 
-impl Pieces for Columns {
-    fn make(grid: Grid, source: &mut Source<'_>, which: &[Entry]) -> Result<Self, TableError> {
-        Self::new(grid, which, source)
+impl<'a> Pieces<Fill<'a>> for Columns {
+    fn make(grid: Grid, width: usize, source: &mut Fill<'a>) -> Result<Self, TableError> {
+        Self::new(grid, width, source)
     }
 
     fn compare(
         &self,
-        q: f64,
-        source: &mut Source<'_>,
-        which: &[Entry],
+        q: &[f64],
+        source: &mut Fill<'a>,
         most: &mut [f64],
     ) -> Result<(), TableError> {
         let (mut exact, mut own) = (vec![Dual::default(); self.width], vec![0.0; self.width]);
-        source.fill(which, q, &mut exact)?;
-        self.at(q, &mut own, &mut [])?;
-        raise(
-            most,
-            own.iter().zip(&exact).map(|(own, exact)| own - exact.v),
-        );
+        for &q in q {
+            source(q, &mut exact)?;
+            self.at(q, &mut own, &mut [])?;
+            raise(
+                most,
+                own.iter().zip(&exact).map(|(own, exact)| own - exact.v),
+            );
+        }
         Ok(())
     }
 }
@@ -92,12 +93,12 @@ fn raise(most: &mut [f64], errors: impl Iterator<Item = f64>) {
 
 /// The smallest table met whose bound is within the accuracy, and the bounds by entry, as parts of the
 /// scales.
-pub(super) fn size<P: Pieces>(
+pub(super) fn size<S: ?Sized, P: Pieces<S>>(
     grid: Grid,
     which: &[Entry],
     fit: &Fit,
     accuracy: f64,
-    source: &mut Source<'_>,
+    source: &mut S,
 ) -> Result<(P, Vec<f64>), TableError> {
     let mut cells = fit.cells;
     let mut best: Option<(P, Vec<f64>, usize)> = None;
@@ -107,8 +108,8 @@ pub(super) fn size<P: Pieces>(
             break;
         }
         let grid = grid.with(cells);
-        let pieces = P::make(grid, source, which)?;
-        let bounds = bounds(&pieces, grid, which, fit, source)?;
+        let pieces = P::make(grid, which.len(), source)?;
+        let bounds = bounds(&pieces, grid, fit, source)?;
         let worst = worst(&bounds, which);
         if worst.0 < least.0 {
             least = worst;
@@ -140,24 +141,22 @@ pub(super) fn size<P: Pieces>(
 }
 
 /// The bounds by entry as parts of the scales: from points between the nodes of every cell, and others.
-fn bounds<P: Pieces>(
+fn bounds<S: ?Sized, P: Pieces<S>>(
     pieces: &P,
     grid: Grid,
-    which: &[Entry],
     fit: &Fit,
-    source: &mut Source<'_>,
+    source: &mut S,
 ) -> Result<Vec<f64>, TableError> {
-    let mut most = vec![0.0; which.len()];
-    for cell in 0..grid.cells {
-        for x in BETWEEN {
-            pieces.compare(grid.coordinate(cell, x), source, which, &mut most)?;
-        }
-    }
-    for i in 0..CHECKED {
+    let mut most = vec![0.0; fit.scales.len()];
+    let cells = 0..grid.cells;
+    let between = cells.flat_map(|cell| BETWEEN.map(|x| grid.coordinate(cell, x)));
+    let others = (CHECKED_BY_CELL * grid.cells).clamp(FEWEST_CHECKED, MOST_CHECKED);
+    let elsewhere = (0..others).map(|i| {
         let part = (0.5 + i as f64 * GOLDEN).fract();
-        let q = grid.from + grid.length * part;
-        pieces.compare(q, source, which, &mut most)?;
-    }
+        grid.from + grid.length * part
+    });
+    let places: Vec<f64> = between.chain(elsewhere).collect();
+    pieces.compare(&places, source, &mut most)?;
     let bound = |(&most, &scale): (&f64, &f64)| match most {
         0.0 => 0.0,
         most => MARGIN * most / scale,

@@ -3,7 +3,7 @@
 //! are kept: the rest is made from ½m′ as when the table was new.
 
 use super::bound::MOST_CELLS;
-use super::pieces::{Columns, Grid, Inertias, TERMS};
+use super::pieces::{Columns, Curve, Grid, TERMS};
 use super::{Bound, Table, entries};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -203,7 +203,8 @@ impl<'a> Reader<'a> {
         {
             return Err(self.wrong("cells of whatever there is"));
         }
-        let entries = entries(counts).concat();
+        let (both, ab, wc) = entries(counts);
+        let entries = [both.to_vec(), ab, wc].concat();
         let scales = self.numbers("scales", entries.len())?;
         let errors = self.numbers("errors", entries.len())?;
         let known = entries.iter().zip(scales).zip(errors);
@@ -218,7 +219,7 @@ impl<'a> Reader<'a> {
         let table = Table {
             accuracy,
             angle,
-            inertia: Inertias::from_seeds(one.with(cells[0]), seeds.into_iter()),
+            inertia: Curve::from_seeds(one.with(cells[0]), seeds.into_iter()),
             reactions: self.columns("ab", one.with(cells[1].max(1)), widths[0])?,
             loads: self.columns("wc", one.with(cells[2].max(1)), widths[1])?,
             counts,

@@ -25,8 +25,8 @@ pub(super) const FEWEST_CELLS: usize = 4;
 /// made of cancels, and its rounding is that of its kind.
 const SMALL: f64 = 1e-3;
 
-/// What a function of several values at one coordinate gives.
-pub(super) type Values<'a> = dyn FnMut(f64, &mut [f64]) -> Result<(), TableError> + 'a;
+/// What a function of several values gives at many coordinates, one row each.
+pub(super) type Values<'a> = dyn FnMut(&[f64]) -> Result<Vec<Vec<f64>>, TableError> + 'a;
 
 /// What the values of a table are measured by, and how many cells their coefficients ask for.
 pub(super) struct Fit {
@@ -45,7 +45,7 @@ pub(super) fn fit(
 ) -> Result<Fit, TableError> {
     let mut samples: Vec<Vec<f64>> = Vec::new();
     loop {
-        samples = sample(grid, width, samples, values)?;
+        samples = sample(grid, samples, values)?;
         let points = samples.len();
         let largest = |k: usize| samples.iter().fold(0.0_f64, |s, at| s.max(at[k].abs()));
         let scales = scale(&(0..width).map(largest).collect::<Vec<f64>>());
@@ -82,7 +82,6 @@ pub(super) fn scales(largest: &[f64], alike: &dyn Fn(usize, usize) -> bool) -> V
 /// Values at equally spaced phases, twice as many as are known.
 fn sample(
     grid: Grid,
-    width: usize,
     known: Vec<Vec<f64>>,
     values: &mut Values<'_>,
 ) -> Result<Vec<Vec<f64>>, TableError> {
@@ -91,27 +90,33 @@ fn sample(
     } else {
         2 * known.len()
     };
-    let mut known = known.into_iter();
-    let mut finer: Vec<Vec<f64>> = Vec::with_capacity(count);
-    let fresh = known.len() == 0;
-    for i in 0..count {
-        if !fresh && i % 2 == 0 {
-            finer.extend(known.next());
-            continue;
-        }
-        // Of an even function the second half is the first.
-        if grid.turns == 0 && 2 * i > count {
-            finer.push(finer[count - i].clone());
-            continue;
-        }
+    let fresh = known.is_empty();
+    // Of an even function the second half is the first.
+    let mirrored = |i: usize| grid.turns == 0 && 2 * i > count;
+    let place = |i: usize| {
         let part = i as f64 / count as f64;
-        let q = match grid.turns {
+        match grid.turns {
             0 => grid.from + 0.5 * grid.length * (1.0 + (TAU * part).cos()),
             _ => grid.from + grid.length * part,
+        }
+    };
+    let is_new = |i: &usize| (fresh || i % 2 == 1) && !mirrored(*i);
+    let places: Vec<f64> = (0..count).filter(is_new).map(place).collect();
+    let (mut new, mut known) = (values(&places)?.into_iter(), known.into_iter());
+    let mut finer: Vec<Vec<f64>> = Vec::with_capacity(count);
+    for i in 0..count {
+        // Those that are known hold their mirrored ones.
+        let old = if !fresh && i % 2 == 0 {
+            known.next()
+        } else {
+            None
         };
-        let mut at = vec![0.0; width];
-        values(q, &mut at)?;
-        finer.push(at);
+        let row = match old {
+            Some(row) => Some(row),
+            None if mirrored(i) => finer.get(count - i).cloned(),
+            None => new.next(),
+        };
+        finer.extend(row);
     }
     Ok(finer)
 }
@@ -192,10 +197,8 @@ mod tests {
     fn a_known_series_is_measured() {
         let r: f64 = 0.8;
         let grid = Grid::new(0.0, TAU, 1, 1);
-        let mut values = |q: f64, out: &mut [f64]| {
-            out[0] = 1.0 / (1.0 - 2.0 * r * q.cos() + r * r);
-            Ok(())
-        };
+        let at = |q: &f64| vec![1.0 / (1.0 - 2.0 * r * q.cos() + r * r)];
+        let mut values = |q: &[f64]| Ok(q.iter().map(at).collect());
         let scale = |largest: &[f64]| largest.to_vec();
         let found = fit(grid, 1, 1e-12, &scale, &mut values).expect("a fit");
         let k = (1e-12 * (1.0 + r) / (2.0 * (1.0 - r))).ln() / r.ln();
@@ -207,10 +210,7 @@ mod tests {
     #[test]
     fn a_jump_is_refused() {
         let grid = Grid::new(-1.0, 2.0, 0, 1);
-        let mut values = |q: f64, out: &mut [f64]| {
-            out[0] = q.signum();
-            Ok(())
-        };
+        let mut values = |q: &[f64]| Ok(q.iter().map(|q| vec![q.signum()]).collect());
         let scale = |largest: &[f64]| largest.to_vec();
         let found = fit(grid, 1, 1e-8, &scale, &mut values);
         assert!(matches!(

@@ -3,13 +3,13 @@
 //!
 //! A piece is Hermite's polynomial through values and slopes at [`NODES`] places of its cell, the ends
 //! among them, so that neighbours meet in value and slope. Of m only ½m′ is interpolated; m is its
-//! integral, and continuous. What a motion gains on the table where it leaves a cell it has therefore
-//! lost where it came in: energy cannot drift.
+//! integral, and continuous, and so it is with V and ½V′. What a motion gains on the table where it leaves
+//! a cell it has therefore lost where it came in: energy cannot drift.
 
-use super::source::Source;
-use super::{Entry, TableError};
+use super::TableError;
+use super::make::{Fill, Slopes};
 use crate::reduced::Inertia;
-use dwell_geometry::{Dual, PlaceError};
+use dwell_geometry::{Dual, PlaceError, Scalar};
 use std::f64::consts::TAU;
 
 /// Places of a cell where a function and its slope are taken from the exact model.
@@ -114,6 +114,15 @@ impl Grid {
         }
     }
 
+    /// The same of a coordinate in any kind of number.
+    #[inline]
+    fn locate_in<T: Scalar>(&self, q: T) -> Result<(usize, T), PlaceError> {
+        let (cell, x) = self.locate(q.value())?;
+        // The place in a cell as a function of q: its slope is all that is left of it.
+        let x = q.through(&[x, 2.0 * self.per_cell, 0.0, 0.0]);
+        Ok((cell, x))
+    }
+
     /// The same for a coordinate that lies turns away, or at the very end, or nowhere.
     #[inline]
     fn turned(&self, q: f64) -> Result<(usize, f64), PlaceError> {
@@ -172,32 +181,39 @@ fn hermite(data: &[[f64; 2]; NODES]) -> [f64; TERMS] {
     powers
 }
 
-/// Coefficients of m and ½m′ side by side, of rising powers.
+/// Coefficients of a function and half its slope side by side, of rising powers.
 type Pair = [[f64; 2]; TERMS + 1];
 
-/// m and ½m′.
+/// A function of the coordinate put together from half its slope: m from ½m′, V from ½V′.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Inertias {
+pub struct Curve {
     pub(super) grid: Grid,
     cells: Vec<Pair>,
 }
 
-/// m at the middle of a cell and the coefficients of ½m′: all that a cell is made from.
+/// The function at the middle of a cell and the coefficients of half its slope: all that a cell is made
+/// from.
 pub(super) type Seed = (f64, [f64; TERMS]);
 
-impl Inertias {
-    pub(super) fn new(grid: Grid, source: &mut Source<'_>) -> Result<Self, TableError> {
+impl Curve {
+    pub(super) fn new(grid: Grid, source: &mut dyn Slopes) -> Result<Self, TableError> {
         let half = grid.half();
-        let mut slopes = Vec::with_capacity(grid.cells);
+        let mut slopes: Vec<[f64; TERMS]> = Vec::with_capacity(grid.cells);
+        // By cell: the function at all places but the first, which the cell before has.
         let mut known = Vec::with_capacity(grid.cells);
+        let first = source.at(grid.coordinate(0, PLACES[0]))?;
+        let mut left = first;
         for cell in 0..grid.cells {
-            let mut data = [[0.0; 2]; NODES];
-            for (data, &x) in data.iter_mut().zip(&PLACES) {
-                let at = source.inertia(grid.coordinate(cell, x))?;
-                *data = [at.half_dm, at.half_ddm * half];
+            let mut at = [left; NODES];
+            for (at, &x) in at.iter_mut().zip(&PLACES).skip(1) {
+                let q = grid.coordinate(cell, x);
+                // A turn ends where it began.
+                let again = grid.turns > 0 && q == grid.from;
+                *at = if again { first } else { source.at(q)? };
             }
-            known.push(source.inertia(grid.coordinate(cell, 0.0))?.m);
-            slopes.push(hermite(&data));
+            left = at[NODES - 1];
+            known.push(at.map(|at| at.m));
+            slopes.push(hermite(&at.map(|at| [at.half_dm, at.half_ddm * half])));
         }
         if grid.turns > 0 {
             // What a whole turn would gain is truncation and rounding: its mean is taken out.
@@ -208,15 +224,17 @@ impl Inertias {
         }
         // From middle to middle, so that the ends meet; then all of it to the mean of what is known.
         let mut middle = Vec::with_capacity(grid.cells);
-        let mut m = 0.0;
+        let (mut m, mut off) = (0.0, 0.0);
         for (cell, slope) in slopes.iter().enumerate() {
             if let Some(before) = cell.checked_sub(1).and_then(|b| slopes.get(b)) {
                 m += climb(before, half, [0.0, 1.0]) + climb(slope, half, [-1.0, 0.0]);
             }
             middle.push(m);
+            for (known, &x) in known[cell].iter().zip(&PLACES).skip(1) {
+                off += known - (m + climb(slope, half, [0.0, x]));
+            }
         }
-        let off = known.iter().zip(&middle).map(|(known, m)| known - m);
-        let off = off.sum::<f64>() / grid.cells as f64;
+        let off = off / ((NODES - 1) * grid.cells) as f64;
         let seeds = middle
             .iter()
             .zip(&slopes)
@@ -252,14 +270,22 @@ impl Inertias {
         })
     }
 
+    /// The function and half its slope at `q` (rad or m).
+    ///
+    /// # Errors
+    /// [`PlaceError`] outside the table.
     #[inline]
-    pub(super) fn at(&self, q: f64) -> Result<(f64, f64), PlaceError> {
-        let (cell, x) = self.grid.locate(q)?;
-        let [m, half_dm] = both(&self.cells[cell], x);
-        Ok((m, half_dm))
+    pub fn at<T: Scalar>(&self, q: T) -> Result<[T; 2], PlaceError> {
+        let (cell, x) = self.grid.locate_in(q)?;
+        Ok(both(&self.cells[cell], x))
     }
 
-    pub(super) fn curvature(&self, q: f64) -> Result<Inertia, PlaceError> {
+    /// The same with half the second derivative.
+    ///
+    /// # Errors
+    /// [`PlaceError`] outside the table.
+    #[inline]
+    pub fn curvature(&self, q: f64) -> Result<Inertia, PlaceError> {
         let (cell, x) = self.grid.locate(q)?;
         let cell = &self.cells[cell];
         let [m, half_dm] = both(cell, x);
@@ -272,7 +298,13 @@ impl Inertias {
         })
     }
 
-    pub(super) fn bytes(&self) -> usize {
+    /// How many cells it has.
+    pub fn cells(&self) -> usize {
+        self.grid.cells
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
         std::mem::size_of_val(self.cells.as_slice())
     }
 }
@@ -288,17 +320,19 @@ fn climb(slope: &[f64; TERMS], half: f64, [from, to]: [f64; 2]) -> f64 {
 
 /// Both polynomials at once, in pairs of terms (Estrin): the pairs do not wait for each other.
 #[inline]
-fn both(c: &Pair, x: f64) -> [f64; 2] {
-    let add = |a: [f64; 2], b: [f64; 2], x: f64| [a[0] + b[0] * x, a[1] + b[1] * x];
+fn both<T: Scalar>(c: &Pair, x: T) -> [T; 2] {
+    let lift = |[a, b]: [f64; 2]| [T::lift(a), T::lift(b)];
+    let add = |a: [T; 2], b: [T; 2], x: T| [a[0] + b[0] * x, a[1] + b[1] * x];
+    let line = |i: usize| add(lift(c[i]), lift(c[i + 1]), x);
     let (x2, x4) = (x * x, (x * x) * (x * x));
-    let low = add(add(c[0], c[1], x), add(c[2], c[3], x), x2);
-    let high = add(add(c[4], c[5], x), add(c[6], c[7], x), x2);
-    add(low, add(high, c[8], x4), x4)
+    let low = add(line(0), line(2), x2);
+    let high = add(line(4), line(6), x2);
+    add(low, add(high, lift(c[8]), x4), x4)
 }
 
 /// Any number of functions of the coordinate, side by side.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Columns {
+pub struct Columns {
     pub(super) grid: Grid,
     pub(super) width: usize,
     /// By cell, by falling power, by column.
@@ -306,48 +340,53 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn new(
-        grid: Grid,
-        which: &[Entry],
-        source: &mut Source<'_>,
-    ) -> Result<Self, TableError> {
-        let width = which.len();
-        let mut found = Self {
+    pub(super) fn none(grid: Grid) -> Self {
+        Self {
             grid,
-            width,
-            terms: Vec::with_capacity(grid.cells * TERMS * width),
-        };
+            width: 0,
+            terms: Vec::new(),
+        }
+    }
+
+    pub(super) fn new(grid: Grid, width: usize, source: &mut Fill<'_>) -> Result<Self, TableError> {
+        let mut terms = Vec::with_capacity(grid.cells * TERMS * width);
         let half = grid.half();
         let mut nodes = vec![vec![Dual::default(); width]; NODES];
+        source(grid.coordinate(0, PLACES[0]), &mut nodes[NODES - 1])?;
         for cell in 0..grid.cells {
-            for (node, &x) in nodes.iter_mut().zip(&PLACES) {
-                source.fill(which, grid.coordinate(cell, x), node)?;
+            // A cell begins where the one before ended.
+            nodes.swap(0, NODES - 1);
+            for (node, &x) in nodes.iter_mut().zip(&PLACES).skip(1) {
+                source(grid.coordinate(cell, x), node)?;
             }
-            let start = found.terms.len();
-            found.terms.resize(start + TERMS * width, 0.0);
+            let start = terms.len();
+            terms.resize(start + TERMS * width, 0.0);
             for column in 0..width {
                 let mut data = [[0.0; 2]; NODES];
                 for (data, node) in data.iter_mut().zip(&nodes) {
                     *data = [node[column].v, node[column].d * half];
                 }
                 for (j, term) in hermite(&data).into_iter().enumerate() {
-                    found.terms[start + (TERMS - 1 - j) * width + column] = term;
+                    terms[start + (TERMS - 1 - j) * width + column] = term;
                 }
             }
         }
-        Ok(found)
+        Ok(Self { grid, width, terms })
     }
 
-    /// All columns at `q`, the first `left.len()` of them to `left`, the others to `right`.
+    /// All columns at `q` (rad or m), the first `left.len()` of them to `left`, the others to `right`.
+    ///
+    /// # Errors
+    /// [`PlaceError`] outside the table.
     #[inline]
-    pub(super) fn at(&self, q: f64, left: &mut [f64], right: &mut [f64]) -> Result<(), PlaceError> {
-        let (cell, x) = self.grid.locate(q)?;
+    pub fn at<T: Scalar>(&self, q: T, left: &mut [T], right: &mut [T]) -> Result<(), PlaceError> {
+        let (cell, x) = self.grid.locate_in(q)?;
         let size = TERMS * self.width;
         if size == 0 {
             return Ok(());
         }
-        left.fill(0.0);
-        right.fill(0.0);
+        left.fill(T::lift(0.0));
+        right.fill(T::lift(0.0));
         for row in self.terms[cell * size..][..size].chunks_exact(self.width) {
             let (first, second) = row.split_at(left.len().min(row.len()));
             horner(left, first, x);
@@ -356,15 +395,24 @@ impl Columns {
         Ok(())
     }
 
-    pub(super) fn bytes(&self) -> usize {
+    /// How many cells they have; none where there are no columns.
+    pub fn cells(&self) -> usize {
+        match self.width {
+            0 => 0,
+            _ => self.grid.cells,
+        }
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
         std::mem::size_of_val(self.terms.as_slice())
     }
 }
 
 /// One step of Horner's scheme, of several polynomials side by side.
 #[inline]
-fn horner(sums: &mut [f64], terms: &[f64], x: f64) {
-    for (sum, term) in sums.iter_mut().zip(terms) {
-        *sum = *sum * x + term;
+fn horner<T: Scalar>(sums: &mut [T], terms: &[f64], x: T) {
+    for (sum, &term) in sums.iter_mut().zip(terms) {
+        *sum = *sum * x + T::lift(term);
     }
 }

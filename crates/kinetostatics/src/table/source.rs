@@ -1,14 +1,51 @@
 //! What a table is made from: the exact model, with exact derivatives.
 
+use super::make::Slopes;
 use super::{Entry, TableError};
+use crate::batch::Batch;
 use crate::model::{Actions, Workspace};
 use crate::reduced::{Coefficients, Exact, ExactWork, Inertia, Reduced};
 use dwell_geometry::{Dual, Scalar};
 
-/// An exact model with the working memory to evaluate it.
-pub(super) struct Source<'a> {
+/// m and ½m′ of an exact model.
+pub struct Inertias<'a> {
     exact: &'a Exact,
     work: ExactWork,
+    batch: Batch,
+}
+
+impl Exact {
+    /// m and ½m′, for a [`Maker`](super::Maker).
+    pub fn slopes(&self) -> Inertias<'_> {
+        Inertias {
+            exact: self,
+            work: self.work(),
+            batch: Batch::default(),
+        }
+    }
+}
+
+impl Slopes for Inertias<'_> {
+    fn at(&mut self, q: f64) -> Result<Inertia, TableError> {
+        Ok(self.exact.curvature(q, &mut self.work)?)
+    }
+
+    fn many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>, TableError> {
+        self.exact.inertia_all(q, &mut self.batch);
+        if let Some(&(_, error)) = self.batch.errors.first() {
+            return Err(error.into());
+        }
+        let Batch { m, half_dm, .. } = &self.batch;
+        Ok(m.iter()
+            .zip(half_dm)
+            .map(|(&m, &slope)| [m, slope])
+            .collect())
+    }
+}
+
+/// An exact model with the working memory to evaluate its reactions and loads.
+pub(super) struct Source<'a> {
+    exact: &'a Exact,
     dual: Workspace<Dual>,
     actions: Actions<Dual>,
     at: Coefficients<Dual>,
@@ -19,36 +56,10 @@ impl<'a> Source<'a> {
         let model = exact.model();
         Self {
             exact,
-            work: exact.work(),
             dual: model.workspace(),
             actions: model.actions(),
             at: model.coefficients(),
         }
-    }
-
-    /// Whether two coefficients are of one kind: of the same sort, load and unit.
-    pub(super) fn alike(&self, one: Entry, other: Entry) -> bool {
-        let reactions = self.exact.model().reactions();
-        let unit = |k: usize| reactions.get(k).map(|r| r.component.unit());
-        match (one, other) {
-            (Entry::A { reaction: j }, Entry::A { reaction: k })
-            | (Entry::B { reaction: j }, Entry::B { reaction: k }) => unit(j) == unit(k),
-            (
-                Entry::C {
-                    load: l,
-                    reaction: j,
-                },
-                Entry::C {
-                    load: n,
-                    reaction: k,
-                },
-            ) => l == n && unit(j) == unit(k),
-            (one, other) => one == other,
-        }
-    }
-
-    pub(super) fn inertia(&mut self, q: f64) -> Result<Inertia, TableError> {
-        Ok(self.exact.curvature(q, &mut self.work)?)
     }
 
     /// The coefficients `which`, all of the reactions or all of the loads, with their derivatives by q.
@@ -65,7 +76,7 @@ impl<'a> Source<'a> {
             Some(Entry::A { .. }) => model.reduce(q, &mut self.dual, &mut self.at)?,
             Some(_) => {
                 let unit = Dual::lift(1.0);
-                model.enter(0.0, &[q], &[unit], &mut self.dual)?;
+                model.enter_shape(&[q], &[unit], &mut self.dual)?;
             }
         }
         let mut pushed = None;
@@ -77,13 +88,35 @@ impl<'a> Source<'a> {
                 pushed = Some(load);
             }
             *out = match *entry {
-                Entry::M | Entry::HalfDm => Dual::default(),
                 Entry::A { reaction } => self.at.a[reaction],
                 Entry::B { reaction } => self.at.b[reaction],
                 Entry::W { .. } => -self.actions.tau[0],
                 Entry::C { reaction, .. } => self.actions.reactions[reaction],
+                // Curves, and what only machines have.
+                _ => Dual::default(),
             };
         }
         Ok(())
+    }
+}
+
+/// Whether two coefficients are of one kind: of the same sort, load and unit.
+pub(super) fn alike(exact: &Exact, one: Entry, other: Entry) -> bool {
+    let reactions = exact.model().reactions();
+    let unit = |k: usize| reactions.get(k).map(|r| r.component.unit());
+    match (one, other) {
+        (Entry::A { reaction: j }, Entry::A { reaction: k })
+        | (Entry::B { reaction: j }, Entry::B { reaction: k }) => unit(j) == unit(k),
+        (
+            Entry::C {
+                load: l,
+                reaction: j,
+            },
+            Entry::C {
+                load: n,
+                reaction: k,
+            },
+        ) => l == n && unit(j) == unit(k),
+        (one, other) => one == other,
     }
 }
