@@ -12,8 +12,8 @@
 //! V and m are integrals of what stands in (1), piece by piece, so ½ m q̇² + V is kept on the table as on
 //! the mechanism: it does not drift, however coarse the table is.
 //!
-//! Making it costs some hundred to some thousand evaluations of the exact machine in dual numbers: at 1e-9 0.13 ms
-//! for a free four-bar, 1 to 2 ms with loads and drives (docs/performance.md).
+//! Making it costs some hundred to some thousand evaluations of the exact machine in dual numbers: at 1e-9 0.2 ms
+//! for a free four-bar, 1 to 5 ms with loads and drives (docs/performance.md).
 
 mod moving;
 mod source;
