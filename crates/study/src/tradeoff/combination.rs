@@ -237,12 +237,16 @@ impl Tradeoff {
 
     /// The Pareto front, as places in `points`, from the cheapest to the most precise: nothing else
     /// that is stepped in time is at once as cheap and as precise. Quadrature is left out, since it knows the
-    /// whole motion at once and nothing that is followed comes near it: see [`Tradeoff::quadrature`].
+    /// whole motion at once and nothing that is followed comes near it: see [`Tradeoff::quadrature`]. Counted
+    /// evaluations compare integrators alone, so the front over them is that of the exact evaluations: one of
+    /// a table is another thing.
     pub fn front(&self, quantity: Quantity, price: Price) -> Vec<usize> {
         let stepped = |&k: &usize| {
             let point = &self.points[k];
             let stepped = matches!(point.combination.integrator, Integrator::Steps(..));
-            stepped && point.errors.of(quantity).is_finite()
+            let counted = price == Price::Evaluations;
+            let alike = !counted || point.combination.evaluation == Evaluation::Exact;
+            stepped && alike && point.errors.of(quantity).is_finite()
         };
         let of = |k: usize| {
             let point = &self.points[k];

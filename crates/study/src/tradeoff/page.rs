@@ -158,7 +158,7 @@ fn cheapest(found: &Tradeoff, quantity: Quantity, price: Price, accuracy: f64) -
         return none.to_owned();
     };
     let point = &found.points[k];
-    format!("{}: {}", point.combination.name(), digits(point.cost.of(price), 3))
+    format!("{} ({})", point.combination.name(), digits(point.cost.of(price), 3))
 }
 
 /// The page of a study.
@@ -191,6 +191,7 @@ pub(super) fn document(scene: &Scene, found: &Tradeoff, file: &str) -> Document 
     for (heading, quantity, price) in [
         ("Front: coordinate over evaluations", Quantity::Coordinate, Price::Evaluations),
         ("Front: coordinate over time with making", Quantity::Coordinate, Price::TimeWithMaking),
+        ("Front: coordinate over time, all made", Quantity::Coordinate, Price::Time),
         ("Front: energy over evaluations", Quantity::Energy, Price::Evaluations),
         ("Front: worst reaction over evaluations", Quantity::Reaction, Price::Evaluations),
     ] {
@@ -283,13 +284,20 @@ pub(super) fn summary(scene: &Scene, found: &Tradeoff) -> String {
         digits(floor.reaction, 1)
     );
     for accuracy in ACCURACIES {
-        let [counted, timed] = [Price::Evaluations, Price::TimeWithMaking]
-            .map(|price| cheapest(found, Quantity::Coordinate, price, accuracy));
-        let _ = writeln!(
+        let prices = [Price::Evaluations, Price::Time, Price::TimeWithMaking];
+        let [counted, made, timed] =
+            prices.map(|price| cheapest(found, Quantity::Coordinate, price, accuracy));
+        let _ = write!(
             text,
-            "  {accuracy:.0e} {}: {counted} evaluations; in time {timed}",
+            "  {accuracy:.0e} {}: evaluations {counted}; time {timed}",
             found.unit
         );
+        let once = if made == timed {
+            String::new()
+        } else {
+            format!("; once tables are made {made}")
+        };
+        let _ = writeln!(text, "{once}");
     }
     if let Some(point) = found.quadrature() {
         let _ = writeln!(
