@@ -308,6 +308,11 @@ impl Effort {
         }
     }
 
+    /// The finest tolerance.
+    pub(super) fn finest(&self) -> Option<f64> {
+        self.tolerances.last().map(|&power| 10_f64.powi(power))
+    }
+
     /// What a report has time for.
     pub fn brief() -> Self {
         Self {
@@ -319,11 +324,20 @@ impl Effort {
     }
 }
 
+/// A part in words; what is no number is said to be none.
+pub(super) fn part(value: f64, count: usize) -> String {
+    if value.is_nan() {
+        "–".to_owned()
+    } else {
+        digits(value, count)
+    }
+}
+
 /// An error in words: what is not known is told as below.
 pub(super) fn told(error: f64, floor: f64) -> String {
-    match error {
-        none if none.is_nan() => "–".to_owned(),
-        error if error < floor => format!("< {}", digits(floor, 2)),
-        error => digits(error, 2),
+    if error < floor {
+        format!("< {}", digits(floor, 2))
+    } else {
+        part(error, 2)
     }
 }

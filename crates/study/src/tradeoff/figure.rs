@@ -1,6 +1,6 @@
 //! The picture: cost over true error, with the front.
 
-use super::combination::{Combination, Evaluation, Integrator, Price, Quantity, Tradeoff};
+use super::combination::{Combination, Evaluation, Integrator, Price, Quantity, Tradeoff, part};
 use crate::figures::foot;
 use crate::words::digits;
 use dwell_dynamics::Method;
@@ -41,7 +41,7 @@ pub(super) fn figure(scene: &Scene, found: &Tradeoff, name: &str) -> Figure {
                 found.truth.by,
                 digits(floor.coordinate, 1),
                 digits(floor.energy, 1),
-                digits(floor.reaction, 1),
+                part(floor.reaction, 1),
             ),
         ),
         columns: 2,

@@ -1,6 +1,6 @@
 //! The words and tables of a study.
 
-use super::combination::{Evaluation, Integrator, Measured, Price, Quantity, Tradeoff, told};
+use super::combination::{Evaluation, Integrator, Measured, Price, Quantity, Tradeoff, part, told};
 use crate::error::StudyError;
 use crate::provenance::origin;
 use crate::words::digits;
@@ -237,7 +237,7 @@ fn intro(scene: &Scene, found: &Tradeoff) -> String {
         digits(floor.coordinate, 2),
         found.unit,
         digits(floor.energy, 2),
-        digits(floor.reaction, 2),
+        part(floor.reaction, 2),
         digits(found.second * 1e9, 2),
         digits(found.jacobian, 2),
     );
@@ -281,7 +281,7 @@ pub(super) fn summary(scene: &Scene, found: &Tradeoff) -> String {
         digits(floor.coordinate, 1),
         found.unit,
         digits(floor.energy, 1),
-        digits(floor.reaction, 1)
+        part(floor.reaction, 1)
     );
     for accuracy in ACCURACIES {
         let prices = [Price::Evaluations, Price::Time, Price::TimeWithMaking];

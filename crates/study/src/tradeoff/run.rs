@@ -123,16 +123,19 @@ impl Ladder {
                     Some(run) => ROUGH * run.statistics.steps + FEW,
                 },
             };
+            let rough = match exact {
+                None => "",
+                Some(_) => ", far more than of the mechanism itself: it is not smooth there",
+            };
+            let many = || format!("{name} and finer: more than {budget} steps{rough}");
             if ladder.next() > budget as f64 {
-                let why = format!("{name} and finer: more than {budget} steps");
-                ladder.left_out.push(why);
+                ladder.left_out.push(many());
                 break;
             }
             match follow(evaluator, subject, (method, tolerance), budget) {
                 Ok(run) => ladder.runs.push((tolerance, run)),
                 Err(DynamicsError::Budget { .. }) => {
-                    let why = format!("{name} and finer: more than {budget} steps");
-                    ladder.left_out.push(why);
+                    ladder.left_out.push(many());
                     break;
                 }
                 Err(error) => ladder.left_out.push(format!("{name}: {error}")),

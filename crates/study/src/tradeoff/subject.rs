@@ -9,7 +9,7 @@ use crate::reference::Reference;
 use crate::simulate::{Free, Moved, machine};
 use crate::words::digits;
 use dwell_dynamics::{DynamicsError, Machine, Method, Options, Orbit, Point, State};
-use dwell_geometry::{ActuatorId, Reaction};
+use dwell_geometry::Reaction;
 use dwell_kinetostatics::Exact;
 use dwell_scene::{Motion, Place, Scene};
 use std::f64::consts::TAU;
@@ -59,11 +59,11 @@ impl Subject {
         let Some(motion) = scene.motion.clone() else {
             return Err(nothing_free(&scene));
         };
-        if motion.laws.iter().all(Option::is_some) {
-            return Err(nothing_free(&scene));
-        }
         let driven = with_drives(&scene)?;
         let bare = machine(&scene, &motion, &[])?;
+        if bare.free().is_empty() {
+            return Err(nothing_free(&scene));
+        }
         let unique = bare.model().plan();
         let all = scene.mechanism.reactions().into_iter().enumerate();
         let known = all.filter(|&(k, _)| unique.is_unique(k));
@@ -173,22 +173,11 @@ fn set_free(scene: &Scene, told: &mut Vec<String>) -> Result<Scene, StudyError> 
     Ok(freed)
 }
 
-/// Nothing to be followed: there is no actuator, or laws lead them all.
+/// Nothing can be followed.
 fn nothing_free(scene: &Scene) -> StudyError {
-    let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
-    let mut labels: Vec<(Place, String)> = actuators
-        .map(|a| (Place::Led(a), "leads it in time".to_owned()))
-        .collect();
-    if labels.is_empty() {
-        labels.push((Place::Whole, "there is no actuator in this file".to_owned()));
-    }
-    let help = "leave a law out of [motion], so that its coordinate is free; without any free coordinate \
-                there is no equation of motion to be integrated, and `dwell kinetostatics` shows everything";
-    let message = "nothing is free in this scene: every coordinate is led by a law of time";
-    let message = match scene.mechanism.actuators.is_empty() {
-        true => "nothing can move in this scene: no coordinate is declared",
-        false => message,
-    };
+    let message = "nothing can move in this scene: no coordinate is free";
+    let help = "declare the coordinate that moves, as in `[actuators.phi]`";
+    let labels = [(Place::Whole, "no free actuator in this file".to_owned())];
     scene
         .error(message.to_owned(), Some(help.to_owned()), &labels)
         .into()

@@ -13,11 +13,11 @@ use dwell_dynamics::{DynamicsError, MachineWork, Orbit};
 /// Below this no integrator keeps a tolerance in double precision.
 const FINEST: f64 = 1e-14;
 /// Steps that a truth may take, in those of any other run.
-const LONGER: f64 = 3.0;
+const LONGER: usize = 3;
 /// Roundings of a start, relative.
 const ROUNDINGS: f64 = 2.0 * f64::EPSILON;
-/// Roundings, in last places, of a sum of energies.
-const SUMMED: f64 = 8.0 * f64::EPSILON;
+/// Roundings of a result, relative: of sums of energies and forces, and of a phase that Newton's method finds.
+const ROUNDED: f64 = 8.0 * f64::EPSILON;
 
 /// The truth with what is compared with it.
 pub(super) struct Known<'s> {
@@ -86,7 +86,8 @@ impl<'s> Known<'s> {
             known.floor.reaction = known.floor.reaction.max(there.reaction);
         }
         known.floor.coordinate += unknown;
-        if known.reactions.iter().all(Vec::is_empty) {
+        known.floor.reaction += ROUNDED;
+        if known.scales.iter().all(|scale| *scale == 0.0) {
             known.floor.reaction = f64::NAN;
         }
         Ok(known)
@@ -121,7 +122,7 @@ impl<'s> Known<'s> {
             same.map(|other| largest[other]).fold(0.0, f64::max)
         };
         self.scales = (0..count).map(of_unit).collect();
-        self.floor.energy = SUMMED * size / self.kinetic;
+        self.floor.energy = ROUNDED * size / self.kinetic;
         Ok(())
     }
 
@@ -197,8 +198,9 @@ fn by_quadrature(subject: &Subject, orbit: &Orbit) -> Option<Candidate> {
         others.push(along(&beside, &subject.times));
     }
     let states = along(orbit, &subject.times);
+    let [low, high] = subject.reach;
     let fastest = states.iter().fold(0.0_f64, |most, y| most.max(y[1].abs()));
-    let farthest = states.iter().fold(0.0_f64, |most, y| most.max(y[0].abs()));
+    let farthest = low.abs().max(high.abs()).max(high - low);
     Some(Candidate {
         by: format!(
             "quadrature over the coordinate ({} points), which knows no integrator; known as well as a start \
@@ -207,7 +209,7 @@ fn by_quadrature(subject: &Subject, orbit: &Orbit) -> Option<Candidate> {
         ),
         states,
         others,
-        unknown: orbit.rounding * orbit.period * fastest + f64::EPSILON * farthest,
+        unknown: orbit.rounding * orbit.period * fastest + ROUNDED * farthest,
     })
 }
 
@@ -224,10 +226,11 @@ fn by_steps(
             continue;
         };
         let finer = (0.1 * fine).max(FINEST);
-        let short = ladder.next() < LONGER * effort.budget as f64;
-        let budget = (LONGER * effort.budget as f64) as usize;
+        let budget = LONGER * effort.budget;
         let at = (ladder.method, finer);
-        let again = match short && finer < 0.5 * fine {
+        // What the budget stopped before the last tolerance is not the best.
+        let ended = effort.finest() == Some(fine) && ladder.next() < budget as f64;
+        let again = match ended && finer < 0.5 * fine {
             true => follow(exact, subject, at, budget).ok(),
             false => None,
         };
@@ -263,7 +266,7 @@ fn by_steps(
         by: format!("{by}, known as well as it agrees with {check}"),
         states,
         others: vec![other],
-        unknown: f64::EPSILON * farthest,
+        unknown: ROUNDED * farthest,
     })
 }
 
