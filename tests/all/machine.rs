@@ -56,6 +56,7 @@ fn val_squeezer() {
     let (beta, speed) = (15.810_771_195_153_707_f64, 1_139.920_302_259_106_f64);
     // Measured errors of angle (rad) and speed: 4e-12 and 6e-14, 7e-10 and 2e-11, 8e-8 and 2e-9, 8e-6 and 3e-7.
     for (method, tolerance, within) in [
+        (Method::Dop853, 1e-13, [1e-10, 2e-12]),
         (Method::Tsit45, 1e-13, [1e-10, 2e-12]),
         (Method::Bdf, 1e-13, [1e-9, 1e-10]),
         (Method::Esdirk34, 1e-11, [2e-7, 1e-8]),

@@ -15,6 +15,7 @@ mod change_points;
 mod changes;
 mod cycles;
 mod derivatives;
+mod eighth;
 mod ends;
 mod energies;
 mod equilibria;

@@ -183,6 +183,8 @@ pub(crate) enum MethodName {
     TrBdf2,
     /// Explicit Runge–Kutta of order 5: for what is smooth
     Tsit45,
+    /// Explicit Runge–Kutta of order 8: for what is smooth, to many digits
+    Dop853,
 }
 
 impl From<MethodName> for Method {
@@ -192,6 +194,7 @@ impl From<MethodName> for Method {
             MethodName::Esdirk34 => Self::Esdirk34,
             MethodName::TrBdf2 => Self::TrBdf2,
             MethodName::Tsit45 => Self::Tsit45,
+            MethodName::Dop853 => Self::Dop853,
         }
     }
 }

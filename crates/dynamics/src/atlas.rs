@@ -40,6 +40,8 @@ const FOLDS: f64 = 8.0;
 const TRIES: usize = 6;
 /// Charts in a row in which nothing moves before the motion is given up.
 const MOST_IDLE: usize = 3;
+/// What is left of the longest step where one was too rough.
+const SHORTER: f64 = 0.25;
 /// How far steps that may have led over a bridge are shortened.
 const SLOWEST: f64 = 1e-2;
 /// Two poses closer than this, rad, are one.
@@ -238,6 +240,10 @@ impl<'s> Atlas<'s> {
                 return Ok(journey);
             }
             let turning = match turning {
+                Some(Turning::Rough(step)) => {
+                    options.longest = Some(SHORTER * step);
+                    continue;
+                }
                 None if self.slow_down(chart, &at, &mut longest) => {
                     options.longest = longest;
                     continue;
@@ -322,6 +328,7 @@ impl<'s> Atlas<'s> {
         turning: &Turning,
     ) -> Option<(usize, Vec<f64>, Why)> {
         match turning {
+            Turning::Rough(_) => None,
             Turning::Crosses { crossing, above } => {
                 let to = self.crossings[*crossing].charts[usize::from(*above)];
                 let why = Why::Crosses { bridge: *crossing };

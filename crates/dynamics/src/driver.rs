@@ -1,4 +1,4 @@
-//! Integration in time, by diffsol behind one guarded loop.
+//! Integration in time, by diffsol behind one guarded loop, or by [`eighth`] order.
 //!
 //! diffsol's own `solve` has no step budget and no finiteness check, and its explicit methods accept
 //! a step whose error is no number (`f64::max` discards a NaN). So every step is taken here, and
@@ -6,6 +6,7 @@
 //! that fails leaves its error in a cell and a NaN in the derivative: the integrator then shrinks
 //! its step or gives up, and the error that made it do so is what the caller gets.
 
+use crate::eighth;
 use crate::error::DynamicsError;
 use crate::options::{Method, Options, Statistics};
 use crate::system::{Point, System};
@@ -87,6 +88,12 @@ pub fn integrate(
     let absolute: Vec<f64> = (0..n)
         .map(|i| options.absolute * system.weight(i))
         .collect();
+    let shortest = SMALLEST_STEP / fastest;
+    if options.method == Method::Dop853 {
+        let from = (start, &rates[..]);
+        let limits = (&absolute[..], shortest);
+        return Ok(eighth::integrate(system, from, end, options, limits, watch));
+    }
     let system = RefCell::new(system);
     let failure: RefCell<Option<DynamicsError>> = RefCell::new(None);
     let (evaluations, jacobians) = (Cell::new(0), Cell::new(0));
@@ -131,7 +138,7 @@ pub fn integrate(
         .map_err(solver)?;
     // The counter runs over the whole integration, and its default of 50 ends long healthy runs.
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
-    problem.ode_options.min_timestep = SMALLEST_STEP / fastest;
+    problem.ode_options.min_timestep = shortest;
     let guard = Guard {
         start,
         end,
@@ -142,7 +149,9 @@ pub fn integrate(
         Method::Bdf => guard.drive(&mut problem.bdf::<Solver>().map_err(solver)?, watch),
         Method::Esdirk34 => guard.drive(&mut problem.esdirk34::<Solver>().map_err(solver)?, watch),
         Method::TrBdf2 => guard.drive(&mut problem.tr_bdf2::<Solver>().map_err(solver)?, watch),
-        Method::Tsit45 => guard.drive(&mut problem.tsit45().map_err(solver)?, watch),
+        Method::Tsit45 | Method::Dop853 => {
+            guard.drive(&mut problem.tsit45().map_err(solver)?, watch)
+        }
     };
     ended.statistics.evaluations = evaluations.get();
     ended.statistics.jacobians = jacobians.get();

@@ -7,6 +7,7 @@ mod conservative;
 pub mod cycle;
 pub mod drive;
 pub mod driver;
+mod eighth;
 pub mod equation;
 pub mod equilibrium;
 pub mod error;

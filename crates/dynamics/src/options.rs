@@ -13,11 +13,19 @@ pub enum Method {
     TrBdf2,
     /// Explicit Runge–Kutta of order 5 (Tsitouras 2011).
     Tsit45,
+    /// Explicit Runge–Kutta of order 8 (Dormand and Prince; Hairer's DOP853).
+    Dop853,
 }
 
 impl Method {
     /// All of them, the default first.
-    pub const ALL: [Self; 4] = [Self::Bdf, Self::Esdirk34, Self::TrBdf2, Self::Tsit45];
+    pub const ALL: [Self; 5] = [
+        Self::Bdf,
+        Self::Esdirk34,
+        Self::TrBdf2,
+        Self::Tsit45,
+        Self::Dop853,
+    ];
 
     /// The name used in commands and tables.
     pub fn name(self) -> &'static str {
@@ -26,12 +34,13 @@ impl Method {
             Self::Esdirk34 => "ESDIRK34",
             Self::TrBdf2 => "TR-BDF2",
             Self::Tsit45 => "Tsit45",
+            Self::Dop853 => "DOP853",
         }
     }
 
     /// Whether it solves equations at each step.
     pub fn implicit(self) -> bool {
-        self != Self::Tsit45
+        !matches!(self, Self::Tsit45 | Self::Dop853)
     }
 }
 

@@ -279,7 +279,7 @@ fn allowed(method: Method) -> ([f64; 2], &'static str) {
             "BDF's energy error grows with time to hundreds of times its tolerance; measured 1e-10 to \
              2e-10 in ten turns, 1e-11 in a period",
         ),
-        Method::Tsit45 => (
+        Method::Tsit45 | Method::Dop853 => (
             [5e-12, 1e-10],
             "Tsit45 errs by some tens of its tolerance in ten turns; measured 1e-12 to 4e-12, and 1e-13 \
              in a period",

@@ -10,6 +10,8 @@ use crate::system::Point;
 use dwell_geometry::Motion;
 use dwell_geometry::measure::BodyStates;
 
+/// Times the ratio at which a chart is left that a good step may lead to.
+const FAR: f64 = 2.0;
 /// Parts of a step between which the speed's sign is looked at.
 const LOOKS: usize = 4;
 
@@ -20,6 +22,8 @@ pub(super) enum Turning {
     Folds(Ranks),
     /// It ends, for whatever reason.
     Ends(Ranks),
+    /// It is not left: a step of so many seconds was too rough to tell a return from a fold.
+    Rough(f64),
     /// It goes on behind a change point.
     Crosses { crossing: usize, above: bool },
 }
@@ -95,13 +99,20 @@ impl<'a, 's> Guard<'a, 's> {
         if !self.limited {
             return step(dense);
         }
-        if let Some(ranks) = self.folds_within(before, now, dense)? {
+        if let Some(turning) = self.folds_within(before, now, dense)? {
             // What comes after the fold is on another branch: the step is thrown away.
-            *left = Some(Turning::Folds(ranks));
+            *left = Some(turning);
             return Ok(Next::Stop);
         }
         // An explicit method may take a step to where nothing can be evaluated; it is not good.
         let leaves = self.leaves(now)?;
+        if let Some(Turning::Folds(ranks)) = &leaves
+            && ranks.times() > FAR * FOLDS
+        {
+            // The nearer the fold, the more an error of the coordinate does to all others.
+            *left = Some(Turning::Rough(now.t - before.t));
+            return Ok(Next::Stop);
+        }
         let next = step(dense)?;
         if next == Next::GoOn {
             *left = leaves;
@@ -122,17 +133,27 @@ impl<'a, 's> Guard<'a, 's> {
         self.folds(now)
     }
 
+    /// How far the range's next end is from a coordinate.
+    fn room(&self, q: f64) -> f64 {
+        let range = self.chart.machine.model.plan().range();
+        match (range.limits(), range.fold(q)) {
+            (Some((from, to)), Ok(q)) => (q - from).min(to - q),
+            _ => f64::INFINITY,
+        }
+    }
+
     fn on_bridge(&self, at: &Point) -> bool {
         self.chart.machine.bridge_at(at.y.first()).is_some()
     }
 
-    /// Whether the coordinate folds within a step: its speed changes sign where others go on.
+    /// Whether the coordinate folds within a step: its speed changes sign where others go on. A step that is
+    /// longer than the way from there to the range's end is not believed to have returned.
     fn folds_within(
         &mut self,
         before: &Point,
         now: &Point,
         dense: Dense<'_>,
-    ) -> Result<Option<Ranks>, DynamicsError> {
+    ) -> Result<Option<Turning>, DynamicsError> {
         let mut last = before.clone();
         for k in 1..=LOOKS {
             let t = before.t + (now.t - before.t) * k as f64 / LOOKS as f64;
@@ -143,11 +164,19 @@ impl<'a, 's> Guard<'a, 's> {
                 let at = inside(zero.unwrap_or(point.t), now, dense)?;
                 if !self.on_bridge(&at) {
                     match self.ranks(&at) {
-                        Ok(ranks) if ranks.times() <= FOLDS => {}
-                        Ok(ranks) => return Ok(Some(ranks)),
+                        Ok(ranks) if ranks.times() <= FOLDS => {
+                            let way = (at.y[0] - before.y[0])
+                                .abs()
+                                .max((at.y[0] - now.y[0]).abs());
+                            if way > self.room(at.y[0]) {
+                                return Ok(Some(Turning::Rough(now.t - before.t)));
+                            }
+                        }
+                        Ok(ranks) => return Ok(Some(Turning::Folds(ranks))),
                         // The zero lies beyond the range's end, by the error of the step.
                         Err(_) => {
-                            return Ok(Some(self.ranks(&last).or_else(|_| self.ranks(before))?));
+                            let ranks = self.ranks(&last).or_else(|_| self.ranks(before))?;
+                            return Ok(Some(Turning::Folds(ranks)));
                         }
                     }
                 }

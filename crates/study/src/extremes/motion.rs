@@ -49,6 +49,7 @@ fn order(method: Method) -> f64 {
         Method::Esdirk34 => 3.0,
         Method::TrBdf2 => 2.0,
         Method::Tsit45 => 4.0,
+        Method::Dop853 => 7.0,
     }
 }
 
