@@ -43,4 +43,5 @@ mod slides;
 mod symbolic;
 mod tables;
 mod told;
+mod tradeoff;
 mod world;

@@ -2,9 +2,9 @@
 
 use crate::axes::{self, Frame};
 use crate::canvas::{Canvas, Drawn, Line};
-use crate::marks::Marker;
 use crate::figure::{Axis, Scale};
 use crate::legend::{self, Entry, Legend, Sample};
+use crate::marks::Marker;
 use crate::occupancy::Occupancy;
 use crate::rect::{Insets, Rect};
 use crate::shape::{Drawing, Shape};

@@ -212,6 +212,8 @@ pub struct Tradeoff {
     pub duration: f64,
     /// `rad` or `m`, or both where coordinates of both kinds are free.
     pub unit: &'static str,
+    /// Runs of which each time is the least.
+    pub repetitions: usize,
     /// One exact evaluation, s.
     pub second: f64,
     /// One exact Jacobian, in such units.

@@ -11,8 +11,7 @@ use dwell_kinetostatics::{
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Finds the reactions at a state, N or N·m.
-pub type Reactions<'e> =
-    Box<dyn FnMut(&Point, &mut [f64]) -> Result<(), DynamicsError> + 'e>;
+pub type Reactions<'e> = Box<dyn FnMut(&Point, &mut [f64]) -> Result<(), DynamicsError> + 'e>;
 
 /// A way to evaluate. What is new (another kind of table, another number) is tried by making it one.
 pub trait Evaluator {

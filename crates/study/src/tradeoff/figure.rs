@@ -2,7 +2,7 @@
 
 use super::combination::{Combination, Evaluation, Integrator, Price, Quantity, Tradeoff, part};
 use crate::figures::foot;
-use crate::words::digits;
+use crate::words::{count, digits};
 use dwell_dynamics::Method;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
 use dwell_scene::Scene;
@@ -36,12 +36,13 @@ pub(super) fn figure(scene: &Scene, found: &Tradeoff, name: &str) -> Figure {
                  the other; where time is measured, crosses: single precision{hollow}. Grey line: the Pareto front, \
                  with names. Truth: {}; shaded: below what is known ({}, {} and {} of the three errors). An evaluation \
                  is one of the equation of motion; a Jacobian counts as its dual numbers. Time is in units of one \
-                 exact evaluation in the same run.",
+                 exact evaluation in the same process, the least of {}.",
                 digits(found.duration, 5),
                 found.truth.by,
                 digits(floor.coordinate, 1),
                 digits(floor.energy, 1),
                 part(floor.reaction, 1),
+                count(found.repetitions, "run"),
             ),
         ),
         columns: 2,

@@ -5,6 +5,7 @@ mod combination;
 mod evaluator;
 mod figure;
 mod page;
+mod reports;
 mod run;
 mod subject;
 mod truth;
@@ -14,6 +15,7 @@ pub use combination::{
     Truth,
 };
 pub use evaluator::{ByModel, Evaluator, Reactions};
+pub use reports::reports;
 
 use crate::error::StudyError;
 use crate::outcome::{Outcome, Progress, Step};
@@ -85,10 +87,10 @@ pub fn measure_with(
     let subject = Subject::new(scene)?;
     let mut left_out = Vec::new();
     let evaluators = evaluators(&subject, effort, more, &mut left_out);
-    let Some((exact, others)) = evaluators.split_first() else {
+    let Some(exact) = evaluators.first().map(|exact| &**exact) else {
         return Err(subject.explain(&DynamicsError::TooShort));
     };
-    let total = Method::ALL.len() * evaluators.len() + effort.repetitions;
+    let total = Method::ALL.len() * evaluators.len() + effort.repetitions.max(1);
     let done = |what: &str| progress(Step { total, done: what });
     let ladder = |evaluator: &dyn Evaluator, method: Method, known: Option<&Ladder>| {
         let ladder = Ladder::new(evaluator, &subject, method, effort, known);
@@ -96,46 +98,23 @@ pub fn measure_with(
         done(&format!("{name}, {}", method.name()));
         ladder
     };
-    let ladders: Vec<Ladder> = Method::ALL
-        .into_iter()
-        .map(|method| ladder(&**exact, method, None))
-        .collect();
-    let explain = |e: &DynamicsError| subject.explain(e);
-    let mut known =
-        Known::new(&subject, &**exact, &ladders, effort).map_err(|e| unknown(&subject, &e, &ladders))?;
-    let mut trials = Vec::new();
-    for evaluator in std::iter::once(exact).chain(others) {
-        let evaluator = &**evaluator;
-        let evaluation = evaluator.evaluation();
-        let own: Vec<Ladder> = if evaluation == Evaluation::Exact {
-            ladders.clone()
-        } else {
-            let each = ladders.iter();
-            each.map(|exact| ladder(evaluator, exact.method, Some(exact)))
-                .collect()
+    let methods = Method::ALL.into_iter();
+    let ladders: Vec<Ladder> = methods.map(|method| ladder(exact, method, None)).collect();
+    let mut known = Known::new(&subject, exact, &ladders, effort)
+        .map_err(|e| unknown(&subject, &e, &ladders))?;
+    let mut trials: Vec<Trial<'_>> = Vec::new();
+    for (k, evaluator) in evaluators.iter().enumerate() {
+        let again = |known: &Ladder| ladder(&**evaluator, known.method, Some(known));
+        let own = match k {
+            0 => ladders.clone(),
+            _ => ladders.iter().map(again).collect(),
         };
-        for ladder in own {
-            left_out.extend(ladder.left_out);
-            for (tolerance, run) in ladder.runs {
-                let integrator = Integrator::Steps(ladder.method, tolerance);
-                trials.push((evaluator, Combination { evaluation, integrator }, run));
-            }
-        }
-        let integrator = Integrator::Quadrature;
-        if subject.orbit.is_some() {
-            match run::quadrature(evaluator, &subject) {
-                Some(run) => {
-                    trials.push((evaluator, Combination { evaluation, integrator }, run));
-                }
-                None => left_out.push(format!(
-                    "{}, quadrature: not smooth enough, or not known",
-                    evaluation.name()
-                )),
-            }
-        }
+        collect(&**evaluator, &subject, own, &mut trials, &mut left_out);
     }
-    let clock = time(&subject, &known, &**exact, &mut trials, effort, &|| done("times"));
-    let clock = clock.map_err(|e| explain(&e))?;
+    let clock = time(&subject, &known, exact, &mut trials, effort, &|| {
+        done("times");
+    });
+    let clock = clock.map_err(|e| subject.explain(&e))?;
     let mut points = Vec::new();
     for (evaluator, combination, run) in trials {
         // What left the range of an evaluator or the mechanism has no error, and no place in the study.
@@ -158,9 +137,44 @@ pub fn measure_with(
         motion: subject.told.clone(),
         duration: subject.end(),
         unit: subject.unit(),
+        repetitions: effort.repetitions.max(1),
         second: clock.second,
         jacobian: clock.jacobian / clock.second,
     })
+}
+
+/// The runs of one evaluator, with the quadrature where the energy tells the motion.
+fn collect<'e>(
+    evaluator: &'e dyn Evaluator,
+    subject: &Subject,
+    ladders: Vec<Ladder>,
+    trials: &mut Vec<Trial<'e>>,
+    left_out: &mut Vec<String>,
+) {
+    let evaluation = evaluator.evaluation();
+    let mut add = |integrator: Integrator, run: Run| {
+        let combination = Combination {
+            evaluation,
+            integrator,
+        };
+        trials.push((evaluator, combination, run));
+    };
+    for ladder in ladders {
+        left_out.extend(ladder.left_out);
+        for (tolerance, run) in ladder.runs {
+            add(Integrator::Steps(ladder.method, tolerance), run);
+        }
+    }
+    if subject.orbit.is_none() {
+        return;
+    }
+    match run::quadrature(evaluator, subject) {
+        Some(run) => add(Integrator::Quadrature, run),
+        None => left_out.push(format!(
+            "{}, quadrature: not smooth enough, or not known",
+            evaluation.name()
+        )),
+    }
 }
 
 /// All ways to evaluate the motion, the exact one first. A new one is a line here.
@@ -323,8 +337,11 @@ fn unknown(subject: &Subject, error: &DynamicsError, ladders: &[Ladder]) -> Stud
     if labels.is_empty() {
         return subject.explain(error);
     }
-    let help = "a shorter `duration`, or what is less stiff (a friction that fades over a larger speed)";
+    let help =
+        "a shorter `duration`, or what is less stiff (a friction that fades over a larger speed)";
     let message = "no two methods follow this motion to its end: nothing tells the error of any";
-    let error = subject.scene.error(message.to_owned(), Some(help.to_owned()), &labels);
+    let error = subject
+        .scene
+        .error(message.to_owned(), Some(help.to_owned()), &labels);
     error.into()
 }

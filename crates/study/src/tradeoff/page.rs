@@ -3,7 +3,7 @@
 use super::combination::{Evaluation, Integrator, Measured, Price, Quantity, Tradeoff, part, told};
 use crate::error::StudyError;
 use crate::provenance::origin;
-use crate::words::digits;
+use crate::words::{count, digits};
 use dwell_dynamics::Method;
 use dwell_report::{Block, Column, Document, Table};
 use dwell_scene::Scene;
@@ -41,11 +41,16 @@ pub(super) fn table(found: &Tradeoff) -> Table {
 pub(super) fn csv(found: &Tradeoff) -> Result<String, StudyError> {
     let text = numbers(found).csv()?;
     let mut lines = text.lines();
-    let mut csv = format!("evaluation,integrator,{}\n", lines.next().unwrap_or_default());
+    let mut csv = format!(
+        "evaluation,integrator,{}\n",
+        lines.next().unwrap_or_default()
+    );
     for (line, point) in lines.zip(&found.points) {
         let combination = point.combination;
-        let [evaluation, integrator] =
-            [combination.evaluation.name(), combination.integrator.name().to_owned()];
+        let [evaluation, integrator] = [
+            combination.evaluation.name(),
+            combination.integrator.name().to_owned(),
+        ];
         // Writing to a string cannot fail.
         let _ = writeln!(csv, "{evaluation},{integrator},{line}");
     }
@@ -144,7 +149,10 @@ fn front(found: &Tradeoff, quantity: Quantity, price: Price) -> Block {
     let front = found.front(quantity, price);
     Block::Table {
         header: header.map(str::to_owned).to_vec(),
-        rows: front.iter().map(|&k| cells(found, &found.points[k])).collect(),
+        rows: front
+            .iter()
+            .map(|&k| cells(found, &found.points[k]))
+            .collect(),
     }
 }
 
@@ -158,7 +166,11 @@ fn cheapest(found: &Tradeoff, quantity: Quantity, price: Price, accuracy: f64) -
         return none.to_owned();
     };
     let point = &found.points[k];
-    format!("{} ({})", point.combination.name(), digits(point.cost.of(price), 3))
+    format!(
+        "{} ({})",
+        point.combination.name(),
+        digits(point.cost.of(price), 3)
+    )
 }
 
 /// The page of a study.
@@ -189,18 +201,42 @@ pub(super) fn document(scene: &Scene, found: &Tradeoff, file: &str) -> Document 
         Block::Text(quadrature(found)),
     ];
     for (heading, quantity, price) in [
-        ("Front: coordinate over evaluations", Quantity::Coordinate, Price::Evaluations),
-        ("Front: coordinate over time with making", Quantity::Coordinate, Price::TimeWithMaking),
-        ("Front: coordinate over time, all made", Quantity::Coordinate, Price::Time),
-        ("Front: energy over evaluations", Quantity::Energy, Price::Evaluations),
-        ("Front: worst reaction over evaluations", Quantity::Reaction, Price::Evaluations),
+        (
+            "Front: coordinate over evaluations",
+            Quantity::Coordinate,
+            Price::Evaluations,
+        ),
+        (
+            "Front: coordinate over time with making",
+            Quantity::Coordinate,
+            Price::TimeWithMaking,
+        ),
+        (
+            "Front: coordinate over time, all made",
+            Quantity::Coordinate,
+            Price::Time,
+        ),
+        (
+            "Front: energy over evaluations",
+            Quantity::Energy,
+            Price::Evaluations,
+        ),
+        (
+            "Front: worst reaction over evaluations",
+            Quantity::Reaction,
+            Price::Evaluations,
+        ),
     ] {
         blocks.push(Block::Heading(heading.to_owned()));
         blocks.push(front(found, quantity, price));
     }
     if !found.left_out.is_empty() {
         blocks.push(Block::Heading("Left out".to_owned()));
-        let lines: Vec<String> = found.left_out.iter().map(|why| format!("- {why}")).collect();
+        let lines: Vec<String> = found
+            .left_out
+            .iter()
+            .map(|why| format!("- {why}"))
+            .collect();
         blocks.push(Block::Text(lines.join("\n")));
     }
     Document {
@@ -231,8 +267,8 @@ fn intro(scene: &Scene, found: &Tradeoff) -> String {
         "\n\nTruth: {}. Known to {} {} in the coordinate, {} of the largest kinetic energy and {} of the largest \
          reaction: a smaller error is told as below that.\n\nAn *evaluation* is one of the equation of motion, and a \
          Jacobian counts as the dual numbers it takes. *Time* is in units of one exact evaluation in double precision, \
-         measured between the runs ({} ns here; a Jacobian takes {} of them): the least of the repetitions. *With making* adds \
-         the making of the table, once.",
+         measured between the runs ({} ns here; a Jacobian takes {} of them): the least of {}. *With making* adds the \
+         making of the table, once.",
         found.truth.by,
         digits(floor.coordinate, 2),
         found.unit,
@@ -240,6 +276,7 @@ fn intro(scene: &Scene, found: &Tradeoff) -> String {
         part(floor.reaction, 2),
         digits(found.second * 1e9, 2),
         digits(found.jacobian, 2),
+        count(found.repetitions, "run"),
     );
     text
 }

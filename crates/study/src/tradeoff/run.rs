@@ -111,7 +111,11 @@ impl Ladder {
         let evaluation = evaluator.evaluation();
         for power in &effort.tolerances {
             let tolerance = 10_f64.powi(*power);
-            let name = format!("{}, {} at {tolerance:.0e}", evaluation.name(), method.name());
+            let name = format!(
+                "{}, {} at {tolerance:.0e}",
+                evaluation.name(),
+                method.name()
+            );
             if tolerance < FUTILE * evaluation.keeps() {
                 break;
             }

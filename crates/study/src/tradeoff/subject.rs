@@ -264,7 +264,9 @@ fn early(moved: &Moved, reached: f64, wanted: f64, told: &mut Vec<String>) -> f6
         Some(DynamicsError::Budget { steps, .. }) => {
             (1.0, format!("what {steps} steps of a first look reach"))
         }
-        Some(error) if moved.legs.len() == 1 => (SHORT, format!("short of where it stops ({error})")),
+        Some(error) if moved.legs.len() == 1 => {
+            (SHORT, format!("short of where it stops ({error})"))
+        }
         _ => (
             SHORT,
             "short of where its coordinate folds back or a change point is crossed".to_owned(),

@@ -6,7 +6,7 @@
 
 use super::combination::{Effort, Errors};
 use super::evaluator::{Evaluator, Reactions};
-use super::run::{Ladder, Run, along, follow};
+use super::run::{Ladder, along, follow};
 use super::subject::Subject;
 use dwell_dynamics::{DynamicsError, MachineWork, Orbit};
 
@@ -222,14 +222,14 @@ fn by_steps(
 ) -> Result<Candidate, DynamicsError> {
     let mut found: Vec<(f64, String, Vec<Vec<f64>>)> = Vec::new();
     for ladder in ladders {
-        let Some(((coarse, before), (fine, last))) = finest(&ladder.runs) else {
+        let [.., (_, before), (fine, last)] = ladder.runs.as_slice() else {
             continue;
         };
         let finer = (0.1 * fine).max(FINEST);
         let budget = LONGER * effort.budget;
         let at = (ladder.method, finer);
         // What the budget stopped before the last tolerance is not the best.
-        let ended = effort.finest() == Some(fine) && ladder.next() < budget as f64;
+        let ended = effort.finest() == Some(*fine) && ladder.next() < budget as f64;
         let again = match ended && finer < 0.5 * fine {
             true => follow(exact, subject, at, budget).ok(),
             false => None,
@@ -242,12 +242,11 @@ fn by_steps(
                 again.states,
             ),
             // A change over two decades is a change over one, and more.
-            None if coarse > fine => (
+            None => (
                 apart(subject, &before.states, &last.states),
-                name(fine),
+                name(*fine),
                 last.states.clone(),
             ),
-            None => continue,
         };
         if change.is_finite() {
             found.push((change, told, states));
@@ -268,12 +267,4 @@ fn by_steps(
         others: vec![other],
         unknown: ROUNDED * farthest,
     })
-}
-
-/// The last two runs.
-fn finest(runs: &[(f64, Run)]) -> Option<((f64, &Run), (f64, &Run))> {
-    match runs {
-        [.., (coarse, before), (fine, last)] => Some(((*coarse, before), (*fine, last))),
-        _ => None,
-    }
 }
