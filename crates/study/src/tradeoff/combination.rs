@@ -321,7 +321,7 @@ impl Effort {
             tolerances: vec![-3, -5, -7, -9, -11, -13],
             tables: vec![1e-6, 1e-10],
             budget: 5_000,
-            repetitions: 1,
+            repetitions: 3,
         }
     }
 }

@@ -11,9 +11,9 @@ use dwell_scene::Scene;
 const ROOM: f64 = 4.0;
 /// An error larger than this is none: the motion is another one.
 const MOST: f64 = 10.0;
-/// Points of a front whose names are written, at most, and how far apart they are in powers of ten.
-const NAMED: usize = 6;
+/// How far apart in powers of ten the points of a front are whose names are written, and of one among many marks.
 const APART: f64 = 1.6;
+const CROWDED: f64 = 3.0;
 
 /// The picture of a study.
 pub(super) fn figure(scene: &Scene, found: &Tradeoff, name: &str) -> Figure {
@@ -112,7 +112,11 @@ fn panel(found: &Tradeoff, quantity: Quantity, price: Price, label: &str) -> Pan
             label: "making the finest table".to_owned(),
         });
     }
-    marks.extend(named(found, &front, &at));
+    let apart = match price {
+        Price::Evaluations => APART,
+        Price::Time | Price::TimeWithMaking => CROWDED,
+    };
+    marks.extend(named(found, &front, apart, &at));
     let title = match (quantity, price) {
         (Quantity::Coordinate, Price::Evaluations) => "Coordinate, counted",
         (Quantity::Coordinate, _) => "Coordinate, timed",
@@ -147,12 +151,17 @@ fn errors(found: &Tradeoff, quantity: Quantity, label: &str) -> Axis {
 }
 
 /// The names of some points of a front, well apart.
-fn named(found: &Tradeoff, front: &[usize], at: &dyn Fn(usize) -> [f64; 2]) -> Vec<Mark> {
+fn named(
+    found: &Tradeoff,
+    front: &[usize],
+    apart: f64,
+    at: &dyn Fn(usize) -> [f64; 2],
+) -> Vec<Mark> {
     let mut last = f64::INFINITY;
     let mut marks = Vec::new();
-    for &k in front.iter() {
+    for &k in front {
         let place = at(k);
-        if last - place[0].log10() < APART || marks.len() >= NAMED {
+        if last - place[0].log10() < apart {
             continue;
         }
         last = place[0].log10();

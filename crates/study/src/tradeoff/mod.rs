@@ -31,8 +31,8 @@ use truth::Known;
 
 /// What a table of a limited range covers beyond where the motion goes, as a part of its way.
 const BEYOND: f64 = 0.05;
-/// A run of so many seconds tells its time at once.
-const LONG: f64 = 0.02;
+/// A run of so many evaluations tells its time at once.
+const LONG: usize = 30_000;
 /// Evaluations between two looks at the clock.
 const TIMED: usize = 20;
 
@@ -278,7 +278,7 @@ fn time(
             if k % 16 == 0 {
                 clock.look(subject, known, exact)?;
             }
-            if best.seconds > LONG {
+            if best.statistics.evaluations > LONG {
                 continue;
             }
             let again = match combination.integrator {
