@@ -44,5 +44,6 @@ mod symbolic;
 mod tabled;
 mod tables;
 mod told;
+mod tradeoff;
 mod within;
 mod world;

@@ -101,6 +101,10 @@ fn run(options: Options) -> Result<bool, Report> {
             };
             told(dwell_study::cycle(&read(scene)?, &accuracy, *fluctuation))?
         }
+        Command::Tradeoff { scene } => {
+            let scene = read(scene)?;
+            told(heard(|heard| dwell_study::tradeoff(&scene, heard)))?
+        }
         Command::Equilibria { scene } => told(dwell_study::equilibria(&read(scene)?))?,
         Command::Linearise { scene, at } => {
             told(dwell_study::linearise(&read(scene)?, (*at).into()))?

@@ -76,6 +76,12 @@ pub(crate) enum Command {
         #[arg(long, default_value = "1e-10", value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
         rtol: f64,
     },
+    /// What accuracy costs: every combination of evaluation, integrator and tolerance on the motion, against its
+    /// true error
+    Tradeoff {
+        /// The scene file
+        scene: PathBuf,
+    },
     /// Where a machine stays at rest, with stability and natural frequencies
     Equilibria {
         /// The scene file

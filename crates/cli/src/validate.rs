@@ -4,7 +4,7 @@ use crate::options::OWN_CASES;
 use crate::{as_scene_error, cases, plain, progress_bar};
 use dwell_report::Files;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Outcome, Step, Validation, extremes, index};
+use dwell_study::{Outcome, Step, Validation, extremes, index, tradeoff};
 use miette::{Report, miette};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -33,14 +33,20 @@ pub(crate) fn validate(
         dwell_study::validate(scene, case, &heard).map_err(as_scene_error)
     };
     let everything = names.is_empty() && folder == Path::new(OWN_CASES);
-    let (results, extremes): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
+    let read: Vec<&Scene> = scenes.iter().flatten().collect();
+    let (results, (extremes, costs)): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
         || scenes.par_iter().zip(&cases).map(one).collect(),
-        || (everything || long).then(|| extremes::study(long)),
+        || {
+            rayon::join(
+                || (everything || long).then(|| extremes::study(long)),
+                || everything.then(|| tradeoff::reports(&read)),
+            )
+        },
     );
     bar.finish_and_clear();
     let (mut all, bad) = gathered(&cases, &scenes, results);
-    if let Some(extremes) = extremes {
-        let more = extremes.map_err(as_scene_error)?;
+    for more in [extremes, costs].into_iter().flatten() {
+        let more = more.map_err(as_scene_error)?;
         all.summary += &more.summary;
         all.findings.extend(more.findings);
         all.files.extend("", more.files);

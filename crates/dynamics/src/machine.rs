@@ -362,8 +362,8 @@ impl Machine {
         Ok(())
     }
 
-    /// ẏ of the state last evaluated.
-    pub(crate) fn rates<T: Scalar>(&self, work: &MachineWork<T>, out: &mut [T]) {
+    /// ẏ of the state last evaluated, into `out` of [`Machine::states`] places.
+    pub fn rates<T: Scalar>(&self, work: &MachineWork<T>, out: &mut [T]) {
         let n = self.free.len();
         for (k, &i) in self.free.iter().enumerate() {
             out[k] = work.q_dot[i];

@@ -3,7 +3,7 @@
 use crate::axes::{self, Frame, Side};
 use crate::canvas::{Align, Canvas, Drawn, Line, Type};
 use crate::curve::{clipped, clipped_area};
-use crate::extent::Extent;
+use crate::extent::{Extent, marked};
 use crate::figure::{Axis, Chart, Paint, Series, Stroke};
 use crate::labels::{self, EndLabel};
 use crate::legend::{self, Entry, Sample};
@@ -25,16 +25,19 @@ const FILL: f64 = 0.22;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Look {
     pub(crate) line: Line,
-    marker: usize,
+    marker: marks::Marker,
 }
 
 fn look(series: &Series, index: usize) -> Look {
     let paint = series.color.unwrap_or(automatic(index));
-    let marker = match paint {
+    let shape = match paint {
+        _ if series.stroke == Stroke::Crosses => marks::CROSS,
         Paint::Palette(i) => i,
         Paint::Ink => marks::CROSS,
         Paint::Grey => index,
     };
+    let hollow = series.stroke == Stroke::Hollow;
+    let marker = marks::Marker { shape, hollow };
     Look {
         line: Line {
             color: rgb(paint),
@@ -43,6 +46,14 @@ fn look(series: &Series, index: usize) -> Look {
         },
         marker,
     }
+}
+
+/// Whether the points of a series are shown alone.
+fn unjoined(series: &Series) -> bool {
+    matches!(
+        series.stroke,
+        Stroke::Points | Stroke::Hollow | Stroke::Crosses
+    )
 }
 
 /// A chart with its spans found.
@@ -317,7 +328,7 @@ impl<'a> Sheet<'a> {
     fn taken(&self, frame: &Frame) -> Occupancy {
         let mut taken = Occupancy::new(frame.plot);
         for series in &self.chart.series {
-            if series.stroke != Stroke::Points {
+            if !unjoined(series) {
                 self.runs(frame, series)
                     .iter()
                     .for_each(|run| taken.line(run));
@@ -350,9 +361,8 @@ impl<'a> Sheet<'a> {
             if self.visible(frame, series).is_empty() && self.runs(frame, series).is_empty() {
                 name.push_str(" (no points)");
             }
-            let line = (series.stroke != Stroke::Points).then_some(look.line);
-            let marked = matches!(series.stroke, Stroke::Points | Stroke::LineAndPoints);
-            let marker = marked.then_some((look.marker, look.line.color));
+            let line = (!unjoined(series)).then_some(look.line);
+            let marker = marked(series.stroke).then_some((look.marker, look.line.color));
             Entry {
                 name,
                 sample: Sample {
@@ -373,13 +383,13 @@ impl<'a> Sheet<'a> {
         series: &Series,
         look: &Look,
     ) -> Drawn {
-        if series.stroke != Stroke::Points {
+        if !unjoined(series) {
             for run in self.runs(frame, series) {
                 canvas.line(&run, look.line)?;
             }
         }
         let step = match series.stroke {
-            Stroke::Points => 2.0,
+            Stroke::Points | Stroke::Hollow | Stroke::Crosses => 2.0,
             Stroke::LineAndPoints => MARKER_STEP,
             Stroke::Solid | Stroke::Dashed | Stroke::Filled => return Ok(()),
         };

@@ -4,6 +4,7 @@ use crate::axes::{self, Frame};
 use crate::canvas::{Canvas, Drawn, Line};
 use crate::figure::{Axis, Scale};
 use crate::legend::{self, Entry, Legend, Sample};
+use crate::marks::Marker;
 use crate::occupancy::Occupancy;
 use crate::rect::{Insets, Rect};
 use crate::shape::{Drawing, Shape};
@@ -210,7 +211,7 @@ fn entries(drawings: &[Drawing]) -> Vec<Entry> {
         let sample = match shape {
             Shape::Disc { .. } => Sample {
                 line: None,
-                marker: Some((0, color)),
+                marker: Some((Marker::full(0), color)),
                 patch: None,
             },
             Shape::Polyline {

@@ -64,8 +64,11 @@ impl Extent {
 }
 
 /// Whether a series has markers, which need room at the ends.
-fn marked(stroke: Stroke) -> bool {
-    matches!(stroke, Stroke::Points | Stroke::LineAndPoints)
+pub(crate) fn marked(stroke: Stroke) -> bool {
+    matches!(
+        stroke,
+        Stroke::Points | Stroke::Hollow | Stroke::Crosses | Stroke::LineAndPoints
+    )
 }
 
 /// Where a mark is, on the axes it belongs to. Bands and power laws go as far as the axes do.
@@ -73,7 +76,7 @@ fn place(mark: &Mark) -> Option<[Option<f64>; 2]> {
     match mark {
         Mark::Vertical { at, .. } => Some([Some(*at), None]),
         Mark::Horizontal { at, .. } => Some([None, Some(*at)]),
-        Mark::Point { at, .. } => Some(at.map(Some)),
+        Mark::Point { at, .. } | Mark::Words { at, .. } => Some(at.map(Some)),
         Mark::Band { .. } | Mark::Slope { .. } => None,
     }
 }

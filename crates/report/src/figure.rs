@@ -197,6 +197,10 @@ pub enum Stroke {
     Dashed,
     /// Markers only.
     Points,
+    /// Hollow markers only: a variant of what has full ones.
+    Hollow,
+    /// Crosses only, in the colour of the series: another variant.
+    Crosses,
     /// A line with markers.
     LineAndPoints,
     /// A line, with the area between it and zero lightly filled; zero is always shown. Two points of one place are a
@@ -255,6 +259,13 @@ pub enum Mark {
         /// The point.
         at: [f64; 2],
         /// Words beside it, or nothing.
+        label: String,
+    },
+    /// Words beside a point that a series draws, on the left axis.
+    Words {
+        /// The point.
+        at: [f64; 2],
+        /// The words.
         label: String,
     },
 }

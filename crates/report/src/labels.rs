@@ -3,7 +3,8 @@
 use crate::axes::Frame;
 use crate::canvas::{Align, Canvas, Drawn, Line, Type};
 use crate::chart::Look;
-use crate::figure::{Chart, Stroke};
+use crate::extent::marked;
+use crate::figure::Chart;
 use crate::fonts;
 use crate::rect::Rect;
 use crate::theme::{INK, TICK};
@@ -37,7 +38,7 @@ pub(crate) fn at_ends(chart: &Chart, looks: &[Look], frame: &Frame) -> Option<Ve
         if series.name.trim().is_empty() {
             continue;
         }
-        if matches!(series.stroke, Stroke::Points | Stroke::LineAndPoints) {
+        if marked(series.stroke) {
             return None;
         }
         let [x, y] = series

@@ -2,7 +2,7 @@
 
 use crate::canvas::{Align, Canvas, Drawn, Line, Type};
 use crate::fonts;
-use crate::marks::marker;
+use crate::marks::{Marker, marker};
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;
 use crate::theme::{EDGE, INK, Rgb, TICK, WHITE};
@@ -26,7 +26,7 @@ pub(crate) struct Sample {
     /// The line, if there is one.
     pub(crate) line: Option<Line>,
     /// Shape and colour of the marker, if there is one.
-    pub(crate) marker: Option<(usize, Rgb)>,
+    pub(crate) marker: Option<(Marker, Rgb)>,
     /// Colour of a filled patch behind the line, if there is one.
     pub(crate) patch: Option<Rgb>,
 }

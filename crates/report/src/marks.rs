@@ -12,9 +12,39 @@ use crate::theme::{BAND, GREY, INK, MARK, MARKER, Rgb, TICK, WHITE};
 /// The marker of what is drawn in ink: it stands apart from all curves.
 pub(crate) const CROSS: usize = usize::MAX;
 
+/// A marker: its shape, and how it is filled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Marker {
+    pub(crate) shape: usize,
+    pub(crate) hollow: bool,
+}
+
+impl Marker {
+    /// A full one.
+    pub(crate) fn full(shape: usize) -> Self {
+        let hollow = false;
+        Self { shape, hollow }
+    }
+}
+
+/// The white inside of a hollow marker, as a part of its size.
+const INSIDE: f64 = 0.55;
+
 /// Draws the marker of a series; series differ in shape as well as in colour.
-pub(crate) fn marker(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], color: Rgb) -> Drawn {
-    let r = MARKER;
+pub(crate) fn marker(
+    canvas: &mut Canvas<'_>,
+    Marker { shape, hollow }: Marker,
+    at: [f64; 2],
+    color: Rgb,
+) -> Drawn {
+    full(canvas, shape, at, MARKER, color)?;
+    if hollow && shape != CROSS {
+        full(canvas, shape, at, INSIDE * MARKER, WHITE)?;
+    }
+    Ok(())
+}
+
+fn full(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], r: f64, color: Rgb) -> Drawn {
     if shape == CROSS {
         let pen = Line::solid(color, 0.7 * r);
         canvas.line(&[[x - r, y - r], [x + r, y + r]], pen)?;
@@ -29,7 +59,7 @@ pub(crate) fn marker(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], co
                 x1: x + r,
                 y1: y + r,
             }
-            .grown(-0.8),
+            .grown(-0.1 * r),
             color,
         ),
         2 => canvas.polygon(
@@ -133,7 +163,7 @@ fn path(frame: &Frame, mark: &Mark) -> Vec<Vec<[f64; 2]>> {
             };
             Some((0..=200).map(at).collect())
         }
-        Mark::Band { .. } | Mark::Point { .. } => None,
+        Mark::Band { .. } | Mark::Point { .. } | Mark::Words { .. } => None,
     };
     clipped(line.unwrap_or_default(), &frame.plot)
 }
@@ -152,7 +182,8 @@ pub(crate) fn words(
         | Mark::Horizontal { label, .. }
         | Mark::Band { label, .. }
         | Mark::Slope { label, .. }
-        | Mark::Point { label, .. }) = mark;
+        | Mark::Point { label, .. }
+        | Mark::Words { label, .. }) = mark;
         let label = label.trim();
         if label.is_empty() {
             continue;
@@ -222,7 +253,7 @@ fn places(frame: &Frame, mark: &Mark, [width, height]: [f64; 2]) -> Vec<Rect> {
                 .map(|t| Rect::sized(x, down(t), width, height))
                 .collect()
         }
-        Mark::Point { at, .. } => {
+        Mark::Point { at, .. } | Mark::Words { at, .. } => {
             let Some([x, y]) = frame.point(*at, false) else {
                 return Vec::new();
             };

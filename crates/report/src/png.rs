@@ -146,6 +146,8 @@ mod tests {
             Just(Stroke::Solid),
             Just(Stroke::Dashed),
             Just(Stroke::Points),
+            Just(Stroke::Hollow),
+            Just(Stroke::Crosses),
             Just(Stroke::LineAndPoints),
             Just(Stroke::Filled)
         ];
@@ -167,7 +169,7 @@ mod tests {
 
     fn mark() -> impl Strategy<Value = Mark> {
         let words = "[a-z]{0,9}( [a-z]{1,9}){0,2}";
-        ([-5.0..5.0f64, -5.0..5.0f64], words, 0..5).prop_map(|([u, v], label, kind)| match kind {
+        ([-5.0..5.0f64, -5.0..5.0f64], words, 0..6).prop_map(|([u, v], label, kind)| match kind {
             0 => Mark::Vertical { at: u, label },
             1 => Mark::Horizontal { at: v, label },
             2 => Mark::Band {
@@ -180,6 +182,7 @@ mod tests {
                 through: [u.abs(), v.abs()],
                 label,
             },
+            4 => Mark::Words { at: [u, v], label },
             _ => Mark::Point { at: [u, v], label },
         })
     }

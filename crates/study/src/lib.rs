@@ -49,6 +49,7 @@ mod subject;
 mod sweep;
 mod symbolic;
 mod tabulate;
+pub mod tradeoff;
 mod validate;
 mod words;
 
@@ -71,4 +72,5 @@ pub use subject::PlanSubject;
 pub use sweep::{Exported, Shard, Sweep, SweepError, sweep};
 pub use symbolic::{Printed, symbolic, symbolic_findings};
 pub use tabulate::Tabulation;
+pub use tradeoff::tradeoff;
 pub use validate::{Validation, validate};

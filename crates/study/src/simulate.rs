@@ -240,7 +240,7 @@ impl Moved {
             .flat_map(|(chart, trace)| trace.occurrences.iter().map(|o| (*chart, o)))
     }
 
-    fn end(&self) -> f64 {
+    pub(crate) fn end(&self) -> f64 {
         let last = self.legs.last().and_then(|(_, trace)| trace.steps.last());
         last.map_or(0.0, |point| point.t)
     }

@@ -136,6 +136,23 @@ fn driven() -> String {
 }
 
 #[test]
+fn tradeoff_writes_every_combination_and_the_front() {
+    let bench = Bench::new();
+    bench.put("driven.toml", driven());
+    let run = bench.run(&["tradeoff", "driven.toml", "--out", "o"]);
+    assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
+    assert_eq!(
+        bench.files("o"),
+        ["csv", "md", "npz", "png"].map(|end| format!("driven-tradeoff.{end}"))
+    );
+    let header = first_line(&bench, "o/driven-tradeoff.csv");
+    assert!(
+        header.starts_with("evaluation,integrator,tolerance"),
+        "{header}"
+    );
+}
+
+#[test]
 fn cycle_tells_the_steady_cycle_and_its_flywheel() {
     let bench = Bench::new();
     bench.put("driven.toml", driven());
