@@ -2,7 +2,7 @@
 
 use super::combination::Evaluation;
 use dwell_dynamics::{
-    DynamicsError, Equation, Machine, MachineWork, Moving, Orbit, Point, State, System,
+    DynamicsError, Equation, Machine, MachineWork, Moving, Orbit, Point, State, System, Tabled,
 };
 use dwell_geometry::{PlaceError, Range};
 use dwell_kinetostatics::{
@@ -239,6 +239,47 @@ impl Evaluator for ByMachine<'_> {
         let orbit = Orbit::loaded(self.machine, start).ok()?;
         let points = orbit.points;
         Some((orbit, points))
+    }
+}
+
+/// The same machine on a table. Reactions are those of the machine at the table's states: a table of it holds none.
+pub(super) struct ByTable<'m> {
+    pub(super) table: Tabled,
+    /// How long it took to make it, s.
+    pub(super) making: f64,
+    pub(super) accuracy: f64,
+    pub(super) exact: ByMachine<'m>,
+}
+
+impl Evaluator for ByTable<'_> {
+    fn evaluation(&self) -> Evaluation {
+        let [cells, ..] = self.table.cells();
+        Evaluation::Table {
+            accuracy: self.accuracy,
+            cells,
+            bytes: self.table.bytes(),
+        }
+    }
+
+    fn system(&self) -> Result<Box<dyn System + '_>, DynamicsError> {
+        let Point { t, y } = self.exact.start;
+        Ok(Box::new(self.table.moving(*t, y)?))
+    }
+
+    fn reactions(&self) -> Reactions<'_> {
+        self.exact.reactions()
+    }
+
+    fn jacobian(&self) -> usize {
+        self.exact.jacobian()
+    }
+
+    fn making(&self) -> f64 {
+        self.making
+    }
+
+    fn orbit(&self, _: State) -> Option<(Orbit, usize)> {
+        None
     }
 }
 

@@ -20,10 +20,11 @@ pub use reports::reports;
 use crate::error::StudyError;
 use crate::outcome::{Outcome, Progress, Step};
 use crate::provenance::picture;
-use dwell_dynamics::{DynamicsError, Method};
+use dwell_dynamics::{DynamicsError, Method, NotTabled, Tabled};
+use dwell_geometry::Range;
 use dwell_kinetostatics::{Exact, Extent, Reduced, Table, TableError};
 use dwell_scene::Scene;
-use evaluator::{ByMachine, ByShortMachine, Short, of_table};
+use evaluator::{ByMachine, ByShortMachine, ByTable, Short, of_table};
 use run::{Ladder, Run};
 use std::time::Instant;
 use subject::Subject;
@@ -190,11 +191,31 @@ fn evaluators<'s>(
             seen: &subject.seen,
             start: &subject.start,
         };
-        left_out.push(
-            "tables: they hold the reduced model, which is the equation of one freedom without loads and drives"
-                .to_owned(),
-        );
-        return vec![Box::new(machine()), Box::new(ByShortMachine(machine()))];
+        let mut all: Vec<Box<dyn Evaluator + 's>> =
+            vec![Box::new(machine()), Box::new(ByShortMachine(machine()))];
+        for &accuracy in &effort.tables {
+            let began = Instant::now();
+            match Tabled::new(
+                &subject.machine,
+                accuracy,
+                extent(subject.machine.model().plan().range(), subject.reach),
+            ) {
+                Ok(table) => all.push(Box::new(ByTable {
+                    making: began.elapsed().as_secs_f64(),
+                    table,
+                    accuracy,
+                    exact: machine(),
+                })),
+                Err(error @ NotTabled::Table(_)) => {
+                    left_out.push(format!("table {accuracy:.0e}: {error}"));
+                }
+                Err(error) => {
+                    left_out.push(format!("tables: {error}"));
+                    break;
+                }
+            }
+        }
+        return all;
     };
     let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
         Box::new(ByModel {
@@ -223,18 +244,22 @@ fn evaluators<'s>(
 }
 
 /// A table that reaches as far as the motion, and the time of making it, s.
-fn table(exact: &Exact, accuracy: f64, [low, high]: [f64; 2]) -> Result<(Table, f64), TableError> {
-    let extent = match (exact.range().period(), exact.range().limits()) {
+fn table(exact: &Exact, accuracy: f64, reach: [f64; 2]) -> Result<(Table, f64), TableError> {
+    let began = Instant::now();
+    let table = Table::new(exact, accuracy, extent(exact.range(), reach))?;
+    Ok((table, began.elapsed().as_secs_f64()))
+}
+
+/// As far as a motion goes, and somewhat farther.
+fn extent(range: Range, [low, high]: [f64; 2]) -> Extent {
+    match (range.period(), range.limits()) {
         (Some(_), _) => Extent::Whole,
         (None, limits) => {
             let room = BEYOND * (high - low);
             let (least, most) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             Extent::Between((low - room).max(least), (high + room).min(most))
         }
-    };
-    let began = Instant::now();
-    let table = Table::new(exact, accuracy, extent)?;
-    Ok((table, began.elapsed().as_secs_f64()))
+    }
 }
 
 fn cost(evaluator: &dyn Evaluator, run: &Run, second: f64) -> Cost {
