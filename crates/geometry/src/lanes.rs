@@ -7,6 +7,7 @@
 //! them errs, [`Plan::place`](crate::Plan::place) gives an error, and each coordinate is to be evaluated alone.
 //! Other groups are refused beforehand ([`PlaceError::Apart`](crate::PlaceError::Apart)).
 
+use crate::circle::sin_cos;
 use crate::scalar::Scalar;
 use std::array;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -61,13 +62,9 @@ impl<const N: usize> Scalar for Lanes<N> {
         self.each(f64::sqrt)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let both = self.0.map(f64::sin_cos);
-        (
-            Self(both.map(|(sin, _)| sin)),
-            Self(both.map(|(_, cos)| cos)),
-        )
+        sin_cos(self)
     }
 
     #[inline]

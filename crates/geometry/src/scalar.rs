@@ -1,6 +1,8 @@
 //! The kinds of number a plan can be evaluated in: plain `f64`, [`Dual`] for exact derivatives with
 //! respect to a coordinate, `f32` and [`Wide`](crate::Wide) to measure what rounding does.
 
+use crate::circle::sin_cos;
+use crate::lanes::Lanes;
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -83,7 +85,8 @@ impl Scalar for f64 {
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        let (sin, cos) = sin_cos(Lanes([self]));
+        (sin.0[0], cos.0[0])
     }
     #[inline]
     fn atan2(self, other: Self) -> Self {
@@ -166,7 +169,7 @@ impl Scalar for Dual {
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        let (s, c) = self.v.sin_cos();
+        let (s, c) = Scalar::sin_cos(self.v);
         (
             Self {
                 v: s,
