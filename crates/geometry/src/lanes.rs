@@ -67,14 +67,14 @@ impl<const N: usize> Scalar for Lanes<N> {
         sin_cos(self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn atan2(self, other: Self) -> Self {
         self.both(other, f64::atan2)
     }
 
     /// Derivatives at one value say nothing of the others: no group with a law is placed in lanes, and
     /// what comes of it elsewhere is no number.
-    #[inline]
+    #[inline(always)]
     fn through(self, derivatives: &[f64; 4]) -> Self {
         let first = self.0[0];
         self.each(|value| {

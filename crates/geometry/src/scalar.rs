@@ -60,7 +60,7 @@ pub trait Scalar:
 
 /// What a test of each lane says; none where lanes disagree. A decision that must be the same for all
 /// numbers side by side is made by this: where it is not, each of them goes its way alone.
-#[inline]
+#[inline(always)]
 pub(crate) fn agreed<T: Scalar>(test: impl Fn(usize) -> bool) -> Option<bool> {
     let first = test(0);
     (1..T::LANES)

@@ -4,6 +4,7 @@
 use crate::model::{Model, Workspace};
 use crate::reduced::{Coefficients, Exact};
 use dwell_geometry::{Lanes, PlaceError, Scalar};
+use std::ops::Range;
 
 /// Poses side by side. (Two to a vector register of the plainest x86-64: four keep its units busy.)
 const LANES: usize = 4;
@@ -89,6 +90,14 @@ impl<T: Scalar> Room<T> {
     }
 }
 
+fn widest<R>(act: impl FnOnce() -> R) -> R {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(wide) = pulp::x86::V3::try_new() {
+        return wide.vectorize(act);
+    }
+    act()
+}
+
 impl Exact {
     /// All coefficients at many coordinates `q` (rad or m), on all threads; `out` is made to fit, and keeps
     /// its storage from one batch to the next. Where there is no pose, [`Batch::errors`] says so.
@@ -128,7 +137,10 @@ impl Model {
     fn reduce_part(&self, part: Part<'_>, block: usize) -> Vec<(usize, PlaceError)> {
         let blocks = part.q.len().div_ceil(block);
         if blocks < 2 {
-            return self.reduce_block(part);
+            return widest(
+                #[inline(always)]
+                || self.reduce_block(part),
+            );
         }
         let [one, two] = part.split(blocks / 2 * block, self.reactions().len());
         let (mut errors, more) = rayon::join(
@@ -139,61 +151,65 @@ impl Model {
         errors
     }
 
-    fn reduce_block(&self, part: Part<'_>) -> Vec<(usize, PlaceError)> {
-        let reactions = self.reactions().len();
-        let in_lanes = self.plan().placed_in_lanes();
+    /// Four by four, and alone what is left over or goes different ways.
+    #[inline(always)]
+    fn reduce_block(&self, mut part: Part<'_>) -> Vec<(usize, PlaceError)> {
         // For several poses at once, and for one where they part; few blocks need both.
-        let mut lanes = in_lanes.then(|| Room::new(self));
+        let mut lanes = self.plan().placed_in_lanes().then(|| Room::new(self));
         let mut plain = None;
         let mut errors = Vec::new();
-        let mut rest = part;
-        while !rest.q.is_empty() {
-            let count = rest.q.len().min(LANES);
-            let [mut now, later] = rest.split(count, reactions);
-            let together = lanes
-                .as_mut()
-                .is_some_and(|room| self.reduce_lanes(&mut now, room));
+        let mut at = 0;
+        while at < part.q.len() {
+            let together = match &mut lanes {
+                Some(room) => self.reduce_lanes(&mut part, at, room),
+                None => false,
+            };
+            let next = part.q.len().min(at + LANES);
             if !together {
                 let room = plain.get_or_insert_with(|| Room::new(self));
-                self.reduce_singly(&mut now, room, &mut errors);
+                self.reduce_singly(&mut part, at..next, room, &mut errors);
             }
-            rest = later;
+            at = next;
         }
         errors
     }
 
-    /// As many poses as there are lanes, if all of them go the same way.
-    fn reduce_lanes(&self, part: &mut Part<'_>, room: &mut Room<Lanes<LANES>>) -> bool {
-        let Ok(q) = <[f64; LANES]>::try_from(part.q) else {
+    /// As many poses as there are lanes from the `at`th on, if all of them go the same way.
+    #[inline(always)]
+    fn reduce_lanes(&self, part: &mut Part<'_>, at: usize, room: &mut Room<Lanes<LANES>>) -> bool {
+        let Some(&q) = part.q[at..].first_chunk() else {
             return false;
         };
         let Room(work, out) = room;
         if self.reduce(Lanes(q), work, out).is_err() {
             return false;
         }
-        part.m.copy_from_slice(&out.m.0);
-        part.half_dm.copy_from_slice(&out.half_dm.0);
+        part.m[at..at + LANES].copy_from_slice(&out.m.0);
+        part.half_dm[at..at + LANES].copy_from_slice(&out.half_dm.0);
         let reactions = out.a.len();
         for (values, to) in [(&out.a, &mut *part.a), (&out.b, &mut *part.b)] {
             for (k, value) in values.iter().enumerate() {
                 for (lane, value) in value.0.into_iter().enumerate() {
-                    to[lane * reactions + k] = value;
+                    to[(at + lane) * reactions + k] = value;
                 }
             }
         }
         true
     }
 
+    // Not for wider registers: alone, a pose has no use for them.
+    #[inline(never)]
     fn reduce_singly(
         &self,
         part: &mut Part<'_>,
+        which: Range<usize>,
         room: &mut Room<f64>,
         errors: &mut Vec<(usize, PlaceError)>,
     ) {
         let Room(work, out) = room;
         let reactions = out.a.len();
-        for (i, &q) in part.q.iter().enumerate() {
-            match self.reduce(q, work, out) {
+        for i in which {
+            match self.reduce(part.q[i], work, out) {
                 Ok(()) => {
                     (part.m[i], part.half_dm[i]) = (out.m, out.half_dm);
                     part.a[i * reactions..][..reactions].copy_from_slice(&out.a);

@@ -7,7 +7,6 @@ use dwell_geometry::frames::{Coupler, Turning};
 use dwell_geometry::lower::Tie;
 use dwell_geometry::plan::BondPlace;
 use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Scalar, Vec2, vec2};
-use std::array;
 
 /// One end of a chord.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +27,19 @@ enum Along {
     Y(f64),
     /// A constant vector in a frame.
     Frame(usize, Vec2),
+}
+
+impl Along {
+    /// The component of some forces.
+    #[inline(always)]
+    fn of<T: Scalar, const N: usize>(self, forces: &[Vec2<T>; N], pose: &Pose<T>) -> [T; N] {
+        let along = match self {
+            Self::X(sign) => vec2(T::lift(sign), T::lift(0.0)),
+            Self::Y(sign) => vec2(T::lift(0.0), T::lift(sign)),
+            Self::Frame(frame, local) => local.lift().turn(pose.turn[frame]),
+        };
+        forces.map(|force| force.dot(along))
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -196,20 +208,12 @@ fn driven(plan: &Plan) -> Vec<Vec<(usize, f64)>> {
 
 impl<T: Scalar, const N: usize> Runs<T, N> {
     /// The `k`th requested reaction in each run, N or N·m.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn reaction(&self, model: &Model, pose: &Pose<T>, k: usize) -> [T; N] {
-        let component = |force: &[Vec2<T>; N], along: Along| {
-            let along = match along {
-                Along::X(sign) => vec2(T::lift(sign), T::lift(0.0)),
-                Along::Y(sign) => vec2(T::lift(0.0), T::lift(sign)),
-                Along::Frame(frame, local) => local.lift().turn(pose.turn[frame]),
-            };
-            array::from_fn(|n| force[n].dot(along))
-        };
         match model.sources.sources[k] {
             Source::Normal(closure) => self.balance.multiplier[closure].map(|m| m.x),
-            Source::Chord(closure, along) => component(&self.balance.multiplier[closure], along),
-            Source::Carry(carried, along) => component(&self.held[carried], along),
+            Source::Chord(closure, along) => along.of(&self.balance.multiplier[closure], pose),
+            Source::Carry(carried, along) => along.of(&self.held[carried], pose),
             Source::Hold { body, sign } => self.couple[body].map(|c| c * T::lift(sign)),
             Source::Relation(relation) => self.balance.relation[relation],
             Source::Spare => [T::lift(0.0); N],

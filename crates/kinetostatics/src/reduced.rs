@@ -112,6 +112,7 @@ impl Model {
     ///
     /// # Errors
     /// [`PlaceError`] when there is no pose at `q`.
+    #[inline(always)]
     pub fn reduce<T: Scalar>(
         &self,
         q: T,

@@ -32,52 +32,52 @@ pub(crate) struct Pushed<'a, T>(pub(crate) &'a Motion<T>);
 pub(crate) struct Still;
 
 impl<T: Scalar> Rates<T, 1> for Pushed<'_, T> {
-    #[inline]
+    #[inline(always)]
     fn turning(self, frame: usize) -> [T; 1] {
         [self.0.turn[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 1] {
         [arm.perp() * self.0.turn[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide(self, slide: usize, _: usize, along: Vec2<T>) -> [Vec2<T>; 1] {
         [along * self.0.slide[slide]]
     }
 }
 
 impl<T: Scalar> Rates<T, 1> for Still {
-    #[inline]
+    #[inline(always)]
     fn turning(self, _: usize) -> [T; 1] {
         [T::lift(0.0)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn arm(self, _: usize, _: Vec2<T>) -> [Vec2<T>; 1] {
         [Vec2::zero()]
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide(self, _: usize, _: usize, _: Vec2<T>) -> [Vec2<T>; 1] {
         [Vec2::zero()]
     }
 }
 
 impl<T: Scalar> Rates<T, 1> for Prescribed<'_, T> {
-    #[inline]
+    #[inline(always)]
     fn turning(self, frame: usize) -> [T; 1] {
         [self.0.turn_rate[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 1] {
         let speed = self.0.turn[frame];
         [arm.perp() * self.0.turn_rate[frame] - arm * (speed * speed)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; 1] {
         let across = T::lift(2.0) * self.0.turn[frame] * self.0.slide[slide];
         [along * self.0.slide_rate[slide] + along.perp() * across]
@@ -85,18 +85,18 @@ impl<T: Scalar> Rates<T, 1> for Prescribed<'_, T> {
 }
 
 impl<T: Scalar> Rates<T, 2> for Unit<'_, T> {
-    #[inline]
+    #[inline(always)]
     fn turning(self, frame: usize) -> [T; 2] {
         [self.0.turn_rate[frame], self.0.turn[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 2] {
         let [first] = Prescribed(self.0).arm(frame, arm);
         [first, arm.perp() * self.0.turn[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; 2] {
         let [first] = Prescribed(self.0).slide(slide, frame, along);
         [first, along * self.0.slide[slide]]
@@ -117,7 +117,7 @@ pub(crate) struct Runs<T, const N: usize> {
     pub(crate) couple: Vec<[T; N]>,
 }
 
-#[inline]
+#[inline(always)]
 #[track_caller]
 fn add<V: std::ops::AddAssign, const N: usize>(sum: &mut [V; N], more: [V; N]) {
     for (sum, more) in sum.iter_mut().zip(more) {
@@ -139,6 +139,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// Inertia forces, then multipliers, then (where asked for) what the tree's joints bear.
+    #[inline(always)]
     pub(crate) fn evaluate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         self.accelerate(model, pose, rates);
         if model.sources.tree_forces {
@@ -157,6 +158,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
 
     /// Accelerations of the roots, and each body's own inertia force and its moment about its
     /// root: Σ m r×a = I α + (Σ m r)×(the root's acceleration).
+    #[inline(always)]
     pub(crate) fn accelerate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         let moments = self.balance.moment.iter_mut().zip(&model.inertia);
         for (frame, (moment, &inertia)) in moments.enumerate() {
@@ -190,7 +192,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// Carries the inertia forces down the tree: moments on the frames, pushes on the slides.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn collect(&mut self, model: &Model, pose: &Pose<T>) {
         let Balance { moment, push, .. } = &mut self.balance;
         push.fill([T::lift(0.0); N]);
@@ -251,6 +253,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// The force of a chord's first body on its second, in ground axes.
+    #[inline(always)]
     pub(crate) fn chord_force(
         &self,
         model: &Model,
@@ -336,6 +339,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// An actuator's action on its second body, from what remains on the frames it turns.
+    #[inline(always)]
     pub(crate) fn tau(&self, model: &Model, actuator: usize) -> [T; N] {
         if let Some(slide) = model.sources.slides[actuator] {
             return self.balance.push[slide];
