@@ -4,8 +4,7 @@
 //! angle is taken to r = x − k π/2 in |r| ≤ π/4, and two polynomials in r² give both; no lane takes a
 //! branch of its own, so the compiler makes vector instructions of it.
 
-use crate::lanes::Lanes;
-use std::array;
+use crate::scalar::{Scalar, each};
 use std::f64::consts::FRAC_2_PI;
 
 /// π/2 in three parts. The first two have 41 bits each, so that their products with k are exact.
@@ -42,69 +41,75 @@ const COSINE: [f64; 6] = [
     -1.135_874_923_601_705_3e-11,
 ];
 
-/// Sine and cosine, each within 0.8 of a unit in its last place.
+/// Sine and cosine, each within 0.8 of a unit in its last place. A kind of number says how it is split into
+/// plain ones side by side, and how it is joined of them.
 #[inline(always)]
-pub(crate) fn sin_cos<const N: usize>(x: Lanes<N>) -> (Lanes<N>, Lanes<N>) {
-    if x.0.iter().all(|x| x.abs() <= FARTHEST) {
-        near(x)
-    } else {
-        far(x)
+pub fn sin_cos<T: Scalar, const N: usize>(
+    x: T,
+    split: impl Fn(T) -> [f64; N] + Copy,
+    join: impl Fn([f64; N]) -> T + Copy,
+) -> (T, T) {
+    let plain = split(x);
+    if plain.iter().all(|x| x.abs() <= FARTHEST) {
+        return near(x, split, join);
     }
+    let (sin, cos) = far(plain);
+    (join(sin), join(cos))
 }
 
-/// Lanes of which one is far off, or no number.
+/// Where one of them is far off, or no number.
 #[cold]
 #[inline(never)]
-fn far<const N: usize>(x: Lanes<N>) -> (Lanes<N>, Lanes<N>) {
-    let both = x.0.map(|x| {
+fn far<const N: usize>(x: [f64; N]) -> ([f64; N], [f64; N]) {
+    let both = x.map(|x| {
         if x.abs() <= FARTHEST {
-            let (sin, cos) = near(Lanes([x]));
-            (sin.0[0], cos.0[0])
+            Scalar::sin_cos(x)
         } else {
             x.sin_cos()
         }
     });
-    (Lanes(both.map(|b| b.0)), Lanes(both.map(|b| b.1)))
+    (both.map(|b| b.0), both.map(|b| b.1))
 }
 
 #[inline(always)]
-fn near<const N: usize>(x: Lanes<N>) -> (Lanes<N>, Lanes<N>) {
-    let whole = |value| Lanes([value; N]);
-    let shifted = x * whole(FRAC_2_PI) + whole(WHOLE);
-    let k = shifted - whole(WHOLE);
-    let [one, two, three] = QUARTER.map(whole);
+fn near<T: Scalar, const N: usize>(
+    x: T,
+    split: impl Fn(T) -> [f64; N],
+    join: impl Fn([f64; N]) -> T,
+) -> (T, T) {
+    let shifted = x * T::lift(FRAC_2_PI) + T::lift(WHOLE);
+    let k = shifted - T::lift(WHOLE);
+    let [one, two, three] = each(QUARTER, T::lift);
     // Both exact but for the rounding of r, and that is in `rest`.
     let (first, second) = (x - k * one, k * two);
     let r = first - second;
     let rest = ((first - r) - second) - k * three;
 
     let square = r * r;
-    let half = whole(0.5) * square;
+    let half = T::lift(0.5) * square;
     let sin = r + (square * r * polynomial(SINE, square) + (rest - rest * half));
     // 1 − r²/2 is rounded; what it lost is exact.
-    let cos = whole(1.0) - half;
-    let lost = (whole(1.0) - cos) - half;
+    let cos = T::lift(1.0) - half;
+    let lost = (T::lift(1.0) - cos) - half;
     let cos = cos + (lost + (square * square * polynomial(COSINE, square) - r * rest));
 
     // Odd quarters exchange the two; their signs follow from the last two bits of k.
-    let bits = |of: Lanes<N>| of.0.map(f64::to_bits);
-    let (sin, cos, k) = (bits(sin), bits(cos), bits(shifted));
-    let other: [u64; N] = array::from_fn(|i| (sin[i] ^ cos[i]) & (k[i] & 1).wrapping_neg());
-    let sign = |k: u64| (k & 2) << 62;
-    (
-        Lanes(array::from_fn(|i| {
-            f64::from_bits(sin[i] ^ other[i] ^ sign(k[i]))
-        })),
-        Lanes(array::from_fn(|i| {
-            f64::from_bits(cos[i] ^ other[i] ^ sign(k[i] + 1))
-        })),
-    )
+    let [mut sin, mut cos, k] = [sin, cos, shifted].map(split);
+    for ((sin, cos), k) in sin.iter_mut().zip(&mut cos).zip(k) {
+        let k = k.to_bits();
+        let both = [sin.to_bits(), cos.to_bits()];
+        let other = (both[0] ^ both[1]) & (k & 1).wrapping_neg();
+        let sign = |k: u64| (k & 2) << 62;
+        *sin = f64::from_bits(both[0] ^ other ^ sign(k));
+        *cos = f64::from_bits(both[1] ^ other ^ sign(k + 1));
+    }
+    (join(sin), join(cos))
 }
 
 /// In pairs, which wait for each other less than one term after another.
 #[inline(always)]
-fn polynomial<const N: usize>(of: [f64; 6], x: Lanes<N>) -> Lanes<N> {
-    let of = of.map(|c| Lanes([c; N]));
+fn polynomial<T: Scalar>(of: [f64; 6], x: T) -> T {
+    let of = each(of, T::lift);
     let square = x * x;
     (of[0] + of[1] * x) + square * ((of[2] + of[3] * x) + square * (of[4] + of[5] * x))
 }
@@ -112,8 +117,9 @@ fn polynomial<const N: usize>(of: [f64; 6], x: Lanes<N>) -> Lanes<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scalar::Scalar;
+    use crate::lanes::Lanes;
     use crate::wide::Wide;
+    use std::array;
     use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
     fn alone(x: f64) -> (f64, f64) {

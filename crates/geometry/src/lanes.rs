@@ -64,7 +64,7 @@ impl<const N: usize> Scalar for Lanes<N> {
 
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        sin_cos(self)
+        sin_cos(self, |lanes| lanes.0, Self)
     }
 
     #[inline(always)]

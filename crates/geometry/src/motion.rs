@@ -7,7 +7,7 @@
 use crate::groups::Unknown;
 use crate::plan::{Assur, Behind, Closure, Driven, Kind, Plan, Pose, Solved};
 use crate::plane::{Vec2, vec2};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, each};
 
 /// Rates of every frame and slide at a pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -148,14 +148,16 @@ impl Plan {
                 Kind::Pin(pin) => {
                     let one = class_moment(assur, pin.frames[0], &balance.moment);
                     let two = class_moment(assur, pin.frames[1], &balance.moment);
-                    let [r1, r2] = pin.arms.map(|a| pose.arm[a] * inverse);
-                    balance.multiplier[pin.closure] =
-                        std::array::from_fn(|n| r2 * one[n] - r1 * two[n]);
+                    let [r1, r2] = each(pin.arms, |a| pose.arm[a] * inverse);
+                    let multiplier = &mut balance.multiplier[pin.closure];
+                    for ((own, one), two) in multiplier.iter_mut().zip(one).zip(two) {
+                        *own = r2 * one - r1 * two;
+                    }
                 }
                 Kind::Aim(aim) => {
                     let moment = class_moment(assur, aim.frame, &balance.moment);
                     balance.multiplier[aim.closure] =
-                        std::array::from_fn(|n| vec2(moment[n] * inverse, T::lift(0.0)));
+                        each(moment, |moment| vec2(moment * inverse, T::lift(0.0)));
                 }
                 Kind::Solved(solved) => {
                     self.solved_multipliers(assur, solved, pose, balance);
@@ -392,7 +394,7 @@ fn press<T: Scalar, const N: usize>(behind: &Behind, pose: &Pose<T>, balance: &m
         None => multiplier,
         Some(axis) => {
             let normal = pose.arm[axis].perp();
-            multiplier.map(|m| normal * m.x)
+            each(multiplier, |m| normal * m.x)
         }
     };
     for &(arm, frame) in &behind.arms {

@@ -5,7 +5,7 @@ use crate::groups::Unknown;
 use crate::large::LARGE;
 use crate::plan::{Aim, Closure, Driven, How, Kind, Pin, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
-use crate::scalar::{Scalar, agreed};
+use crate::scalar::{Scalar, agreed, each};
 use crate::tree::Arm;
 use std::f64::consts::TAU;
 
@@ -358,7 +358,7 @@ fn place_pin<T: Scalar>(
 fn triangle_of<T: Scalar>(pin: &Pin, arms: &[Arm]) -> ([Vec2<T>; 2], [T; 3]) {
     if !finer::<T>() {
         let lengths = [pin.sum2, pin.gap2, pin.excess];
-        return (pin.per_square.map(Vec2::lift), lengths.map(T::lift));
+        return (each(pin.per_square, Vec2::lift), each(lengths, T::lift));
     }
     let local = pin.arms.map(|a| arms[a].local.lift::<T>());
     let squares = local.map(|arm| arm.dot(arm));

@@ -2,7 +2,6 @@
 //! respect to a coordinate, `f32` and [`Wide`](crate::Wide) to measure what rounding does.
 
 use crate::circle::sin_cos;
-use crate::lanes::Lanes;
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -58,6 +57,16 @@ pub trait Scalar:
     fn through(self, derivatives: &[f64; 4]) -> Self;
 }
 
+/// A function of each of some numbers. (The standard library's is not always inlined.)
+#[inline(always)]
+pub fn each<A: Copy, B: Copy, const N: usize>(of: [A; N], act: impl Fn(A) -> B) -> [B; N] {
+    let mut out = [act(of[0]); N];
+    for n in 1..N {
+        out[n] = act(of[n]);
+    }
+    out
+}
+
 /// What a test of each lane says; none where lanes disagree. A decision that must be the same for all
 /// numbers side by side is made by this: where it is not, each of them goes its way alone.
 #[inline(always)]
@@ -85,8 +94,7 @@ impl Scalar for f64 {
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        let (sin, cos) = sin_cos(Lanes([self]));
-        (sin.0[0], cos.0[0])
+        sin_cos(self, |x| [x], |[x]| x)
     }
     #[inline]
     fn atan2(self, other: Self) -> Self {

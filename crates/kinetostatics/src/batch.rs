@@ -6,8 +6,8 @@ use crate::reduced::{Coefficients, Exact};
 use dwell_geometry::{Lanes, PlaceError, Scalar};
 use std::ops::Range;
 
-/// Poses side by side. (Two to a vector register of the plainest x86-64: four keep its units busy.)
-const LANES: usize = 4;
+/// Poses side by side: two registers of the plainest x86-64, one where there is AVX2.
+pub(crate) const LANES: usize = 4;
 /// Fewest coordinates that one thread does at a time: the working memory it takes is small beside them.
 const BLOCK: usize = 1024;
 /// Blocks for each thread, so that none waits long for the last one.
@@ -50,7 +50,7 @@ impl Batch {
 }
 
 /// A part of a batch to be filled; the place of its first coordinate.
-struct Part<'a> {
+pub(crate) struct Part<'a> {
     first: usize,
     q: &'a [f64],
     m: &'a mut [f64],
@@ -81,6 +81,24 @@ impl<'a> Part<'a> {
     }
 }
 
+/// [`LANES`] plain numbers side by side.
+pub(crate) trait Side: Scalar {
+    fn join(numbers: [f64; LANES]) -> Self;
+    fn split(self) -> [f64; LANES];
+}
+
+impl Side for Lanes<LANES> {
+    #[inline(always)]
+    fn join(numbers: [f64; LANES]) -> Self {
+        Self(numbers)
+    }
+
+    #[inline(always)]
+    fn split(self) -> [f64; LANES] {
+        self.0
+    }
+}
+
 /// Working memory with room for its results.
 struct Room<T>(Workspace<T>, Coefficients<T>);
 
@@ -88,14 +106,6 @@ impl<T: Scalar> Room<T> {
     fn new(model: &Model) -> Self {
         Self(model.workspace(), model.coefficients())
     }
-}
-
-fn widest<R>(act: impl FnOnce() -> R) -> R {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(wide) = pulp::x86::V3::try_new() {
-        return wide.vectorize(act);
-    }
-    act()
 }
 
 impl Exact {
@@ -137,10 +147,7 @@ impl Model {
     fn reduce_part(&self, part: Part<'_>, block: usize) -> Vec<(usize, PlaceError)> {
         let blocks = part.q.len().div_ceil(block);
         if blocks < 2 {
-            return widest(
-                #[inline(always)]
-                || self.reduce_block(part),
-            );
+            return self.reduce_widest(part);
         }
         let [one, two] = part.split(blocks / 2 * block, self.reactions().len());
         let (mut errors, more) = rayon::join(
@@ -151,18 +158,29 @@ impl Model {
         errors
     }
 
+    /// In the widest registers that the processor has.
+    fn reduce_widest(&self, part: Part<'_>) -> Vec<(usize, PlaceError)> {
+        #[cfg(target_arch = "x86_64")]
+        let part = match crate::four::reduce(self, part) {
+            Ok(errors) => return errors,
+            Err(part) => part,
+        };
+        self.reduce_block::<Lanes<LANES>>(part)
+    }
+
     /// Four by four, and alone what is left over or goes different ways.
     #[inline(always)]
-    fn reduce_block(&self, mut part: Part<'_>) -> Vec<(usize, PlaceError)> {
+    pub(crate) fn reduce_block<S: Side>(&self, mut part: Part<'_>) -> Vec<(usize, PlaceError)> {
         // For several poses at once, and for one where they part; few blocks need both.
-        let mut lanes = self.plan().placed_in_lanes().then(|| Room::new(self));
+        let mut lanes: Option<Room<S>> = None;
+        let in_lanes = self.plan().placed_in_lanes();
         let mut plain = None;
         let mut errors = Vec::new();
         let mut at = 0;
         while at < part.q.len() {
-            let together = match &mut lanes {
-                Some(room) => self.reduce_lanes(&mut part, at, room),
-                None => false,
+            let together = in_lanes && {
+                let room = lanes.get_or_insert_with(|| Room::new(self));
+                self.reduce_lanes(&mut part, at, room)
             };
             let next = part.q.len().min(at + LANES);
             if !together {
@@ -176,20 +194,20 @@ impl Model {
 
     /// As many poses as there are lanes from the `at`th on, if all of them go the same way.
     #[inline(always)]
-    fn reduce_lanes(&self, part: &mut Part<'_>, at: usize, room: &mut Room<Lanes<LANES>>) -> bool {
+    fn reduce_lanes<S: Side>(&self, part: &mut Part<'_>, at: usize, room: &mut Room<S>) -> bool {
         let Some(&q) = part.q[at..].first_chunk() else {
             return false;
         };
         let Room(work, out) = room;
-        if self.reduce(Lanes(q), work, out).is_err() {
+        if self.reduce(S::join(q), work, out).is_err() {
             return false;
         }
-        part.m[at..at + LANES].copy_from_slice(&out.m.0);
-        part.half_dm[at..at + LANES].copy_from_slice(&out.half_dm.0);
+        part.m[at..at + LANES].copy_from_slice(&out.m.split());
+        part.half_dm[at..at + LANES].copy_from_slice(&out.half_dm.split());
         let reactions = out.a.len();
         for (values, to) in [(&out.a, &mut *part.a), (&out.b, &mut *part.b)] {
             for (k, value) in values.iter().enumerate() {
-                for (lane, value) in value.0.into_iter().enumerate() {
+                for (lane, value) in value.split().into_iter().enumerate() {
                     to[(at + lane) * reactions + k] = value;
                 }
             }

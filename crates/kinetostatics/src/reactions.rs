@@ -6,6 +6,7 @@ use crate::runs::Runs;
 use dwell_geometry::frames::{Coupler, Turning};
 use dwell_geometry::lower::Tie;
 use dwell_geometry::plan::BondPlace;
+use dwell_geometry::scalar::each;
 use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Scalar, Vec2, vec2};
 
 /// One end of a chord.
@@ -38,7 +39,7 @@ impl Along {
             Self::Y(sign) => vec2(T::lift(0.0), T::lift(sign)),
             Self::Frame(frame, local) => local.lift().turn(pose.turn[frame]),
         };
-        forces.map(|force| force.dot(along))
+        each(*forces, |force| force.dot(along))
     }
 }
 
@@ -211,10 +212,10 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     #[inline(always)]
     pub(crate) fn reaction(&self, model: &Model, pose: &Pose<T>, k: usize) -> [T; N] {
         match model.sources.sources[k] {
-            Source::Normal(closure) => self.balance.multiplier[closure].map(|m| m.x),
+            Source::Normal(closure) => each(self.balance.multiplier[closure], |m| m.x),
             Source::Chord(closure, along) => along.of(&self.balance.multiplier[closure], pose),
             Source::Carry(carried, along) => along.of(&self.held[carried], pose),
-            Source::Hold { body, sign } => self.couple[body].map(|c| c * T::lift(sign)),
+            Source::Hold { body, sign } => each(self.couple[body], |c| c * T::lift(sign)),
             Source::Relation(relation) => self.balance.relation[relation],
             Source::Spare => [T::lift(0.0); N],
         }

@@ -2,6 +2,7 @@
 //! forces, multipliers, actuator actions and reactions. All runs share the pose and its factors.
 
 use crate::model::Model;
+use dwell_geometry::scalar::each;
 use dwell_geometry::{Balance, Motion, Plan, Pose, Scalar, Vec2};
 
 /// The rates of `N` runs: what they make of the inertia of a frame and of its constant vectors.
@@ -162,7 +163,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     pub(crate) fn accelerate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         let moments = self.balance.moment.iter_mut().zip(&model.inertia);
         for (frame, (moment, &inertia)) in moments.enumerate() {
-            *moment = rates.turning(frame).map(|rate| rate * T::lift(inertia));
+            *moment = each(rates.turning(frame), |rate| rate * T::lift(inertia));
         }
         for (i, link) in model.links.iter().enumerate() {
             let mut root = match link.parent {
@@ -177,13 +178,13 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
                 add(&mut root, rates.slide(slide, link.frame, along));
                 add(&mut root, rates.arm(link.frame, along * pose.slide[slide]));
             }
-            let mut force = root.map(|a| a * T::lift(link.mass));
+            let mut force = each(root, |a| a * T::lift(link.mass));
             if let Some(first) = link.first {
                 let first = first.lift().turn(pose.turn[link.frame]);
                 add(&mut force, rates.arm(link.frame, first));
                 add(
                     &mut self.balance.moment[link.frame],
-                    root.map(|a| first.cross(a)),
+                    each(root, |a| first.cross(a)),
                 );
             }
             self.acceleration[i] = root;
@@ -203,13 +204,13 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
             }
             if let Some((arm, frame)) = link.arm {
                 let arm = pose.arm[arm];
-                add(&mut moment[frame], force.map(|f| arm.cross(f)));
+                add(&mut moment[frame], each(force, |f| arm.cross(f)));
             }
             if let Some((slide, direction)) = link.slide {
                 let along = pose.arm[direction];
                 let reach = along * pose.slide[slide];
-                push[slide] = force.map(|f| along.dot(f));
-                add(&mut moment[link.frame], force.map(|f| reach.cross(f)));
+                push[slide] = each(force, |f| along.dot(f));
+                add(&mut moment[link.frame], each(force, |f| reach.cross(f)));
             }
         }
     }
@@ -265,7 +266,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
             None => multiplier,
             Some((axis, _)) => {
                 let normal = pose.arm[axis].perp();
-                multiplier.map(|m| normal * m.x)
+                each(multiplier, |m| normal * m.x)
             }
         }
     }
@@ -348,7 +349,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
         for &(frame, sign) in &model.sources.driven[actuator] {
             add(
                 &mut sum,
-                self.balance.moment[frame].map(|m| m * T::lift(sign)),
+                each(self.balance.moment[frame], |m| m * T::lift(sign)),
             );
         }
         sum
