@@ -77,6 +77,13 @@ impl Plan {
         })
     }
 
+    /// Whether every group is a dyad or a guided body, whose closed forms are inlined into an evaluation. The
+    /// others have functions of their own.
+    pub fn placed_by_dyads(&self) -> bool {
+        let mut groups = self.groups.iter().filter(|g| !g.skipped);
+        groups.all(|g| matches!(g.kind, Kind::Pin(_) | Kind::Aim(_)))
+    }
+
     /// Follows the straight way from the start to `q`: with several actuators there is no row of
     /// poses to start from.
     #[inline(never)]

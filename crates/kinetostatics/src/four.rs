@@ -19,12 +19,13 @@ use std::arch::x86_64::{
 use std::array;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// A part of a batch in such registers; it comes back where the processor has none.
+/// A part of a batch in such registers; it comes back where the processor has none, or the plan has
+/// groups with functions of their own.
 pub(crate) fn reduce<'a>(
     model: &Model,
     part: Part<'a>,
 ) -> Result<Vec<(usize, PlaceError)>, Part<'a>> {
-    if is_x86_feature_detected!("avx2") {
+    if model.plan().placed_by_dyads() && is_x86_feature_detected!("avx2") {
         // Sound: it has just been asked for.
         Ok(unsafe { reduce_with_avx2(model, part) })
     } else {

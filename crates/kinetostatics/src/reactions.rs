@@ -65,6 +65,9 @@ pub(crate) struct Sources {
     sources: Vec<Source>,
     pub(crate) tree_forces: bool,
     pub(crate) moments: bool,
+    /// By carried body: whether what its joint exerts on it is needed. By body: whether its couple is.
+    pub(crate) held: Vec<bool>,
+    pub(crate) twisted: Vec<bool>,
     /// By closure: its two ends.
     pub(crate) chords: Vec<[End; 2]>,
     /// By carried body: the body that carries it.
@@ -104,11 +107,42 @@ impl Sources {
         };
         for &reaction in reactions {
             let source = found.source(mechanism, plan, reaction);
-            found.tree_forces |= matches!(source, Source::Carry(..) | Source::Hold { .. });
-            found.moments |= matches!(source, Source::Hold { .. });
             found.sources.push(source);
         }
+        found.walk(plan);
         found
+    }
+
+    /// Finds the bodies from whose forces and couples the requested ones are summed.
+    fn walk(&mut self, plan: &Plan) {
+        let carried = plan.carried();
+        let mut held = vec![false; carried.len()];
+        let mut twisted = vec![false; carried.len() + 1];
+        for source in &self.sources {
+            match *source {
+                Source::Carry(carried, _) => held[carried] = true,
+                Source::Hold { body, .. } => twisted[body] = true,
+                _ => {}
+            }
+        }
+        // A couple is handed on to the body that is held against, and each is outwards of that.
+        for hold in &plan.frames().holds {
+            twisted[hold.body] |= twisted[hold.against];
+        }
+        // A couple needs the forces of the joints at its body; a force those of all that hangs on its body.
+        for (i, body) in carried.iter().enumerate() {
+            let joint = [body.body, self.parent_body[i]];
+            held[i] |= joint.iter().any(|&body| twisted[body]);
+            held[i] |= body.parent.is_some_and(|parent| held[parent]);
+        }
+        self.tree_forces = held.contains(&true);
+        self.moments = twisted.contains(&true);
+        (self.held, self.twisted) = (held, twisted);
+    }
+
+    /// Whether what the joint that carries a chord's end exerts is needed.
+    pub(crate) fn end_is_held(&self, end: &End) -> bool {
+        end.carried.is_some_and(|carried| self.held[carried])
     }
 
     /// Asks for nothing.
@@ -116,6 +150,8 @@ impl Sources {
         self.sources.clear();
         self.tree_forces = false;
         self.moments = false;
+        self.held.fill(false);
+        self.twisted.fill(false);
     }
 
     fn source(&self, mechanism: &Mechanism, plan: &Plan, reaction: Reaction) -> Source {

@@ -215,38 +215,41 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
         }
     }
 
-    // The rest is for reactions in the tree's joints; most evaluations ask for none, and are the
-    // faster for not having it in their way.
+    // The rest is for reactions in the tree's joints, of the bodies alone that the requested ones need.
 
     /// Notes each body's own inertia force: the first part of what its joint must exert on it.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn note(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+        let needed = &model.sources.held;
         self.held.fill([Vec2::zero(); N]);
         for (link, force) in model.links.iter().zip(&self.force) {
             self.held[link.carried] = *force;
         }
-        for body in model.massive.iter().filter(|body| body.at_rest) {
-            if let Some(first) = body.first {
+        for body in &model.massive {
+            if let (true, true, Some(first)) = (body.at_rest, needed[body.carried], body.first) {
                 let first = first.lift().turn(pose.turn[body.frame]);
                 self.held[body.carried] = rates.arm(body.frame, first);
             }
         }
     }
 
-    /// What each joint of the tree exerts on the body it carries: the inertia forces of all that
-    /// hangs on it, less what the chords exert there.
-    #[inline(never)]
+    /// What each joint of the tree exerts on the body it carries, where that is needed: the inertia forces
+    /// of all that hangs on it, less what the chords exert there.
+    #[inline(always)]
     pub(crate) fn hold(&mut self, model: &Model, pose: &Pose<T>) {
-        for (c, ends) in model.sources.chords.iter().enumerate() {
-            let force = self.chord_force(model, pose, c);
+        let sources = &model.sources;
+        for (c, ends) in sources.chords.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
-                if let Some(body) = end.carried {
-                    add(&mut self.held[body], force.map(|f| f * T::lift(sign)));
+                if let (true, Some(body)) = (sources.end_is_held(end), end.carried) {
+                    let force = self.chord_force(model, pose, c);
+                    add(&mut self.held[body], each(force, |f| f * T::lift(sign)));
                 }
             }
         }
         for (i, body) in model.plan.carried().iter().enumerate().rev() {
-            if let Some(parent) = body.parent {
+            if let Some(parent) = body.parent
+                && sources.held[parent]
+            {
                 let force = self.held[i];
                 add(&mut self.held[parent], force);
             }
@@ -272,25 +275,28 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// The couples that prismatic joints and actuators exert: each body's moment balance about
-    /// its root, still to be handed on along the holds.
-    #[inline(never)]
+    /// its root, still to be handed on along the holds. Where they are needed.
+    #[inline(always)]
     pub(crate) fn twist(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         self.couple.fill([T::lift(0.0); N]);
+        let sources = &model.sources;
         let carried = model.plan.carried();
-        for body in &model.massive {
+        for body in model.massive.iter().filter(|m| sources.twisted[m.body]) {
             let turning = rates.turning(body.frame);
-            self.couple[body.body] = turning.map(|a| a * T::lift(body.about_root));
+            self.couple[body.body] = each(turning, |a| a * T::lift(body.about_root));
         }
-        for (link, root) in model.links.iter().zip(&self.acceleration) {
-            if let Some(first) = link.first {
+        for (link, &root) in model.links.iter().zip(&self.acceleration) {
+            let body = carried[link.carried].body;
+            if let (true, Some(first)) = (sources.twisted[body], link.first) {
                 let first = first.lift().turn(pose.turn[link.frame]);
-                let body = carried[link.carried].body;
-                add(&mut self.couple[body], root.map(|a| first.cross(a)));
+                add(&mut self.couple[body], each(root, |a| first.cross(a)));
             }
         }
-        for (c, ends) in model.sources.chords.iter().enumerate() {
-            let force = self.chord_force(model, pose, c);
+        for (c, ends) in sources.chords.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
+                if !sources.twisted[end.body] {
+                    continue;
+                }
                 let mut arm = match end.arm {
                     Some(arm) => arm.lift().turn(pose.turn[end.frame]),
                     None => Vec2::zero(),
@@ -299,39 +305,42 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
                     // The force acts at the second body's point on both.
                     arm += pose.arm[axis] * pose.travel[c];
                 }
-                let moment = force.map(|f| arm.cross(f) * T::lift(sign));
+                let force = self.chord_force(model, pose, c);
+                let moment = each(force, |f| arm.cross(f) * T::lift(sign));
                 add(&mut self.couple[end.body], moment);
             }
         }
         for r in 0..model.plan.relations() {
             let multiplier = self.balance.relation[r];
             model.plan.relation_couples(r, pose, |body, by| {
-                add(&mut self.couple[body], multiplier.map(|m| -(by * m)));
+                add(&mut self.couple[body], each(multiplier, |m| -(by * m)));
             });
         }
         for (i, body) in carried.iter().enumerate() {
             let force = self.held[i];
-            let parent = model.sources.parent_body[i];
-            if let Some(arm) = body.arm {
+            let parent = sources.parent_body[i];
+            if let (true, Some(arm)) = (sources.twisted[parent], body.arm) {
                 let arm = pose.arm[arm];
-                add(&mut self.couple[parent], force.map(|f| arm.cross(f)));
+                add(&mut self.couple[parent], each(force, |f| arm.cross(f)));
             }
             if let Some((slide, direction)) = body.slide {
-                let reach = pose.arm[direction] * pose.slide[slide];
                 // The force acts at the second body's point: the root of the body itself, or
                 // the joint's point on the one that carries it.
-                let on = if model.sources.carried_is_second[i] {
+                let on = if sources.carried_is_second[i] {
                     parent
                 } else {
                     body.body
                 };
-                add(&mut self.couple[on], force.map(|f| reach.cross(f)));
+                if sources.twisted[on] {
+                    let reach = pose.arm[direction] * pose.slide[slide];
+                    add(&mut self.couple[on], each(force, |f| reach.cross(f)));
+                }
             }
         }
     }
 
     /// Hands the couples on to the bodies that those they act on are held against.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn along_holds(&mut self, model: &Model) {
         for hold in model.plan.frames().holds.iter().rev() {
             let couple = self.couple[hold.body];
