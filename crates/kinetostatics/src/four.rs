@@ -4,8 +4,8 @@
 //! single-dwell 37 for 59, four-bar 24 for 41, slider-crank 28 for 44. Compiling [`Lanes`] for AVX2 gains half of
 //! that at best: sums over several steps it takes apart into pieces of 8, 16 and 8 bytes.
 //!
-//! This is the only unsafe code of the project. It is sound as long as these numbers stay inside functions
-//! compiled for AVX2: the type is private, and [`reduce`] asks the processor first. No operation is fused
+//! This is the only unsafe code of the project. It is sound as long as there are such numbers only on
+//! processors with AVX2: the type is private, and [`reduce`] asks the processor first. No operation is fused
 //! with another, so each number has the bits of a plain evaluation.
 #![allow(unsafe_code, reason = "the gain measured above")]
 

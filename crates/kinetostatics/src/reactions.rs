@@ -33,7 +33,7 @@ enum Along {
 impl Along {
     /// The component of some forces.
     #[inline(always)]
-    fn of<T: Scalar, const N: usize>(self, forces: &[Vec2<T>; N], pose: &Pose<T>) -> [T; N] {
+    fn component<T: Scalar, const N: usize>(self, forces: &[Vec2<T>; N], pose: &Pose<T>) -> [T; N] {
         let along = match self {
             Self::X(sign) => vec2(T::lift(sign), T::lift(0.0)),
             Self::Y(sign) => vec2(T::lift(0.0), T::lift(sign)),
@@ -249,8 +249,10 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     pub(crate) fn reaction(&self, model: &Model, pose: &Pose<T>, k: usize) -> [T; N] {
         match model.sources.sources[k] {
             Source::Normal(closure) => each(self.balance.multiplier[closure], |m| m.x),
-            Source::Chord(closure, along) => along.of(&self.balance.multiplier[closure], pose),
-            Source::Carry(carried, along) => along.of(&self.held[carried], pose),
+            Source::Chord(closure, along) => {
+                along.component(&self.balance.multiplier[closure], pose)
+            }
+            Source::Carry(carried, along) => along.component(&self.held[carried], pose),
             Source::Hold { body, sign } => each(self.couple[body], |c| c * T::lift(sign)),
             Source::Relation(relation) => self.balance.relation[relation],
             Source::Spare => [T::lift(0.0); N],
