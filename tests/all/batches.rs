@@ -42,15 +42,34 @@ pub(crate) fn alike(model: &Exact, q: &[f64]) -> Result<f64, String> {
             batch.errors
         ));
     }
+    // What goes together, and lanes without the registers of this processor.
     let (mut lanes, mut several) = (model.model().workspace(), model.model().coefficients());
     let (fours, _) = q.as_chunks::<4>();
-    let together = |four: &&[f64; 4]| {
-        let lanes = model
-            .model()
-            .reduce(Lanes(**four), &mut lanes, &mut several);
-        lanes.is_ok()
-    };
-    Ok(fours.iter().filter(together).count() as f64 / fours.len().max(1) as f64)
+    let mut together = 0;
+    for (i, four) in fours.iter().enumerate() {
+        let done = model.model().reduce(Lanes(*four), &mut lanes, &mut several);
+        if done.is_err() {
+            continue;
+        }
+        together += 1;
+        let [m, half_dm] = [&batch.m, &batch.half_dm].map(|all| &all[4 * i..][..4]);
+        let mut pairs = vec![
+            (several.m.0.to_vec(), m.to_vec()),
+            (several.half_dm.0.to_vec(), half_dm.to_vec()),
+        ];
+        for (several, all) in [(&several.a, &batch.a), (&several.b, &batch.b)] {
+            for (k, value) in several.iter().enumerate() {
+                let all = (0..4).map(|lane| all[(4 * i + lane) * reactions + k]);
+                pairs.push((value.0.to_vec(), all.collect()));
+            }
+        }
+        for (several, all) in pairs {
+            if bits(&several) != bits(&all) {
+                return Err(format!("{several:?} in lanes and {all:?} in the batch"));
+            }
+        }
+    }
+    Ok(f64::from(together) / fours.len().max(1) as f64)
 }
 
 /// The reduced models of every case of one actuator.

@@ -216,7 +216,8 @@ spring = { spring = ["ground.W", "block.P"], stiffness = 50.0, free = 1.25 }
         }
         // The first passage of a coordinate, and none beyond the turning points.
         let t = orbit.time_at(0.25 - 0.3 * size).expect("a time");
-        assert!((orbit.at(t).q - 0.25 + 0.3 * size).abs() < 4e-16 && t >= 0.0);
+        let off = orbit.at(t).q - 0.25 + 0.3 * size;
+        assert!(off.abs() < 4e-16 && t >= 0.0, "{off:e}");
         assert!(
             orbit
                 .time_at(0.25 - 0.3 * size)

@@ -247,7 +247,8 @@ fn quadrature_is_told_where_the_motion_is_known_by_its_energy() {
         found
             .points
             .iter()
-            .all(|p| p == point || p.cost.weighed > point.cost.weighed)
+            .filter(|p| matches!(p.combination.integrator, Integrator::Steps(..)))
+            .all(|p| p.cost.weighed > point.cost.weighed)
     );
     assert!(
         study("slider-crank-friction", &effort(&[-3, -5], &[]))

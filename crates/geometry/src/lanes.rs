@@ -7,6 +7,7 @@
 //! them errs, [`Plan::place`](crate::Plan::place) gives an error, and each coordinate is to be evaluated alone.
 //! Other groups are refused beforehand ([`PlaceError::Apart`](crate::PlaceError::Apart)).
 
+use crate::circle::sin_cos;
 use crate::scalar::Scalar;
 use std::array;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -61,23 +62,19 @@ impl<const N: usize> Scalar for Lanes<N> {
         self.each(f64::sqrt)
     }
 
-    #[inline]
+    #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {
-        let both = self.0.map(f64::sin_cos);
-        (
-            Self(both.map(|(sin, _)| sin)),
-            Self(both.map(|(_, cos)| cos)),
-        )
+        sin_cos(self, |lanes| lanes.0, Self)
     }
 
-    #[inline]
+    #[inline(always)]
     fn atan2(self, other: Self) -> Self {
         self.both(other, f64::atan2)
     }
 
     /// Derivatives at one value say nothing of the others: no group with a law is placed in lanes, and
     /// what comes of it elsewhere is no number.
-    #[inline]
+    #[inline(always)]
     fn through(self, derivatives: &[f64; 4]) -> Self {
         let first = self.0[0];
         self.each(|value| {

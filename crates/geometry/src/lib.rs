@@ -1,6 +1,7 @@
 //! Bodies, joints and actuators; the structure of a mechanism; its positions, velocities and accelerations.
 
 mod assemble;
+pub mod circle;
 mod construct;
 pub mod error;
 pub mod frames;

@@ -7,7 +7,7 @@
 use crate::groups::Unknown;
 use crate::plan::{Assur, Behind, Closure, Driven, Kind, Plan, Pose, Solved};
 use crate::plane::{Vec2, vec2};
-use crate::scalar::Scalar;
+use crate::scalar::{Scalar, each};
 
 /// Rates of every frame and slide at a pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +70,7 @@ impl Plan {
     }
 
     /// Velocities for the actuators' speeds `q_dot` (rad/s).
+    #[inline(always)]
     pub fn speeds<T: Scalar>(&self, pose: &Pose<T>, q_dot: &[T], motion: &mut Motion<T>) {
         propagate(&self.driven, q_dot, &mut motion.turn);
         self.drive_slides(q_dot, &mut motion.slide);
@@ -98,6 +99,7 @@ impl Plan {
 
     /// Accelerations for the actuators' accelerations `q_ddot` (rad/s²), at the velocities that
     /// [`Plan::speeds`] left in `motion`.
+    #[inline(always)]
     pub fn accelerations<T: Scalar>(&self, pose: &Pose<T>, q_ddot: &[T], motion: &mut Motion<T>) {
         propagate(&self.driven, q_ddot, &mut motion.turn_rate);
         self.drive_slides(q_ddot, &mut motion.slide_rate);
@@ -131,6 +133,7 @@ impl Plan {
 
     /// The loops' multipliers for given moments on the frames and forces along the slides, by
     /// groups in reverse order, and what then remains on the driven frames.
+    #[inline(always)]
     pub fn multipliers<T: Scalar, const N: usize>(
         &self,
         pose: &Pose<T>,
@@ -145,14 +148,16 @@ impl Plan {
                 Kind::Pin(pin) => {
                     let one = class_moment(assur, pin.frames[0], &balance.moment);
                     let two = class_moment(assur, pin.frames[1], &balance.moment);
-                    let [r1, r2] = pin.arms.map(|a| pose.arm[a] * inverse);
-                    balance.multiplier[pin.closure] =
-                        std::array::from_fn(|n| r2 * one[n] - r1 * two[n]);
+                    let [r1, r2] = each(pin.arms, |a| pose.arm[a] * inverse);
+                    let multiplier = &mut balance.multiplier[pin.closure];
+                    for ((own, one), two) in multiplier.iter_mut().zip(one).zip(two) {
+                        *own = r2 * one - r1 * two;
+                    }
                 }
                 Kind::Aim(aim) => {
                     let moment = class_moment(assur, aim.frame, &balance.moment);
                     balance.multiplier[aim.closure] =
-                        std::array::from_fn(|n| vec2(moment[n] * inverse, T::lift(0.0)));
+                        each(moment, |moment| vec2(moment * inverse, T::lift(0.0)));
                 }
                 Kind::Solved(solved) => {
                     self.solved_multipliers(assur, solved, pose, balance);
@@ -328,6 +333,7 @@ impl Plan {
     }
 
     /// Sets the rates of the slides that actuators drive.
+    #[inline(always)]
     fn drive_slides<T: Scalar>(&self, rate: &[T], slide: &mut [T]) {
         for (own, driven) in slide.iter_mut().zip(&self.driven_slides) {
             if let Some(actuator) = *driven {
@@ -357,7 +363,7 @@ impl Plan {
 }
 
 /// Sets the rates of driven frames from the frame each is turned from.
-#[inline]
+#[inline(always)]
 fn propagate<T: Scalar>(driven: &[Driven], rate: &[T], turn: &mut [T]) {
     for one in driven {
         turn[one.frame] = turn[one.parent] + T::lift(one.sign) * rate[one.actuator];
@@ -365,7 +371,7 @@ fn propagate<T: Scalar>(driven: &[Driven], rate: &[T], turn: &mut [T]) {
 }
 
 /// The moment on a whole class of a group: on its first frame and those driven from it.
-#[inline]
+#[inline(always)]
 fn class_moment<T: Scalar, const N: usize>(
     assur: &Assur,
     root: usize,
@@ -381,14 +387,14 @@ fn class_moment<T: Scalar, const N: usize>(
 }
 
 /// Takes a closure's multiplier off what lies behind it.
-#[inline]
+#[inline(always)]
 fn press<T: Scalar, const N: usize>(behind: &Behind, pose: &Pose<T>, balance: &mut Balance<T, N>) {
     let multiplier = balance.multiplier[behind.closure];
     let force = match behind.axis {
         None => multiplier,
         Some(axis) => {
             let normal = pose.arm[axis].perp();
-            multiplier.map(|m| normal * m.x)
+            each(multiplier, |m| normal * m.x)
         }
     };
     for &(arm, frame) in &behind.arms {
@@ -416,7 +422,7 @@ fn press<T: Scalar, const N: usize>(behind: &Behind, pose: &Pose<T>, balance: &m
 }
 
 /// d/dt of n·L, with n the normal of a prismatic chord: n·L̇ − ω_n travel.
-#[inline]
+#[inline(always)]
 fn row_rate<T: Scalar>(
     rate: Vec2<T>,
     (axis, frame): (usize, usize),
@@ -428,7 +434,7 @@ fn row_rate<T: Scalar>(
 }
 
 /// d²/dt² of n·L: n·L̈ − 2 ω_n (axis·L̇) − α_n travel.
-#[inline]
+#[inline(always)]
 fn row_acceleration<T: Scalar>(
     (rate, acceleration): (Vec2<T>, Vec2<T>),
     (axis, frame): (usize, usize),
@@ -442,7 +448,7 @@ fn row_acceleration<T: Scalar>(
 }
 
 /// Σ ω ẑ×arm.
-#[inline]
+#[inline(always)]
 fn arms_rate<T: Scalar>(arms: &[(usize, usize)], pose: &Pose<T>, motion: &Motion<T>) -> Vec2<T> {
     let mut sum = Vec2::zero();
     for &(arm, frame) in arms {
@@ -452,7 +458,7 @@ fn arms_rate<T: Scalar>(arms: &[(usize, usize)], pose: &Pose<T>, motion: &Motion
 }
 
 /// Σ ω ẑ×arm and its derivative, Σ α ẑ×arm − ω² arm.
-#[inline]
+#[inline(always)]
 fn arms_rates<T: Scalar>(
     arms: &[(usize, usize)],
     pose: &Pose<T>,

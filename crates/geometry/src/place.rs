@@ -5,7 +5,7 @@ use crate::groups::Unknown;
 use crate::large::LARGE;
 use crate::plan::{Aim, Closure, Driven, How, Kind, Pin, Plan, Pose, Step};
 use crate::plane::{Vec2, vec2};
-use crate::scalar::{Scalar, agreed};
+use crate::scalar::{Scalar, agreed, each};
 use crate::tree::Arm;
 use std::f64::consts::TAU;
 
@@ -44,6 +44,7 @@ impl Plan {
     ///
     /// # Errors
     /// [`PlaceError`] when a group cannot close there, is singular, or `q` is out of range.
+    #[inline(always)]
     pub fn place<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PlaceError> {
         if T::LANES > 1 && !self.placed_in_lanes() {
             return Err(PlaceError::Apart { q: q[0].value() });
@@ -74,6 +75,13 @@ impl Plan {
             let of = &assur.group.relations;
             straight && !assur.counts && of.iter().all(|&r| self.relations[r].law.is_none())
         })
+    }
+
+    /// Whether every group is a dyad or a guided body, whose closed forms are inlined into an evaluation. The
+    /// others have functions of their own.
+    pub fn placed_by_dyads(&self) -> bool {
+        let mut groups = self.groups.iter().filter(|g| !g.skipped);
+        groups.all(|g| matches!(g.kind, Kind::Pin(_) | Kind::Aim(_)))
     }
 
     /// Follows the straight way from the start to `q`: with several actuators there is no row of
@@ -128,6 +136,7 @@ impl Plan {
         }
     }
 
+    #[inline(always)]
     pub(crate) fn place_from<T: Scalar>(
         &self,
         q: &[T],
@@ -168,6 +177,7 @@ impl Plan {
         before.map_or(0, |before| self.solve_steps[before] + 1)
     }
 
+    #[inline(always)]
     fn place_from_here<T: Scalar>(
         &self,
         steps: &[Step],
@@ -281,6 +291,7 @@ impl Plan {
 }
 
 /// Turns a frame by its actuator's coordinate.
+#[inline(always)]
 pub(crate) fn turn<T: Scalar>(driven: &Driven, pose: &mut Pose<T>) {
     let (sin, cos) = pose.q[driven.actuator].sin_cos();
     let by = vec2(cos, if driven.sign < 0.0 { -sin } else { sin });
@@ -296,7 +307,7 @@ pub(crate) fn turn<T: Scalar>(driven: &Driven, pose: &mut Pose<T>) {
 }
 
 /// A constant vector and some rotated arms, summed.
-#[inline]
+#[inline(always)]
 fn sum<T: Scalar>(fixed: Vec2, arms: &[(usize, usize)], arm: &[Vec2<T>]) -> Vec2<T> {
     let mut sum = fixed.lift();
     for &(a, _) in arms {
@@ -316,6 +327,7 @@ pub(crate) fn gap<T: Scalar>(closure: &Closure, arm: &[Vec2<T>], slide: &[T]) ->
 }
 
 /// Two arms of known length that close a triangle with the known part D of the loop.
+#[inline(always)]
 fn place_pin<T: Scalar>(
     pin: &Pin,
     arms: &[Arm],
@@ -349,11 +361,11 @@ fn place_pin<T: Scalar>(
 }
 
 /// The arms over their squares, and (l₁ + l₂)², (l₁ − l₂)², l₂² − l₁² of their lengths.
-#[inline]
+#[inline(always)]
 fn triangle_of<T: Scalar>(pin: &Pin, arms: &[Arm]) -> ([Vec2<T>; 2], [T; 3]) {
     if !finer::<T>() {
         let lengths = [pin.sum2, pin.gap2, pin.excess];
-        return (pin.per_square.map(Vec2::lift), lengths.map(T::lift));
+        return (each(pin.per_square, Vec2::lift), each(lengths, T::lift));
     }
     let local = pin.arms.map(|a| arms[a].local.lift::<T>());
     let squares = local.map(|arm| arm.dot(arm));
@@ -364,7 +376,7 @@ fn triangle_of<T: Scalar>(pin: &Pin, arms: &[Arm]) -> ([Vec2<T>; 2], [T; 3]) {
 }
 
 /// A vector of length one, to the last digit of finer numbers too.
-#[inline]
+#[inline(always)]
 pub(crate) fn unit<T: Scalar>(vector: Vec2<T>) -> Vec2<T> {
     if finer::<T>() {
         vector * (T::lift(1.0) / vector.dot(vector).sqrt())
@@ -374,6 +386,7 @@ pub(crate) fn unit<T: Scalar>(vector: Vec2<T>) -> Vec2<T> {
 }
 
 /// A unit vector e that turns — the line's normal, or the arm's direction — so that n·L = 0.
+#[inline(always)]
 fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(), PlaceError> {
     let known = sum(aim.fixed, &aim.known, &pose.arm);
     let branch = T::lift(aim.branch);
@@ -429,7 +442,7 @@ fn place_aim<T: Scalar>(aim: &Aim, group: usize, pose: &mut Pose<T>) -> Result<(
 
 /// Square root of what is left of a length, or the error that says how much is missing, m. The `size` it is
 /// small against is asked lane by lane.
-#[inline]
+#[inline(always)]
 pub(crate) fn root<T: Scalar>(
     rest: T,
     size: impl Fn(usize) -> f64,

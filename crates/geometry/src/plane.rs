@@ -50,7 +50,7 @@ impl Vec2<f64> {
     }
 
     /// The same constants as another kind of number.
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     pub fn lift<T: Scalar>(self) -> Vec2<T> {
         vec2(T::lift(self.x), T::lift(self.y))
@@ -59,42 +59,42 @@ impl Vec2<f64> {
 
 impl<T: Scalar> Vec2<T> {
     /// Zero, as any kind of number.
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     pub fn zero() -> Self {
         vec2(T::lift(0.0), T::lift(0.0))
     }
 
     /// Scalar product.
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     pub fn dot(self, other: Self) -> T {
         self.x * other.x + self.y * other.y
     }
 
     /// The out-of-plane component of the vector product, positive from `self` counter-clockwise to `other`.
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     pub fn cross(self, other: Self) -> T {
         self.x * other.y - self.y * other.x
     }
 
     /// The vector turned by +90°.
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     pub fn perp(self) -> Self {
         vec2(-self.y, self.x)
     }
 
     /// The vector turned by the rotation `by` = (cos, sin).
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     pub fn turn(self, by: Self) -> Self {
         vec2(self.x * by.x - self.y * by.y, self.x * by.y + self.y * by.x)
     }
 
     /// The vector turned back by the rotation `by` = (cos, sin).
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     pub fn turn_back(self, by: Self) -> Self {
         vec2(self.x * by.x + self.y * by.y, self.y * by.x - self.x * by.y)
@@ -103,7 +103,7 @@ impl<T: Scalar> Vec2<T> {
 
 impl<T: Scalar> Add for Vec2<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     fn add(self, o: Self) -> Self {
         vec2(self.x + o.x, self.y + o.y)
@@ -112,7 +112,7 @@ impl<T: Scalar> Add for Vec2<T> {
 
 impl<T: Scalar> Sub for Vec2<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     fn sub(self, o: Self) -> Self {
         vec2(self.x - o.x, self.y - o.y)
@@ -121,7 +121,7 @@ impl<T: Scalar> Sub for Vec2<T> {
 
 impl<T: Scalar> Neg for Vec2<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     fn neg(self) -> Self {
         vec2(-self.x, -self.y)
@@ -130,7 +130,7 @@ impl<T: Scalar> Neg for Vec2<T> {
 
 impl<T: Scalar> Mul<T> for Vec2<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     fn mul(self, k: T) -> Self {
         vec2(self.x * k, self.y * k)
@@ -138,7 +138,7 @@ impl<T: Scalar> Mul<T> for Vec2<T> {
 }
 
 impl<T: Scalar> AddAssign for Vec2<T> {
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     fn add_assign(&mut self, o: Self) {
         self.x += o.x;
@@ -147,7 +147,7 @@ impl<T: Scalar> AddAssign for Vec2<T> {
 }
 
 impl<T: Scalar> SubAssign for Vec2<T> {
-    #[inline]
+    #[inline(always)]
     #[track_caller]
     fn sub_assign(&mut self, o: Self) {
         self.x -= o.x;

@@ -1,6 +1,7 @@
 //! The kinds of number a plan can be evaluated in: plain `f64`, [`Dual`] for exact derivatives with
 //! respect to a coordinate, `f32` and [`Wide`](crate::Wide) to measure what rounding does.
 
+use crate::circle::sin_cos;
 use std::f64::consts::TAU;
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -56,9 +57,19 @@ pub trait Scalar:
     fn through(self, derivatives: &[f64; 4]) -> Self;
 }
 
+/// A function of each of some numbers. (The standard library's is not always inlined.)
+#[inline(always)]
+pub fn each<A: Copy, B: Copy, const N: usize>(of: [A; N], act: impl Fn(A) -> B) -> [B; N] {
+    let mut out = [act(of[0]); N];
+    for n in 1..N {
+        out[n] = act(of[n]);
+    }
+    out
+}
+
 /// What a test of each lane says; none where lanes disagree. A decision that must be the same for all
 /// numbers side by side is made by this: where it is not, each of them goes its way alone.
-#[inline]
+#[inline(always)]
 pub(crate) fn agreed<T: Scalar>(test: impl Fn(usize) -> bool) -> Option<bool> {
     let first = test(0);
     (1..T::LANES)
@@ -83,7 +94,7 @@ impl Scalar for f64 {
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        f64::sin_cos(self)
+        sin_cos(self, |x| [x], |[x]| x)
     }
     #[inline]
     fn atan2(self, other: Self) -> Self {
@@ -166,7 +177,7 @@ impl Scalar for Dual {
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        let (s, c) = self.v.sin_cos();
+        let (s, c) = Scalar::sin_cos(self.v);
         (
             Self {
                 v: s,

@@ -4,9 +4,10 @@
 use crate::model::{Model, Workspace};
 use crate::reduced::{Coefficients, Exact};
 use dwell_geometry::{Lanes, PlaceError, Scalar};
+use std::ops::Range;
 
-/// Poses side by side. (Two to a vector register of the plainest x86-64: four keep its units busy.)
-const LANES: usize = 4;
+/// Poses side by side: two registers of the plainest x86-64, one where there is AVX2.
+pub(crate) const LANES: usize = 4;
 /// Fewest coordinates that one thread does at a time: the working memory it takes is small beside them.
 const BLOCK: usize = 1024;
 /// Blocks for each thread, so that none waits long for the last one.
@@ -49,7 +50,7 @@ impl Batch {
 }
 
 /// A part of a batch to be filled; the place of its first coordinate.
-struct Part<'a> {
+pub(crate) struct Part<'a> {
     first: usize,
     q: &'a [f64],
     m: &'a mut [f64],
@@ -77,6 +78,24 @@ impl<'a> Part<'a> {
             part(self.first, q0, m0, half_dm0, a0, b0),
             part(self.first + at, q1, m1, half_dm1, a1, b1),
         ]
+    }
+}
+
+/// [`LANES`] plain numbers side by side.
+pub(crate) trait Side: Scalar {
+    fn join(numbers: [f64; LANES]) -> Self;
+    fn split(self) -> [f64; LANES];
+}
+
+impl Side for Lanes<LANES> {
+    #[inline(always)]
+    fn join(numbers: [f64; LANES]) -> Self {
+        Self(numbers)
+    }
+
+    #[inline(always)]
+    fn split(self) -> [f64; LANES] {
+        self.0
     }
 }
 
@@ -133,7 +152,7 @@ impl Model {
     fn reduce_part(&self, part: Part<'_>, block: usize) -> Vec<(usize, PlaceError)> {
         let blocks = part.q.len().div_ceil(block);
         if blocks < 2 {
-            return self.reduce_block(part);
+            return self.reduce_widest(part);
         }
         let [one, two] = part.split(blocks / 2 * block, self.reactions().len());
         let (mut errors, more) = rayon::join(
@@ -144,61 +163,76 @@ impl Model {
         errors
     }
 
-    fn reduce_block(&self, part: Part<'_>) -> Vec<(usize, PlaceError)> {
-        let reactions = self.reactions().len();
-        let in_lanes = self.plan().placed_in_lanes();
+    /// In the widest registers that the processor has.
+    fn reduce_widest(&self, part: Part<'_>) -> Vec<(usize, PlaceError)> {
+        #[cfg(target_arch = "x86_64")]
+        let part = match crate::four::reduce(self, part) {
+            Ok(errors) => return errors,
+            Err(part) => part,
+        };
+        self.reduce_block::<Lanes<LANES>>(part)
+    }
+
+    /// Four by four, and alone what is left over or goes different ways.
+    #[inline(always)]
+    pub(crate) fn reduce_block<S: Side>(&self, mut part: Part<'_>) -> Vec<(usize, PlaceError)> {
         // For several poses at once, and for one where they part; few blocks need both.
-        let mut lanes = in_lanes.then(|| Room::new(self));
+        let mut lanes: Option<Room<S>> = None;
+        let in_lanes = self.plan().placed_in_lanes();
         let mut plain = None;
         let mut errors = Vec::new();
-        let mut rest = part;
-        while !rest.q.is_empty() {
-            let count = rest.q.len().min(LANES);
-            let [mut now, later] = rest.split(count, reactions);
-            let together = lanes
-                .as_mut()
-                .is_some_and(|room| self.reduce_lanes(&mut now, room));
+        let mut at = 0;
+        while at < part.q.len() {
+            let together = in_lanes && {
+                let room = lanes.get_or_insert_with(|| Room::new(self));
+                self.reduce_lanes(&mut part, at, room)
+            };
+            let next = part.q.len().min(at + LANES);
             if !together {
                 let room = plain.get_or_insert_with(|| Room::new(self));
-                self.reduce_singly(&mut now, room, &mut errors);
+                self.reduce_singly(&mut part, at..next, room, &mut errors);
             }
-            rest = later;
+            at = next;
         }
         errors
     }
 
-    /// As many poses as there are lanes, if all of them go the same way.
-    fn reduce_lanes(&self, part: &mut Part<'_>, room: &mut Room<Lanes<LANES>>) -> bool {
-        let Ok(q) = <[f64; LANES]>::try_from(part.q) else {
+    /// As many poses as there are lanes from the `at`th on, if all of them go the same way.
+    #[inline(always)]
+    fn reduce_lanes<S: Side>(&self, part: &mut Part<'_>, at: usize, room: &mut Room<S>) -> bool {
+        let Some(&q) = part.q[at..].first_chunk() else {
             return false;
         };
         let Room(work, out) = room;
-        if self.reduce(Lanes(q), work, out).is_err() {
+        if self.reduce(S::join(q), work, out).is_err() {
             return false;
         }
-        part.m.copy_from_slice(&out.m.0);
-        part.half_dm.copy_from_slice(&out.half_dm.0);
+        part.m[at..at + LANES].copy_from_slice(&out.m.split());
+        part.half_dm[at..at + LANES].copy_from_slice(&out.half_dm.split());
         let reactions = out.a.len();
         for (values, to) in [(&out.a, &mut *part.a), (&out.b, &mut *part.b)] {
             for (k, value) in values.iter().enumerate() {
-                for (lane, value) in value.0.into_iter().enumerate() {
-                    to[lane * reactions + k] = value;
+                for (lane, value) in value.split().into_iter().enumerate() {
+                    to[(at + lane) * reactions + k] = value;
                 }
             }
         }
         true
     }
 
+    // Not for wider registers: alone, a pose has no use for them.
+    #[inline(never)]
     fn reduce_singly(
         &self,
         part: &mut Part<'_>,
+        which: Range<usize>,
         room: &mut Room<f64>,
         errors: &mut Vec<(usize, PlaceError)>,
     ) {
         let Room(work, out) = room;
         let reactions = out.a.len();
-        for (i, &q) in part.q.iter().enumerate() {
-            match self.reduce(q, work, out) {
+        for i in which {
+            match self.reduce(part.q[i], work, out) {
                 Ok(()) => {
                     (part.m[i], part.half_dm[i]) = (out.m, out.half_dm);
                     part.a[i * reactions..][..reactions].copy_from_slice(&out.a);

@@ -5,6 +5,8 @@ pub mod balance;
 pub mod batch;
 mod bearing;
 mod channels;
+#[cfg(target_arch = "x86_64")]
+mod four;
 mod friction;
 pub mod kinetostatics;
 pub mod ledger;

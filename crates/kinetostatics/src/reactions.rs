@@ -6,8 +6,8 @@ use crate::runs::Runs;
 use dwell_geometry::frames::{Coupler, Turning};
 use dwell_geometry::lower::Tie;
 use dwell_geometry::plan::BondPlace;
+use dwell_geometry::scalar::each;
 use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Scalar, Vec2, vec2};
-use std::array;
 
 /// One end of a chord.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +28,19 @@ enum Along {
     Y(f64),
     /// A constant vector in a frame.
     Frame(usize, Vec2),
+}
+
+impl Along {
+    /// The component of some forces.
+    #[inline(always)]
+    fn component<T: Scalar, const N: usize>(self, forces: &[Vec2<T>; N], pose: &Pose<T>) -> [T; N] {
+        let along = match self {
+            Self::X(sign) => vec2(T::lift(sign), T::lift(0.0)),
+            Self::Y(sign) => vec2(T::lift(0.0), T::lift(sign)),
+            Self::Frame(frame, local) => local.lift().turn(pose.turn[frame]),
+        };
+        each(*forces, |force| force.dot(along))
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,6 +65,9 @@ pub(crate) struct Sources {
     sources: Vec<Source>,
     pub(crate) tree_forces: bool,
     pub(crate) moments: bool,
+    /// By carried body: whether what its joint exerts on it is needed. By body: whether its couple is.
+    pub(crate) held: Vec<bool>,
+    pub(crate) twisted: Vec<bool>,
     /// By closure: its two ends.
     pub(crate) chords: Vec<[End; 2]>,
     /// By carried body: the body that carries it.
@@ -91,11 +107,42 @@ impl Sources {
         };
         for &reaction in reactions {
             let source = found.source(mechanism, plan, reaction);
-            found.tree_forces |= matches!(source, Source::Carry(..) | Source::Hold { .. });
-            found.moments |= matches!(source, Source::Hold { .. });
             found.sources.push(source);
         }
+        found.walk(plan);
         found
+    }
+
+    /// Finds the bodies from whose forces and couples the requested ones are summed.
+    fn walk(&mut self, plan: &Plan) {
+        let carried = plan.carried();
+        let mut held = vec![false; carried.len()];
+        let mut twisted = vec![false; carried.len() + 1];
+        for source in &self.sources {
+            match *source {
+                Source::Carry(carried, _) => held[carried] = true,
+                Source::Hold { body, .. } => twisted[body] = true,
+                _ => {}
+            }
+        }
+        // A couple is handed on to the body that is held against, and each is outwards of that.
+        for hold in &plan.frames().holds {
+            twisted[hold.body] |= twisted[hold.against];
+        }
+        // A couple needs the forces of the joints at its body; a force those of all that hangs on its body.
+        for (i, body) in carried.iter().enumerate() {
+            let joint = [body.body, self.parent_body[i]];
+            held[i] |= joint.iter().any(|&body| twisted[body]);
+            held[i] |= body.parent.is_some_and(|parent| held[parent]);
+        }
+        self.tree_forces = held.contains(&true);
+        self.moments = twisted.contains(&true);
+        (self.held, self.twisted) = (held, twisted);
+    }
+
+    /// Whether what the joint that carries a chord's end exerts is needed.
+    pub(crate) fn end_is_held(&self, end: &End) -> bool {
+        end.carried.is_some_and(|carried| self.held[carried])
     }
 
     /// Asks for nothing.
@@ -103,6 +150,8 @@ impl Sources {
         self.sources.clear();
         self.tree_forces = false;
         self.moments = false;
+        self.held.fill(false);
+        self.twisted.fill(false);
     }
 
     fn source(&self, mechanism: &Mechanism, plan: &Plan, reaction: Reaction) -> Source {
@@ -196,21 +245,15 @@ fn driven(plan: &Plan) -> Vec<Vec<(usize, f64)>> {
 
 impl<T: Scalar, const N: usize> Runs<T, N> {
     /// The `k`th requested reaction in each run, N or N·m.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn reaction(&self, model: &Model, pose: &Pose<T>, k: usize) -> [T; N] {
-        let component = |force: &[Vec2<T>; N], along: Along| {
-            let along = match along {
-                Along::X(sign) => vec2(T::lift(sign), T::lift(0.0)),
-                Along::Y(sign) => vec2(T::lift(0.0), T::lift(sign)),
-                Along::Frame(frame, local) => local.lift().turn(pose.turn[frame]),
-            };
-            array::from_fn(|n| force[n].dot(along))
-        };
         match model.sources.sources[k] {
-            Source::Normal(closure) => self.balance.multiplier[closure].map(|m| m.x),
-            Source::Chord(closure, along) => component(&self.balance.multiplier[closure], along),
-            Source::Carry(carried, along) => component(&self.held[carried], along),
-            Source::Hold { body, sign } => self.couple[body].map(|c| c * T::lift(sign)),
+            Source::Normal(closure) => each(self.balance.multiplier[closure], |m| m.x),
+            Source::Chord(closure, along) => {
+                along.component(&self.balance.multiplier[closure], pose)
+            }
+            Source::Carry(carried, along) => along.component(&self.held[carried], pose),
+            Source::Hold { body, sign } => each(self.couple[body], |c| c * T::lift(sign)),
             Source::Relation(relation) => self.balance.relation[relation],
             Source::Spare => [T::lift(0.0); N],
         }

@@ -2,6 +2,7 @@
 //! forces, multipliers, actuator actions and reactions. All runs share the pose and its factors.
 
 use crate::model::Model;
+use dwell_geometry::scalar::each;
 use dwell_geometry::{Balance, Motion, Plan, Pose, Scalar, Vec2};
 
 /// The rates of `N` runs: what they make of the inertia of a frame and of its constant vectors.
@@ -32,52 +33,52 @@ pub(crate) struct Pushed<'a, T>(pub(crate) &'a Motion<T>);
 pub(crate) struct Still;
 
 impl<T: Scalar> Rates<T, 1> for Pushed<'_, T> {
-    #[inline]
+    #[inline(always)]
     fn turning(self, frame: usize) -> [T; 1] {
         [self.0.turn[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 1] {
         [arm.perp() * self.0.turn[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide(self, slide: usize, _: usize, along: Vec2<T>) -> [Vec2<T>; 1] {
         [along * self.0.slide[slide]]
     }
 }
 
 impl<T: Scalar> Rates<T, 1> for Still {
-    #[inline]
+    #[inline(always)]
     fn turning(self, _: usize) -> [T; 1] {
         [T::lift(0.0)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn arm(self, _: usize, _: Vec2<T>) -> [Vec2<T>; 1] {
         [Vec2::zero()]
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide(self, _: usize, _: usize, _: Vec2<T>) -> [Vec2<T>; 1] {
         [Vec2::zero()]
     }
 }
 
 impl<T: Scalar> Rates<T, 1> for Prescribed<'_, T> {
-    #[inline]
+    #[inline(always)]
     fn turning(self, frame: usize) -> [T; 1] {
         [self.0.turn_rate[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 1] {
         let speed = self.0.turn[frame];
         [arm.perp() * self.0.turn_rate[frame] - arm * (speed * speed)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; 1] {
         let across = T::lift(2.0) * self.0.turn[frame] * self.0.slide[slide];
         [along * self.0.slide_rate[slide] + along.perp() * across]
@@ -85,18 +86,18 @@ impl<T: Scalar> Rates<T, 1> for Prescribed<'_, T> {
 }
 
 impl<T: Scalar> Rates<T, 2> for Unit<'_, T> {
-    #[inline]
+    #[inline(always)]
     fn turning(self, frame: usize) -> [T; 2] {
         [self.0.turn_rate[frame], self.0.turn[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn arm(self, frame: usize, arm: Vec2<T>) -> [Vec2<T>; 2] {
         let [first] = Prescribed(self.0).arm(frame, arm);
         [first, arm.perp() * self.0.turn[frame]]
     }
 
-    #[inline]
+    #[inline(always)]
     fn slide(self, slide: usize, frame: usize, along: Vec2<T>) -> [Vec2<T>; 2] {
         let [first] = Prescribed(self.0).slide(slide, frame, along);
         [first, along * self.0.slide[slide]]
@@ -117,7 +118,7 @@ pub(crate) struct Runs<T, const N: usize> {
     pub(crate) couple: Vec<[T; N]>,
 }
 
-#[inline]
+#[inline(always)]
 #[track_caller]
 fn add<V: std::ops::AddAssign, const N: usize>(sum: &mut [V; N], more: [V; N]) {
     for (sum, more) in sum.iter_mut().zip(more) {
@@ -139,6 +140,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// Inertia forces, then multipliers, then (where asked for) what the tree's joints bear.
+    #[inline(always)]
     pub(crate) fn evaluate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         self.accelerate(model, pose, rates);
         if model.sources.tree_forces {
@@ -157,10 +159,11 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
 
     /// Accelerations of the roots, and each body's own inertia force and its moment about its
     /// root: Σ m r×a = I α + (Σ m r)×(the root's acceleration).
+    #[inline(always)]
     pub(crate) fn accelerate(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         let moments = self.balance.moment.iter_mut().zip(&model.inertia);
         for (frame, (moment, &inertia)) in moments.enumerate() {
-            *moment = rates.turning(frame).map(|rate| rate * T::lift(inertia));
+            *moment = each(rates.turning(frame), |rate| rate * T::lift(inertia));
         }
         for (i, link) in model.links.iter().enumerate() {
             let mut root = match link.parent {
@@ -175,13 +178,13 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
                 add(&mut root, rates.slide(slide, link.frame, along));
                 add(&mut root, rates.arm(link.frame, along * pose.slide[slide]));
             }
-            let mut force = root.map(|a| a * T::lift(link.mass));
+            let mut force = each(root, |a| a * T::lift(link.mass));
             if let Some(first) = link.first {
                 let first = first.lift().turn(pose.turn[link.frame]);
                 add(&mut force, rates.arm(link.frame, first));
                 add(
                     &mut self.balance.moment[link.frame],
-                    root.map(|a| first.cross(a)),
+                    each(root, |a| first.cross(a)),
                 );
             }
             self.acceleration[i] = root;
@@ -190,7 +193,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// Carries the inertia forces down the tree: moments on the frames, pushes on the slides.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn collect(&mut self, model: &Model, pose: &Pose<T>) {
         let Balance { moment, push, .. } = &mut self.balance;
         push.fill([T::lift(0.0); N]);
@@ -201,49 +204,52 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
             }
             if let Some((arm, frame)) = link.arm {
                 let arm = pose.arm[arm];
-                add(&mut moment[frame], force.map(|f| arm.cross(f)));
+                add(&mut moment[frame], each(force, |f| arm.cross(f)));
             }
             if let Some((slide, direction)) = link.slide {
                 let along = pose.arm[direction];
                 let reach = along * pose.slide[slide];
-                push[slide] = force.map(|f| along.dot(f));
-                add(&mut moment[link.frame], force.map(|f| reach.cross(f)));
+                push[slide] = each(force, |f| along.dot(f));
+                add(&mut moment[link.frame], each(force, |f| reach.cross(f)));
             }
         }
     }
 
-    // The rest is for reactions in the tree's joints; most evaluations ask for none, and are the
-    // faster for not having it in their way.
+    // The rest is for reactions in the tree's joints, of the bodies alone that the requested ones need.
 
     /// Notes each body's own inertia force: the first part of what its joint must exert on it.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn note(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
+        let needed = &model.sources.held;
         self.held.fill([Vec2::zero(); N]);
         for (link, force) in model.links.iter().zip(&self.force) {
             self.held[link.carried] = *force;
         }
-        for body in model.massive.iter().filter(|body| body.at_rest) {
-            if let Some(first) = body.first {
+        for body in &model.massive {
+            if let (true, true, Some(first)) = (body.at_rest, needed[body.carried], body.first) {
                 let first = first.lift().turn(pose.turn[body.frame]);
                 self.held[body.carried] = rates.arm(body.frame, first);
             }
         }
     }
 
-    /// What each joint of the tree exerts on the body it carries: the inertia forces of all that
-    /// hangs on it, less what the chords exert there.
-    #[inline(never)]
+    /// What each joint of the tree exerts on the body it carries, where that is needed: the inertia forces
+    /// of all that hangs on it, less what the chords exert there.
+    #[inline(always)]
     pub(crate) fn hold(&mut self, model: &Model, pose: &Pose<T>) {
-        for (c, ends) in model.sources.chords.iter().enumerate() {
-            let force = self.chord_force(model, pose, c);
+        let sources = &model.sources;
+        for (c, ends) in sources.chords.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
-                if let Some(body) = end.carried {
-                    add(&mut self.held[body], force.map(|f| f * T::lift(sign)));
+                if let (true, Some(body)) = (sources.end_is_held(end), end.carried) {
+                    let force = self.chord_force(model, pose, c);
+                    add(&mut self.held[body], each(force, |f| f * T::lift(sign)));
                 }
             }
         }
         for (i, body) in model.plan.carried().iter().enumerate().rev() {
-            if let Some(parent) = body.parent {
+            if let Some(parent) = body.parent
+                && sources.held[parent]
+            {
                 let force = self.held[i];
                 add(&mut self.held[parent], force);
             }
@@ -251,6 +257,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// The force of a chord's first body on its second, in ground axes.
+    #[inline(always)]
     pub(crate) fn chord_force(
         &self,
         model: &Model,
@@ -262,31 +269,34 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
             None => multiplier,
             Some((axis, _)) => {
                 let normal = pose.arm[axis].perp();
-                multiplier.map(|m| normal * m.x)
+                each(multiplier, |m| normal * m.x)
             }
         }
     }
 
     /// The couples that prismatic joints and actuators exert: each body's moment balance about
-    /// its root, still to be handed on along the holds.
-    #[inline(never)]
+    /// its root, still to be handed on along the holds. Where they are needed.
+    #[inline(always)]
     pub(crate) fn twist(&mut self, model: &Model, pose: &Pose<T>, rates: impl Rates<T, N>) {
         self.couple.fill([T::lift(0.0); N]);
+        let sources = &model.sources;
         let carried = model.plan.carried();
-        for body in &model.massive {
+        for body in model.massive.iter().filter(|m| sources.twisted[m.body]) {
             let turning = rates.turning(body.frame);
-            self.couple[body.body] = turning.map(|a| a * T::lift(body.about_root));
+            self.couple[body.body] = each(turning, |a| a * T::lift(body.about_root));
         }
-        for (link, root) in model.links.iter().zip(&self.acceleration) {
-            if let Some(first) = link.first {
+        for (link, &root) in model.links.iter().zip(&self.acceleration) {
+            let body = carried[link.carried].body;
+            if let (true, Some(first)) = (sources.twisted[body], link.first) {
                 let first = first.lift().turn(pose.turn[link.frame]);
-                let body = carried[link.carried].body;
-                add(&mut self.couple[body], root.map(|a| first.cross(a)));
+                add(&mut self.couple[body], each(root, |a| first.cross(a)));
             }
         }
-        for (c, ends) in model.sources.chords.iter().enumerate() {
-            let force = self.chord_force(model, pose, c);
+        for (c, ends) in sources.chords.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
+                if !sources.twisted[end.body] {
+                    continue;
+                }
                 let mut arm = match end.arm {
                     Some(arm) => arm.lift().turn(pose.turn[end.frame]),
                     None => Vec2::zero(),
@@ -295,39 +305,42 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
                     // The force acts at the second body's point on both.
                     arm += pose.arm[axis] * pose.travel[c];
                 }
-                let moment = force.map(|f| arm.cross(f) * T::lift(sign));
+                let force = self.chord_force(model, pose, c);
+                let moment = each(force, |f| arm.cross(f) * T::lift(sign));
                 add(&mut self.couple[end.body], moment);
             }
         }
         for r in 0..model.plan.relations() {
             let multiplier = self.balance.relation[r];
             model.plan.relation_couples(r, pose, |body, by| {
-                add(&mut self.couple[body], multiplier.map(|m| -(by * m)));
+                add(&mut self.couple[body], each(multiplier, |m| -(by * m)));
             });
         }
         for (i, body) in carried.iter().enumerate() {
             let force = self.held[i];
-            let parent = model.sources.parent_body[i];
-            if let Some(arm) = body.arm {
+            let parent = sources.parent_body[i];
+            if let (true, Some(arm)) = (sources.twisted[parent], body.arm) {
                 let arm = pose.arm[arm];
-                add(&mut self.couple[parent], force.map(|f| arm.cross(f)));
+                add(&mut self.couple[parent], each(force, |f| arm.cross(f)));
             }
             if let Some((slide, direction)) = body.slide {
-                let reach = pose.arm[direction] * pose.slide[slide];
                 // The force acts at the second body's point: the root of the body itself, or
                 // the joint's point on the one that carries it.
-                let on = if model.sources.carried_is_second[i] {
+                let on = if sources.carried_is_second[i] {
                     parent
                 } else {
                     body.body
                 };
-                add(&mut self.couple[on], force.map(|f| reach.cross(f)));
+                if sources.twisted[on] {
+                    let reach = pose.arm[direction] * pose.slide[slide];
+                    add(&mut self.couple[on], each(force, |f| reach.cross(f)));
+                }
             }
         }
     }
 
     /// Hands the couples on to the bodies that those they act on are held against.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn along_holds(&mut self, model: &Model) {
         for hold in model.plan.frames().holds.iter().rev() {
             let couple = self.couple[hold.body];
@@ -336,6 +349,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
     }
 
     /// An actuator's action on its second body, from what remains on the frames it turns.
+    #[inline(always)]
     pub(crate) fn tau(&self, model: &Model, actuator: usize) -> [T; N] {
         if let Some(slide) = model.sources.slides[actuator] {
             return self.balance.push[slide];
@@ -344,7 +358,7 @@ impl<T: Scalar, const N: usize> Runs<T, N> {
         for &(frame, sign) in &model.sources.driven[actuator] {
             add(
                 &mut sum,
-                self.balance.moment[frame].map(|m| m * T::lift(sign)),
+                each(self.balance.moment[frame], |m| m * T::lift(sign)),
             );
         }
         sum
