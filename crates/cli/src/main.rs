@@ -55,12 +55,14 @@ fn run(options: Options) -> Result<bool, Report> {
         Command::Reduce {
             scene,
             table,
+            accuracy,
             from,
             to,
         } => {
-            let tabulation = table.map(|accuracy| Tabulation {
+            let tabulation = table.or(*accuracy).map(|accuracy| Tabulation {
                 accuracy,
                 between: from.zip(*to),
+                demanded: table.is_some(),
             });
             told(dwell_study::reduce(&read(scene)?, tabulation))?
         }

@@ -30,6 +30,10 @@ pub(crate) enum Command {
         /// Also a table that gives everything back to this part of its largest value, such as 1e-12
         #[arg(long, value_parser = part, value_name = "ACCURACY", allow_hyphen_values = true)]
         table: Option<f64>,
+        /// How near everything must be over the whole range, as --accuracy of simulate: what meets it at the least
+        /// cost is picked, exact rows or a table too
+        #[arg(long, value_parser = wanted, value_name = "ACCURACY", allow_hyphen_values = true, conflicts_with = "table")]
+        accuracy: Option<f64>,
         /// The table begins here, in the scene's unit (over all turns, or all but 2 % of the range at each end, if absent)
         #[arg(long, requires_all = ["table", "to"], value_parser = finite, value_name = "COORDINATE", allow_hyphen_values = true)]
         from: Option<f64>,

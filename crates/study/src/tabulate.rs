@@ -19,6 +19,8 @@ pub struct Tabulation {
     pub accuracy: f64,
     /// From where to where, in the scene's unit; none for all turns, or all but 2 % of a range at each end.
     pub between: Option<(f64, f64)>,
+    /// Whether there is to be a table or an error; else what is known exactly will do where no table can be made.
+    pub demanded: bool,
 }
 
 /// Adds a table of everything that a scene requests to what a command yields: m, ½m′, a and b of the
@@ -49,7 +51,24 @@ pub(crate) fn tabulate(
         loads: scene.loads.iter().map(|load| load.name.clone()).collect(),
     };
     let refused = |e: TableError| explain(scene, plan, &labels, &e);
-    let table = Table::new(&exact, wanted.accuracy, extent).map_err(refused)?;
+    let table = match Table::new(&exact, wanted.accuracy, extent) {
+        Ok(table) => table,
+        Err(error) if wanted.demanded => return Err(refused(error)),
+        Err(error) => {
+            outcome.summary += &format!(
+                "  accuracy {:e}: every row evaluated exactly; between them there is no table: {}\n",
+                wanted.accuracy,
+                refused(error)
+            );
+            return Ok(());
+        }
+    };
+    if !wanted.demanded {
+        outcome.summary += &format!(
+            "  accuracy {:e}: every row evaluated exactly, which is less than making a table; between them by a table\n",
+            wanted.accuracy
+        );
+    }
     let text = table.to_text(&labels).map_err(|e| {
         let error = scene.error(e.to_string(), None, &[]);
         StudyError::from(error)

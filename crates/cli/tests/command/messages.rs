@@ -374,6 +374,30 @@ fn arguments() {
             &["simulate", "scene.toml", "--rtol", rtol],
         );
     }
+    for accuracy in ["0", "1e-20", "0.5", "fine", "nan"] {
+        group.refused(
+            &format!("a wanted accuracy of {accuracy}"),
+            &["simulate", "scene.toml", "--accuracy", accuracy],
+        );
+    }
+    let both = [
+        "simulate",
+        "scene.toml",
+        "--accuracy",
+        "draft",
+        "--rtol",
+        "1e-9",
+    ];
+    group.refused("an accuracy and a tolerance", &both);
+    let both = [
+        "reduce",
+        "scene.toml",
+        "--accuracy",
+        "draft",
+        "--table",
+        "1e-9",
+    ];
+    group.refused("an accuracy and a table", &both);
     group.refused("no scene", &["reduce"]);
     group.refused("an unknown command", &["animate", "scene.toml"]);
     let method = ["simulate", "scene.toml", "--method", "rk4"];
