@@ -39,9 +39,10 @@ const COMPARED: u32 = 23;
 const AGREED: f64 = 1e-10;
 
 /// What moves.
+#[allow(clippy::large_enum_variant, reason = "there are three")]
 enum Plant {
     Free(Exact),
-    Loaded(Box<Machine>),
+    Loaded(Machine),
 }
 
 /// A motion, and where its coordinate is at the end.
@@ -106,7 +107,7 @@ impl Motion {
         let y = machine.start(&motion.start, &motion.speed);
         let mut loaded = Self {
             case,
-            plant: Plant::Loaded(Box::new(machine)),
+            plant: Plant::Loaded(machine),
             start: Point { t: 0.0, y },
             end,
             truth: f64::NAN,
