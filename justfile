@@ -39,6 +39,7 @@ lint:
 [group('care')]
 bench:
     cargo bench -p dwell-kinetostatics --bench reduced --bench batches --bench table --bench kinds
+    cargo bench -p dwell-dynamics --bench motion
 
 # Beside Exudyn, Pinocchio and MuJoCo: installs them into a scratch environment; reports/peers.md and .png
 [group('care')]
