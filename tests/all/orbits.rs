@@ -217,7 +217,8 @@ spring = { spring = ["ground.W", "block.P"], stiffness = 50.0, free = 1.25 }
         // The first passage of a coordinate, and none beyond the turning points.
         let t = orbit.time_at(0.25 - 0.3 * size).expect("a time");
         let off = orbit.at(t).q - 0.25 + 0.3 * size;
-        assert!(off.abs() < 4e-16 && t >= 0.0, "{off:e}");
+        // Two roundings of a phase of up to 2π; met: 6e-16.
+        assert!(off.abs() < 3e-15 * size.max(0.5) && t >= 0.0, "{off:e}");
         assert!(
             orbit
                 .time_at(0.25 - 0.3 * size)

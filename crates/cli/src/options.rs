@@ -58,7 +58,7 @@ pub(crate) enum Command {
         #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
         max_step: Option<f64>,
         /// In place of method and tolerance: how near the result must be, in rad and parts of the largest, such as 1e-6;
-        /// or draft (1e-3), standard (1e-6), precise (1e-9), reference (1e-12). What meets it at the least cost is picked
+        /// or draft (1e-3), standard (1e-6), precise (1e-9), reference (1e-10). What meets it at the least cost is picked
         #[arg(long, value_parser = wanted, value_name = "ACCURACY", allow_hyphen_values = true,
               conflicts_with_all = ["method", "rtol", "atol", "max_step"])]
         accuracy: Option<f64>,
