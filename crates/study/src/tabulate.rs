@@ -84,8 +84,8 @@ pub(crate) fn tabulate(
 fn told(scene: &Scene, table: &Table) -> String {
     let [from, to] = table.extent();
     let kind = match table.turns() {
-        Some(1) => "every turn".to_owned(),
-        Some(turns) => format!("every {turns} turns"),
+        Some(1) => "of every turn".to_owned(),
+        Some(turns) => format!("of every {turns} turns"),
         None => between(scene, from, to),
     };
     let counts = table
@@ -98,7 +98,7 @@ fn told(scene: &Scene, table: &Table) -> String {
         .collect();
     let [inertia, all] = table.bytes().map(|bytes| bytes.div_ceil(1024));
     format!(
-        "  table of {kind}: cells {}; {inertia} kB for m and ½m′, {all} kB in all; off by at most {:.1e} of the largest value of each\n",
+        "  table {kind}: cells {}; {inertia} kB for m and ½m′, {all} kB in all; off by at most {:.1e} of the largest value of each\n",
         cells.join(", "),
         table.bound()
     )

@@ -43,7 +43,7 @@ fn panel(runs: &[Run], case: &str) -> Panel {
     });
     Panel::from(Chart {
         title: case.into(),
-        x: Axis::log("wall time", "s").within(2e-5, 60.0),
+        x: Axis::log("wall time", "s").within(3e-6, 60.0),
         y: Axis::log("error of the crank angle", "rad").within(1e-15, 10.0),
         series: series.into(),
         marks: vec![Mark::Horizontal {
