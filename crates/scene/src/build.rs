@@ -6,6 +6,7 @@ use crate::assembly::AssemblyText;
 use crate::bodies::Bodies;
 use crate::coordinates::{ActuatorText, Measures, actuators};
 use crate::drives::{DriveReader, DriveText, held};
+use crate::elsewhere::elsewhere;
 use crate::error::{SceneError, Source};
 use crate::events::EventReader;
 use crate::fields::{Entry, Fields, string};
@@ -31,7 +32,11 @@ impl Scene {
         let parts = Parts::read(text, root.get_ref(), &mut problems);
         match (parts, problems.into_error()) {
             (_, Some(error)) => Err(error),
-            (Some(parts), None) => Ok(parts.finish(name, Source::clone(source))),
+            (Some(parts), None) => {
+                let mut scene = parts.finish(name, Source::clone(source));
+                scene.elsewhere = elsewhere(text, root.get_ref());
+                Ok(scene)
+            }
             // Parts are missing only where something was found wrong.
             (None, None) => Err(SceneError::bare("the scene is incomplete".to_owned(), None)),
         }

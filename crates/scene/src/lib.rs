@@ -64,6 +64,7 @@ mod bodies;
 mod build;
 mod coordinates;
 mod drives;
+mod elsewhere;
 mod error;
 mod events;
 mod expression;

@@ -1,5 +1,6 @@
 //! The scene as plain data.
 
+use crate::elsewhere::Elsewhere;
 use crate::error::SceneError;
 use crate::place::Places;
 use crate::units::Units;
@@ -54,6 +55,8 @@ pub struct Scene {
     pub(crate) units: Units,
     pub(crate) places: Places,
     pub(crate) numbers: Vec<Number>,
+    /// Those outside the bodies.
+    pub(crate) elsewhere: Vec<Elsewhere>,
 }
 
 /// Where and how the mechanism is put together at the start; it picks the branch.

@@ -43,8 +43,13 @@ impl Scene {
     }
 
     /// The number at `path`, in the scene's own unit.
+    /// Beside those of [`numbers`](Self::numbers) these are all that the sections of joints, loads, frictions, drives and
+    /// motions write, by their keys: `loads.brake.constant`, `motion.speed.phi`, `joints.guide.axis[0]`.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the path leads nowhere.
     pub fn value(&self, path: &str) -> Result<f64, SceneError> {
-        self.number(path).map(|n| n.value)
+        self.written_at(path).map(|(value, _)| value)
     }
 
     /// The unit of the number at `path`, such as `mm` or `kg m2`; empty if there is no such number.
@@ -87,7 +92,7 @@ impl Scene {
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
         let mut changes = Vec::with_capacity(values.len());
         for &(path, value) in values {
-            let span = &self.number(path)?.span;
+            let (_, span) = self.written_at(path)?;
             if !value.is_finite() {
                 let message = format!("{value} is not a value for `{path}`: it is not finite");
                 let label = (span.clone(), "this number".to_owned());
@@ -133,9 +138,16 @@ impl Scene {
             .find(|n| self.mechanism.body_name(n.body) == body && self.path_of(n) == path)
     }
 
-    fn number(&self, path: &str) -> Result<&Number, SceneError> {
-        self.number_at(path).ok_or_else(|| {
-            let (message, help) = no_number(path, &self.numbers());
+    /// The number at a path and where it is written; of a body that is called as a section is, before the section's.
+    fn written_at(&self, path: &str) -> Result<(f64, &Span), SceneError> {
+        if let Some(number) = self.number_at(path) {
+            return Ok((number.value, &number.span));
+        }
+        let found = self.elsewhere.iter().find(|n| n.path == path);
+        found.map(|n| (n.value, &n.span)).ok_or_else(|| {
+            let mut all = self.numbers();
+            all.extend(self.elsewhere.iter().map(|n| n.path.clone()));
+            let (message, help) = no_number(path, &all);
             SceneError::bare(message, Some(help))
         })
     }

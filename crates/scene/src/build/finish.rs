@@ -80,6 +80,7 @@ impl Parts<'_> {
             units: self.units,
             places,
             numbers: self.bodies.numbers,
+            elsewhere: Vec::new(),
         }
     }
 

@@ -137,3 +137,26 @@ fn several_numbers_change_at_once() {
     let error = scene.with_values(&twice).unwrap_err();
     assert!(error.message.contains("two values"), "{}", error.message);
 }
+
+#[test]
+fn numbers_outside_the_bodies_are_found_by_their_keys() {
+    let text = WHOLE.to_owned()
+        + "\n[loads]\nbrake = { torsion-damper = [\"ground\", \"crank\"], constant = 1_2.5 }\n\
+           weight = { gravity = [0, -9.81] }\n";
+    let scene = parse(&text).unwrap();
+    for (path, value) in [
+        ("loads.brake.constant", 12.5),
+        ("loads.weight.gravity[1]", -9.81),
+    ] {
+        assert_eq!(scene.value(path).unwrap(), value);
+        let changed = scene.with_value(path, 3.0).unwrap();
+        assert_eq!(changed.value(path).unwrap(), 3.0);
+        assert_ne!(changed.loads, scene.loads);
+        // What was not asked for is as it was.
+        assert_eq!(changed.masses, scene.masses);
+    }
+    let error = scene.value("loads.brake.constnt").unwrap_err();
+    assert_eq!(error.help.unwrap(), "did you mean `loads.brake.constant`?");
+    let error = scene.with_value("loads.brake.constant", -1.0).unwrap_err();
+    assert_eq!(error.labelled()[0].0, "-1.0");
+}
