@@ -372,11 +372,9 @@ mod tests {
 
     /// With the loads through which the drives act.
     fn driven(scene: &Scene) -> Scene {
-        let loads = all_loads(&scene.mechanism, &scene.loads, &scene.drives).unwrap();
-        Scene {
-            loads,
-            ..scene.clone()
-        }
+        let mut driven = scene.clone();
+        driven.loads = all_loads(&scene.mechanism, &scene.loads, &scene.drives).unwrap();
+        driven
     }
 
     /// What is promised is kept, for every case that moves under loads and for free ones, against a method
