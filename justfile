@@ -6,34 +6,38 @@ default:
 
 # All checks on all cases (or those named): pictures, tables and findings in reports/
 [group('main')]
-validate *cases: && size faults
+validate *cases: && size mutations
     cargo run --release -- validate {{ cases }}
 
 # The same with the extremes that take minutes: 1e5 revolutions
 [group('main')]
-validate-long: && size
-    cargo run --release -- validate --long
+validate-slow: && size
+    cargo run --release -- validate --slow
 
 # What a pose costs against the mechanism's size, and its errors: reports/size.png
 [group('main')]
 size:
     cargo run --release --example size
 
-# Deliberate faults, and which independent truths catch them: reports/faults.png, .md and .txt
+# Deliberate faults, and which independent truths catch them: reports/mutations.png, .md and .txt
 [group('main')]
-faults:
-    cargo run --release --example faults
+mutations:
+    cargo run --release --example mutations
+
+alias validate-long := validate-slow
+alias faults := mutations
 
 # All tests
 [group('main')]
 test:
     cargo test --release --workspace
 
-# Format and lints, warnings denied
+# Format, lints with warnings denied, and no circle of imports between folders
 [group('care')]
 lint:
     cargo fmt --all --check
     cargo clippy --release --workspace --all-targets -- -D warnings
+    python3 tests/house/circles.py
 
 # Exact evaluation against hand-written closed forms, one by one and in batches, as ratios of one run
 [group('care')]

@@ -1,22 +1,23 @@
 //! Many coordinates at once: lanes, blocks and threads change no bit.
 
-use crate::cases::CASES;
-use crate::changes::{Rng, Setup, positions};
-use crate::world::{cases, scene};
-use dwell_geometry::{Lanes, PlaceError};
-use dwell_kinetostatics::{Batch, Coefficients, Exact, Reduced};
+use dwell_geometry::PositionError;
+use dwell_kinetostatics::{Batch, Coefficients, ExactModel, ReducedModel};
+use dwell_numerics::Lanes;
+use dwell_tests::cases::CASES;
+use dwell_tests::changes::{Rng, Setup, positions};
+use dwell_tests::fixtures::{case_names, scene};
 
 /// Holds a batch against single evaluations, bit for bit, and gives the part of its fours that go together.
-pub(crate) fn alike(model: &Exact, q: &[f64]) -> Result<f64, String> {
+pub(crate) fn compare_batch(model: &ExactModel, q: &[f64]) -> Result<f64, String> {
     let mut batch = Batch::default();
-    model.reduce_all(q, &mut batch);
-    let (mut work, mut out) = (model.work(), model.model().coefficients());
+    model.reduce_batch(q, &mut batch);
+    let (mut workspace, mut out) = (model.workspace(), model.model().coefficient_buffer());
     let reactions = model.reactions();
     let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
     let mut errors = Vec::new();
     for (i, &q) in q.iter().enumerate() {
         let [a, b] = [&batch.a, &batch.b].map(|all| &all[i * reactions..][..reactions]);
-        if let Err(error) = model.coefficients(q, &mut work, &mut out) {
+        if let Err(error) = model.coefficients(q, &mut workspace, &mut out) {
             errors.push((i, error));
             let nothing = a.iter().chain(b).all(|v| v.is_nan());
             if !nothing || !batch.m[i].is_nan() || !batch.half_dm[i].is_nan() {
@@ -43,7 +44,10 @@ pub(crate) fn alike(model: &Exact, q: &[f64]) -> Result<f64, String> {
         ));
     }
     // What goes together, and lanes without the registers of this processor.
-    let (mut lanes, mut several) = (model.model().workspace(), model.model().coefficients());
+    let (mut lanes, mut several) = (
+        model.model().workspace(),
+        model.model().coefficient_buffer(),
+    );
     let (fours, _) = q.as_chunks::<4>();
     let mut together = 0;
     for (i, four) in fours.iter().enumerate() {
@@ -73,8 +77,8 @@ pub(crate) fn alike(model: &Exact, q: &[f64]) -> Result<f64, String> {
 }
 
 /// The reduced models of every case of one actuator.
-fn models() -> Vec<(String, Exact)> {
-    let read = cases().into_iter().map(|case| scene(&case));
+fn models() -> Vec<(String, ExactModel)> {
+    let read = case_names().into_iter().map(|case| scene(&case));
     let scenes = CASES.iter().map(|case| case.scene()).chain(read);
     scenes
         .filter(|scene| scene.mechanism.actuators.len() == 1)
@@ -89,35 +93,35 @@ fn models() -> Vec<(String, Exact)> {
 
 #[test]
 fn a_batch_has_the_bits_of_single_evaluations() {
-    let mut apart = Vec::new();
+    let mut fractions = Vec::new();
     for (name, model) in models() {
         // In order, in no order, and an odd number that leaves lanes over.
         let mut q = positions(model.range(), 90);
         let shuffled: Vec<f64> = Rng(5).order(q.len()).into_iter().map(|i| q[i]).collect();
         q.extend(shuffled);
         q.push(q[1]);
-        let together = alike(&model, &q).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let together = compare_batch(&model, &q).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert!(
             together == 0.0 || together == 1.0,
             "{name}: {together} of its fours"
         );
         assert_eq!(
             together == 1.0,
-            model.model().plan().placed_in_lanes(),
+            model.model().plan().supports_lanes(),
             "{name}"
         );
         if together == 0.0 {
-            apart.push(name);
+            fractions.push(name);
         }
     }
-    apart.sort();
-    apart.dedup();
+    fractions.sort();
+    fractions.dedup();
     // Placed by Newton's method; with a law, by least squares, or with counted turns.
     let newton = ["class-three-six-bar", "stephenson-six-bar"];
     let others = ["cam", "parallelogram-three-cranks", "planetary"];
     let mut expected = [&newton[..], &others].concat();
     expected.sort_unstable();
-    assert_eq!(apart, expected);
+    assert_eq!(fractions, expected);
 }
 
 #[test]
@@ -126,7 +130,7 @@ fn where_one_lane_has_no_pose_the_others_have_theirs() {
     for (name, model) in models() {
         let (from, to) = match model.range().limits() {
             Some((from, to)) => (from, to),
-            None => (model.model().plan().start()[0], f64::NAN),
+            None => (model.model().plan().assembly_coordinates()[0], f64::NAN),
         };
         limited += usize::from(to.is_finite());
         let inside = from + 1e-3 * if to.is_nan() { 1.0 } else { to - from };
@@ -134,7 +138,7 @@ fn where_one_lane_has_no_pose_the_others_have_theirs() {
             for outside in [f64::NAN, f64::INFINITY, to + 1e-3, from - 1e-3] {
                 let mut q = [inside; 11];
                 q[4 + lane] = outside;
-                alike(&model, &q).unwrap_or_else(|e| panic!("{name}: {e}"));
+                compare_batch(&model, &q).unwrap_or_else(|e| panic!("{name}: {e}"));
             }
         }
     }
@@ -149,8 +153,8 @@ fn blocks_and_what_a_batch_held_before_do_not_matter() {
         let some = positions(model.range(), 24);
         let many: Vec<f64> = some.iter().copied().cycle().take(5000).collect();
         let (mut once, mut again) = (Batch::default(), Batch::default());
-        model.reduce_all(&some, &mut once);
-        model.reduce_all(&many, &mut again);
+        model.reduce_batch(&some, &mut once);
+        model.reduce_batch(&many, &mut again);
         for (i, m) in again.m.iter().enumerate() {
             assert_eq!(
                 m.to_bits(),
@@ -161,12 +165,12 @@ fn blocks_and_what_a_batch_held_before_do_not_matter() {
         let mut wrong = many;
         wrong[4097] = f64::NAN;
         wrong[1] = f64::NAN;
-        model.reduce_all(&wrong, &mut again);
+        model.reduce_batch(&wrong, &mut again);
         let places: Vec<usize> = again.errors.iter().map(|(i, _)| *i).collect();
         assert_eq!(places, [1, 4097]);
-        model.reduce_all(&some, &mut again);
+        model.reduce_batch(&some, &mut again);
         assert_eq!(again, once);
-        model.reduce_all(&[], &mut again);
+        model.reduce_batch(&[], &mut again);
         assert_eq!(again, Batch::default());
     }
 }
@@ -175,9 +179,11 @@ fn blocks_and_what_a_batch_held_before_do_not_matter() {
 fn numbers_side_by_side_are_refused_where_groups_part() {
     let case = CASES.iter().find(|case| case.largest > 2).expect("a case");
     let model = Setup::of(&case.scene()).model().expect("a model");
-    let start = model.model().plan().start()[0];
-    let mut work = model.model().workspace::<Lanes<2>>();
-    let mut out: Coefficients<Lanes<2>> = model.model().coefficients();
-    let refused = model.model().reduce(Lanes([start; 2]), &mut work, &mut out);
-    assert_eq!(refused, Err(PlaceError::Apart { q: start }));
+    let start = model.model().plan().assembly_coordinates()[0];
+    let mut workspace = model.model().workspace::<Lanes<2>>();
+    let mut out: Coefficients<Lanes<2>> = model.model().coefficient_buffer();
+    let refused = model
+        .model()
+        .reduce(Lanes([start; 2]), &mut workspace, &mut out);
+    assert_eq!(refused, Err(PositionError::LanesDiverge { q: start }));
 }

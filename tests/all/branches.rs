@@ -1,10 +1,10 @@
 //! Class III groups stay on the branch of their assembly over the whole range: every pose is
 //! compared with one that was reached by following the bars from the start in very small steps.
 
-use crate::changes::{Setup, direction};
-use crate::sketch::Sketch;
-use dwell_geometry::{BodyId, PlaceError, Range, Vec2, vec2};
-use dwell_kinetostatics::Reduced;
+use dwell_geometry::{BodyId, PositionError, Range, Vec2, vec2};
+use dwell_kinetostatics::ReducedModel;
+use dwell_tests::changes::{Setup, direction};
+use dwell_tests::sketch::Sketch;
 use std::f64::consts::TAU;
 
 /// A Stephenson III six-bar like the one in `validation/`, driven by the angle of the floating
@@ -24,7 +24,7 @@ struct SixBar {
 
 /// Angles of crank, coupler, rocker and link 6, rad.
 type Angles = [f64; 4];
-const ROUGH: Angles = [2.7, 0.6, 1.8, -2.4];
+const INITIAL_GUESS: Angles = [2.7, 0.6, 1.8, -2.4];
 /// Step in which the bars are followed, rad.
 const STEP: f64 = 2e-5;
 
@@ -46,19 +46,19 @@ impl SixBar {
         sketch.revolute("E", (coupler, self.e), (link5, o));
         sketch.revolute("F", (link5, [self.link5, 0.0]), (link6, [self.link6, 0.0]));
         sketch.revolute("G", (ground, self.g), (link6, o));
-        sketch.drive("q", [ground, link5]);
+        sketch.actuate("q", [ground, link5]);
         let mut setup = sketch.setup(&[self.start]);
-        setup.start.rough[1..5].copy_from_slice(&ROUGH.map(Some));
+        setup.assembly.initial_guess[1..5].copy_from_slice(&INITIAL_GUESS.map(Some));
         setup
     }
 
     /// The loops A B C D and A B E F G, and their derivatives with the four angles.
-    fn loops(&self, q: f64, x: &Angles) -> ([f64; 4], [[f64; 4]; 4]) {
+    fn loop_closures(&self, q: f64, x: &Angles) -> ([f64; 4], [[f64; 4]; 4]) {
         let [crank, coupler, rocker, link6] = x.map(Vec2::from_angle);
         let b = crank * self.crank;
         let c = coupler * self.coupler;
         let to_c = rocker * self.rocker;
-        let e = vec2(self.e[0], self.e[1]).turn(coupler);
+        let e = vec2(self.e[0], self.e[1]).rotate(coupler);
         let to_f = link6 * self.link6;
         let one = b + c - to_c - vec2(self.d, 0.0);
         let two = b + e + Vec2::from_angle(q) * self.link5 - to_f - vec2(self.g[0], self.g[1]);
@@ -79,9 +79,9 @@ impl SixBar {
     }
 
     /// Newton's method from a pose close by.
-    fn close(&self, q: f64, mut x: Angles) -> Angles {
+    fn solve_closure(&self, q: f64, mut x: Angles) -> Angles {
         for _ in 0..20 {
-            let (residual, jacobian) = self.loops(q, &x);
+            let (residual, jacobian) = self.loop_closures(q, &x);
             let step = solve(jacobian, residual);
             for (angle, step) in x.iter_mut().zip(step) {
                 *angle -= step;
@@ -94,12 +94,12 @@ impl SixBar {
     }
 
     /// The four angles at coordinates that lie in order, followed from the start in small steps.
-    fn follow(&self, at: impl Iterator<Item = f64>) -> Vec<(f64, Angles)> {
-        let (mut q, mut x) = (self.start, self.close(self.start, ROUGH));
+    fn continue_branch(&self, at: impl Iterator<Item = f64>) -> Vec<(f64, Angles)> {
+        let (mut q, mut x) = (self.start, self.solve_closure(self.start, INITIAL_GUESS));
         let follow = |to: f64| {
             let steps = ((to - q).abs() / STEP).ceil().max(1.0);
             for k in 1..=steps as u32 {
-                x = self.close(q + (to - q) * f64::from(k) / steps, x);
+                x = self.solve_closure(q + (to - q) * f64::from(k) / steps, x);
             }
             q = to;
             (to, x)
@@ -120,8 +120,8 @@ impl SixBar {
         let (mut refused, mut elsewhere) = (0, 0);
         for end in [from, to] {
             let inside = |k: u32| self.start + (end - self.start) * f64::from(k) / 2001.0;
-            for (q, angles) in self.follow((1..=2000).map(inside)) {
-                if plan.place(&[q], &mut pose).is_err() {
+            for (q, angles) in self.continue_branch((1..=2000).map(inside)) {
+                if plan.positions(&[q], &mut pose).is_err() {
                     refused += 1;
                     continue;
                 }
@@ -153,8 +153,8 @@ fn solve(mut a: [[f64; 4]; 4], mut b: [f64; 4]) -> [f64; 4] {
         }
     }
     for k in (0..4).rev() {
-        let known: f64 = (k + 1..4).map(|j| a[k][j] * b[j]).sum();
-        b[k] = (b[k] - known) / a[k][k];
+        let solution: f64 = (k + 1..4).map(|j| a[k][j] * b[j]).sum();
+        b[k] = (b[k] - solution) / a[k][k];
     }
     b
 }
@@ -231,7 +231,7 @@ fn a_branch_that_does_not_close_is_the_same_from_behind() {
     let (seen, from_behind) = (bars.setup(), bars.setup().mirrored());
     match (seen.model(), from_behind.model()) {
         (Ok(one), Ok(two)) => {
-            let (Range::Between(a, b), Range::Between(c, d)) =
+            let (Range::Limited(a, b), Range::Limited(c, d)) =
                 (from_behind.range(one.range()), two.range())
             else {
                 panic!("{:?} {:?}", one.range(), two.range());
@@ -253,7 +253,7 @@ fn a_coordinate_beyond_a_range_of_more_than_a_turn_is_refused() {
     assert!(to - from > TAU, "{from} {to}");
     assert_eq!(MORE_THAN_A_TURN.refused_and_elsewhere(), (0, 0));
     for q in [from - 0.01, to + 0.01, to + TAU] {
-        let error = model.inertia(q, &mut model.work()).unwrap_err();
-        assert_eq!(error, PlaceError::OutOfRange { q, from, to });
+        let error = model.inertia(q, &mut model.workspace()).unwrap_err();
+        assert_eq!(error, PositionError::OutOfRange { q, from, to });
     }
 }

@@ -1,18 +1,19 @@
 //! Every case of `validation/`: judged in states of motion, by its reference, and by deliberate
 //! faults that must be found.
 
-use crate::world::{cases, home, scene};
-use dwell_findings::Finding;
+use dwell_findings::{Check, Finding};
 use dwell_geometry::Mechanism;
 use dwell_scene::Scene;
-use dwell_study::{Judged, Validation, judge_case, silent, validate};
-use dwell_verify::{State, judge_states};
+use dwell_study::no_progress;
+use dwell_tests::fixtures::{case_names, repository_root, scene};
+use dwell_validation::{CheckedStates, Validation, check_case, validate};
+use dwell_verify::{ClaimedState, check_states};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// The case whose joints repeat each other.
-const REPEATED: &str = "parallelogram-three-cranks";
+const REDUNDANT: &str = "parallelogram-three-cranks";
 
 /// Cases whose references hold no states: the first two are of the reduced model, the others of motions.
 const WITHOUT_STATES: [&str; 4] = [
@@ -26,11 +27,11 @@ const WITHOUT_STATES: [&str; 4] = [
 const PROMISED: f64 = 1e-12;
 
 fn folder(case: &str) -> PathBuf {
-    home().join("validation").join(case)
+    repository_root().join("validation").join(case)
 }
 
-fn judged(scene: &Scene, folder: &Path) -> Judged {
-    judge_case(scene, folder).unwrap_or_else(|e| panic!("{}: {e}", scene.name))
+fn checked_states(scene: &Scene, folder: &Path) -> CheckedStates {
+    check_case(scene, folder).unwrap_or_else(|e| panic!("{}: {e}", scene.name))
 }
 
 fn failed(findings: &[Finding]) -> Vec<&str> {
@@ -38,32 +39,35 @@ fn failed(findings: &[Finding]) -> Vec<&str> {
     failed.map(|f| f.key.as_str()).collect()
 }
 
-const TRUTHS: [&str; 9] = [
+const CHECKS: [&str; 9] = [
     "state-poses",
     "state-branch",
     "state-velocities",
     "state-accelerations",
     "state-reactions",
-    "state-newton",
-    "state-differenced",
+    "state-newton-euler",
+    "state-newton-euler-differences",
     "state-power",
-    "state-balance",
+    "state-momentum",
 ];
 
 #[test]
 fn val_every_case_in_states_and_by_its_reference() {
-    for case in cases() {
+    for case in case_names() {
         let scene = scene(&case);
-        let judged = judged(&scene, &folder(&case));
-        assert!(judged.states.len() >= 100, "{case}");
-        for finding in &judged.findings {
+        let checked = checked_states(&scene, &folder(&case));
+        assert!(checked.states.len() >= 100, "{case}");
+        for finding in &checked.findings {
             assert!(finding.pass, "{case}: {finding:?}");
         }
-        let keys: Vec<&str> = judged.findings.iter().map(|f| f.key.as_str()).collect();
-        assert_eq!(keys[..9], TRUTHS, "{case}");
-        for key in ["state-power", "state-balance"] {
-            let finding = judged.findings.iter().find(|f| f.key == key).expect("it");
-            assert!(finding.relative <= PROMISED, "{case}: {finding:?}");
+        let keys: Vec<&str> = checked.findings.iter().map(|f| f.key.as_str()).collect();
+        assert_eq!(keys[..9], CHECKS, "{case}");
+        for key in ["state-power", "state-momentum"] {
+            let finding = checked.findings.iter().find(|f| f.key == key).expect("it");
+            assert!(
+                finding.relative_difference <= PROMISED,
+                "{case}: {finding:?}"
+            );
         }
         if !WITHOUT_STATES.contains(&case.as_str()) {
             for kind in [
@@ -71,15 +75,17 @@ fn val_every_case_in_states_and_by_its_reference() {
                 "velocities",
                 "accelerations",
                 "reactions",
-                "actions",
+                "actuator-forces",
             ] {
                 // None of its reactions is determined.
-                if (case.as_str(), kind) == (REPEATED, "reactions") {
+                if (case.as_str(), kind) == (REDUNDANT, "reactions") {
                     continue;
                 }
                 let key = format!("reference-{kind}");
-                let finding = judged.findings.iter().find(|f| f.key == key);
-                let relative = finding.unwrap_or_else(|| panic!("{case}: {key}")).relative;
+                let finding = checked.findings.iter().find(|f| f.key == key);
+                let relative = finding
+                    .unwrap_or_else(|| panic!("{case}: {key}"))
+                    .relative_difference;
                 assert!(relative <= PROMISED, "{case}, {key}: {relative:e}");
             }
         }
@@ -88,35 +94,41 @@ fn val_every_case_in_states_and_by_its_reference() {
 
 #[test]
 fn val_andrews_published_start() {
-    let judged = judged(&scene("andrews"), &folder("andrews"));
+    let checked = checked_states(&scene("andrews"), &folder("andrews"));
     for kind in ["positions", "accelerations", "reactions"] {
         let key = format!("published-{kind}");
-        let finding = judged.findings.iter().find(|f| f.key == key);
+        let finding = checked.findings.iter().find(|f| f.key == key);
         let finding = finding.unwrap_or_else(|| panic!("{key}"));
-        assert!(finding.relative <= PROMISED, "{finding:?}");
-        assert!(finding.over.contains("andrews.f"), "{finding:?}");
+        assert!(finding.relative_difference <= PROMISED, "{finding:?}");
+        assert!(finding.domain.contains("andrews.f"), "{finding:?}");
     }
 }
 
 /// Each truth of a case speaks or says why not, passes, and has no slack in its tolerance.
-fn speaks(case: &str, done: &Validation) {
-    let findings = &done.outcome.findings;
-    for number in 0..=9 {
-        let spoken = findings.iter().any(|f| f.number() == Some(number));
-        let silent = done.silent.iter().any(|(silent, _)| *silent == number);
-        assert!(spoken != silent, "{case}: truth {number}");
+fn assert_all_checks(case: &str, validation: &Validation) {
+    let findings = &validation.outcome.findings;
+    for check in &Check::ALL[..10] {
+        let has_findings = findings.iter().any(|f| f.check == *check);
+        let not_applicable = validation.not_applicable.iter().any(|(of, _)| of == check);
+        assert!(has_findings != not_applicable, "{case}: check {check}");
         // These can always be held against a case.
         assert!(
-            spoken || [3, 5, 9].contains(&number),
-            "{case}: truth {number}"
+            has_findings
+                || [
+                    Check::ReleasedConstraint,
+                    Check::Period,
+                    Check::ReferenceValues
+                ]
+                .contains(check),
+            "{case}: check {check}"
         );
     }
     for f in findings {
-        assert!(f.pass && f.number().is_some(), "{case}: {f:?}");
-        let most = f.most();
+        assert!(f.pass, "{case}: {f:?}");
+        let max = f.max_tolerance();
         assert!(
-            !f.slack(),
-            "{case}, {}: {:e} where {most:e} is the most",
+            !f.is_loose(),
+            "{case}, {}: {:e} where {max:e} is the most",
             f.key,
             f.tolerance
         );
@@ -126,12 +138,14 @@ fn speaks(case: &str, done: &Validation) {
 /// Every case passes with tolerances that are near to what is met, and its rounded text is the committed one.
 #[test]
 fn regress_reports() {
-    for case in cases() {
-        let done = validate(&scene(&case), &folder(&case), &silent);
+    for case in case_names() {
+        let done = validate(&scene(&case), &folder(&case), &no_progress);
         let done = done.unwrap_or_else(|e| panic!("{case}: {e}"));
-        speaks(&case, &done);
+        assert_all_checks(&case, &done);
         let text = done.snapshot;
-        let path = home().join("reports").join(format!("{case}.txt"));
+        let path = repository_root()
+            .join("reports")
+            .join(format!("{case}.txt"));
         let committed = std::fs::read_to_string(&path);
         let committed = committed.unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         assert!(
@@ -145,15 +159,19 @@ fn regress_reports() {
 /// Reactions for another inertia do not balance, in whatever body that is.
 #[test]
 fn an_inertia_off_by_a_millionth_is_found_in_every_case() {
-    for case in cases() {
+    for case in case_names() {
         let scene = scene(&case);
-        let Judged { start, states, .. } = judged(&scene, &folder(&case));
+        let CheckedStates {
+            assembly_poses: start,
+            states,
+            ..
+        } = checked_states(&scene, &folder(&case));
         let largest = |of: &dyn Fn(usize, usize) -> f64, bodies: usize| {
             let all = (0..states.len()).flat_map(|s| (0..bodies).map(move |b| (s, b)));
             all.map(|(s, b)| of(s, b).abs()).fold(0.0, f64::max)
         };
         let couple = |b: usize| {
-            let alpha = |s: usize, _: usize| states[s].acceleration[b][2];
+            let alpha = |s: usize, _: usize| states[s].accelerations[b][2];
             scene.masses[b].inertia * largest(&alpha, 1)
         };
         let bodies: Vec<usize> = (0..scene.masses.len())
@@ -163,16 +181,16 @@ fn an_inertia_off_by_a_millionth_is_found_in_every_case() {
         for b in bodies {
             let mut masses = scene.masses.clone();
             masses[b].inertia *= 1.0 + 1e-6;
-            let findings = judge_states(&scene.mechanism, &masses, &start, &states);
+            let findings = check_states(&scene.mechanism, &masses, &start, &states);
             let failed = failed(&findings);
             // A body that hardly turns shows it where all forces are small, or not at all.
             let shows = couple(b) > 1e-2 * strongest;
             assert!(
-                !shows || failed.contains(&"state-newton"),
+                !shows || failed.contains(&"state-newton-euler"),
                 "{case}, body {b}"
             );
             // The motion is right, and so is what does not know of inertia.
-            for right in &TRUTHS[..4] {
+            for right in &CHECKS[..4] {
                 assert!(!failed.contains(right), "{case}, body {b}: {failed:?}");
             }
         }
@@ -183,27 +201,27 @@ fn an_inertia_off_by_a_millionth_is_found_in_every_case() {
 /// must close.
 #[test]
 fn what_repeats_is_judged_too() {
-    let scene = scene(REPEATED);
-    let case = judged(&scene, &folder(REPEATED));
-    let judge = |mechanism: &Mechanism, states: &[State]| {
-        judge_states(mechanism, &scene.masses, &case.start, states)
+    let scene = scene(REDUNDANT);
+    let case = checked_states(&scene, &folder(REDUNDANT));
+    let check_without = |mechanism: &Mechanism, states: &[ClaimedState]| {
+        check_states(mechanism, &scene.masses, &case.assembly_poses, states)
     };
     let mut states = case.states.clone();
     for state in &mut states {
         state.reactions[10] *= 1.0 + 1e-6;
     }
-    let findings = judge(&scene.mechanism, &states);
+    let findings = check_without(&scene.mechanism, &states);
     let found = failed(&findings);
-    assert!(found.contains(&"state-newton"), "{found:?}");
+    assert!(found.contains(&"state-newton-euler"), "{found:?}");
     // The dense side does not know this reaction by itself.
     assert!(!found.contains(&"state-reactions"), "{found:?}");
     for joint in 0..scene.mechanism.joints.len() {
         let mut mechanism = scene.mechanism.clone();
         mechanism.joints[joint].points[0].x += 1e-8;
-        let findings = judge(&mechanism, &case.states);
+        let findings = check_without(&mechanism, &case.states);
         assert_eq!(failed(&findings).len(), 9, "joint {joint}");
-        let words = &findings[0].worst;
-        assert!(words.contains("stay open"), "joint {joint}: {words}");
+        let text = &findings[0].worst_at;
+        assert!(text.contains("stay open"), "joint {joint}: {text}");
     }
 }
 
@@ -221,13 +239,16 @@ fn a_wrong_scene_is_found_by_its_reference_alone() {
         let other = scene
             .with_value(path, value * (1.0 + 1e-6))
             .expect("a scene");
-        let findings = judged(&other, &folder(case)).findings;
+        let findings = checked_states(&other, &folder(case)).findings;
         let failed = failed(&findings);
         assert!(
             failed.contains(&"reference-reactions"),
             "{case}: {failed:?}"
         );
-        assert!(failed.contains(&"reference-actions"), "{case}: {failed:?}");
+        assert!(
+            failed.contains(&"reference-actuator-forces"),
+            "{case}: {failed:?}"
+        );
         let known = |key: &&str| key.starts_with("reference-") || key.starts_with("published-");
         assert!(failed.iter().all(known), "{case}: {failed:?}");
     }
@@ -284,8 +305,8 @@ fn a_reference_value_off_by_a_billionth_is_found() {
     for (case, sample, name, key) in [
         ("andrews", 2, "k7.H.ay", "reference-accelerations"),
         ("andrews", 2, "E-k4.y", "reference-reactions"),
-        ("boom", 0, "dig.action", "reference-actions"),
-        ("cam", 1, "rise.speed", "reference-velocities"),
+        ("boom", 0, "dig.actuator_force", "reference-actuator-forces"),
+        ("cam", 1, "rise.velocity", "reference-velocities"),
         (
             "ellipse-trammel",
             0,
@@ -299,41 +320,41 @@ fn a_reference_value_off_by_a_billionth_is_found() {
     ] {
         let changed = Changed::new(case, |reference| {
             let values = &mut reference["samples"][sample]["values"];
-            let off = number(&values[name]) * (1.0 + 1e-9);
-            values[name] = Value::from(format!("{off:e}"));
+            let altered = number(&values[name]) * (1.0 + 1e-9);
+            values[name] = Value::from(format!("{altered:e}"));
         });
-        let findings = judged(&scene(case), &changed.0).findings;
+        let findings = checked_states(&scene(case), &changed.0).findings;
         assert_eq!(failed(&findings), [key], "{case}, {name}");
         let finding = findings.iter().find(|f| f.key == key).expect("it");
-        assert!(finding.worst.starts_with(name), "{finding:?}");
+        assert!(finding.worst_at.starts_with(name), "{finding:?}");
     }
 }
 
 /// A published state of a motion is put off by a little more than its tolerance.
 #[test]
 fn a_published_motion_that_is_put_off_is_found() {
-    for (case, name, off) in [
+    for (case, name, altered) in [
         ("andrews", "beta", 2e-9),
         ("andrews", "E-k3.x", 2e-9),
-        ("double-pendulum", "q.speed", 2e-9),
+        ("double-pendulum", "q.velocity", 2e-9),
         ("n-four-bar-a02", "phi", 2e-10),
         ("pendulum-a01", "A.x", 2e-10),
     ] {
         let changed = Changed::new(case, |reference| {
             let values = &mut reference["free_motion"]["states"][0]["values"];
-            let off = number(&values[name]) * (1.0 + off);
-            values[name] = Value::from(format!("{off:e}"));
+            let altered = number(&values[name]) * (1.0 + altered);
+            values[name] = Value::from(format!("{altered:e}"));
         });
-        let done = validate(&scene(case), &changed.0, &silent).expect("findings");
+        let done = validate(&scene(case), &changed.0, &no_progress).expect("findings");
         let findings = done.outcome.findings;
         assert_eq!(failed(&findings), ["published-motion"], "{case}, {name}");
         let finding = findings.iter().find(|f| !f.pass).expect("it");
-        assert_eq!(finding.worst, name);
+        assert_eq!(finding.worst_at, name);
     }
     let changed = Changed::new("andrews", |reference| {
         reference["free_motion"]["states"][0]["values"]["gamma"] = Value::from("1.0");
     });
-    let error = validate(&scene("andrews"), &changed.0, &silent).expect_err("no such name");
+    let error = validate(&scene("andrews"), &changed.0, &no_progress).expect_err("no such name");
     assert!(error.to_string().contains("`gamma`"), "{error}");
 }
 
@@ -344,17 +365,20 @@ fn a_name_that_is_nothing_fails_and_is_told() {
         "k9.angle",
         "E-k3.z",
         "k3.Q.x",
-        "alpha.action",
+        "alpha.actuator_force",
         "O.travel",
         "k3",
     ] {
         let changed = Changed::new("andrews", |reference| {
             reference["samples"][0]["values"][name] = Value::from("1.0");
         });
-        let findings = judged(&scene("andrews"), &changed.0).findings;
-        assert_eq!(failed(&findings), ["reference-names"], "{name}");
+        let findings = checked_states(&scene("andrews"), &changed.0).findings;
+        assert_eq!(failed(&findings), ["reference-unknown-names"], "{name}");
         let finding = findings.iter().find(|f| !f.pass).expect("it");
-        assert!(finding.worst.contains(&format!("`{name}`")), "{finding:?}");
+        assert!(
+            finding.worst_at.contains(&format!("`{name}`")),
+            "{finding:?}"
+        );
     }
 }
 
@@ -389,7 +413,7 @@ fn a_reference_that_cannot_be_read_says_why() {
     ];
     for (change, words) in changes {
         let changed = Changed::new("andrews", change);
-        let error = judge_case(&scene("andrews"), &changed.0).expect_err(words);
+        let error = check_case(&scene("andrews"), &changed.0).expect_err(words);
         assert!(error.to_string().contains(words), "{error} for {words}");
     }
 }

@@ -1,11 +1,8 @@
 //! IFToMM's A02: a chain of N equal four-bars, which its parallel links make a pendulum. All its
 //! reactions have a closed form, and what a pose costs is counted in operations: it grows as N.
 
-pub(crate) mod counted;
-pub(crate) mod links;
-
-use counted::operations;
-use links::{GRAVITY, by_hand, errors, model};
+use dwell_tests::chain::counting_scalar::operations;
+use dwell_tests::chain::links::{GRAVITY, closed_form, errors, model};
 use std::f64::consts::PI;
 
 #[test]
@@ -13,7 +10,7 @@ fn the_hand_agrees_with_the_pendulum() {
     // A pendulum of m = (4 N + 1)/3 in the potential (3 N + 1)/2 g sin θ.
     for n in [1, 2, 40] {
         for state in [[0.7, 1.1, -0.4], [2.0, -3.0, 5.0]] {
-            let (torque, forces) = by_hand(n, state);
+            let (torque, forces) = closed_form(n, state);
             let links = n as f64;
             let m = (4.0 * links + 1.0) / 3.0;
             let weight = 0.5 * (3.0 * links + 1.0) * GRAVITY * state[0].cos();

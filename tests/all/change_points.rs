@@ -1,15 +1,15 @@
 //! Change points: positions where two assembly branches meet. A branch ends there; it is never
 //! carried on on the other one, whose closed form has the same sign.
 
-use crate::world::model;
-use dwell_geometry::PlaceError;
-use dwell_kinetostatics::Reduced;
+use dwell_geometry::PositionError;
+use dwell_kinetostatics::ReducedModel;
 use dwell_scene::Scene;
+use dwell_tests::fixtures::model;
 use std::f64::consts::PI;
 
 /// A parallelogram whose ground is turned, so that no round angle is a flat position.
-fn parallelogram(turned: f64) -> Scene {
-    let (sin, cos) = turned.sin_cos();
+fn parallelogram(rotation: f64) -> Scene {
+    let (sin, cos) = rotation.sin_cos();
     let text = format!(
         r#"
 [bodies.ground]
@@ -37,7 +37,7 @@ D = {{ revolute = ["ground.D", "rocker.D"] }}
 angle = ["ground", "crank"]
 [assembly]
 phi = 1.0
-coupler = {turned}
+coupler = {rotation}
 rocker = 1.0
 "#,
         0.4 * cos,
@@ -48,30 +48,30 @@ rocker = 1.0
 
 #[test]
 fn a_parallelogram_ends_where_it_is_flat() {
-    for turned in [0.0, 0.123, -0.7, 0.3] {
-        let model = model(&parallelogram(turned));
+    for rotation in [0.0, 0.123, -0.7, 0.3] {
+        let model = model(&parallelogram(rotation));
         let Some((from, to)) = model.range().limits() else {
-            panic!("{turned}: {:?}", model.range());
+            panic!("{rotation}: {:?}", model.range());
         };
         // Flat where the crank lies along the ground; the end is told from the other branch by
         // what rounding leaves, a millionth of the determinant.
-        assert!((from - turned).abs() < 1e-5, "{turned}: {from}");
-        assert!((to - turned - PI).abs() < 1e-5, "{turned}: {to}");
-        let mut work = model.work();
+        assert!((from - rotation).abs() < 1e-5, "{rotation}: {from}");
+        assert!((to - rotation - PI).abs() < 1e-5, "{rotation}: {to}");
+        let mut workspace = model.workspace();
         // As a parallelogram the coupler does not turn, so m is that of a crank:
         // (1 + 2) r² + I_rocker about D, with no term of the coupler's inertia.
         let expected = 3.0 * 0.04 + 0.002 + 0.5 * 0.01;
         for k in 1..20 {
             let q = from + (to - from) * f64::from(k) / 20.0;
-            let (m, half_dm) = model.inertia(q, &mut work).expect("a pose");
+            let (m, half_dm) = model.inertia(q, &mut workspace).expect("a pose");
             assert!(
                 (m - expected).abs() < 1e-13 && half_dm.abs() < 1e-12,
                 "{q}: {m}"
             );
         }
         assert!(matches!(
-            model.inertia(to + 0.1, &mut work),
-            Err(PlaceError::OutOfRange { .. })
+            model.inertia(to + 0.1, &mut workspace),
+            Err(PositionError::OutOfRange { .. })
         ));
     }
 }

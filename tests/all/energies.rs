@@ -1,83 +1,90 @@
 //! Kinetic energy and virtual work of the cases with several freedoms or loads: deliberate faults in what the
 //! product says of its states must be seen.
 
-use crate::world::{home, scene};
 use dwell_findings::Finding;
 use dwell_scene::Scene;
-use dwell_study::{Judged, judge_case};
-use dwell_verify::{State, judge_energies};
+use dwell_tests::fixtures::{repository_root, scene};
+use dwell_validation::{CheckedStates, check_case};
+use dwell_verify::{ClaimedState, check_energies};
 
 /// Two freedoms, massless and heavy links, springs and a motor's moment, a guide.
 const CASES: [&str; 4] = ["five-bar", "boom", "andrews", "slider-crank"];
 /// States that are judged, and the one with the fault.
 const STATES: usize = 6;
-const FAULTY: usize = 2;
+const MUTATED_STATE: usize = 2;
 
-struct Claims {
+struct ClaimedStates {
     scene: Scene,
     start: Vec<[f64; 3]>,
-    states: Vec<State>,
-    inertias: Vec<Vec<f64>>,
+    states: Vec<ClaimedState>,
+    mass_matrices: Vec<Vec<f64>>,
 }
 
-impl Claims {
+impl ClaimedStates {
     fn new(case: &str) -> Self {
         let scene = scene(case);
-        let folder = home().join("validation").join(case);
-        let judged: Judged = judge_case(&scene, &folder).unwrap_or_else(|e| panic!("{case}: {e}"));
-        let some = || (0..STATES).map(|k| (2 * k + 1) * judged.drawn / (2 * STATES));
+        let folder = repository_root().join("validation").join(case);
+        let checked: CheckedStates =
+            check_case(&scene, &folder).unwrap_or_else(|e| panic!("{case}: {e}"));
+        let some = || (0..STATES).map(|k| (2 * k + 1) * checked.drawn_count / (2 * STATES));
         Self {
-            states: some().map(|k| judged.states[k].clone()).collect(),
-            inertias: some().map(|k| judged.inertias[k].clone()).collect(),
-            start: judged.start,
+            states: some().map(|k| checked.states[k].clone()).collect(),
+            mass_matrices: some().map(|k| checked.mass_matrices[k].clone()).collect(),
+            start: checked.assembly_poses,
             scene,
         }
     }
 
-    fn judged(&self) -> Vec<Finding> {
+    fn findings(&self) -> Vec<Finding> {
         let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
-        judge_energies(mechanism, masses, &self.start, &self.states, &self.inertias)
+        check_energies(
+            mechanism,
+            masses,
+            &self.start,
+            &self.states,
+            &self.mass_matrices,
+        )
     }
 
     fn failed(&self) -> Vec<String> {
-        let failed = self.judged().into_iter().filter(|f| !f.pass);
+        let failed = self.findings().into_iter().filter(|f| !f.pass);
         failed.map(|f| f.key).collect()
     }
 }
 
 /// A fault, and the finding that must see it.
-type Fault = (&'static str, fn(&mut Claims), &'static str);
+type Mutation = (&'static str, fn(&mut ClaimedStates), &'static str);
 
-const FAULTS: [Fault; 8] = [
+const MUTATIONS: [Mutation; 8] = [
     (
         "the sign of an action",
-        |c| c.states[FAULTY].tau[0] *= -1.0,
+        |c| c.states[MUTATED_STATE].tau[0] *= -1.0,
         "state-lagrange",
     ),
     (
         "a billionth of an action",
-        |c| c.states[FAULTY].tau[0] *= 1.0 + 1e-9,
+        |c| c.states[MUTATED_STATE].tau[0] *= 1.0 + 1e-9,
         "state-lagrange",
     ),
     (
         "the sign of a reaction",
-        |c| c.states[FAULTY].reactions[0] *= -1.0,
+        |c| c.states[MUTATED_STATE].reactions[0] *= -1.0,
         "state-released",
     ),
     (
         "no terms of speed in the equation",
-        |c| c.states[FAULTY].q_dot.fill(0.0),
+        |c| c.states[MUTATED_STATE].q_dot.fill(0.0),
         "state-released",
     ),
     (
         "no terms of acceleration in the equation",
-        |c| c.states[FAULTY].q_ddot.fill(0.0),
+        |c| c.states[MUTATED_STATE].q_ddot.fill(0.0),
         "state-released",
     ),
     (
         "a load of the other sign",
         |c| {
-            for load in &mut c.states[FAULTY].loads {
+            for load in &mut c.states[MUTATED_STATE].load_wrenches {
                 load.force = -load.force;
                 load.couple = -load.couple;
             }
@@ -86,36 +93,36 @@ const FAULTS: [Fault; 8] = [
     ),
     (
         "a billionth of an inertia",
-        |c| c.inertias[FAULTY][0] *= 1.0 + 1e-9,
-        "state-inertia",
+        |c| c.mass_matrices[MUTATED_STATE][0] *= 1.0 + 1e-9,
+        "state-mass-matrix",
     ),
     (
         "a body's velocity",
         |c| {
-            let last = c.states[FAULTY].velocity.len() - 1;
-            c.states[FAULTY].velocity[last] = [0.0; 3];
+            let last = c.states[MUTATED_STATE].velocities.len() - 1;
+            c.states[MUTATED_STATE].velocities[last] = [0.0; 3];
         },
-        "state-kinetic",
+        "state-kinetic-energy",
     ),
 ];
 
 #[test]
 fn faults_in_states_are_seen_by_their_energies() {
     for case in CASES {
-        let sound = Claims::new(case);
+        let sound = ClaimedStates::new(case);
         assert_eq!(sound.failed(), [""; 0], "{case}");
-        for (name, fault, key) in FAULTS {
-            let mut wrong = Claims {
+        for (name, mutate, key) in MUTATIONS {
+            let mut wrong = ClaimedStates {
                 scene: sound.scene.clone(),
                 start: sound.start.clone(),
                 states: sound.states.clone(),
-                inertias: sound.inertias.clone(),
+                mass_matrices: sound.mass_matrices.clone(),
             };
-            fault(&mut wrong);
+            mutate(&mut wrong);
             // The slider-crank turns evenly.
             if case == "slider-crank"
                 && wrong.states == sound.states
-                && wrong.inertias == sound.inertias
+                && wrong.mass_matrices == sound.mass_matrices
             {
                 continue;
             }
@@ -132,10 +139,10 @@ fn faults_in_states_are_seen_by_their_energies() {
 #[test]
 fn a_coupling_of_the_wrong_sign_is_seen() {
     for case in ["five-bar", "boom", "double-pendulum"] {
-        let mut claims = Claims::new(case);
-        claims.inertias[FAULTY][1] *= -1.0;
+        let mut claimed = ClaimedStates::new(case);
+        claimed.mass_matrices[MUTATED_STATE][1] *= -1.0;
         assert!(
-            claims.failed().contains(&"state-inertia".to_owned()),
+            claimed.failed().contains(&"state-mass-matrix".to_owned()),
             "{case}"
         );
     }
@@ -144,9 +151,16 @@ fn a_coupling_of_the_wrong_sign_is_seen() {
 /// Where joints share the reactions there is none to be released, and the rest is judged.
 #[test]
 fn shared_reactions_are_left_out() {
-    let claims = Claims::new("parallelogram-three-cranks");
-    let findings = claims.judged();
+    let claimed = ClaimedStates::new("parallelogram-three-cranks");
+    let findings = claimed.findings();
     let keys: Vec<&str> = findings.iter().map(|f| f.key.as_str()).collect();
-    assert_eq!(keys, ["state-inertia", "state-kinetic", "state-lagrange"]);
+    assert_eq!(
+        keys,
+        [
+            "state-mass-matrix",
+            "state-kinetic-energy",
+            "state-lagrange"
+        ]
+    );
     assert!(findings.iter().all(|f| f.pass), "{findings:?}");
 }

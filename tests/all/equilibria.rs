@@ -1,13 +1,16 @@
 //! Equilibria, linearised motions and jamming against closed forms.
 
 use crate::machine::{DOUBLE, everything, machine, parse};
-use crate::world::scene;
 use dwell_dynamics::{
-    Drive, DriveKind, DynamicsError, Machine, Motor, Moving, Regulator, Stability, System,
-    equilibria, equilibrium_near, linearise,
+    DynamicsError, Machine, MachineOde, OdeSystem, Stability, equilibria, equilibrium_near,
+    linearise,
 };
 use dwell_geometry::JointId;
-use dwell_kinetostatics::{Friction, Guide, KinetostaticsError, Load, LoadKind, Magnitude};
+use dwell_kinetostatics::{
+    Drive, DriveKind, Friction, FrictionContact, Guide, KinetostaticsError, Load, LoadKind,
+    Magnitude, Motor, SpeedController,
+};
+use dwell_tests::fixtures::scene;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 const G: f64 = 9.81;
@@ -37,8 +40,8 @@ fn equilibria_of_a_pushed_pendulum() {
         let stiff = G * (1.0 - part * part).sqrt();
         for (one, q) in found.iter().zip([-angle, angle]) {
             // The force is rounded at g l; its slope there is what the angle is worth.
-            let within = 4e-15 * G / stiff + 4e-16;
-            assert!((one.y[0] - q).abs() < within, "{part}: {} {q}", one.y[0]);
+            let tolerance = 4e-15 * G / stiff + 4e-16;
+            assert!((one.y[0] - q).abs() < tolerance, "{part}: {} {q}", one.y[0]);
             let size = one.eigenvalues[0][0].hypot(one.eigenvalues[0][1]);
             assert!(
                 (size * size / stiff - 1.0).abs() < 1e-14 * (G / stiff).powi(2),
@@ -48,7 +51,7 @@ fn equilibria_of_a_pushed_pendulum() {
         assert_eq!(found[0].stability, Stability::Centre);
         assert_eq!(found[1].stability, Stability::Unstable);
         assert_eq!(found[0].modes().len(), 1);
-        assert_eq!(found[0].modes()[0].damping.abs(), 0.0);
+        assert_eq!(found[0].modes()[0].damping_ratio.abs(), 0.0);
     }
     // Both meet at φ = 0, to the square root of a rounding.
     let one = equilibria(&pendulum(G), [-3.0, 3.1]).expect("equilibria");
@@ -73,13 +76,13 @@ fn natural_frequencies_agree_with_small_swings() {
         .find(|e| e.stability == Stability::Centre)
         .expect("one");
     let small = 1e-3;
-    let start = dwell_dynamics::State {
+    let start = dwell_dynamics::ReducedState {
         t: 0.0,
         q: hanging.y[0] + small,
         q_dot: 0.0,
     };
     let orbit = dwell_dynamics::Orbit::loaded(&machine, start).expect("an orbit");
-    let swung = orbit.period * hanging.modes()[0].frequency / (2.0 * PI);
+    let swung = orbit.period * hanging.modes()[0].angular_frequency / (2.0 * PI);
     // The next term, 11 θ⁴/3072, is 4e-15; rounding over the amplitude 1e-12.
     assert!(
         (swung - 1.0 - small * small / 16.0).abs() < 2e-12,
@@ -91,8 +94,8 @@ fn natural_frequencies_agree_with_small_swings() {
 #[test]
 fn a_double_pendulum_hangs() {
     let machine = machine(&parse(DOUBLE), &[], &[]);
-    let found =
-        equilibrium_near(&machine, &machine.start(&[-1.2, -2.0], &[0.5, 0.1])).expect("one");
+    let found = equilibrium_near(&machine, &machine.initial_state(&[-1.2, -2.0], &[0.5, 0.1]))
+        .expect("one");
     for q in &found.y[..2] {
         assert!((q + FRAC_PI_2).abs() < 1e-14, "{q}");
     }
@@ -110,10 +113,10 @@ fn a_double_pendulum_hangs() {
     for (mode, square) in modes.iter().zip([mixed - root, mixed + root]) {
         let expected = (square / (2.0 * det)).sqrt();
         assert!(
-            (mode.frequency / expected - 1.0).abs() < 1e-13,
+            (mode.angular_frequency / expected - 1.0).abs() < 1e-13,
             "{mode:?} {expected}"
         );
-        assert!(mode.damping.abs() < 1e-13);
+        assert!(mode.damping_ratio.abs() < 1e-13);
     }
     assert_eq!(modes.len(), 2);
 }
@@ -121,11 +124,11 @@ fn a_double_pendulum_hangs() {
 fn motor(inductance: f64) -> Motor {
     Motor {
         voltage: Magnitude::Constant(6.0),
-        constant: 0.1,
+        torque_constant: 0.1,
         resistance: 2.0,
         inductance,
-        ratio: 20.0,
-        inertia: 1e-4,
+        gear_ratio: 20.0,
+        rotor_inertia: 1e-4,
     }
 }
 
@@ -156,28 +159,33 @@ fn a_motor_holds_a_pendulum() {
             vec![-k, 0.0, kn / j],
             vec![0.0, -kn / l, -r / l],
         ];
-        for (row, expected) in one.linear.a.iter().zip(&expected) {
+        for (row, expected) in one.state_space.a.iter().zip(&expected) {
             for (a, e) in row.iter().zip(expected) {
                 assert!(
                     (a - e).abs() < 1e-13 * (1.0 + e.abs()),
                     "{:?}",
-                    one.linear.a
+                    one.state_space.a
                 );
             }
         }
-        assert_eq!(one.linear.b, [[0.0], [0.0], [1.0 / l]]);
+        assert_eq!(one.state_space.b, [[0.0], [0.0], [1.0 / l]]);
         // Coordinate, speed, the motor's torque.
         assert_eq!(
-            one.linear.c,
+            one.state_space.c,
             [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, kn]]
         );
-        assert_eq!(one.linear.d, [[0.0]; 3]);
-        assert!(one.linear.rates.iter().all(|rate| rate.abs() < 1e-12));
+        assert_eq!(one.state_space.d, [[0.0]; 3]);
+        assert!(
+            one.state_space
+                .state_derivative
+                .iter()
+                .all(|rate| rate.abs() < 1e-12)
+        );
     }
     assert_eq!(found[0].stability, Stability::Asymptotic);
     assert_eq!(found[1].stability, Stability::Unstable);
     // Newton's method finds the current with the angle.
-    let near = equilibrium_near(&machine, &machine.start(&[-0.8], &[1.0])).expect("one");
+    let near = equilibrium_near(&machine, &machine.initial_state(&[-0.8], &[1.0])).expect("one");
     assert!((near.y[0] + angle).abs() < 1e-14 && (near.y[2] - 3.0).abs() < 1e-14);
 }
 
@@ -188,10 +196,10 @@ fn a_regulator_of_speed_has_no_equilibrium() {
     let drive = Drive {
         name: "regulator".into(),
         coordinate: scene.mechanism.actuators[0].coordinate(),
-        kind: DriveKind::Regulator(Regulator {
-            speed: Magnitude::Constant(1.0),
-            proportional: 1.0,
-            integral: 1.0,
+        kind: DriveKind::SpeedController(SpeedController {
+            reference_speed: Magnitude::Constant(1.0),
+            proportional_gain: 1.0,
+            integral_gain: 1.0,
             limit: 5.0,
         }),
     };
@@ -208,26 +216,26 @@ fn a_regulator_of_speed_has_no_equilibrium() {
 fn linearised_inputs_and_outputs_agree_with_differences() {
     let (machine, y) = everything();
     let linear = linearise(&machine, 0.0, &y).expect("a linearisation");
-    let states = machine.first_work();
-    let mut moving = Moving::new(&machine, 0.0, &y).expect("a start");
+    let states = machine.work_offset();
+    let mut moving = MachineOde::new(&machine, 0.0, &y).expect("a start");
     let h = 1e-4;
     let mut at = |column: usize, times: f64| {
-        let mut moved = y.clone();
-        moving.work.input.fill(0.0);
+        let mut perturbed = y.clone();
+        moving.workspace.input_offsets.fill(0.0);
         if column < states {
-            moved[column] += times * h;
+            perturbed[column] += times * h;
         } else {
-            moving.work.input[column - states] = times * h;
+            moving.workspace.input_offsets[column - states] = times * h;
         }
-        let mut rates = vec![0.0; machine.states()];
-        moving.rates(0.0, &moved, &mut rates).expect("rates");
+        let mut rates = vec![0.0; machine.state_count()];
+        moving.rhs(0.0, &perturbed, &mut rates).expect("rates");
         rates.truncate(states);
-        let work = &moving.work;
+        let workspace = &moving.workspace;
         let outputs = [
-            &work.q,
-            &work.q_dot,
-            &work.actions().reactions,
-            &work.action,
+            &workspace.q,
+            &workspace.q_dot,
+            &workspace.inverse_dynamics().reactions,
+            &workspace.drive_forces,
         ];
         rates.extend(outputs.into_iter().flatten());
         rates
@@ -242,15 +250,15 @@ fn linearised_inputs_and_outputs_agree_with_differences() {
         .iter()
         .flatten()
         .fold(0.0_f64, |most, e| most.max(e.abs()));
-    let plain = at(0, 0.0);
+    let exact = at(0, 0.0);
     let values: Vec<f64> = linear
-        .rates
+        .state_derivative
         .iter()
         .chain(&linear.outputs)
         .copied()
         .collect();
     assert_eq!(values.len(), rows.len());
-    assert_eq!(values, plain);
+    assert_eq!(values, exact);
     assert!(linear.c.len() == 4 + 4 + 2 && linear.d[0].len() == 2);
     // The voltage over the inductance; the regulator's share at once.
     assert_eq!(linear.b[4..], [[20.0, 0.0], [0.0, 1.0]]);
@@ -314,9 +322,9 @@ fn a_pressed_block_jams() {
     let scene = parse(TRAMMEL);
     let guide = &scene.mechanism.joints[0];
     let with = |coefficient: f64| {
-        let rub = Load {
+        let friction = Load {
             name: "rub".into(),
-            kind: LoadKind::Slide(Guide {
+            kind: LoadKind::SlideForce(Guide {
                 bodies: guide.bodies,
                 points: guide.points,
                 axis: dwell_geometry::vec2(1.0, 0.0),
@@ -324,22 +332,22 @@ fn a_pressed_block_jams() {
             magnitude: Magnitude::Friction(Friction {
                 joint: JointId(0),
                 coefficient,
-                size: 0.0,
-                fade: 1e-4,
+                contact: FrictionContact::Guide { length: 0.0 },
+                regularization_speed: 1e-4,
             }),
         };
-        machine(&scene, &[rub], &[])
+        machine(&scene, &[friction], &[])
     };
     let (x, y, m1, m2) = (0.6_f64, 0.8_f64, 0.3, 2.0);
     let k = x / y;
     let critical = k + m1 / (m2 * k);
     let acceleration = |coefficient: f64, speed: f64| {
         let machine = with(coefficient);
-        let state = machine.start(&[x], &[speed]);
-        let mut work = machine.work();
+        let state = machine.initial_state(&[x], &[speed]);
+        let mut workspace = machine.workspace();
         machine
-            .evaluate(0.0, &state, &mut work)
-            .map(|()| work.q_ddot[0])
+            .evaluate(0.0, &state, &mut workspace)
+            .map(|()| workspace.q_ddot[0])
     };
     for part in [0.0, 0.5, 0.9, 0.999] {
         for speed in [-0.2, 0.2] {
@@ -351,16 +359,16 @@ fn a_pressed_block_jams() {
             let found = acceleration(part * critical, speed)
                 .unwrap_or_else(|e| panic!("{part} {speed}: {e}"));
             // Rounding over what is left of the inertia.
-            let within = 1e-14 * m2 / inertia;
+            let tolerance = 1e-14 * m2 / inertia;
             assert!(
-                (found / expected - 1.0).abs() < within,
+                (found / expected - 1.0).abs() < tolerance,
                 "{part} {speed}: {found} {expected}"
             );
         }
     }
     for beyond in [1.000_001, 1.2, 5.0] {
         let jams = acceleration(beyond * critical, 0.2);
-        let expected = DynamicsError::Load(KinetostaticsError::Jams { load: 1 });
+        let expected = DynamicsError::Load(KinetostaticsError::SelfLocking { load: 1 });
         assert_eq!(jams, Err(expected), "{beyond}");
         assert!(acceleration(beyond * critical, -0.2).is_ok());
     }

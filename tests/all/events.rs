@@ -1,14 +1,15 @@
 //! Events of a motion: where they are on the dense output, and how far that is from the motion itself;
 //! and what is left of ten turns.
 
-use crate::world::{model_for, scene};
 use dwell_dynamics::{
-    Event, Guidance, Machine, Method, Options, Orbit, Point, State, Trigger, Until, follow,
-    simulate,
+    CoordinateMode, Event, EventKind, Machine, Method, OdeState, Options, Orbit, ReducedState,
+    solve, solve_reduced,
 };
-use dwell_geometry::measure::Measured;
-use dwell_kinetostatics::{Model, Reduced};
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_kinetostatics::{Model, ReducedModel};
+use dwell_tests::fixtures::{model_for, scene};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::num::NonZeroUsize;
 
 /// The pendulum A01 falls from level: it passes the bottom after a quarter of its period, where the
 /// horizontal force of its pin changes its sign, and turns back after half of it.
@@ -16,41 +17,49 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 fn val_events_of_a_pendulum() {
     let scene = scene("pendulum-a01");
     let all = scene.mechanism.reactions();
-    let start = scene.assembly.to_start();
+    let start = scene.assembly.to_configuration();
     let bare = Model::new(&scene.mechanism, &scene.masses, &start, &all).expect("a model");
-    let shown = bare
-        .clone()
-        .with_loads(&scene.mechanism, scene.loads.clone())
-        .expect("loads");
-    let free = vec![Guidance::Free];
-    let machine = Machine::new(&scene.mechanism, bare, &scene.loads, free, &[]).expect("a machine");
-    let at = State {
+    let output_model = bare.clone().with_loads(scene.loads.clone()).expect("loads");
+    let free = vec![CoordinateMode::Free];
+    let machine = Machine::new(bare, &scene.loads, free, &[]).expect("a machine");
+    let at = ReducedState {
         t: 0.0,
         q: PI,
         q_dot: 0.0,
     };
     let period = Orbit::loaded(&machine, at).expect("a period").period;
-    let phi = Measured::find(&scene.mechanism, scene.mechanism.actuators[0].coordinate());
+    let phi = CoordinateFunction::find(&scene.mechanism, scene.mechanism.actuators[0].coordinate());
     let phi = phi.expect("a coordinate");
     let events = [
-        Trigger::Reaches(phi, PI + FRAC_PI_2),
-        Trigger::Reaction(0, 0.0),
-        Trigger::Turns(phi),
-        Trigger::WholeTurn(phi),
+        EventKind::Reaches(phi, PI + FRAC_PI_2),
+        EventKind::Reaction(0, 0.0),
+        EventKind::Reversal(phi),
+        EventKind::Revolution(phi),
     ]
     .map(|trigger| Event {
-        trigger,
-        stop: false,
+        kind: trigger,
+        terminal: None,
     });
-    let from = Point {
+    let from = OdeState {
         t: 0.0,
-        y: machine.start(&[PI], &[0.0]),
+        y: machine.initial_state(&[PI], &[0.0]),
     };
     let options = Options::new(Method::Tsit45, 1e-13);
-    let trace = follow(&machine, &shown, &from, 2.1 * period, &options, &events).expect("a run");
+    let solution = solve(
+        &machine,
+        &output_model,
+        &from,
+        2.1 * period,
+        &options,
+        &events,
+    )
+    .expect("a run");
     let times = |event: usize| -> Vec<f64> {
-        let mine = trace.occurrences.iter().filter(|o| o.event == event);
-        mine.map(|o| o.at.t / period).collect()
+        let mine = solution
+            .event_occurrences
+            .iter()
+            .filter(|o| o.event == event);
+        mine.map(|o| o.state.t / period).collect()
     };
     let near = |found: Vec<f64>, expected: &[f64]| {
         assert_eq!(found.len(), expected.len(), "{found:?}");
@@ -67,19 +76,19 @@ fn val_events_of_a_pendulum() {
         .into_iter()
         .filter(|t| (t / 0.5).fract() > 0.1 && (t / 0.5).fract() < 0.9);
     near(upright.collect(), &[0.25, 0.75, 1.25, 1.75]);
-    for occurrence in trace.occurrences.iter().filter(|o| o.event == 0) {
+    for occurrence in solution.event_occurrences.iter().filter(|o| o.event == 0) {
         // As a root of the dense output it is exact: 1e-12 of the span of 3 rad is asked for.
-        let off = (occurrence.at.y[0] - PI - FRAC_PI_2).abs();
-        assert!(off < 1e-13 * PI, "{off:e}");
+        let error = (occurrence.state.y[0] - PI - FRAC_PI_2).abs();
+        assert!(error < 1e-13 * PI, "{error:e}");
     }
     // An event that stops ends the motion where it is.
     let stop = [Event {
-        trigger: Trigger::Reaches(phi, PI + FRAC_PI_2),
-        stop: true,
+        kind: EventKind::Reaches(phi, PI + FRAC_PI_2),
+        terminal: Some(NonZeroUsize::MIN),
     }];
-    let trace = follow(&machine, &shown, &from, 9.0, &options, &stop).expect("a run");
-    assert!(trace.stopped);
-    let end = trace.steps.last().expect("a step");
+    let solution = solve(&machine, &output_model, &from, 9.0, &options, &stop).expect("a run");
+    assert!(solution.terminated_by_event);
+    let end = solution.steps.last().expect("a step");
     assert!((end.t / period - 0.25).abs() < 1e-10, "{}", end.t);
 }
 
@@ -87,23 +96,18 @@ fn val_events_of_a_pendulum() {
 #[test]
 fn val_ten_turns_of_the_crank_rocker() {
     let model = model_for(&scene("crank-rocker"), &[]);
-    let start = State {
+    let start = ReducedState {
         t: 0.0,
         q: PI / 3.0,
         q_dot: 10.0,
     };
     let end = 10.0 * 0.731_488_383_733_225_1;
     assert_eq!(model.reactions(), 0);
-    for (method, within) in [(Method::Tsit45, 1e-9), (Method::Bdf, 5e-9)] {
-        let run = simulate(
-            &model,
-            start,
-            Until::Time(end),
-            &Options::new(method, 1e-13),
-        );
-        let run = run.expect("a run");
+    for (method, tolerance) in [(Method::Tsit45, 1e-9), (Method::Bdf, 5e-9)] {
+        let run = solve_reduced(&model, start, Some(end), &Options::new(method, 1e-13), &[]);
+        let run = run.expect("a run").completed().expect("all of it");
         let last = run.steps.last().expect("a step");
-        let off = (last.q - start.q - 10.0 * TAU).abs();
-        assert!(off < within, "{} {off:e}", method.name());
+        let error = (last.y[0] - start.q - 10.0 * TAU).abs();
+        assert!(error < tolerance, "{} {error:e}", method.name());
     }
 }

@@ -1,7 +1,7 @@
 //! The study of extremes sees what it is there to see.
 
 use dwell_findings::Finding;
-use dwell_study::extremes::{Measured, judge, measure, rows};
+use dwell_validation::extremes::{SeriesResult, all_series, check, evaluate};
 use std::sync::LazyLock;
 
 /// Rows that take little time, of every family.
@@ -14,31 +14,34 @@ const QUICK: [&str; 9] = [
     "tolerance-tsit45",
     "stiffness",
     "light-crank",
-    "turns",
+    "rotation",
 ];
 
-static GRID: LazyLock<Vec<Measured>> = LazyLock::new(grid);
+static RESULTS: LazyLock<Vec<SeriesResult>> = LazyLock::new(evaluated);
 
-fn grid() -> Vec<Measured> {
-    let quick = rows(false).into_iter();
-    measure(
+fn evaluated() -> Vec<SeriesResult> {
+    let quick = all_series(false).into_iter();
+    evaluate(
         quick
-            .filter(|row| QUICK.contains(&row.key.as_str()))
+            .filter(|series| QUICK.contains(&series.key.as_str()))
             .collect(),
     )
 }
 
 /// The rows again, each with some of its cells changed.
-fn spoilt(change: impl Fn(&mut dwell_study::extremes::Cell)) -> Vec<Finding> {
-    let cells = GRID.iter().map(|m| m.cells.clone());
-    let rows = rows(false).into_iter();
-    let rows = rows.filter(|row| QUICK.contains(&row.key.as_str()));
-    let mut grid: Vec<Measured> = rows
+fn findings_with(change: impl Fn(&mut dwell_validation::extremes::ResultCell)) -> Vec<Finding> {
+    let cells = RESULTS.iter().map(|m| m.cells.clone());
+    let all_series = all_series(false).into_iter();
+    let all_series = all_series.filter(|series| QUICK.contains(&series.key.as_str()));
+    let mut results: Vec<SeriesResult> = all_series
         .zip(cells)
-        .map(|(row, cells)| Measured { row, cells })
+        .map(|(series, cells)| SeriesResult { series, cells })
         .collect();
-    grid.iter_mut().flat_map(|m| &mut m.cells).for_each(change);
-    judge(&grid)
+    results
+        .iter_mut()
+        .flat_map(|m| &mut m.cells)
+        .for_each(change);
+    check(&results)
 }
 
 fn failed(findings: &[Finding]) -> Vec<&str> {
@@ -50,7 +53,7 @@ fn failed(findings: &[Finding]) -> Vec<&str> {
 /// digits or no answer.
 #[test]
 fn val_the_floors_and_the_estimates_hold() {
-    let findings = judge(&GRID);
+    let findings = check(&RESULTS);
     assert_eq!(findings.len(), 2 * QUICK.len() + 1);
     assert_eq!(failed(&findings), Vec::<&str>::new());
 }
@@ -59,9 +62,9 @@ fn val_the_floors_and_the_estimates_hold() {
 /// below the error.
 #[test]
 fn the_noise_of_short_numbers_is_seen() {
-    let findings = spoilt(|cell| {
-        if let Ok(reading) = &mut cell.told {
-            reading.value = f64::from(reading.value as f32 * (1.0 + f32::EPSILON));
+    let findings = findings_with(|cell| {
+        if let Ok(value) = &mut cell.result {
+            value.value = f64::from(value.value as f32 * (1.0 + f32::EPSILON));
         }
     });
     let failed = failed(&findings);
@@ -70,64 +73,64 @@ fn the_noise_of_short_numbers_is_seen() {
         "mass-ratio",
         "power-of-two",
         "stiffness",
-        "turns",
+        "rotation",
     ] {
         assert!(
-            failed.contains(&format!("{key}-floor").as_str()),
+            failed.contains(&format!("{key}-digits").as_str()),
             "{failed:?}"
         );
     }
-    assert!(failed.contains(&"mass-ratio-estimate"), "{failed:?}");
+    assert!(failed.contains(&"mass-ratio-error-estimate"), "{failed:?}");
 }
 
 #[test]
 fn the_last_place_of_one_number_is_seen() {
-    let findings = spoilt(|cell| {
-        let own = cell.quantity == 2 && cell.at == 64.0;
-        if let (true, Ok(reading)) = (own, &mut cell.told) {
-            reading.value = reading.value.next_up();
+    let findings = findings_with(|cell| {
+        let is_target = cell.quantity == 2 && cell.parameter == 64.0;
+        if let (true, Ok(value)) = (is_target, &mut cell.result) {
+            value.value = value.value.next_up();
         }
     });
-    assert_eq!(failed(&findings), ["power-of-two-floor"]);
+    assert_eq!(failed(&findings), ["power-of-two-digits"]);
 }
 
 #[test]
 fn an_estimate_too_small_is_seen_in_every_row() {
-    let findings = spoilt(|cell| {
-        if let Ok(reading) = &mut cell.told {
-            reading.estimate /= 1000.0;
+    let findings = findings_with(|cell| {
+        if let Ok(value) = &mut cell.result {
+            value.error_estimate /= 1000.0;
         }
     });
     let failed = failed(&findings);
     for key in QUICK {
         assert!(
-            failed.contains(&format!("{key}-estimate").as_str()),
+            failed.contains(&format!("{key}-error-estimate").as_str()),
             "{failed:?}"
         );
     }
-    assert!(failed.contains(&"estimates"), "{failed:?}");
+    assert!(failed.contains(&"error-estimates"), "{failed:?}");
 }
 
 /// A hundred times larger no estimate is wrong, but they say nothing.
 #[test]
 fn estimates_that_say_nothing_are_seen() {
-    let findings = spoilt(|cell| {
-        if let Ok(reading) = &mut cell.told {
-            reading.estimate *= 100.0;
+    let findings = findings_with(|cell| {
+        if let Ok(value) = &mut cell.result {
+            value.error_estimate *= 100.0;
         }
     });
-    assert_eq!(failed(&findings), ["estimates"]);
+    assert_eq!(failed(&findings), ["error-estimates"]);
 }
 
 #[test]
 fn a_refusal_without_need_is_seen() {
-    let findings = spoilt(|cell| {
-        if cell.at == 1e-3 {
-            cell.told = Err("too hard".to_owned());
+    let findings = findings_with(|cell| {
+        if cell.parameter == 1e-3 {
+            cell.result = Err("too hard".to_owned());
         }
     });
     let failed = failed(&findings);
-    assert!(failed.contains(&"limit-four-bar-floor"), "{failed:?}");
+    assert!(failed.contains(&"limit-four-bar-digits"), "{failed:?}");
     // Where the condition is above 1e8 it would be an answer: ½m′ at 1e-3, but not m at 1e-2.
-    assert!(failed.contains(&"flat-parallelogram-floor"), "{failed:?}");
+    assert!(failed.contains(&"flat-parallelogram-digits"), "{failed:?}");
 }

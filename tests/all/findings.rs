@@ -1,69 +1,72 @@
 //! The findings of `dwell validate` on every case: verdicts and digits, and how far within them the numbers are.
 
-use crate::world::{cases, home, scene};
 use dwell_findings::{Finding, all_pass};
 use dwell_scene::Scene;
-use dwell_study::{Validation, silent, validate};
+use dwell_study::no_progress;
+use dwell_tests::fixtures::{case_names, repository_root, scene};
+use dwell_validation::{Validation, validate};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::panic::catch_unwind;
 
 fn validated(scene: &Scene, case: &str) -> Validation {
-    let folder = home().join("validation").join(case);
-    validate(scene, &folder, &silent).unwrap_or_else(|e| panic!("{case}: {e}"))
+    let folder = repository_root().join("validation").join(case);
+    validate(scene, &folder, &no_progress).unwrap_or_else(|e| panic!("{case}: {e}"))
 }
 
 /// Digits that every machine reproduces, in steps of three: the difference, four times as large (its last bits are a machine's
 /// own), is within them. More than twelve are nobody's business; where the tolerance is wider than 1e-12 the
 /// difference is that of an approximation, which has nine at the most.
 fn digits(finding: &Finding) -> usize {
-    let most = if finding.tolerance <= 1.5e-12 { 12 } else { 9 };
-    let within = |n: &usize| 4.0 * finding.relative <= 10f64.powi(-(*n as i32));
-    let mut steps = [12, 9, 6, 3].into_iter().filter(|n| *n <= most);
-    steps.find(within).unwrap_or(0)
+    let limit = if finding.tolerance <= 1.5e-12 { 12 } else { 9 };
+    let holds = |n: &usize| 4.0 * finding.relative_difference <= 10f64.powi(-(*n as i32));
+    let mut steps = [12, 9, 6, 3].into_iter().filter(|n| *n <= limit);
+    steps.find(holds).unwrap_or(0)
 }
 
-fn told(findings: &[Finding]) -> String {
+fn describe(findings: &[Finding]) -> String {
     findings.iter().fold(String::new(), |mut text, f| {
-        let verdict = if f.pass { "pass" } else { "FAIL" };
+        let status = if f.pass { "pass" } else { "FAIL" };
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{verdict}  {:2} digits  {}  [{}]",
+            "{status}  {:2} digits  {}  [{}]",
             digits(f),
             f.key,
-            f.truth
+            f.check
         );
         text
     })
 }
 
 /// A case against its snapshot, and its values against the committed report.
-fn regress(case: &str) {
-    let done = validated(&scene(case), case);
+fn assert_snapshot(case: &str) {
+    let validation = validated(&scene(case), case);
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../snapshots");
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
-    let findings = told(&done.outcome.findings);
+    let findings = describe(&validation.outcome.findings);
     settings.bind(|| insta::assert_snapshot!(format!("findings-{case}"), findings));
-    assert!(all_pass(&done.outcome.findings), "{case}: {findings}");
-    let report = home().join("reports").join(format!("{case}.txt"));
+    assert!(all_pass(&validation.outcome.findings), "{case}: {findings}");
+    let report = repository_root()
+        .join("reports")
+        .join(format!("{case}.txt"));
     let committed = std::fs::read_to_string(report).unwrap_or_default();
     assert!(
-        committed.replace("\r\n", "\n") == done.snapshot,
+        committed.replace("\r\n", "\n") == validation.snapshot,
         "{case}: reports/{case}.txt is another; `dwell validate {case}` writes it anew, `git diff` shows what changed"
     );
 }
 
 #[test]
 fn val_every_case_has_the_verdicts_digits_and_values_it_had() {
-    let cases = cases();
+    let cases = case_names();
     assert!(cases.len() >= 27, "{cases:?}");
     // All of them, so that one run tells everything that changed.
     let changed = cases
         .iter()
-        .filter(|case| catch_unwind(|| regress(case)).is_err());
+        .filter(|case| catch_unwind(|| assert_snapshot(case)).is_err());
     let changed: Vec<&String> = changed.collect();
     assert!(changed.is_empty(), "{changed:?}");
 }
@@ -74,7 +77,7 @@ fn digits_are_rounded_down_with_room_and_never_more_than_asked() {
     let finding = |relative: f64, tolerance: f64| {
         let some = done.outcome.findings[0].clone();
         digits(&Finding {
-            relative,
+            relative_difference: relative,
             tolerance,
             ..some
         })
@@ -96,7 +99,7 @@ fn val_single_dwell_reaches_what_is_promised() {
         let found = findings.iter().find(|f| f.key == key);
         found.unwrap_or_else(|| panic!("no finding {key}"))
     };
-    for (key, most) in [
+    for (key, max) in [
         ("m-energy", 1e-14),
         ("half-dm-differences", 1e-11),
         ("half-dm-spectral", 1e-12),
@@ -104,15 +107,15 @@ fn val_single_dwell_reaches_what_is_promised() {
         ("b-released", 1e-10),
         ("energy-bdf", 1e-9),
     ] {
-        let reached = finding(key).relative;
-        assert!(reached <= most, "{key}: {reached:e}, promised {most:e}");
+        let reached = finding(key).relative_difference;
+        assert!(reached <= max, "{key}: {reached:e}, promised {max:e}");
     }
     let bdf = finding("period-bdf");
     assert_eq!(bdf.unit, "s");
     assert!(
-        bdf.absolute <= 1e-9,
+        bdf.absolute_difference <= 1e-9,
         "period by BDF: off by {:e} s",
-        bdf.absolute
+        bdf.absolute_difference
     );
     let json = done
         .outcome
@@ -129,32 +132,32 @@ fn val_single_dwell_reaches_what_is_promised() {
 
 /// A scene that is not the published one fails where it is held against published values, however
 /// little it differs; what it is held against itself still agrees.
-fn caught(path: &str) {
+fn assert_detected(path: &str) {
     let scene = scene("single-dwell");
     let value = scene.value(path).expect("a number");
     let other = scene.with_value(path, value * (1.0 + 1e-9));
-    let done = validated(&other.expect("a scene"), "single-dwell");
-    assert!(!all_pass(&done.outcome.findings));
-    let failed = done.outcome.findings.iter().filter(|f| !f.pass);
+    let validation = validated(&other.expect("a scene"), "single-dwell");
+    assert!(!all_pass(&validation.outcome.findings));
+    let failed = validation.outcome.findings.iter().filter(|f| !f.pass);
     let keys: Vec<&str> = failed.map(|f| f.key.as_str()).collect();
     assert!(keys.contains(&"published-m"), "{path}: {keys:?}");
     let of_reference = |key: &&str| key.starts_with("published-") || **key == *"period-quadrature";
     assert!(keys.iter().all(of_reference), "{path}: {keys:?}");
-    assert!(done.outcome.summary.contains("FAIL published-m"));
-    assert!(done.snapshot.contains("FAIL  published-m"));
+    assert!(validation.outcome.summary.contains("FAIL published-m"));
+    assert!(validation.snapshot.contains("FAIL  published-m"));
 }
 
 #[test]
 fn a_mass_off_by_a_billionth_is_caught() {
-    caught("coupler.mass");
+    assert_detected("coupler.mass");
 }
 
 #[test]
 fn an_inertia_off_by_a_billionth_is_caught() {
-    caught("crank.inertia");
+    assert_detected("crank.inertia");
 }
 
 #[test]
 fn a_length_off_by_a_billionth_is_caught() {
-    caught("crank.points.B[0]");
+    assert_detected("crank.points.B[0]");
 }

@@ -1,11 +1,11 @@
-//! One mechanism, described in many ways, has one set of coefficients: see [`crate::changes`] for
+//! One mechanism, described in many ways, has one set of coefficients: see [`dwell_tests::changes`] for
 //! the ways and for what each makes of them.
 
-use crate::cases::{CASES, Case};
-use crate::changes::{Rng, Sample, Setup, positions, travels};
 use dwell_geometry::{Range, Vec2, vec2};
-use dwell_kinetostatics::{Coefficients, Exact, Reduced};
+use dwell_kinetostatics::{Coefficients, ExactModel, ReducedModel};
 use dwell_scene::Scene;
+use dwell_tests::cases::{CASES, Case};
+use dwell_tests::changes::{Rng, Sample, Setup, positions, travels};
 use toml::{Table, Value};
 
 const SEEDS: [u64; 6] = [1, 2, 3, 4, 5, 6];
@@ -19,13 +19,13 @@ const FAR_AWAY: f64 = 5e-9;
 /// Largest differences of m and ½m′, of forces and of couples, each relative to the largest
 /// coefficient of its unit (kg m for a force; kg m² for a couple and for m) over the samples.
 #[derive(Debug, Clone, Copy, Default)]
-struct Worst {
+struct LargestDifference {
     inertia: f64,
     force: f64,
     couple: f64,
 }
 
-impl Worst {
+impl LargestDifference {
     fn max(self, other: Self) -> Self {
         Self {
             inertia: self.inertia.max(other.inertia),
@@ -36,16 +36,16 @@ impl Worst {
 }
 
 /// The coefficients of a setup at positions of its own.
-fn samples(setup: &Setup, model: &Exact, at: &[f64]) -> Vec<Sample> {
+fn samples(setup: &Setup, model: &ExactModel, at: &[f64]) -> Vec<Sample> {
     let plan = model.model().plan();
-    let mut work = model.work();
+    let mut workspace = model.workspace();
     let mut pose = plan.pose();
     let one = |&q: &f64| {
-        let mut coefficients = model.model().coefficients();
+        let mut coefficients = model.model().coefficient_buffer();
         model
-            .coefficients(q, &mut work, &mut coefficients)
+            .coefficients(q, &mut workspace, &mut coefficients)
             .expect("a pose");
-        plan.place(&[q], &mut pose).expect("a pose");
+        plan.positions(&[q], &mut pose).expect("a pose");
         Sample {
             coefficients,
             travel: travels(&setup.mechanism, plan, &pose),
@@ -55,9 +55,9 @@ fn samples(setup: &Setup, model: &Exact, at: &[f64]) -> Vec<Sample> {
 }
 
 /// How far `got` is from `want`, over all positions.
-fn compare(setup: &Setup, got: &[Sample], want: &[Coefficients]) -> Worst {
+fn compare(setup: &Setup, got: &[Sample], want: &[Coefficients]) -> LargestDifference {
     let (mut in_kg_m, mut in_kg_m2) = (0.0_f64, 0.0_f64);
-    let mut worst = Worst::default();
+    let mut worst = LargestDifference::default();
     for (got, want) in got.iter().zip(want) {
         let got = &got.coefficients;
         for (got, want) in [(got.m, want.m), (got.half_dm, want.half_dm)] {
@@ -77,7 +77,7 @@ fn compare(setup: &Setup, got: &[Sample], want: &[Coefficients]) -> Worst {
             }
         }
     }
-    Worst {
+    LargestDifference {
         inertia: worst.inertia / in_kg_m2,
         force: worst.force / in_kg_m,
         couple: worst.couple / in_kg_m2,
@@ -86,22 +86,25 @@ fn compare(setup: &Setup, got: &[Sample], want: &[Coefficients]) -> Worst {
 
 /// The changed setups have the coefficients of the original by equation (1) of the changes, the
 /// largest structural group of the case, and the range.
-fn hold(case: Case, original: &Setup, what: &str, bound: f64, changed: &[Setup]) {
+fn assert_invariant(case: Case, original: &Setup, what: &str, bound: f64, changed: &[Setup]) {
     let what = format!("{}, {what}", case.name);
     let model = original.model().expect("a model");
     let range = model.range();
     let at = positions(range, SAMPLES);
     let reference = samples(original, &model, &at);
-    let mut worst = Worst::default();
+    let mut worst = LargestDifference::default();
     for setup in changed {
         let model = setup.model().unwrap_or_else(|e| panic!("{what}: {e}"));
-        let groups = model.model().plan().group_kinds();
+        let groups = model.model().plan().group_methods();
         let largest = groups.iter().map(|(n, _)| *n).max();
         assert_eq!(largest, Some(case.largest), "{what}: {groups:?}");
         match (model.range(), setup.range(range)) {
-            (Range::Between(from, to), Range::Between(low, high)) => {
-                let apart = (from - low).abs().max((to - high).abs());
-                assert!(apart <= 10.0 * bound, "{what}: ends {apart:e} apart");
+            (Range::Limited(from, to), Range::Limited(low, high)) => {
+                let difference = (from - low).abs().max((to - high).abs());
+                assert!(
+                    difference <= 10.0 * bound,
+                    "{what}: ends {difference:e} apart"
+                );
             }
             (got, want) => assert_eq!(got, want, "{what}"),
         }
@@ -109,7 +112,7 @@ fn hold(case: Case, original: &Setup, what: &str, bound: f64, changed: &[Setup])
         let want: Vec<_> = reference.iter().map(|s| setup.coefficients(s)).collect();
         worst = worst.max(compare(setup, &samples(setup, &model, &there), &want));
     }
-    let Worst {
+    let LargestDifference {
         inertia,
         force,
         couple,
@@ -119,57 +122,59 @@ fn hold(case: Case, original: &Setup, what: &str, bound: f64, changed: &[Setup])
 }
 
 /// The same for all cases and seeds.
-fn hold_all(what: &str, bound: f64, change: impl Fn(Setup, &mut Rng) -> Setup) {
+fn assert_invariant_for_all(what: &str, bound: f64, change: impl Fn(Setup, &mut Rng) -> Setup) {
     for case in CASES {
         let original = Setup::of(&case.scene());
         let one = |&seed: &u64| change(original.clone(), &mut Rng(seed));
         let changed: Vec<Setup> = SEEDS.iter().map(one).collect();
-        hold(case, &original, what, bound, &changed);
+        assert_invariant(case, &original, what, bound, &changed);
     }
 }
 
 #[test]
 fn order_does_not_matter() {
-    hold_all("shuffled", ROUNDING, Setup::shuffled);
+    assert_invariant_for_all("shuffled", ROUNDING, Setup::shuffled);
 }
 
 #[test]
 fn names_do_not_matter() {
-    hold_all("renamed", 0.0, Setup::renamed);
+    assert_invariant_for_all("renamed", 0.0, Setup::renamed);
 }
 
 #[test]
 fn body_frames_do_not_matter() {
-    hold_all("reframed", ROUNDING, Setup::reframed);
+    assert_invariant_for_all("reframed", ROUNDING, Setup::reframed);
 }
 
 #[test]
 fn orientation_does_not_matter() {
-    let turn = |s: Setup, rng: &mut Rng| s.rotated(rng.between(-3.0, 3.0));
-    hold_all("rotated", ROUNDING, turn);
+    let rotate = |s: Setup, rng: &mut Rng| s.rotated(rng.between(-3.0, 3.0));
+    assert_invariant_for_all("rotated", ROUNDING, rotate);
 }
 
 #[test]
 fn a_mirror_image_turns_the_other_way() {
-    hold_all("mirrored", ROUNDING, |s, _| s.mirrored());
+    assert_invariant_for_all("mirrored", ROUNDING, |s, _| s.mirrored());
 }
 
 #[test]
 fn swapped_bodies_act_the_other_way() {
-    hold_all("swapped", ROUNDING, |s, _| s.swapped());
+    assert_invariant_for_all("swapped", ROUNDING, |s, _| s.swapped());
 }
 
 #[test]
 fn swapping_or_mirroring_twice_changes_nothing() {
-    hold_all("swapped twice", 0.0, |s, _| s.swapped().swapped());
-    hold_all("mirrored twice", 0.0, |s, _| s.mirrored().mirrored());
+    assert_invariant_for_all("swapped twice", 0.0, |s, _| s.swapped().swapped());
+    assert_invariant_for_all("mirrored twice", 0.0, |s, _| s.mirrored().mirrored());
 }
 
 #[test]
 fn position_does_not_matter() {
     let near = |rng: &mut Rng| vec2(rng.between(-2.0, 2.0), rng.between(-2.0, 2.0));
-    hold_all("moved", ROUNDING, |s, rng| s.moved(near(rng)));
-    hold_all("far away", FAR_AWAY, |s, rng| s.moved(far(rng)));
+    assert_invariant_for_all("moved", ROUNDING, |s, rng| s.translated(near(rng)));
+    assert_invariant_for_all("far away", FAR_AWAY, |s, rng| {
+        s.translated(distant_offset(rng))
+    });
 }
 
 /// The rounding of the ground's points is all that is lost far away: brought back from there, with
@@ -178,10 +183,10 @@ fn position_does_not_matter() {
 fn only_the_rounding_of_the_points_is_lost_far_away() {
     for case in CASES {
         for seed in SEEDS {
-            let by = far(&mut Rng(seed));
-            let away = Setup::of(&case.scene()).moved(by);
-            let back = away.clone().moved(-by);
-            hold(case, &back, "there and back", 0.0, &[away]);
+            let offset = distant_offset(&mut Rng(seed));
+            let away = Setup::of(&case.scene()).translated(offset);
+            let back = away.clone().translated(-offset);
+            assert_invariant(case, &back, "there and back", 0.0, &[away]);
         }
     }
 }
@@ -195,12 +200,12 @@ fn everything_at_once_does_not_matter() {
             .rotated(rng.between(-3.0, 3.0))
             .swapped()
             .renamed(rng)
-            .moved(vec2(rng.between(-2.0, 2.0), rng.between(-2.0, 2.0)))
+            .translated(vec2(rng.between(-2.0, 2.0), rng.between(-2.0, 2.0)))
     };
-    hold_all("all at once", ROUNDING, all);
-    hold_all("all, far away", FAR_AWAY, |s, rng| {
-        let by = far(rng);
-        all(s, rng).moved(by)
+    assert_invariant_for_all("all at once", ROUNDING, all);
+    assert_invariant_for_all("all, far away", FAR_AWAY, |s, rng| {
+        let offset = distant_offset(rng);
+        all(s, rng).translated(offset)
     });
 }
 
@@ -218,9 +223,9 @@ fn the_rough_angle_of_any_body_of_a_class_is_enough() {
             let mut setup = original.clone();
             let bodies = &setup.mechanism.bodies;
             let at = bodies.iter().position(|b| b.name == forgotten);
-            setup.start.rough[at.expect("a body")] = None;
+            setup.assembly.initial_guess[at.expect("a body")] = None;
             let changed = SEEDS.map(|seed| setup.clone().reframed(&mut Rng(seed)));
-            hold(case, &original, forgotten, ROUNDING, &changed);
+            assert_invariant(case, &original, forgotten, ROUNDING, &changed);
         }
     }
 }
@@ -244,8 +249,8 @@ fn units_do_not_matter() {
         for units in UNITS {
             let text = rewritten(&table, units).to_string();
             let scene = Scene::parse("rewritten.toml", &text).unwrap_or_else(|e| panic!("{e:?}"));
-            let setup = Setup::of(&scene).matched(&original.mechanism);
-            hold(case, &original, units[0].0, ROUNDING, &[setup]);
+            let setup = Setup::of(&scene).matched_by_name(&original.mechanism);
+            assert_invariant(case, &original, units[0].0, ROUNDING, &[setup]);
         }
     }
 }
@@ -253,7 +258,7 @@ fn units_do_not_matter() {
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Some place 1e6 m away.
-fn far(rng: &mut Rng) -> Vec2 {
+fn distant_offset(rng: &mut Rng) -> Vec2 {
     Vec2::from_angle(rng.between(-3.0, 3.0)) * 1e6
 }
 
@@ -300,12 +305,12 @@ fn rewritten(scene: &Table, to: [(&str, f64); 4]) -> Table {
 }
 
 /// Every number of a value times a factor; the name of a point stays as it is.
-fn scale(value: &mut Value, by: f64) {
+fn scale(value: &mut Value, factor: f64) {
     match value {
-        Value::Integer(number) => *value = Value::Float(*number as f64 * by),
-        Value::Float(number) => *number *= by,
-        Value::Array(items) => items.iter_mut().for_each(|item| scale(item, by)),
-        Value::Table(table) => table.iter_mut().for_each(|(_, item)| scale(item, by)),
+        Value::Integer(number) => *value = Value::Float(*number as f64 * factor),
+        Value::Float(number) => *number *= factor,
+        Value::Array(items) => items.iter_mut().for_each(|item| scale(item, factor)),
+        Value::Table(table) => table.iter_mut().for_each(|(_, item)| scale(item, factor)),
         _ => {}
     }
 }

@@ -1,11 +1,11 @@
 //! Every kind of joint and drive, judged by the dense rows: poses, motion, reactions and actions.
 
-use crate::changes::Setup;
-use crate::sketch::{FourBar, Sketch};
-use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Relation, Vec2, vec2};
+use dwell_geometry::{BodyId, Coordinate, Coupling, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{Mass, Model};
 use dwell_laws::{Law, Polynomial};
-use dwell_verify::{State, judge_states};
+use dwell_tests::changes::Setup;
+use dwell_tests::sketch::{FourBar, Sketch};
+use dwell_verify::{ClaimedState, check_states};
 
 const GROUND: BodyId = Sketch::GROUND;
 
@@ -26,65 +26,73 @@ fn block(mass: f64) -> Mass {
 }
 
 /// Judges the mechanism at some steps away from its start. Each step is in rad or m.
-fn judge(setup: &Setup, steps: &[f64]) {
+fn check(setup: &Setup, steps: &[f64]) {
     let Setup {
         mechanism,
         masses,
-        start,
+        assembly: start,
         ..
     } = setup;
     let model = Model::new(mechanism, masses, start, &mechanism.reactions());
     let model = model.unwrap_or_else(|error| panic!("{error}"));
-    let states: Vec<State> = steps
+    let states: Vec<ClaimedState> = steps
         .iter()
         .map(|step| {
             let each = |of: &dyn Fn(f64) -> f64| -> Vec<f64> {
                 (0..start.q.len()).map(|i| of(i as f64)).collect()
             };
-            let apart = each(&|i| step * (1.0 - 0.3 * i));
-            let q = start.q.iter().zip(apart).map(|(q, by)| q + by).collect();
+            let offsets = each(&|i| step * (1.0 - 0.3 * i));
+            let q = start
+                .q
+                .iter()
+                .zip(offsets)
+                .map(|(q, offset)| q + offset)
+                .collect();
             let rates = [each(&|i| 1.3 - 0.8 * i), each(&|i| -0.7 + 1.1 * i)];
             state(&model, mechanism, q, rates)
         })
         .collect();
     let rest = || vec![0.0; start.q.len()];
     let home = state(&model, mechanism, start.q.clone(), [rest(), rest()]);
-    for finding in judge_states(mechanism, masses, &home.bodies, &states) {
+    for finding in check_states(mechanism, masses, &home.poses, &states) {
         assert!(finding.pass, "{finding:?}");
     }
 }
 
 /// What the model claims of a state of motion.
-fn state(model: &Model, mechanism: &Mechanism, q: Vec<f64>, rates: [Vec<f64>; 2]) -> State {
-    let (mut work, mut actions) = (model.workspace(), model.actions());
+fn state(model: &Model, mechanism: &Mechanism, q: Vec<f64>, rates: [Vec<f64>; 2]) -> ClaimedState {
+    let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
     let [q_dot, q_ddot] = rates;
-    if let Err(error) = model.kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut work, &mut actions) {
+    if let Err(error) = model.kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut workspace, &mut result) {
         panic!("{q:?}: {error}");
     }
-    let bodies = model.plan().body_frames(mechanism, &work.pose);
+    let bodies = model.plan().body_frames(mechanism, &workspace.pose);
     let rates = |b: usize| {
-        let origin = work.states().point(BodyId(b), Vec2::ZERO);
-        let body = work.states().body(BodyId(b));
+        let origin = workspace.states().point(BodyId(b), Vec2::ZERO);
+        let body = workspace.states().body(BodyId(b));
         let (v, a) = (origin.velocity, origin.acceleration);
-        ([v.x, v.y, body.spin], [a.x, a.y, body.spin_rate])
+        (
+            [v.x, v.y, body.angular_velocity],
+            [a.x, a.y, body.angular_acceleration],
+        )
     };
     let (velocity, acceleration) = (0..bodies.len()).map(rates).unzip();
-    State {
+    ClaimedState {
         t: 0.0,
         q,
         q_dot,
         q_ddot,
-        bodies,
-        velocity,
-        acceleration,
-        reactions: actions.reactions,
-        tau: actions.tau,
-        loads: Vec::new(),
+        poses: bodies,
+        velocities: velocity,
+        accelerations: acceleration,
+        reactions: result.reactions,
+        tau: result.tau,
+        load_wrenches: Vec::new(),
     }
 }
 
-const TURN: [f64; 6] = [0.0, 0.7, 2.1, 3.9, -4.4, 9.0];
-const SWING: [f64; 5] = [0.0, 0.15, -0.2, 0.31, -0.4];
+const REVOLUTION_STEPS: [f64; 6] = [0.0, 0.7, 2.1, 3.9, -4.4, 9.0];
+const LIMITED_STEPS: [f64; 5] = [0.0, 0.15, -0.2, 0.31, -0.4];
 
 #[test]
 fn a_slot_with_its_pin_on_either_body() {
@@ -97,8 +105,8 @@ fn a_slot_with_its_pin_on_either_body() {
         axis: vec2(1.0, 0.0),
     };
     s.joint("k", (rocker, [0.0, 0.05]), (crank, [0.2, 0.0]), slot);
-    s.drive("phi", [GROUND, crank]);
-    judge(&s.setup(&[0.3]), &TURN);
+    s.actuate("phi", [GROUND, crank]);
+    check(&s.setup(&[0.3]), &REVOLUTION_STEPS);
 }
 
 #[test]
@@ -118,8 +126,8 @@ fn a_coupler_welded_of_two_parts() {
     );
     s.revolute("C", (tip, [1.5, 0.0]), (rocker, [3.0, 0.0]));
     s.revolute("D", (GROUND, [4.0, 0.0]), (rocker, [0.0, 0.0]));
-    s.drive("phi", [GROUND, crank]);
-    judge(&s.setup(&[1.0]), &TURN);
+    s.actuate("phi", [GROUND, crank]);
+    check(&s.setup(&[1.0]), &REVOLUTION_STEPS);
 }
 
 #[test]
@@ -134,8 +142,8 @@ fn two_gears_on_the_ground() {
         let radii = [0.3, 0.5];
         let gear = JointKind::Gear { radii, internal };
         s.joint("g", (one, [0.0, 0.0]), (two, [0.0, 0.0]), gear);
-        s.drive("phi", [GROUND, one]);
-        judge(&s.setup(&[0.3]), &TURN);
+        s.actuate("phi", [GROUND, one]);
+        check(&s.setup(&[0.3]), &REVOLUTION_STEPS);
     }
 }
 
@@ -161,8 +169,8 @@ fn a_planet_between_sun_and_ring() {
         (planet, [0.0, 0.0]),
         gear([0.7, 0.2], true),
     );
-    s.drive("phi", [GROUND, sun]);
-    judge(&s.setup(&[0.1]), &TURN);
+    s.actuate("phi", [GROUND, sun]);
+    check(&s.setup(&[0.1]), &REVOLUTION_STEPS);
 }
 
 #[test]
@@ -182,8 +190,8 @@ fn two_gears_close_a_five_bar() {
         internal: false,
     };
     s.joint("g", (one, [0.0, 0.0]), (two, [0.0, 0.0]), gear);
-    s.drive("phi", [GROUND, one]);
-    judge(&s.setup(&[0.5]), &TURN);
+    s.actuate("phi", [GROUND, one]);
+    check(&s.setup(&[0.5]), &REVOLUTION_STEPS);
 }
 
 #[test]
@@ -200,11 +208,11 @@ fn a_rack_driven_by_its_pinion_and_a_pinion_by_its_rack() {
         let kind = JointKind::Rack { axis, radius };
         s.joint("r", (rack, [0.0, 0.2]), (pinion, [0.0, 0.0]), kind);
         if by_rack {
-            s.drive_travel("x", [GROUND, rack], slide);
+            s.actuate_travel("x", [GROUND, rack], slide);
         } else {
-            s.drive("phi", [GROUND, pinion]);
+            s.actuate("phi", [GROUND, pinion]);
         }
-        judge(&s.setup(&[0.2]), &SWING);
+        check(&s.setup(&[0.2]), &LIMITED_STEPS);
     }
 }
 
@@ -222,8 +230,8 @@ fn a_crank_pulls_a_rolling_wheel() {
         s.revolute("C", (rod, [1.0, 0.0]), (wheel, [0.0, 0.0]));
         let kind = JointKind::Rolling { axis, radius };
         s.joint("d", (GROUND, [0.9, -radius]), (wheel, [0.0, 0.0]), kind);
-        s.drive("phi", [GROUND, crank]);
-        judge(&s.setup(&[0.4]), &TURN);
+        s.actuate("phi", [GROUND, crank]);
+        check(&s.setup(&[0.4]), &REVOLUTION_STEPS);
     }
 }
 
@@ -237,8 +245,8 @@ fn a_distance_is_a_massless_coupler() {
     let length = 3.5;
     let kind = JointKind::Distance { length };
     s.joint("l", (crank, [1.0, 0.0]), (rocker, [3.0, 0.0]), kind);
-    s.drive("phi", [GROUND, crank]);
-    judge(&s.setup(&[1.0]), &TURN);
+    s.actuate("phi", [GROUND, crank]);
+    check(&s.setup(&[1.0]), &REVOLUTION_STEPS);
 }
 
 #[test]
@@ -255,25 +263,25 @@ fn a_cam_lifts_its_follower_and_turns_another() {
         vec2(0.0, 1.0),
     );
     s.revolute("B", (follower, [0.0, 0.3]), (flap, [0.0, 0.0]));
-    s.drive("phi", [GROUND, cam]);
+    s.actuate("phi", [GROUND, cam]);
     let law = |coefficients: [f64; 4]| {
         Law::Polynomial(Polynomial {
             coefficients: coefficients.to_vec(),
         })
     };
-    let rise = Relation {
-        of: Coordinate::Travel(guide),
-        by: Coordinate::Angle([GROUND, cam]),
+    let rise = Coupling {
+        dependent: Coordinate::Travel(guide),
+        independent: Coordinate::Angle([GROUND, cam]),
         law: law([0.3, 0.1, -0.04, 0.02]),
     };
-    let flip = Relation {
-        of: Coordinate::Angle([follower, flap]),
-        by: Coordinate::Travel(guide),
+    let flip = Coupling {
+        dependent: Coordinate::Angle([follower, flap]),
+        independent: Coordinate::Travel(guide),
         law: law([0.1, 2.0, 0.5, 0.0]),
     };
-    s.relate("lift", [GROUND, follower], rise);
-    s.relate("flip", [follower, flap], flip);
-    judge(&s.setup(&[0.3]), &SWING);
+    s.couple("lift", [GROUND, follower], rise);
+    s.couple("flip", [follower, flap], flip);
+    check(&s.setup(&[0.3]), &LIMITED_STEPS);
 }
 
 #[test]
@@ -282,8 +290,8 @@ fn a_boom_with_a_cylinder_between_two_points_and_one_of_two_bodies() {
     let boom = s.mass("boom", bar(40.0, 3.0), Some(0.7));
     s.revolute("A", (GROUND, [0.0, 0.0]), (boom, [0.0, 0.0]));
     let points = [vec2(0.8, -0.3), vec2(1.5, 0.1)];
-    s.drive_length("l", [GROUND, boom], points);
-    judge(&s.setup(&[1.2]), &SWING);
+    s.actuate_length("l", [GROUND, boom], points);
+    check(&s.setup(&[1.2]), &LIMITED_STEPS);
 
     let mut s = Sketch::new();
     let boom = s.mass("boom", bar(40.0, 3.0), Some(0.7));
@@ -298,8 +306,8 @@ fn a_boom_with_a_cylinder_between_two_points_and_one_of_two_bodies() {
         vec2(-1.0, 0.0),
     );
     s.revolute("C", (boom, [1.5, 0.1]), (rod, [0.4, 0.0]));
-    s.drive_travel("l", [rod, barrel], slide);
-    judge(&s.setup(&[0.8]), &SWING);
+    s.actuate_travel("l", [rod, barrel], slide);
+    check(&s.setup(&[0.8]), &LIMITED_STEPS);
 }
 
 #[test]
@@ -315,15 +323,15 @@ fn a_five_bar_with_two_cranks_and_one_with_a_crank_and_a_cylinder() {
         s.revolute("C", (one, [0.4, 0.0]), (three, [0.0, 0.0]));
         s.revolute("D", (two, [0.4, 0.0]), (four, [0.0, 0.0]));
         s.revolute("E", (three, [1.0, 0.0]), (four, [1.0, 0.0]));
-        s.drive("phi", [GROUND, one]);
+        s.actuate("phi", [GROUND, one]);
         let mut start = [1.4, 1.7];
         if by_length {
-            s.drive_length("l", [GROUND, two], [vec2(1.6, 0.0), vec2(0.4, 0.0)]);
+            s.actuate_length("l", [GROUND, two], [vec2(1.6, 0.0), vec2(0.4, 0.0)]);
             start[1] = 0.7;
         } else {
-            s.drive("psi", [GROUND, two]);
+            s.actuate("psi", [GROUND, two]);
         }
-        judge(&s.setup(&start), &SWING);
+        check(&s.setup(&start), &LIMITED_STEPS);
     }
 }
 
@@ -346,8 +354,8 @@ fn a_scotch_yoke_and_a_trammel() {
         (crank, [0.2, 0.0]),
         JointKind::Slot { axis },
     );
-    s.drive("phi", [GROUND, crank]);
-    judge(&s.setup(&[0.3]), &TURN);
+    s.actuate("phi", [GROUND, crank]);
+    check(&s.setup(&[0.3]), &REVOLUTION_STEPS);
 
     let mut s = Sketch::new();
     let across = s.mass("across", block(1.0), None);
@@ -362,8 +370,8 @@ fn a_scotch_yoke_and_a_trammel() {
     s.prismatic("y", (GROUND, [0.0, 0.0]), (up, [0.0, 0.0]), vec2(0.0, 1.0));
     s.revolute("A", (up, [0.0, 0.0]), (beam, [0.0, 0.0]));
     s.revolute("B", (across, [0.0, 0.0]), (beam, [1.0, 0.0]));
-    s.drive_travel("x", [GROUND, across], slide);
-    judge(&s.setup(&[0.5]), &SWING);
+    s.actuate_travel("x", [GROUND, across], slide);
+    check(&s.setup(&[0.5]), &LIMITED_STEPS);
 }
 
 #[test]
@@ -386,19 +394,19 @@ fn three_cranks_hold_a_plate() {
         s.revolute(&format!("A{i}"), (GROUND, pivot), (crank, [0.0, 0.0]));
         s.revolute(&format!("B{i}"), (crank, [0.5, 0.0]), (rod, [0.0, 0.0]));
         s.revolute(&format!("C{i}"), (rod, [0.75, 0.0]), (plate, corner));
-        s.drive(&format!("q{i}"), [GROUND, crank]);
+        s.actuate(&format!("q{i}"), [GROUND, crank]);
         start.push(turn);
     }
-    judge(&s.setup(&start), &[0.0, 0.1, -0.15, 0.2]);
+    check(&s.setup(&start), &[0.0, 0.1, -0.15, 0.2]);
 }
 
 #[test]
 fn a_four_bar_driven_at_the_floating_joint() {
     let bars = FourBar::new([1.0, 3.5, 3.0, 4.0]);
     let mut s = bars.sketch;
-    s.drive("phi", [bars.coupler, bars.rocker]);
+    s.actuate("phi", [bars.coupler, bars.rocker]);
     let mut setup = s.setup(&[1.2]);
     setup.masses = vec![Mass::default(), bar(1.0, 1.0), bar(2.0, 3.5), bar(2.0, 3.0)];
-    setup.start.rough[bars.crank.0] = Some(1.0);
-    judge(&setup, &[0.0, 0.1, -0.1]);
+    setup.assembly.initial_guess[bars.crank.0] = Some(1.0);
+    check(&setup, &[0.0, 0.1, -0.1]);
 }

@@ -1,11 +1,11 @@
 //! Limit positions, where a branch of the assembly ends, and dead points, where no motion can start.
 
-use crate::changes::{Setup, positions};
 use crate::refusals::refusal;
-use crate::sketch::{FourBar, Sketch, slider_crank};
-use crate::world::scene;
-use dwell_geometry::{AssemblyError, PlaceError, vec2};
-use dwell_kinetostatics::Reduced;
+use dwell_geometry::{AssemblyError, PositionError, vec2};
+use dwell_kinetostatics::ReducedModel;
+use dwell_tests::changes::{Setup, positions};
+use dwell_tests::fixtures::scene;
+use dwell_tests::sketch::{FourBar, Sketch, slider_crank};
 use std::f64::consts::TAU;
 
 /// Towards a limit position m grows as 1/(distance), because the velocity ratios grow as one over
@@ -18,11 +18,11 @@ fn val_the_inertia_near_a_limit_position_and_the_refusal_beyond_it() {
     let Some((from, to)) = model.range().limits() else {
         panic!("{:?}", model.range());
     };
-    let mut work = model.work();
+    let mut workspace = model.workspace();
     for (end, inwards) in [(from, 1.0), (to, -1.0)] {
         let mut times_distance = |distance: f64| {
             let q = end + inwards * distance;
-            distance * model.inertia(q, &mut work).expect("a pose").0
+            distance * model.inertia(q, &mut workspace).expect("a pose").0
         };
         let limit = times_distance(1e-7);
         // The end is found to some 1e-13 rad: 1e-11 rad away from it, that is a per cent or so.
@@ -33,22 +33,25 @@ fn val_the_inertia_near_a_limit_position_and_the_refusal_beyond_it() {
                 "{distance:e}: {value}"
             );
         }
-        assert!(model.inertia(end, &mut work).is_ok());
+        assert!(model.inertia(end, &mut workspace).is_ok());
         // Outside the range, as far as the other end seen after a whole turn.
         let gap = from + TAU - to;
         for outside in [1e-12, 1e-6, 0.1, 0.5 * gap, gap - 1e-12] {
             let q = end - inwards * outside;
-            let error = model.inertia(q, &mut work).unwrap_err();
-            assert_eq!(error, PlaceError::OutOfRange { q, from, to });
+            let error = model.inertia(q, &mut workspace).unwrap_err();
+            assert_eq!(error, PositionError::OutOfRange { q, from, to });
         }
     }
     // Whole turns away the pose is the same.
-    let mut inertia = |q: f64| model.inertia(q, &mut work).expect("a pose");
+    let mut inertia = |q: f64| model.inertia(q, &mut workspace).expect("a pose");
     for q in positions(model.range(), 12) {
         let (m, half_dm) = inertia(q);
-        for turns in [-2.0, 1.0, 7.0] {
-            let (there, slope) = inertia(q + turns * TAU);
-            assert!((there - m).abs() < 1e-12 * m, "{q} {turns}: {there} {m}");
+        for revolutions in [-2.0, 1.0, 7.0] {
+            let (there, slope) = inertia(q + revolutions * TAU);
+            assert!(
+                (there - m).abs() < 1e-12 * m,
+                "{q} {revolutions}: {there} {m}"
+            );
             assert!((slope - half_dm).abs() < 1e-12 * m.max(half_dm.abs()));
         }
     }
@@ -66,8 +69,8 @@ fn val_the_inertia_near_a_limit_position_and_the_refusal_beyond_it() {
 #[test]
 fn val_limit_positions_of_triple_and_double_rockers() {
     let end = |[a, b, c, d]: [f64; 4], sign: f64| {
-        let reach = b + sign * c;
-        ((a * a + d * d - reach * reach) / (2.0 * a * d)).acos()
+        let stretched_length = b + sign * c;
+        ((a * a + d * d - stretched_length * stretched_length) / (2.0 * a * d)).acos()
     };
     let stretched = [2.0, 1.5, 1.6, 4.0];
     let folded = [2.0, 5.2, 2.5, 3.0];
@@ -77,9 +80,9 @@ fn val_limit_positions_of_triple_and_double_rockers() {
         (folded, end(folded, -1.0), TAU - end(folded, -1.0), 2.0),
         (double, end(double, -1.0), end(double, 1.0), 0.8),
     ] {
-        let bars = FourBar::driven(lengths);
-        for rough in [1.0, -1.0] {
-            let model = bars.setup(start, rough).model().expect("a model");
+        let bars = FourBar::actuated(lengths);
+        for guess in [1.0, -1.0] {
+            let model = bars.setup(start, guess).model().expect("a model");
             let Some((from, to)) = model.range().limits() else {
                 panic!("{lengths:?}: {:?}", model.range());
             };
@@ -87,8 +90,8 @@ fn val_limit_positions_of_triple_and_double_rockers() {
             assert!((from - low).abs() < 1e-12, "{lengths:?}: {from} {low}");
             assert!((to - high).abs() < 1e-12, "{lengths:?}: {to} {high}");
             for q in [low - 1e-9, high + 1e-9] {
-                let error = model.inertia(q, &mut model.work()).unwrap_err();
-                assert_eq!(error, PlaceError::OutOfRange { q, from, to });
+                let error = model.inertia(q, &mut model.workspace()).unwrap_err();
+                assert_eq!(error, PositionError::OutOfRange { q, from, to });
             }
         }
     }
@@ -102,11 +105,11 @@ fn a_dead_point_is_no_start() {
     let bars = |base: [f64; 2]| {
         let mut bars = FourBar::new([1.0, 4.0, 2.0, 0.0]);
         bars.sketch.mechanism.joints[3].points[0] = vec2(base[0], base[1]);
-        bars.sketch.drive("psi", [Sketch::GROUND, bars.rocker]);
+        bars.sketch.actuate("psi", [Sketch::GROUND, bars.rocker]);
         bars
     };
     let dead = bars([1.0, 4.0]);
-    let want = AssemblyError::SingularStart {
+    let want = AssemblyError::SingularAssembly {
         bodies: vec![dead.crank, dead.coupler],
         joints: vec![dead.c],
     };
@@ -119,10 +122,10 @@ fn a_dead_point_is_no_start() {
     let outside = bars([1.0 + 1e-12, 4.0]).setup(0.0, 0.9);
     assert!(matches!(
         refusal(&outside),
-        AssemblyError::CannotClose { .. }
+        AssemblyError::NoAssembly { .. }
     ));
     // The rod of a slider-crank across its guide is the same thing.
     let (sketch, rod) = slider_crank(1.0, 1.0);
     let error = refusal(&sketch.setup(&[0.0]));
-    assert!(matches!(error, AssemblyError::SingularStart { bodies, .. } if bodies == [rod]));
+    assert!(matches!(error, AssemblyError::SingularAssembly { bodies, .. } if bodies == [rod]));
 }

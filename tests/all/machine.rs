@@ -1,46 +1,49 @@
 //! Free motions under loads and drives, against closed forms, published values and their own Jacobian.
 
-use crate::world::scene;
 use dwell_dynamics::{
-    Dense, Drive, DriveKind, Guidance, Machine, Method, Motor, Moving, Next, Options, Point,
-    Regulator, System, integrate,
+    CoordinateMode, DenseOutput, Machine, MachineOde, Method, OdeState, OdeSystem, Options,
+    StepControl, integrate,
 };
-use dwell_kinetostatics::{Friction, Guide, Load, LoadKind, Magnitude, Model};
+use dwell_kinetostatics::{
+    Drive, DriveKind, Friction, FrictionContact, Guide, Load, LoadKind, Magnitude, Model, Motor,
+    SpeedController,
+};
 use dwell_scene::Scene;
+use dwell_tests::fixtures::scene;
 
 /// The machine of a scene, all coordinates free, with more loads and drives.
 pub(crate) fn machine(scene: &Scene, more: &[Load], drives: &[Drive]) -> Machine {
     let loads = [&scene.loads, more].concat();
-    let frictions = loads.iter().filter_map(|load| match load.magnitude {
-        Magnitude::Friction(f) => Some(f.reactions(&scene.mechanism)),
-        _ => None,
-    });
-    let start = scene.assembly.to_start();
-    let needed: Vec<_> = frictions.flatten().collect();
-    let model = Model::new(&scene.mechanism, &scene.masses, &start, &needed).expect("a model");
-    let free = vec![Guidance::Free; model.plan().actuators()];
-    Machine::new(&scene.mechanism, model, &loads, free, drives).expect("a machine")
+    let start = scene.assembly.to_configuration();
+    let model = Model::new(&scene.mechanism, &scene.masses, &start, &[]).expect("a model");
+    let free = vec![CoordinateMode::Free; model.plan().actuators()];
+    Machine::new(model, &loads, free, drives).expect("a machine")
 }
 
 /// The state at a time.
-pub(crate) fn at(
+pub(crate) fn final_state(
     machine: &Machine,
     y: &[f64],
     until: f64,
     method: Method,
     tolerance: f64,
 ) -> Vec<f64> {
-    let mut moving = Moving::new(machine, 0.0, y).expect("a start");
-    let start = Point {
+    let mut ode = MachineOde::new(machine, 0.0, y).expect("a start");
+    let start = OdeState {
         t: 0.0,
         y: y.to_vec(),
     };
     let options = Options::new(method, tolerance);
-    let mut watch = |_: &Point, _: &Point, _: Dense<'_>| Ok(Next::GoOn);
-    let ended = integrate(&mut moving, &start, Some(until), &options, &mut watch).expect("a run");
-    assert_eq!(ended.failed, None);
-    println!("{} {tolerance:e}: {:?}", method.name(), ended.statistics);
-    ended.at.y
+    let mut observer = |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
+    let termination =
+        integrate(&mut ode, &start, Some(until), &options, &mut observer).expect("a run");
+    assert_eq!(termination.error, None);
+    println!(
+        "{} {tolerance:e}: {:?}",
+        method.name(),
+        termination.statistics
+    );
+    termination.state.y
 }
 
 pub(crate) fn parse(text: &str) -> Scene {
@@ -52,17 +55,17 @@ pub(crate) fn parse(text: &str) -> Scene {
 fn val_squeezer() {
     let scene = scene("andrews");
     let machine = machine(&scene, &[], &[]);
-    let y = machine.start(&scene.assembly.start, &[0.0]);
+    let y = machine.initial_state(&scene.assembly.coordinates, &[0.0]);
     let (beta, speed) = (15.810_771_195_153_707_f64, 1_139.920_302_259_106_f64);
     // Measured errors of angle (rad) and speed: 4e-12 and 6e-14, 7e-10 and 2e-11, 8e-8 and 2e-9, 8e-6 and 3e-7.
-    for (method, tolerance, within) in [
+    for (method, tolerance, bounds) in [
         (Method::Dop853, 1e-13, [1e-10, 2e-12]),
         (Method::Tsit45, 1e-13, [1e-10, 2e-12]),
         (Method::Bdf, 1e-13, [1e-9, 1e-10]),
         (Method::Esdirk34, 1e-11, [2e-7, 1e-8]),
         (Method::TrBdf2, 1e-9, [3e-5, 1e-6]),
     ] {
-        let end = at(&machine, &y, 0.03, method, tolerance);
+        let end = final_state(&machine, &y, 0.03, method, tolerance);
         println!(
             "{} {:e} {:e}",
             method.name(),
@@ -70,13 +73,13 @@ fn val_squeezer() {
             end[1] / speed - 1.0
         );
         assert!(
-            (end[0] - beta).abs() < within[0],
+            (end[0] - beta).abs() < bounds[0],
             "{} {:e}",
             method.name(),
             end[0] - beta
         );
         assert!(
-            (end[1] / speed - 1.0).abs() < within[1],
+            (end[1] / speed - 1.0).abs() < bounds[1],
             "{} {}",
             method.name(),
             end[1]
@@ -122,9 +125,9 @@ fn a_double_pendulum_by_hand() {
     let scene = parse(DOUBLE);
     let machine = machine(&scene, &[], &[]);
     let y = [0.4, -0.3, 1.7, -2.2];
-    let mut moving = Moving::new(&machine, 0.0, &y).expect("a start");
+    let mut ode = MachineOde::new(&machine, 0.0, &y).expect("a start");
     let mut rates = [0.0; 4];
-    moving.rates(0.0, &y, &mut rates).expect("rates");
+    ode.rhs(0.0, &y, &mut rates).expect("rates");
     let (m1, c1, i1, l, m2, c2, i2, g) = (1.3, 0.35, 0.05, 0.6, 0.8, 0.25, 0.02, 9.81);
     let alpha = i1 + m1 * c1 * c1 + m2 * l * l;
     let (beta, gamma) = (m2 * l * c2, i2 + m2 * c2 * c2);
@@ -140,12 +143,14 @@ fn a_double_pendulum_by_hand() {
         assert!((rate / expected - 1.0).abs() < 1e-13, "{rate} {expected}");
     }
     // Nothing is lost: kinetic and potential energy stay.
-    let mut work = machine.work();
-    machine.evaluate(0.0, &y, &mut work).expect("a state");
-    let before: f64 = machine.energy(&work).iter().sum();
-    let end = at(&machine, &y, 5.0, Method::Tsit45, 1e-13);
-    machine.evaluate(5.0, &end, &mut work).expect("a state");
-    let after: f64 = machine.energy(&work).iter().sum();
+    let mut workspace = machine.workspace();
+    machine.evaluate(0.0, &y, &mut workspace).expect("a state");
+    let before: f64 = machine.energy(&workspace).iter().sum();
+    let end = final_state(&machine, &y, 5.0, Method::Tsit45, 1e-13);
+    machine
+        .evaluate(5.0, &end, &mut workspace)
+        .expect("a state");
+    let after: f64 = machine.energy(&workspace).iter().sum();
     // Tsit45 errs by some tens of its tolerance of the energies exchanged, about 10 J.
     assert!((after - before).abs() < 1e-10, "{before} {after}");
 }
@@ -159,7 +164,7 @@ drag = { torsion-damper = ["one", "two"], constant = 0.3 }
 push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = "q.speed" } }
 "#;
     let scene = parse(&text);
-    let rub = |name: &str, j: usize| Load {
+    let friction = |name: &str, j: usize| Load {
         name: name.to_owned(),
         kind: LoadKind::Torque {
             bodies: scene.mechanism.joints[j].bodies,
@@ -167,8 +172,8 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
         magnitude: Magnitude::Friction(Friction {
             joint: dwell_geometry::JointId(j),
             coefficient: 0.4,
-            size: 0.05,
-            fade: 1.5,
+            contact: FrictionContact::Pin { radius: 0.05 },
+            regularization_speed: 1.5,
         }),
     };
     let drives = [
@@ -177,26 +182,30 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
             coordinate: scene.mechanism.actuators[0].coordinate(),
             kind: DriveKind::Motor(Motor {
                 voltage: Magnitude::Constant(12.0),
-                constant: 0.1,
+                torque_constant: 0.1,
                 resistance: 2.0,
                 inductance: 0.05,
-                ratio: 3.0,
-                inertia: 0.001,
+                gear_ratio: 3.0,
+                rotor_inertia: 0.001,
             }),
         },
         Drive {
             name: "regulator".into(),
             coordinate: scene.mechanism.actuators[1].coordinate(),
-            kind: DriveKind::Regulator(Regulator {
-                speed: Magnitude::Constant(1.0),
-                proportional: 0.4,
-                integral: 0.7,
+            kind: DriveKind::SpeedController(SpeedController {
+                reference_speed: Magnitude::Constant(1.0),
+                proportional_gain: 0.4,
+                integral_gain: 0.7,
                 limit: 100.0,
             }),
         },
     ];
-    let machine = machine(&scene, &[rub("rub-a", 0), rub("rub-b", 1)], &drives);
-    let mut y = machine.start(&[0.4, -0.3], &[1.7, -1.2]);
+    let machine = machine(
+        &scene,
+        &[friction("rub-a", 0), friction("rub-b", 1)],
+        &drives,
+    );
+    let mut y = machine.initial_state(&[0.4, -0.3], &[1.7, -1.2]);
     (y[4], y[5]) = (2.0, 0.3);
     (machine, y)
 }
@@ -206,18 +215,18 @@ push = { torque = "two", magnitude = { table = [[-4, 1], [0, 2], [4, -1]], of = 
 #[test]
 fn jacobians_agree_with_differences() {
     let (machine, y) = everything();
-    let n = machine.states();
-    let mut moving = Moving::new(&machine, 0.0, &y).expect("a start");
+    let n = machine.state_count();
+    let mut moving = MachineOde::new(&machine, 0.0, &y).expect("a start");
     let mut jacobian = vec![0.0; n * n];
     moving.jacobian(0.0, &y, &mut jacobian).expect("a Jacobian");
-    let scale = jacobian.iter().fold(0.0_f64, |most, j| most.max(j.abs()));
+    let scale = jacobian.iter().fold(0.0_f64, |max, j| max.max(j.abs()));
     for j in 0..n {
         let h = 1e-4;
         let mut at = |times: f64| {
-            let mut moved = y.clone();
-            moved[j] += times * h;
+            let mut perturbed = y.clone();
+            perturbed[j] += times * h;
             let mut out = vec![0.0; n];
-            moving.rates(0.0, &moved, &mut out).expect("rates");
+            moving.rhs(0.0, &perturbed, &mut out).expect("rates");
             out
         };
         let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(&mut at);
@@ -258,7 +267,7 @@ fn a_block_on_an_incline() {
     let joint = &scene.mechanism.joints[0];
     let friction = |coefficient| Load {
         name: "rub".into(),
-        kind: LoadKind::Slide(Guide {
+        kind: LoadKind::SlideForce(Guide {
             bodies: joint.bodies,
             points: joint.points,
             axis: dwell_geometry::vec2(0.8, -0.6),
@@ -266,15 +275,15 @@ fn a_block_on_an_incline() {
         magnitude: Magnitude::Friction(Friction {
             joint: dwell_geometry::JointId(0),
             coefficient,
-            size: 0.0,
-            fade: 1e-3,
+            contact: FrictionContact::Guide { length: 0.0 },
+            regularization_speed: 1e-3,
         }),
     };
     let machine = machine(&scene, &[friction(0.3)], &[]);
-    let y = machine.start(&[0.0], &[1.0]);
-    let mut moving = Moving::new(&machine, 0.0, &y).expect("a start");
-    let mut rates = vec![0.0; machine.states()];
-    moving.rates(0.0, &y, &mut rates).expect("rates");
+    let y = machine.initial_state(&[0.0], &[1.0]);
+    let mut moving = MachineOde::new(&machine, 0.0, &y).expect("a start");
+    let mut rates = vec![0.0; machine.state_count()];
+    moving.rhs(0.0, &y, &mut rates).expect("rates");
     let expected = 9.81 * (0.6 - 0.3 * 0.8);
     assert!(
         (rates[1] - expected).abs() < 1e-14 * expected,
@@ -310,17 +319,23 @@ angle = ["ground", "wheel"]
         coordinate: scene.mechanism.actuators[0].coordinate(),
         kind: DriveKind::Motor(Motor {
             voltage: Magnitude::Constant(u),
-            constant: k,
+            torque_constant: k,
             resistance: r,
             inductance,
-            ratio,
-            inertia: rotor,
+            gear_ratio: ratio,
+            rotor_inertia: rotor,
         }),
     };
     let t = 0.4;
     let (kn, inertia) = (k * ratio, 0.02 + ratio * ratio * rotor);
     let plain = machine(&scene, &[], &[motor(0.0)]);
-    let end = at(&plain, &plain.start(&[0.0], &[0.0]), t, Method::Bdf, 1e-12);
+    let end = final_state(
+        &plain,
+        &plain.initial_state(&[0.0], &[0.0]),
+        t,
+        Method::Bdf,
+        1e-12,
+    );
     let expected = u / kn * (1.0 - (-kn * kn / (r * inertia) * t).exp());
     // It has nearly come to its speed, and errs by less than its tolerance: 6e-13.
     assert!(
@@ -331,9 +346,21 @@ angle = ["ground", "wheel"]
     // With inductance: ω̈ + R/L ω̇ + (kN)²/(JL) ω = u kN/(JL), here with two real roots.
     let l = 0.01;
     let coil = machine(&scene, &[], &[motor(l)]);
-    let end = at(&coil, &coil.start(&[0.0], &[0.0]), t, Method::Tsit45, 1e-12);
+    let end = final_state(
+        &coil,
+        &coil.initial_state(&[0.0], &[0.0]),
+        t,
+        Method::Tsit45,
+        1e-12,
+    );
     // From rest the current climbs within microseconds: the first step must be let become as short.
-    let slowly = at(&coil, &coil.start(&[0.0], &[0.0]), t, Method::Bdf, 1e-10);
+    let slowly = final_state(
+        &coil,
+        &coil.initial_state(&[0.0], &[0.0]),
+        t,
+        Method::Bdf,
+        1e-10,
+    );
     assert!((slowly[1] / end[1] - 1.0).abs() < 1e-9, "{}", slowly[1]);
     let (b, c) = (r / l, kn * kn / (inertia * l));
     let root = (b * b / 4.0 - c).sqrt();
@@ -364,43 +391,41 @@ fn reactions_are_the_sum_of_their_channels() {
         "watt-six-bar",
     ] {
         let scene = scene(case);
-        let start = scene.assembly.to_start();
+        let start = scene.assembly.to_configuration();
         let all = scene.mechanism.reactions();
         let bare = Model::new(&scene.mechanism, &scene.masses, &start, &all).expect("a model");
-        let mut empty = (bare.workspace::<f64>(), bare.actions::<f64>());
-        let model = bare
-            .clone()
-            .with_loads(&scene.mechanism, scene.loads.clone())
-            .expect("loads");
+        let mut empty = (bare.workspace::<f64>(), bare.result_buffer::<f64>());
+        let model = bare.clone().with_loads(scene.loads.clone()).expect("loads");
         let n = model.plan().actuators();
         let q: Vec<f64> = start.q.iter().map(|q| q + 1e-3).collect();
         let q_dot: Vec<f64> = (0..n).map(|i| 1.3 - 0.4 * i as f64).collect();
         let q_ddot: Vec<f64> = (0..n).map(|i| -2.1 + 0.9 * i as f64).collect();
         let t = 0.01;
-        let (mut work, mut total) = (model.workspace(), model.actions());
+        let (mut workspace, mut total) = (model.workspace(), model.result_buffer());
         model
-            .kinetostatics(t, &q, &q_dot, &q_ddot, &mut work, &mut total)
+            .kinetostatics(t, &q, &q_dot, &q_ddot, &mut workspace, &mut total)
             .expect("a state");
-        let loads = work.loads().magnitude.clone();
+        let loads = workspace.loads().magnitude.clone();
         let resisted: Vec<f64> = model
             .loads()
             .iter()
             .zip(&loads)
             .map(|(load, &f)| match load.kind {
                 LoadKind::Damper { bodies, points } => {
-                    let between = work.states().separation(bodies, points);
-                    f * between.direction.expect("a line").dot(between.rate)
+                    let between = workspace.states().separation(bodies, points);
+                    f * between.direction.expect("a line").dot(between.velocity)
                 }
-                LoadKind::TorsionDamper { bodies } => f * work.states().angle(bodies)[1],
+                LoadKind::RotationalDamper { bodies } => f * workspace.states().angle(bodies)[1],
                 _ => f,
             })
             .collect();
         // What speeds alone make, without loads, by their products.
-        bare.enter(t, &q, &q_dot, &mut empty.0).expect("a state");
-        let mut sum = bare.actions::<f64>();
+        bare.set_state(t, &q, &q_dot, &mut empty.0)
+            .expect("a state");
+        let mut sum = bare.result_buffer::<f64>();
         for i in 0..n {
             for j in i..n {
-                bare.speeds([i, j], &mut empty.0, &mut empty.1);
+                bare.christoffel_terms([i, j], &mut empty.0, &mut empty.1);
                 let times = q_dot[i] * q_dot[j];
                 let pairs = [
                     (&mut sum.tau, &empty.1.tau),
@@ -415,8 +440,8 @@ fn reactions_are_the_sum_of_their_channels() {
         }
         let mut scale =
             [&sum.tau, &sum.reactions].map(|v| v.iter().map(|x| x.abs()).fold(0.0, f64::max));
-        let mut run = model.actions();
-        let mut add = |run: &dwell_kinetostatics::Actions<f64>, times: f64| {
+        let mut run = model.result_buffer();
+        let mut add = |run: &dwell_kinetostatics::InverseDynamics<f64>, times: f64| {
             let pairs = [
                 (&mut sum.tau, &run.tau),
                 (&mut sum.reactions, &run.reactions),
@@ -428,31 +453,37 @@ fn reactions_are_the_sum_of_their_channels() {
                 }
             }
         };
-        model.enter(t, &q, &q_dot, &mut work).expect("a state");
+        model
+            .set_state(t, &q, &q_dot, &mut workspace)
+            .expect("a state");
         for (i, &q_ddot) in q_ddot.iter().enumerate() {
-            model.inertial(i, &mut work, &mut run);
+            model.mass_matrix_column(i, &mut workspace, &mut run);
             add(&run, q_ddot);
         }
         for (load, &f) in resisted.iter().enumerate() {
             model
-                .channel(load, &mut work, &mut run)
+                .unit_load_response(load, &mut workspace, &mut run)
                 .expect("a direction");
             add(&run, f);
             kinds.insert(std::mem::discriminant(&model.loads()[load].kind));
-            if n == 1 && model.conservative(load) {
+            if n == 1 && model.is_conservative(load) {
                 let h = 1e-4;
                 let mut potential = |x: f64| {
                     model
-                        .enter(t, &[q[0] + x], &q_dot, &mut work)
+                        .set_state(t, &[q[0] + x], &q_dot, &mut workspace)
                         .expect("a state");
-                    model.potential(load, &work).expect("a potential")
+                    model
+                        .potential_energy(load, &workspace)
+                        .expect("a potential")
                 };
                 let slope = (8.0 * (potential(h) - potential(-h))
                     - (potential(2.0 * h) - potential(-2.0 * h)))
                     / (12.0 * h);
                 let w = -run.tau[0] * f;
                 let size = w.abs().max(1e-3 * potential(0.0).abs());
-                model.enter(t, &q, &q_dot, &mut work).expect("a state");
+                model
+                    .set_state(t, &q, &q_dot, &mut workspace)
+                    .expect("a state");
                 // Rounding of V over h, and h⁴ times its fifth derivative.
                 assert!(
                     (slope + w).abs() < 1e-8 * size.max(1e-6),

@@ -1,16 +1,16 @@
 //! Random crank-rockers and slider-cranks, with their m in closed form.
 
-use crate::changes::Setup;
-use crate::sketch::Sketch;
 use dwell_geometry::Vec2;
 use dwell_kinetostatics::Mass;
+use dwell_tests::changes::Setup;
+use dwell_tests::sketch::Sketch;
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
 /// A crank of length r at the origin, a coupler l from the crank's end, and either a rocker or a
 /// slider; side = ±1 is the assembly branch.
 #[derive(Debug, Clone)]
-pub(crate) struct Machine {
+pub(crate) struct RandomMechanism {
     crank: f64,
     coupler: f64,
     follower: Follower,
@@ -27,7 +27,7 @@ pub(crate) enum Follower {
     Slider { height: f64 },
 }
 
-impl Machine {
+impl RandomMechanism {
     /// The angles of coupler and follower. Rocker (cosines in the triangle of coupler, rocker and
     /// the line from the crank's end to the rocker's base); slider: l sin θ = height − r sin φ.
     fn angles(&self, phi: f64) -> [f64; 2] {
@@ -36,10 +36,11 @@ impl Machine {
         match self.follower {
             Follower::Rocker { length, base } => {
                 let (dx, dy) = (base - x, -y);
-                let far = dx.hypot(dy);
+                let distance = dx.hypot(dy);
                 let l = self.coupler;
-                let within = ((l * l + far * far - length * length) / (2.0 * l * far)).acos();
-                let theta = dy.atan2(dx) + self.side * within;
+                let angle =
+                    ((l * l + distance * distance - length * length) / (2.0 * l * distance)).acos();
+                let theta = dy.atan2(dx) + self.side * angle;
                 let (cx, cy) = (x + l * theta.cos(), y + l * theta.sin());
                 [theta, cy.atan2(cx - base)]
             }
@@ -77,7 +78,7 @@ impl Machine {
                 );
             }
         }
-        sketch.drive("phi", [ground, crank]);
+        sketch.actuate("phi", [ground, crank]);
         sketch.setup(&[self.start])
     }
 
@@ -102,22 +103,22 @@ impl Machine {
         let (r, l) = (self.crank, self.coupler);
         let [crank, coupler, follower] = self.masses;
         let about = |body: &Mass| body.inertia + body.mass * body.center.dot(body.center);
-        let (turn, last) = match self.follower {
+        let (rotation, last) = match self.follower {
             Follower::Rocker { length, .. } => {
-                let turn = r / l * (psi - phi).sin() / (theta - psi).sin();
+                let rotation = r / l * (psi - phi).sin() / (theta - psi).sin();
                 let swing = r / length * (phi - theta).sin() / (psi - theta).sin();
-                (turn, about(&follower) * swing * swing)
+                (rotation, about(&follower) * swing * swing)
             }
             Follower::Slider { .. } => {
-                let turn = -r * phi.cos() / (l * theta.cos());
-                let slide = -r * phi.sin() - l * theta.sin() * turn;
-                (turn, follower.mass * slide * slide)
+                let rotation = -r * phi.cos() / (l * theta.cos());
+                let slide = -r * phi.sin() - l * theta.sin() * rotation;
+                (rotation, follower.mass * slide * slide)
             }
         };
         let (u, v) = (coupler.center.x, coupler.center.y);
-        let vx = -r * phi.sin() - turn * (u * theta.sin() + v * theta.cos());
-        let vy = r * phi.cos() + turn * (u * theta.cos() - v * theta.sin());
-        let coupler = coupler.mass * (vx * vx + vy * vy) + coupler.inertia * turn * turn;
+        let vx = -r * phi.sin() - rotation * (u * theta.sin() + v * theta.cos());
+        let vy = r * phi.cos() + rotation * (u * theta.cos() - v * theta.sin());
+        let coupler = coupler.mass * (vx * vx + vy * vy) + coupler.inertia * rotation * rotation;
         about(&crank) + coupler + last
     }
 }
@@ -135,7 +136,7 @@ fn body(length: f64) -> impl Strategy<Value = Mass> {
 
 /// Crank-rockers in which the dyad is never nearer to being stretched or folded than 20 % of what
 /// is left (Grashof), and slider-cranks whose coupler is at least 20 % longer than it must be.
-pub(crate) fn machine() -> impl Strategy<Value = Machine> {
+pub(crate) fn random_mechanism() -> impl Strategy<Value = RandomMechanism> {
     let rocker = (0.1..0.4_f64, 1.0..2.0_f64, -0.8..0.8_f64, 1.2..2.5_f64);
     let rocker = rocker.prop_map(|(r, base, difference, sum)| {
         let (difference, sum) = (difference * (base - r), sum * (base + r));
@@ -153,7 +154,7 @@ pub(crate) fn machine() -> impl Strategy<Value = Machine> {
     let side = prop_oneof![Just(1.0), Just(-1.0)];
     let bodies = (body(0.5), body(1.0), body(1.0));
     (prop_oneof![rocker, slider], side, bodies, -PI..PI).prop_map(
-        |((crank, coupler, follower), side, (one, two, three), start)| Machine {
+        |((crank, coupler, follower), side, (one, two, three), start)| RandomMechanism {
             crank,
             coupler,
             follower,

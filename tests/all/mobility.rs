@@ -1,26 +1,30 @@
 //! Joints that hold twice: consistent ones are solved, and what they leave undetermined is said;
 //! what counting does not see is found by rank.
 
-use crate::changes::Setup;
-use crate::sketch::{FourBar, Sketch};
 use dwell_geometry::mobility::mobility;
 use dwell_geometry::{AssemblyError, BodyId, Plan, StructureError, Vec2, vec2};
 use dwell_kinetostatics::{Mass, Model};
+use dwell_tests::changes::Setup;
+use dwell_tests::sketch::{FourBar, Sketch};
 
 const GROUND: BodyId = Sketch::GROUND;
 
 /// A parallelogram whose coupler a third bar holds too, `off` m longer than the others.
-fn three_bars(off: f64) -> Setup {
+fn three_bars(offset: f64) -> Setup {
     let mut bars = FourBar::new([1.0, 3.0, 1.0, 3.0]);
     let s = &mut bars.sketch;
     let third = s.body("third");
     s.revolute("E", (GROUND, [1.2, 0.0]), (third, [0.0, 0.0]));
-    s.revolute("F", (third, [1.0 + off, 0.0]), (bars.coupler, [1.2, 0.0]));
-    s.drive("phi", [GROUND, bars.crank]);
+    s.revolute(
+        "F",
+        (third, [1.0 + offset, 0.0]),
+        (bars.coupler, [1.2, 0.0]),
+    );
+    s.actuate("phi", [GROUND, bars.crank]);
     let mut setup = s.setup(&[1.0]);
-    setup.start.rough[bars.coupler.0] = Some(0.0);
-    setup.start.rough[bars.rocker.0] = Some(1.0);
-    setup.start.rough[third.0] = Some(1.0);
+    setup.assembly.initial_guess[bars.coupler.0] = Some(0.0);
+    setup.assembly.initial_guess[bars.rocker.0] = Some(1.0);
+    setup.assembly.initial_guess[third.0] = Some(1.0);
     let bar = Mass {
         mass: 2.0,
         center: vec2(0.5, 0.0),
@@ -34,30 +38,37 @@ fn three_bars(off: f64) -> Setup {
 fn a_parallelogram_with_a_third_bar_is_solved_and_says_what_is_not_unique() {
     let setup = three_bars(0.0);
     let reactions = setup.mechanism.reactions();
-    let model = Model::new(&setup.mechanism, &setup.masses, &setup.start, &reactions).unwrap();
-    let found = mobility(&setup.mechanism, &setup.start).unwrap();
-    assert_eq!((found.counted(), found.freedom(), found.excess), (0, 1, 1));
-    let mut work = model.workspace::<f64>();
-    let mut actions = model.actions();
+    let model = Model::new(&setup.mechanism, &setup.masses, &setup.assembly, &reactions).unwrap();
+    let found = mobility(&setup.mechanism, &setup.assembly).unwrap();
+    assert_eq!(
+        (
+            found.grubler_count(),
+            found.degrees_of_freedom(),
+            found.redundant_count
+        ),
+        (0, 1, 1)
+    );
+    let mut workspace = model.workspace::<f64>();
+    let mut result = model.result_buffer();
     for q in [1.0, 0.4, 1.9, 2.7] {
         model
-            .act(&[q], &[1.2], &[-0.3], &mut work, &mut actions)
+            .inverse_dynamics(&[q], &[1.2], &[-0.3], &mut workspace, &mut result)
             .unwrap();
-        let frames = model.plan().body_frames(&setup.mechanism, &work.pose);
+        let poses = model.plan().body_frames(&setup.mechanism, &workspace.pose);
         for body in [1, 3, 4] {
-            assert!((frames[body][2] - q).abs() < 1e-12);
+            assert!((poses[body][2] - q).abs() < 1e-12);
         }
         // All bars turn with the crank, the coupler moves along a circle: m = 3 I_A + m_c L².
         let about_pivot = 0.2 + 2.0 * 0.25;
         let m = 3.0 * about_pivot + 2.0;
         assert!(
-            (actions.tau[0] - m * -0.3).abs() < 1e-12,
+            (result.tau[0] - m * -0.3).abs() < 1e-12,
             "{}",
-            actions.tau[0]
+            result.tau[0]
         );
     }
     // The self-stress runs along the bars through every pin, which is never along an axis here.
-    assert!((0..reactions.len()).all(|k| !model.plan().is_unique(k)));
+    assert!((0..reactions.len()).all(|k| !model.plan().is_determinate(k)));
 }
 
 #[test]
@@ -74,21 +85,30 @@ fn what_lies_outside_the_redundant_part_stays_unique() {
         (rider, [0.0, 0.0]),
         vec2(1.0, 0.0),
     );
-    s.drive("phi", [GROUND, bars.crank]);
-    s.drive_travel("x", [bars.coupler, rider], slide);
+    s.actuate("phi", [GROUND, bars.crank]);
+    s.actuate_travel("x", [bars.coupler, rider], slide);
     let mut setup = s.setup(&[1.0, 0.3]);
-    setup.start.rough[bars.coupler.0] = Some(0.0);
-    let plan = Plan::compile(&setup.mechanism, &setup.start).unwrap();
+    setup.assembly.initial_guess[bars.coupler.0] = Some(0.0);
+    let plan = Plan::compile(&setup.mechanism, &setup.assembly).unwrap();
     for (k, reaction) in setup.mechanism.reactions().iter().enumerate() {
-        assert_eq!(plan.is_unique(k), reaction.joint == slide, "{reaction:?}");
+        assert_eq!(
+            plan.is_determinate(k),
+            reaction.joint == slide,
+            "{reaction:?}"
+        );
     }
 }
 
 #[test]
 fn a_third_bar_of_another_length_is_refused_with_what_stays_open() {
     let setup = three_bars(1e-3);
-    let error = Plan::compile(&setup.mechanism, &setup.start).unwrap_err();
-    let AssemblyError::Inconsistent { excess: 1, gap, .. } = error else {
+    let error = Plan::compile(&setup.mechanism, &setup.assembly).unwrap_err();
+    let AssemblyError::Inconsistent {
+        redundant_count: 1,
+        gap,
+        ..
+    } = error
+    else {
         panic!("{error:?}");
     };
     assert!(gap > 1e-5 && gap < 1e-3, "{gap}");
@@ -119,21 +139,21 @@ fn a_wedge_of_three_slides_is_solved() {
         (lift, [0.0, 0.0]),
         vec2(0.0, 1.0),
     );
-    s.drive_travel("x", [GROUND, wedge], floor);
+    s.actuate_travel("x", [GROUND, wedge], floor);
     let setup = s.setup(&[0.4]);
     let reactions = setup.mechanism.reactions();
-    let model = Model::new(&setup.mechanism, &setup.masses, &setup.start, &reactions).unwrap();
-    let mut work = model.workspace::<f64>();
-    let mut actions = model.actions();
+    let model = Model::new(&setup.mechanism, &setup.masses, &setup.assembly, &reactions).unwrap();
+    let mut workspace = model.workspace::<f64>();
+    let mut result = model.result_buffer();
     model
-        .act(&[0.7], &[1.0], &[2.0], &mut work, &mut actions)
+        .inverse_dynamics(&[0.7], &[1.0], &[2.0], &mut workspace, &mut result)
         .unwrap();
     // The lift rises as the wedge comes nearer: ẏ = −tan 0.5 ẋ.
     let m = 2.0 * (1.0 + 0.5_f64.tan().powi(2));
-    assert!((actions.tau[0] - m * 2.0).abs() < 1e-12);
+    assert!((result.tau[0] - m * 2.0).abs() < 1e-12);
     for (k, reaction) in reactions.iter().enumerate() {
         let force = reaction.component == dwell_geometry::Component::Normal;
-        assert_eq!(model.plan().is_unique(k), force, "{reaction:?}");
+        assert_eq!(model.plan().is_determinate(k), force, "{reaction:?}");
     }
 }
 
@@ -150,13 +170,13 @@ fn a_part_held_twice_does_not_make_up_for_one_that_is_free() {
         s.revolute("C", (one, [1.0, 0.0]), (two, [0.0, 0.0])),
         s.revolute("D", (one, [2.0, 0.0]), (two, [1.0, 0.0])),
     ];
-    s.drive("phi", [GROUND, crank]);
+    s.actuate("phi", [GROUND, crank]);
     let setup = s.setup(&[1.0]);
-    let error = Plan::compile(&setup.mechanism, &setup.start).unwrap_err();
-    let AssemblyError::Structure(StructureError::UnderDriven {
-        dof,
+    let error = Plan::compile(&setup.mechanism, &setup.assembly).unwrap_err();
+    let AssemblyError::Structure(StructureError::UnderActuated {
+        degrees_of_freedom: dof,
         bodies,
-        twice: found,
+        redundant_joints: found,
         ..
     }) = error
     else {
@@ -169,11 +189,11 @@ fn a_part_held_twice_does_not_make_up_for_one_that_is_free() {
 #[test]
 fn two_actuators_for_one_freedom_are_named() {
     let mut bars = FourBar::new([1.0, 3.5, 3.0, 4.0]);
-    bars.sketch.drive("phi", [GROUND, bars.crank]);
-    bars.sketch.drive("psi", [GROUND, bars.rocker]);
+    bars.sketch.actuate("phi", [GROUND, bars.crank]);
+    bars.sketch.actuate("psi", [GROUND, bars.rocker]);
     let mut setup = bars.setup(1.0, 0.6);
-    setup.start.q = vec![1.0, 1.9];
-    let error = Plan::compile(&setup.mechanism, &setup.start).unwrap_err();
+    setup.assembly.q = vec![1.0, 1.9];
+    let error = Plan::compile(&setup.mechanism, &setup.assembly).unwrap_err();
     assert!(
         matches!(
             error,
@@ -188,7 +208,7 @@ fn two_actuators_for_one_freedom_are_named() {
 /// out, and every number that remains is the same to the last bit.
 #[test]
 fn what_nothing_needs_is_left_out() {
-    let mut bars = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let mut bars = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
     let s = &mut bars.sketch;
     let arm = s.body("arm");
     let tip = s.body("tip");
@@ -196,7 +216,7 @@ fn what_nothing_needs_is_left_out() {
     s.revolute("F", (arm, [4.0, 0.0]), (tip, [0.0, 0.0]));
     s.revolute("G", (GROUND, [5.0, 3.0]), (tip, [3.5, 0.0]));
     let mut setup = bars.setup(1.0, 0.6);
-    setup.start.rough[arm.0] = Some(0.5);
+    setup.assembly.initial_guess[arm.0] = Some(0.5);
     let bar = Mass {
         mass: 2.0,
         center: vec2(0.5, 0.1),
@@ -206,19 +226,20 @@ fn what_nothing_needs_is_left_out() {
         setup.masses[body.0] = bar;
     }
     let reactions = setup.mechanism.reactions();
-    let full = Model::new(&setup.mechanism, &setup.masses, &setup.start, &reactions).unwrap();
-    let lean = full.clone().only_for(&setup.mechanism, &[]);
-    assert_eq!(lean.plan().skipped(), [false, true]);
-    let asked = full.clone().only_for(&setup.mechanism, &[tip]);
-    assert_eq!(asked.plan().skipped(), [false, false]);
-    let (mut one, mut two) = (full.workspace::<f64>(), lean.workspace::<f64>());
-    let (mut with, mut without) = (full.actions(), lean.actions());
+    let full = Model::new(&setup.mechanism, &setup.masses, &setup.assembly, &reactions).unwrap();
+    let pruned = full.clone().pruned_for(&[]);
+    assert_eq!(pruned.plan().pruned_groups(), [false, true]);
+    let requested = full.clone().pruned_for(&[tip]);
+    assert_eq!(requested.plan().pruned_groups(), [false, false]);
+    let (mut one, mut two) = (full.workspace::<f64>(), pruned.workspace::<f64>());
+    let (mut with, mut without) = (full.result_buffer(), pruned.result_buffer());
     for q in [1.0, 2.0, 3.0, 4.4, 6.0] {
-        full.act(&[q], &[1.2], &[-0.3], &mut one, &mut with)
+        full.inverse_dynamics(&[q], &[1.2], &[-0.3], &mut one, &mut with)
             .unwrap();
-        lean.act(&[q], &[1.2], &[-0.3], &mut two, &mut without)
+        pruned
+            .inverse_dynamics(&[q], &[1.2], &[-0.3], &mut two, &mut without)
             .unwrap();
-        let bits = |a: &dwell_kinetostatics::Actions<f64>| -> Vec<u64> {
+        let bits = |a: &dwell_kinetostatics::InverseDynamics<f64>| -> Vec<u64> {
             // A zero may have either sign.
             let all = a.tau.iter().chain(&a.reactions);
             all.map(|v| (v + 0.0).to_bits()).collect()

@@ -1,34 +1,58 @@
 //! Free motion: energy, period, time history and the integrators' guard.
 
-use crate::world::{model_for, scene};
-use dwell_dynamics::{DynamicsError, Equation, Method, Options, Orbit, State, Until, simulate};
-use dwell_geometry::PlaceError;
-use dwell_kinetostatics::{Exact, Reduced};
+use dwell_dynamics::{
+    DynamicsError, Event, EventKind, Method, Options, Orbit, ReducedCoordinate, ReducedOde,
+    ReducedState, Solution, solve_reduced,
+};
+use dwell_geometry::PositionError;
+use dwell_kinetostatics::{ExactModel, ReducedModel};
+use dwell_tests::fixtures::{model_for, scene};
+use std::num::NonZeroUsize;
 
-const START: State = State {
+const START: ReducedState = ReducedState {
     t: 0.0,
     q: 0.0,
     q_dot: 1.0,
 };
 
-fn single_dwell() -> Exact {
+fn single_dwell() -> ExactModel {
     model_for(&scene("single-dwell"), &[])
+}
+
+/// The free motion over some whole revolutions, each of which is an event.
+fn revolve(
+    model: &ExactModel,
+    start: ReducedState,
+    revolutions: usize,
+    options: &Options,
+) -> Result<Solution, DynamicsError> {
+    let last = Event {
+        kind: EventKind::Revolution(ReducedCoordinate),
+        terminal: NonZeroUsize::new(revolutions),
+    };
+    solve_reduced(model, start, None, options, &[last])?.completed()
 }
 
 #[test]
 fn val_period_of_the_single_dwell() {
     let model = single_dwell();
-    let turn = Orbit::new(&model, START).expect("a period");
+    let orbit = Orbit::new(&model, START).expect("a period");
     // 50-digit arithmetic: 5.4196626770642718779 s.
-    assert!((turn.period - 5.419_662_677_064_272).abs() < 1e-13 * turn.period);
-    for (method, within) in [
+    assert!((orbit.period - 5.419_662_677_064_272).abs() < 1e-13 * orbit.period);
+    for (method, tolerance) in [
         (Method::Bdf, 1e-9),
         (Method::Tsit45, 1e-11),
         (Method::Dop853, 1e-11),
     ] {
-        let run = simulate(&model, START, Until::Turns(1), &Options::new(method, 1e-13));
-        let t = run.expect("a run").turns[0].t;
-        assert!((t - turn.period).abs() < within, "{} {t}", method.name());
+        let run = revolve(&model, START, 1, &Options::new(method, 1e-13)).expect("a run");
+        assert!(run.terminated_by_event);
+        let t = run.event_occurrences[0].state.t;
+        assert_eq!(run.steps.last().expect("a step").t, t);
+        assert!(
+            (t - orbit.period).abs() < tolerance,
+            "{} {t}",
+            method.name()
+        );
     }
 }
 
@@ -37,24 +61,19 @@ fn val_period_of_the_single_dwell() {
 #[test]
 fn the_way_back_takes_as_long() {
     let model = single_dwell();
-    let forward = Orbit::new(&model, State { q: 1.0, ..START }).expect("a period");
-    let back = State {
+    let forward = Orbit::new(&model, ReducedState { q: 1.0, ..START }).expect("a period");
+    let back = ReducedState {
         q: 1.0,
         q_dot: -1.0,
         ..START
     };
     let backward = Orbit::new(&model, back).expect("a period");
     assert!((forward.period - backward.period).abs() < 1e-14 * forward.period);
-    let run = simulate(
-        &model,
-        back,
-        Until::Turns(2),
-        &Options::new(Method::Tsit45, 1e-12),
-    );
-    let run = run.expect("a run");
-    assert!((run.turns[1].t - 2.0 * backward.period).abs() < 1e-10);
-    let there = forward.at(1.5);
-    let whole = backward.at(backward.period - 1.5);
+    let run = revolve(&model, back, 2, &Options::new(Method::Tsit45, 1e-12)).expect("a run");
+    let second = &run.event_occurrences[1];
+    assert!((second.state.t - 2.0 * backward.period).abs() < 1e-10);
+    let there = forward.state_at(1.5);
+    let whole = backward.state_at(backward.period - 1.5);
     // A turn forwards and the rest of a turn backwards meet a turn apart.
     assert!((there.q - whole.q - std::f64::consts::TAU).abs() < 1e-12);
     assert!((there.q_dot + whole.q_dot).abs() < 1e-12);
@@ -64,19 +83,19 @@ fn the_way_back_takes_as_long() {
 #[test]
 fn history_by_quadrature_is_the_integrated_one() {
     let model = single_dwell();
-    let turn = Orbit::new(&model, START).expect("a period");
+    let orbit = Orbit::new(&model, START).expect("a period");
     let mut options = Options::new(Method::Tsit45, 1e-13);
-    options.every = Some(0.01);
-    let run = simulate(&model, START, Until::Time(12.0), &options).expect("a run");
-    assert_eq!(run.samples.len(), 1201);
-    for step in &run.steps {
-        let exact = turn.at(step.t);
+    options.sample_interval = Some(0.01);
+    let run = solve_reduced(&model, START, Some(12.0), &options, &[]).expect("a run");
+    assert_eq!((run.samples.len(), &run.error), (1201, &None));
+    for step in run.steps.iter().map(ReducedState::from) {
+        let exact = orbit.state_at(step.t);
         assert!((exact.q - step.q).abs() < 1e-11 && (exact.q_dot - step.q_dot).abs() < 1e-11);
-        assert!((turn.time_at(step.q).expect("a time") - step.t).abs() < 1e-11);
+        assert!((orbit.time_at(step.q).expect("a time") - step.t).abs() < 1e-11);
     }
     // The dense output is poorer than the steps, but not by much.
-    for sample in &run.samples {
-        let exact = turn.at(sample.t);
+    for sample in run.samples.iter().map(ReducedState::from) {
+        let exact = orbit.state_at(sample.t);
         assert!((exact.q - sample.q).abs() < 1e-10, "{sample:?}");
     }
 }
@@ -91,7 +110,7 @@ fn jacobian_is_the_derivative_of_the_acceleration() {
         "class-three-six-bar",
     ] {
         let model = model_for(&scene(case), &[]);
-        let mut equation = Equation::new(&model);
+        let mut equation = ReducedOde::new(&model);
         let (from, to) = match model.range().limits() {
             None => (0.0, std::f64::consts::TAU),
             Some((from, to)) => (from + 0.3, to - 0.3),
@@ -126,47 +145,35 @@ fn the_guard_says_what_stopped_the_motion() {
     let with = |change: fn(&mut Options)| {
         let mut options = Options::new(Method::Tsit45, 1e-8);
         change(&mut options);
-        simulate(&model, START, Until::Turns(10), &options)
+        revolve(&model, START, 10, &options)
     };
     assert!(matches!(
-        with(|o| o.budget = 20),
-        Err(DynamicsError::Budget { steps: 20, .. })
+        with(|o| o.max_steps = 20),
+        Err(DynamicsError::MaxStepsReached { max_steps: 20, .. })
     ));
     for change in [
-        (|o: &mut Options| o.absolute = 0.0) as fn(&mut Options),
-        |o| o.absolute = f64::NAN,
-        |o| o.relative = -1e-8,
-        |o| o.relative = f64::INFINITY,
-        |o| o.every = Some(0.0),
+        (|o: &mut Options| o.atol = 0.0) as fn(&mut Options),
+        |o| o.atol = f64::NAN,
+        |o| o.rtol = -1e-8,
+        |o| o.rtol = f64::INFINITY,
+        |o| o.sample_interval = Some(0.0),
     ] {
         assert!(matches!(with(change), Err(DynamicsError::BadOption { .. })));
     }
-    let still = State {
+    let still = ReducedState {
         q_dot: 0.0,
         ..START
     };
     assert_eq!(
-        simulate(
-            &model,
-            still,
-            Until::Turns(1),
-            &Options::new(Method::Bdf, 1e-8)
-        ),
+        revolve(&model, still, 1, &Options::new(Method::Bdf, 1e-8)),
         Err(DynamicsError::AtRest)
     );
-    let nowhere = State {
+    let nowhere = ReducedState {
         q: f64::NAN,
         ..START
     };
-    assert!(
-        simulate(
-            &model,
-            nowhere,
-            Until::Time(1.0),
-            &Options::new(Method::Bdf, 1e-8)
-        )
-        .is_err()
-    );
+    let options = Options::new(Method::Bdf, 1e-8);
+    assert!(solve_reduced(&model, nowhere, Some(1.0), &options, &[]).is_err());
 }
 
 /// At a limit position of its actuator the mechanism passes to another branch. In the actuator's
@@ -178,16 +185,17 @@ fn a_limit_position_ends_the_motion_with_its_place() {
         panic!("a limited range");
     };
     for method in [Method::Bdf, Method::Tsit45] {
-        let start = State { q: 3.0, ..START };
-        let run = simulate(&model, start, Until::Time(1e4), &Options::new(method, 1e-8));
-        match run {
-            Err(DynamicsError::Limit { q, .. }) => {
+        let start = ReducedState { q: 3.0, ..START };
+        let options = Options::new(method, 1e-8);
+        let run = solve_reduced(&model, start, Some(1e4), &options, &[]);
+        match run.and_then(Solution::completed) {
+            Err(DynamicsError::LimitPosition { q, .. }) => {
                 assert!((q - to).abs() < 0.2, "{} {q} {to}", method.name());
             }
-            Err(DynamicsError::Place(
-                PlaceError::OutOfRange { q, .. }
-                | PlaceError::Singular { q, .. }
-                | PlaceError::NotClosed { q, .. },
+            Err(DynamicsError::Position(
+                PositionError::OutOfRange { q, .. }
+                | PositionError::Singular { q, .. }
+                | PositionError::NotConverged { q, .. },
             )) => assert!((q - to).abs() < 0.2, "{} {q} {to}", method.name()),
             other => panic!("{}: {:?}", method.name(), other.map(|r| r.steps.len())),
         }

@@ -1,14 +1,14 @@
 //! Every motion of `validation/` against the full multibody equations and published values, and by
 //! deliberate faults that must be found.
 
-use crate::world::{cases, home, scene};
 use dwell_findings::Finding;
 use dwell_scene::Scene;
-use dwell_study::{FreeRun, free_run};
+use dwell_tests::fixtures::{case_names, repository_root, scene};
+use dwell_validation::{FreeMotionRun, free_motion_run};
 use std::time::Instant;
 
 /// The cases that have a motion, and what is special about it.
-const DYNAMIC: [&str; 12] = [
+const CASES_WITH_MOTION: [&str; 12] = [
     "andrews",               // a constant torque, a spring
     "boom",                  // one cylinder led, one free
     "crank-rocker",          // no loads
@@ -23,7 +23,7 @@ const DYNAMIC: [&str; 12] = [
     "whitworth",             // a regulator
 ];
 /// Of them, those over which energy is given or taken.
-const DRIVEN: [&str; 6] = [
+const NONCONSERVATIVE: [&str; 6] = [
     "andrews",
     "boom",
     "five-bar",
@@ -36,12 +36,12 @@ const KEYS: [&str; 5] = [
     "motion-poses",
     "motion-velocities",
     "motion-reactions",
-    "motion-actions",
+    "motion-actuator-forces",
     "motion-energy",
 ];
 
-fn run(scene: &Scene) -> FreeRun {
-    let run = free_run(scene).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+fn run(scene: &Scene) -> FreeMotionRun {
+    let run = free_motion_run(scene).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     run.unwrap_or_else(|| panic!("{} has no motion", scene.name))
 }
 
@@ -51,16 +51,16 @@ fn failed(findings: &[Finding]) -> bool {
 
 #[test]
 fn val_every_motion_by_the_multibody_equations() {
-    let dynamic: Vec<String> = cases()
+    let dynamic: Vec<String> = case_names()
         .into_iter()
         .filter(|case| scene(case).motion.is_some())
         .collect();
-    assert_eq!(dynamic, DYNAMIC);
-    for case in DYNAMIC {
+    assert_eq!(dynamic, CASES_WITH_MOTION);
+    for case in CASES_WITH_MOTION {
         let scene = scene(case);
         let run = run(&scene);
-        assert_eq!(run.stopped, None, "{case}");
-        let findings = run.judge(&scene);
+        assert_eq!(run.stop_reason, None, "{case}");
+        let findings = run.check(&scene);
         let keys: Vec<&str> = findings.iter().map(|f| f.key.as_str()).collect();
         assert_eq!(keys, KEYS, "{case}");
         for finding in &findings {
@@ -71,20 +71,27 @@ fn val_every_motion_by_the_multibody_equations() {
                 1e-8
             };
             assert!(finding.pass, "{case}: {finding:?}");
-            assert!(finding.relative <= promised, "{case}: {finding:?}");
+            assert!(
+                finding.relative_difference <= promised,
+                "{case}: {finding:?}"
+            );
         }
         let work = run
             .steps
             .iter()
-            .fold(0.0_f64, |most, s| most.max(s.work.abs()));
-        assert_eq!(work > 0.1, DRIVEN.contains(&case), "{case}: {work} J");
+            .fold(0.0_f64, |max, s| max.max(s.work.abs()));
+        assert_eq!(
+            work > 0.1,
+            NONCONSERVATIVE.contains(&case),
+            "{case}: {work} J"
+        );
     }
 }
 
 /// Everything depends on the heaviest body, if by nothing but the reactions.
 #[test]
 fn a_mass_off_by_a_hundred_thousandth_is_found_in_every_motion() {
-    for case in DYNAMIC {
+    for case in CASES_WITH_MOTION {
         let right = scene(case);
         let run = run(&right);
         let ground = right.mechanism.ground;
@@ -97,7 +104,7 @@ fn a_mass_off_by_a_hundred_thousandth_is_found_in_every_motion() {
         // Both: the mass of a wheel about its own centre has no effect without weight.
         wrong.masses[heaviest].mass *= 1.0 + 1e-5;
         wrong.masses[heaviest].inertia *= 1.0 + 1e-5;
-        assert!(failed(&run.judge(&wrong)), "{case}");
+        assert!(failed(&run.check(&wrong)), "{case}");
     }
 }
 
@@ -107,7 +114,7 @@ fn what_moves_a_machine_is_judged_too() {
     type Change = fn(&str) -> String;
     let changes: [(&str, Change); 4] = [
         ("boom", |text| {
-            text.replace("1.5e4*dig.speed", "1.50001e4*dig.speed")
+            text.replace("1.5e4*dig.velocity", "1.50001e4*dig.velocity")
         }),
         ("four-bar", |text| {
             text.replace("inductance = 0.002", "inductance = 0.00200001")
@@ -121,12 +128,15 @@ fn what_moves_a_machine_is_judged_too() {
     ];
     for (case, change) in changes {
         let right = scene(case);
-        let path = home().join("validation").join(case).join("scene.toml");
+        let path = repository_root()
+            .join("validation")
+            .join(case)
+            .join("scene.toml");
         let text = std::fs::read_to_string(path).expect("a scene");
         let changed = change(&text);
         assert_ne!(text, changed, "{case}");
         let wrong = Scene::parse("scene.toml", &changed).expect("a scene");
-        assert!(failed(&run(&right).judge(&wrong)), "{case}");
+        assert!(failed(&run(&right).check(&wrong)), "{case}");
     }
 }
 
@@ -134,16 +144,16 @@ fn what_moves_a_machine_is_judged_too() {
 #[test]
 fn val_squeezer_multipliers() {
     let scene = scene("andrews");
-    let began = Instant::now();
+    let initial_state = Instant::now();
     let run = run(&scene);
     println!(
         "followed in {:.3} s, {} steps",
-        began.elapsed().as_secs_f64(),
+        initial_state.elapsed().as_secs_f64(),
         run.steps.len() - 1
     );
     let last = run.steps.last().expect("an end");
     assert_eq!(last.t, 0.03);
-    let wanted = [
+    let expected = [
         ("E-k3.x", 199.175_348_104_538_63_f64),
         ("E-k3.y", -29.755_309_974_971_763),
         ("E-k4.x", 23.066_543_612_162_15),
@@ -152,13 +162,16 @@ fn val_squeezer_multipliers() {
         ("E-k6.y", 11.617_392_352_611_256),
     ];
     let reactions = scene.mechanism.reactions();
-    for (name, wanted) in wanted {
+    for (name, expected) in expected {
         let named = |&r: &dwell_geometry::Reaction| scene.mechanism.reaction_name(r) == name;
         let found = last.reactions[reactions.iter().position(named).expect(name)];
-        let apart = found / wanted - 1.0;
-        println!("{name} {found:.12} {apart:.1e}");
+        let relative_error = found / expected - 1.0;
+        println!("{name} {found:.12} {relative_error:.1e}");
         // Of speeds of 10³ rad/s, known to 1e-11, accelerations of 10⁶ are known to a few parts in 1e10.
-        assert!(apart.abs() < 1e-7, "{name}: {found} is not {wanted}");
+        assert!(
+            relative_error.abs() < 1e-7,
+            "{name}: {found} is not {expected}"
+        );
     }
     let [beta, speed] = run.coordinates.last().expect("an end")[0];
     // The integration's error, of a motion of sixteen radians.

@@ -1,12 +1,13 @@
 //! Conservative motions by quadrature, against elliptic functions and integrators.
 
-use crate::machine::{at, machine, parse};
-use crate::world::{model_for, scene};
+use crate::machine::{final_state, machine, parse};
 use dwell_dynamics::{
-    DynamicsError, Fate, Machine, Method, Orbit, Stability, State, equilibria, fate,
+    DynamicsError, Machine, Method, MotionClass, Orbit, ReducedState, Stability, equilibria,
+    motion_class,
 };
 use dwell_geometry::vec2;
 use dwell_kinetostatics::{Load, LoadKind, Magnitude};
+use dwell_tests::fixtures::{model_for, scene};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 const G: f64 = 9.81;
@@ -15,12 +16,12 @@ fn pendulum() -> Machine {
     machine(&scene("pendulum-a01"), &[], &[])
 }
 
-fn from(q: f64, q_dot: f64) -> State {
-    State { t: 0.0, q, q_dot }
+fn from(q: f64, q_dot: f64) -> ReducedState {
+    ReducedState { t: 0.0, q, q_dot }
 }
 
 /// The complete elliptic integral of the first kind, modulus k, by the arithmetic-geometric mean.
-fn complete(k: f64) -> f64 {
+fn complete_elliptic(k: f64) -> f64 {
     let (mut a, mut b) = (1.0_f64, ((1.0 - k) * (1.0 + k)).sqrt());
     while (a - b).abs() > 1e-15 * a {
         (a, b) = (0.5 * (a + b), (a * b).sqrt());
@@ -49,7 +50,7 @@ fn amplitude(u: f64, k: f64) -> f64 {
 /// A01 at time t, released level on the left: x and y. sin(θ/2) = k sn(K − ω₀ t), θ from the bottom.
 fn a01(t: f64) -> [f64; 2] {
     let k = FRAC_PI_2.sin() * (0.25 * PI).sin();
-    let quarter = complete(k);
+    let quarter = complete_elliptic(k);
     let u = (quarter - G.sqrt() * t) % (4.0 * quarter);
     let half = (k * amplitude(u, k).sin()).asin();
     [-(2.0 * half).sin(), -(2.0 * half).cos()]
@@ -66,31 +67,34 @@ fn val_pendulum_a01() {
         "{}",
         orbit.period
     );
-    assert!((period * G.sqrt() / (4.0 * complete(0.5_f64.sqrt())) - 1.0).abs() < 1e-15);
-    let Fate::Swings { between: [a, b] } = orbit.fate else {
-        panic!("{:?}", orbit.fate)
+    assert!((period * G.sqrt() / (4.0 * complete_elliptic(0.5_f64.sqrt())) - 1.0).abs() < 1e-15);
+    let MotionClass::Libration {
+        turning_points: [a, b],
+    } = orbit.motion_class
+    else {
+        panic!("{:?}", orbit.motion_class)
     };
     assert!(a == PI && (b - TAU).abs() < 2e-15, "{a} {b}");
     // The energy of A01 is zero; what it exchanges is m g l.
-    assert!(orbit.energy.abs() < 1e-14 && (orbit.kinetic / G - 1.0).abs() < 1e-3);
-    let apart = |q: f64, t: f64| {
+    assert!(orbit.energy.abs() < 1e-14 && (orbit.max_kinetic / G - 1.0).abs() < 1e-3);
+    let difference = |q: f64, t: f64| {
         let [x, y] = a01(t);
         (q.cos() - x).hypot(q.sin() - y)
     };
     let mut worst = 0.0_f64;
     for i in 0..=1000 {
         let t = 2.0 * f64::from(i) + 0.123;
-        worst = worst.max(apart(orbit.at(t).q, t));
+        worst = worst.max(difference(orbit.state_at(t).q, t));
     }
     println!("quadrature {worst:e} m");
     // A rounding of the period in each of 845 swings, at up to 4.4 m/s.
     assert!(worst < 2e-11, "{worst:e}");
-    let y = machine.start(&[PI], &[0.0]);
-    for (method, tolerance, within) in [(Method::Tsit45, 1e-13, 1e-6), (Method::Bdf, 1e-12, 1e-4)] {
-        let end = at(&machine, &y, 2000.0, method, tolerance);
-        let error = apart(end[0], 2000.0);
+    let y = machine.initial_state(&[PI], &[0.0]);
+    for (method, tolerance, bound) in [(Method::Tsit45, 1e-13, 1e-6), (Method::Bdf, 1e-12, 1e-4)] {
+        let end = final_state(&machine, &y, 2000.0, method, tolerance);
+        let error = difference(end[0], 2000.0);
         println!("{} {error:e} m", method.name());
-        assert!(error < within, "{} {error:e}", method.name());
+        assert!(error < bound, "{} {error:e}", method.name());
     }
 }
 
@@ -103,23 +107,23 @@ fn periods_of_a_pendulum() {
     for part in [
         1e-6_f64, 0.01, 0.3, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 3.0, 100.0,
     ] {
-        for way in [1.0, -1.0] {
-            let start = from(1.5 * PI, way * 2.0 * natural * part);
+        for direction in [1.0, -1.0] {
+            let start = from(1.5 * PI, direction * 2.0 * natural * part);
             let orbit = Orbit::loaded(&machine, start).expect("an orbit");
             let exact = if part < 1.0 {
-                4.0 / natural * complete(part)
+                4.0 / natural * complete_elliptic(part)
             } else {
-                2.0 / (natural * part) * complete(1.0 / part)
+                2.0 / (natural * part) * complete_elliptic(1.0 / part)
             };
             let error = orbit.period / exact - 1.0;
             println!("{part}: {error:e} with {} points", orbit.points);
             // Next to the separatrix, the rounding of g l over the energy left at the top. A small
             // swing feels the rounding of the coordinate over its amplitude.
             let near = 1.0 / (1.0 - part * part).abs();
-            let within = 2e-15 + 1e-16 * near.min(1e6) + 2e-16 / part;
-            assert!(error.abs() < within, "{part}: {error:e} {within:e}");
-            let turns = matches!(orbit.fate, Fate::Turns { .. });
-            assert_eq!(turns, part > 1.0, "{part}");
+            let tolerance = 2e-15 + 1e-16 * near.min(1e6) + 2e-16 / part;
+            assert!(error.abs() < tolerance, "{part}: {error:e} {tolerance:e}");
+            let rotates = matches!(orbit.motion_class, MotionClass::Rotation { .. });
+            assert_eq!(rotates, part > 1.0, "{part}");
         }
     }
 }
@@ -130,34 +134,48 @@ fn fates_of_a_pendulum() {
     let machine = pendulum();
     let push = |part: f64| {
         let start = from(1.5 * PI, 2.0 * G.sqrt() * part);
-        fate(&machine, start).expect("a fate")
+        motion_class(&machine, start).expect("a fate")
     };
-    let Fate::Turns { top, spare, period } = push(1.0 + 1e-12) else {
+    let MotionClass::Rotation {
+        potential_maximum_at: top,
+        kinetic_at_maximum: spare,
+        period,
+    } = push(1.0 + 1e-12)
+    else {
         panic!("turns over")
     };
     // 2 m g l (1 + 1e-12)² leaves 4e-12 m g l at the top.
     assert!((spare / (4e-12 * G) - 1.0).abs() < 1e-3, "{spare:e}");
     assert!((top - 2.5 * PI).abs() < 1e-14 && period == TAU, "{top}");
-    assert!(matches!(push(1.0 - 1e-12), Fate::Swings { .. }));
-    let Fate::Creeps { to } = push(1.0) else {
+    assert!(matches!(push(1.0 - 1e-12), MotionClass::Libration { .. }));
+    let MotionClass::Asymptotic { to } = push(1.0) else {
         panic!("creeps")
     };
     assert!((to - 2.5 * PI).abs() < 1e-14, "{to}");
     let start = from(1.5 * PI, 2.0 * G.sqrt());
     let none = Orbit::loaded(&machine, start);
     assert!(
-        matches!(none, Err(DynamicsError::Creeps { .. })),
+        matches!(none, Err(DynamicsError::AsymptoticMotion { .. })),
         "{none:?}"
     );
     for rest in [FRAC_PI_2, 1.5 * PI] {
-        assert_eq!(fate(&machine, from(rest, 0.0)), Ok(Fate::Rests));
+        assert_eq!(
+            motion_class(&machine, from(rest, 0.0)),
+            Ok(MotionClass::Equilibrium)
+        );
     }
     // A turning point is where arcsine says.
-    let Fate::Swings { between: [a, b] } = push(0.3) else {
+    let MotionClass::Libration {
+        turning_points: [a, b],
+    } = push(0.3)
+    else {
         panic!("swings")
     };
-    let reach = 2.0 * 0.3_f64.asin();
-    assert!((a - 1.5 * PI + reach).abs() < 4e-15 && (b - 1.5 * PI - reach).abs() < 4e-15);
+    let amplitude_angle = 2.0 * 0.3_f64.asin();
+    assert!(
+        (a - 1.5 * PI + amplitude_angle).abs() < 4e-15
+            && (b - 1.5 * PI - amplitude_angle).abs() < 4e-15
+    );
 }
 
 /// A block on a spring along a line without ends: one sine, whatever its amplitude and wherever it is.
@@ -190,8 +208,8 @@ spring = { spring = ["ground.W", "block.P"], stiffness = 50.0, free = 1.25 }
         (0.25 + 1e-7, 0.0),
     ] {
         let orbit = Orbit::loaded(&machine, from(q, q_dot)).expect("an orbit");
-        let off = q - 0.25;
-        let size = off.hypot(q_dot / natural);
+        let displacement = q - 0.25;
+        let size = displacement.hypot(q_dot / natural);
         // The coordinate's own rounding over the amplitude.
         let rounding = 2e-16 / size;
         let error = orbit.period * natural / TAU - 1.0;
@@ -200,10 +218,10 @@ spring = { spring = ["ground.W", "block.P"], stiffness = 50.0, free = 1.25 }
             let t = 0.37 * f64::from(i);
             let (sin, cos) = (natural * t).sin_cos();
             let exact = [
-                0.25 + off * cos + q_dot / natural * sin,
-                q_dot * cos - off * natural * sin,
+                0.25 + displacement * cos + q_dot / natural * sin,
+                q_dot * cos - displacement * natural * sin,
             ];
-            let found = orbit.at(t);
+            let found = orbit.state_at(t);
             // A few roundings of phases up to 35 rad.
             assert!(
                 (found.q - exact[0]).abs() < 3e-15 + 2e-14 * size,
@@ -216,16 +234,19 @@ spring = { spring = ["ground.W", "block.P"], stiffness = 50.0, free = 1.25 }
         }
         // The first passage of a coordinate, and none beyond the turning points.
         let t = orbit.time_at(0.25 - 0.3 * size).expect("a time");
-        let off = orbit.at(t).q - 0.25 + 0.3 * size;
+        let displacement = orbit.state_at(t).q - 0.25 + 0.3 * size;
         // Two roundings of a phase of up to 2π; met: 6e-16.
-        assert!(off.abs() < 3e-15 * size.max(0.5) && t >= 0.0, "{off:e}");
+        assert!(
+            displacement.abs() < 3e-15 * size.max(0.5) && t >= 0.0,
+            "{displacement:e}"
+        );
         assert!(
             orbit
                 .time_at(0.25 - 0.3 * size)
                 .is_some_and(|t| t < orbit.period)
         );
         // It was on the same side until then.
-        let side = |t: f64| orbit.at(t).q > 0.25 - 0.3 * size;
+        let side = |t: f64| orbit.state_at(t).q > 0.25 - 0.3 * size;
         assert!((0..100).all(|i| side(t * f64::from(i) / 100.0) == side(0.0)));
         assert_eq!(orbit.time_at(0.25 + 1.01 * size), None);
     }
@@ -241,7 +262,7 @@ fn a_heavy_crank_rocker() {
     assert!((free.period / 0.731_488_383_733_225 - 1.0).abs() < 4e-15);
     scene.loads = weight();
     let machine = machine(&scene, &[], &[]);
-    for (speed, turns) in [
+    for (speed, rotates) in [
         (10.0, true),
         (-10.0, true),
         (0.5, false),
@@ -251,16 +272,16 @@ fn a_heavy_crank_rocker() {
         let start = from(PI / 3.0, speed);
         let orbit = Orbit::loaded(&machine, start).expect("an orbit");
         assert_eq!(
-            matches!(orbit.fate, Fate::Turns { .. }),
-            turns,
+            matches!(orbit.motion_class, MotionClass::Rotation { .. }),
+            rotates,
             "{:?}",
-            orbit.fate
+            orbit.motion_class
         );
-        let y = machine.start(&[start.q], &[speed]);
+        let y = machine.initial_state(&[start.q], &[speed]);
         for part in [0.3, 0.8, 1.0, 2.6] {
             let t = part * orbit.period;
-            let end = at(&machine, &y, t, Method::Tsit45, 1e-13);
-            let exact = orbit.at(t);
+            let end = final_state(&machine, &y, t, Method::Tsit45, 1e-13);
+            let exact = orbit.state_at(t);
             // Tsit45's own error: a thousand times its tolerance where the motion lingers near the summit.
             assert!(
                 (end[0] - exact.q).abs() < 2e-10,
@@ -297,7 +318,7 @@ fn a_swing_within_limits() {
         .find(|e| e.stability == Stability::Centre)
         .expect("a lowest position");
     let q = rest.y[0];
-    let natural = TAU / rest.modes()[0].frequency;
+    let natural = TAU / rest.modes()[0].angular_frequency;
     let swing = |away: f64| {
         Orbit::loaded(&machine, from(q + away, 0.0))
             .expect("an orbit")
@@ -308,11 +329,11 @@ fn a_swing_within_limits() {
     let limit = narrow - (wide - narrow) / 3.0;
     assert!((limit / natural - 1.0).abs() < 1e-9, "{limit} {natural}");
     let orbit = Orbit::loaded(&machine, from(q + 0.1, 0.0)).expect("an orbit");
-    let y = machine.start(&[q + 0.1], &[0.0]);
-    let end = at(&machine, &y, orbit.period, Method::Tsit45, 1e-13);
+    let y = machine.initial_state(&[q + 0.1], &[0.0]);
+    let end = final_state(&machine, &y, orbit.period, Method::Tsit45, 1e-13);
     assert!((end[0] - q - 0.1).abs() < 1e-11, "{:e}", end[0] - q - 0.1);
     for (speed, end) in [(1e3, to), (-1e3, low)] {
-        let Ok(Fate::Ends { at }) = fate(&machine, from(q, speed)) else {
+        let Ok(MotionClass::ReachesLimit { at }) = motion_class(&machine, from(q, speed)) else {
             panic!("reaches its limit")
         };
         assert!((at - end).abs() < 1e-12);

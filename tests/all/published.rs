@@ -1,7 +1,7 @@
 //! Published and independently computed values, to 1e-12 of the largest coefficient of a unit.
 
-use crate::world::{home, model, scene};
-use dwell_kinetostatics::Reduced;
+use dwell_kinetostatics::ReducedModel;
+use dwell_tests::fixtures::{model, repository_root, scene};
 use serde_json::Value;
 
 fn number(value: &Value) -> f64 {
@@ -14,18 +14,25 @@ fn number(value: &Value) -> f64 {
 fn val_reference(case: &str) {
     let scene = scene(case);
     let model = model(&scene);
-    let text = std::fs::read_to_string(home().join("validation").join(case).join("case.toml"));
+    let text = std::fs::read_to_string(
+        repository_root()
+            .join("validation")
+            .join(case)
+            .join("case.toml"),
+    );
     let reference: Value = toml::from_str(&text.expect("a file")).expect("TOML");
     let reactions = scene.mechanism.reactions();
-    let mut work = model.work();
-    let mut at = model.model().coefficients();
+    let mut workspace = model.workspace();
+    let mut at = model.model().coefficient_buffer();
     // The largest coefficient of each unit over the samples: reactions in N, couples in N m.
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
     for sample in reference["samples"].as_array().expect("samples") {
         let phi = sample
             .get("phi_rad")
             .map_or_else(|| number(&sample["phi_deg"]).to_radians(), number);
-        model.coefficients(phi, &mut work, &mut at).expect("a pose");
+        model
+            .coefficients(phi, &mut workspace, &mut at)
+            .expect("a pose");
         let m = number(&sample["m1_kg_m2"]);
         assert!((at.m - m).abs() < 1e-14 * m, "{case} {phi}: m {} {m}", at.m);
         let half = number(&sample["half_dm1"]);
@@ -74,7 +81,7 @@ fn largest_groups() {
         ("class-three-six-bar", 4),
     ] {
         let model = model(&scene(case));
-        let sizes = model.model().plan().group_kinds();
+        let sizes = model.model().plan().group_methods();
         assert!(
             sizes.iter().map(|(n, _)| *n).max() <= Some(largest),
             "{case}: {sizes:?}"

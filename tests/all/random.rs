@@ -3,16 +3,16 @@
 
 mod formulas;
 mod grow;
-mod standing;
+mod placed_mechanism;
 
-use crate::batches::alike;
+use crate::batches::compare_batch;
 use dwell_geometry::{BodyId, JointKind, Vec2};
-use dwell_kinetostatics::{Exact, Load, LoadKind, Magnitude, Model, ModelError};
-use dwell_verify::{State, judge_states, load_acts, rank};
-use grow::{Step, step};
+use dwell_kinetostatics::{ExactModel, Load, LoadKind, Magnitude, Model, ModelError};
+use dwell_verify::{ClaimedState, check_states, load_wrenches, rank};
+use grow::{GrowthStep, step};
+use placed_mechanism::{DescribedMechanism, Description, PlacedMechanism};
 use proptest::prelude::*;
 use proptest::test_runner::{FileFailurePersistence, TestRunner};
-use standing::{Described, Standing, View};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -20,7 +20,7 @@ use std::f64::consts::{PI, TAU};
 /// Mechanisms of one run.
 const COUNT: u32 = 1000;
 /// Bodies of the largest, the ground among them.
-const MOST: usize = 30;
+const MAX_GROUP_SIZE: usize = 30;
 /// Acceleration of gravity, m/s².
 const GRAVITY: f64 = 9.81;
 /// A smallest singular value below this part of the largest is what a refusal must show.
@@ -29,10 +29,10 @@ const SINGULAR: f64 = 1e-7;
 /// What a mechanism is grown from.
 #[derive(Debug, Clone)]
 struct Seed {
-    drives: Vec<Step>,
-    steps: Vec<Step>,
+    drives: Vec<GrowthStep>,
+    steps: Vec<GrowthStep>,
     /// Whether it ends in two bars in one line, which nothing can solve.
-    flat: Option<Step>,
+    flat: Option<GrowthStep>,
     views: [u64; 2],
 }
 
@@ -52,19 +52,19 @@ fn seed() -> impl Strategy<Value = Seed> {
 }
 
 impl Seed {
-    fn grown(&self) -> Standing {
-        let mut standing = Standing::ground();
+    fn mechanism(&self) -> PlacedMechanism {
+        let mut standing = PlacedMechanism::ground();
         for step in &self.drives {
-            standing.drive(step);
+            standing.add_actuator(step);
         }
         for step in &self.steps {
             // A class III group brings four bodies.
-            if standing.bodies.len() + 4 <= MOST {
-                standing.grow(step);
+            if standing.bodies.len() + 4 <= MAX_GROUP_SIZE {
+                standing.add_group(step);
             }
         }
         if let Some(step) = &self.flat {
-            standing.flat(step);
+            standing.add_flat_dyad(step);
         }
         standing
     }
@@ -94,26 +94,26 @@ impl Tally {
 }
 
 /// A description made into a model, with gravity.
-struct Made {
-    described: Described,
+struct BuiltMechanism {
+    described: DescribedMechanism,
     model: Model,
 }
 
 /// What a model says of a state.
-struct Said {
-    state: State,
+struct ModelOutput {
+    state: ClaimedState,
     bits: Vec<u64>,
     /// By joint: its travel, where it has one.
     travels: Vec<f64>,
 }
 
-impl Made {
-    fn new(standing: &Standing, view: &View) -> Result<Self, ModelError> {
-        let described = standing.described(view);
-        let Described {
+impl BuiltMechanism {
+    fn new(placed: &PlacedMechanism, view: &Description) -> Result<Self, ModelError> {
+        let described = placed.describe(view);
+        let DescribedMechanism {
             mechanism,
             masses,
-            start,
+            assembly: start,
             down,
             ..
         } = &described;
@@ -123,28 +123,28 @@ impl Made {
             kind: LoadKind::Gravity { direction: *down },
             magnitude: Magnitude::Constant(GRAVITY),
         };
-        let model = model.with_loads(mechanism, vec![gravity]).expect("a load");
+        let model = model.with_loads(vec![gravity]).expect("a load");
         Ok(Self { described, model })
     }
 
     /// The states at these steps from the start, each in the same memory.
-    fn say(
+    fn evaluate(
         &self,
-        standing: &Standing,
-        view: &View,
+        placed: &PlacedMechanism,
+        view: &Description,
         steps: &[Vec<f64>],
-    ) -> Result<Vec<Said>, String> {
-        let Described {
+    ) -> Result<Vec<ModelOutput>, String> {
+        let DescribedMechanism {
             mechanism,
             masses,
-            start,
+            assembly: start,
             down,
             ..
         } = &self.described;
-        let mut work = self.model.workspace::<f64>();
-        let mut actions = self.model.actions();
+        let mut workspace = self.model.workspace::<f64>();
+        let mut result = self.model.result_buffer();
         let senses: Vec<f64> = (0..start.q.len())
-            .map(|i| view.sense(standing, i))
+            .map(|i| view.coordinate_sign(placed, i))
             .collect();
         let mut all = Vec::new();
         for step in steps {
@@ -159,19 +159,22 @@ impl Made {
             let q_dot = rated(&|i| 0.9 - 0.5 * i as f64);
             let q_ddot = rated(&|i| -0.6 + 0.8 * i as f64);
             self.model
-                .kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut work, &mut actions)
+                .kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut workspace, &mut result)
                 .map_err(|e| format!("{e} at {step:?}"))?;
-            let bodies = self.model.plan().body_frames(mechanism, &work.pose);
-            let states = work.states();
+            let bodies = self.model.plan().body_frames(mechanism, &workspace.pose);
+            let states = workspace.states();
             let rates = |b: usize| {
                 let origin = states.point(BodyId(b), Vec2::ZERO);
                 let body = states.body(BodyId(b));
                 let (v, a) = (origin.velocity, origin.acceleration);
-                ([v.x, v.y, body.spin], [a.x, a.y, body.spin_rate])
+                (
+                    [v.x, v.y, body.angular_velocity],
+                    [a.x, a.y, body.angular_acceleration],
+                )
             };
             let (velocity, acceleration): (Vec<_>, Vec<_>) = (0..bodies.len()).map(rates).unzip();
             let gravity = LoadKind::Gravity { direction: *down };
-            let loads = load_acts(
+            let loads = load_wrenches(
                 &gravity,
                 GRAVITY,
                 mechanism.ground,
@@ -179,51 +182,56 @@ impl Made {
                 &bodies,
                 &velocity,
             );
-            let numbers = [&q, &actions.tau, &actions.reactions];
+            let numbers = [&q, &result.tau, &result.reactions];
             let numbers = numbers.into_iter().flatten();
             let moves = bodies.iter().chain(&velocity).chain(&acceleration);
             let numbers: Vec<f64> = numbers.chain(moves.flatten()).copied().collect();
             if !numbers.iter().all(|v| v.is_finite()) {
                 return Err(format!("not a number at {step:?}"));
             }
-            all.push(Said {
+            all.push(ModelOutput {
                 travels: self.travels(&bodies),
                 bits: numbers.into_iter().map(f64::to_bits).collect(),
-                state: State {
+                state: ClaimedState {
                     t: all.len() as f64,
                     q,
                     q_dot,
                     q_ddot,
-                    bodies,
-                    velocity,
-                    acceleration,
-                    reactions: actions.reactions.clone(),
-                    tau: actions.tau.clone(),
-                    loads: loads.expect("bodies"),
+                    poses: bodies,
+                    velocities: velocity,
+                    accelerations: acceleration,
+                    reactions: result.reactions.clone(),
+                    tau: result.tau.clone(),
+                    load_wrenches: loads.expect("bodies"),
                 },
             });
         }
         Ok(all)
     }
 
-    fn travels(&self, frames: &[[f64; 3]]) -> Vec<f64> {
+    fn travels(&self, poses: &[[f64; 3]]) -> Vec<f64> {
         let joints = self.described.mechanism.joints.iter();
         let travel = |joint: &dwell_geometry::Joint| {
             let JointKind::Prismatic { axes } = joint.kind else {
                 return 0.0;
             };
-            let turn = |i: usize| Vec2::from_angle(frames[joint.bodies[i].0][2]);
+            let rotation = |i: usize| Vec2::from_angle(poses[joint.bodies[i].0][2]);
             let [one, two] = [0, 1].map(|i| {
-                let [x, y, _] = frames[joint.bodies[i].0];
-                Vec2 { x, y } + joint.points[i].turn(turn(i))
+                let [x, y, _] = poses[joint.bodies[i].0];
+                Vec2 { x, y } + joint.points[i].rotate(rotation(i))
             });
-            (two - one).dot(axes[0].turn(turn(0)))
+            (two - one).dot(axes[0].rotate(rotation(0)))
         };
         joints.map(travel).collect()
     }
 
     /// What the joints and the actuators do, as `standing` has them.
-    fn actions(&self, standing: &Standing, view: &View, said: &Said) -> Vec<f64> {
+    fn actuator_forces(
+        &self,
+        placed: &PlacedMechanism,
+        view: &Description,
+        output: &ModelOutput,
+    ) -> Vec<f64> {
         let mechanism = &self.described.mechanism;
         let mut offsets = Vec::new();
         let mut at = 0;
@@ -232,14 +240,14 @@ impl Made {
             at += joint.kind.components(&[]).len();
         }
         let mut all = Vec::new();
-        for j in 0..standing.joints.len() {
+        for j in 0..placed.joints.len() {
             let to = view.joints[j];
             let rows = mechanism.joints[to].kind.components(&[]).len();
-            let reaction = &said.state.reactions[offsets[to]..offsets[to] + rows];
-            all.extend(view.reaction(standing, j, reaction, said.travels[to]));
+            let reaction = &output.state.reactions[offsets[to]..offsets[to] + rows];
+            all.extend(view.reaction(placed, j, reaction, output.travels[to]));
         }
-        let tau = said.state.tau.iter().enumerate();
-        all.extend(tau.map(|(i, tau)| tau * view.sense(standing, i)));
+        let tau = output.state.tau.iter().enumerate();
+        all.extend(tau.map(|(i, tau)| tau * view.coordinate_sign(placed, i)));
         all
     }
 }
@@ -249,23 +257,23 @@ impl Made {
 /// Tolerances are parts of the condition, which is that of the dense rows at the start (up to 1e3
 /// and more): a rounding of the attachments is magnified by it. The worst met in many thousands
 /// were 1e-15 of it for the pose, 8e-15 for another description, and 5e-15 for the dense findings.
-fn judge(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
-    let standing = seed.grown();
-    let views = seed.views.map(|seed| View::of(&standing, seed));
-    let described = standing.described(&views[0]);
-    let ranks = rank(&described.mechanism, &described.frames).map_err(|e| e.to_string())?;
-    let values = &ranks.driven.singular_values;
+fn check(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
+    let placed = seed.mechanism();
+    let views = seed.views.map(|seed| Description::of(&placed, seed));
+    let described = placed.describe(&views[0]);
+    let ranks = rank(&described.mechanism, &described.start_poses).map_err(|e| e.to_string())?;
+    let values = &ranks.with_actuators.singular_values;
     let [largest, smallest] = [values.first(), values.last()].map(|v| v.copied().unwrap_or(0.0));
-    tally.bodies += standing.bodies.len();
-    let mut made = Vec::new();
+    tally.bodies += placed.bodies.len();
+    let mut compiled = Vec::new();
     for view in &views {
-        match Made::new(&standing, view) {
-            Ok(one) => made.push(one),
+        match BuiltMechanism::new(&placed, view) {
+            Ok(one) => compiled.push(one),
             Err(_) if smallest < SINGULAR * largest => {}
             Err(error) => return Err(format!("{error}, but it is regular: {error:?}")),
         }
     }
-    let [one, two] = &made[..] else {
+    let [one, two] = &compiled[..] else {
         tally.refused += 1;
         return Ok(());
     };
@@ -275,34 +283,34 @@ fn judge(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
         return Ok(());
     }
     let condition = largest / smallest;
-    let steps = steps(one, &standing, &views[0], 1.0 / condition);
-    let said = one.say(&standing, &views[0], &steps)?;
-    let other = two.say(&standing, &views[1], &steps)?;
-    for (made, said) in [(one, &said), (two, &other)] {
-        let found = &said[0].state.bodies;
-        let apart = apart(found, &made.described.frames);
-        if tally.worst("branch", apart / condition, 1e-14).is_ok() {
+    let steps = steps(one, &placed, &views[0], 1.0 / condition);
+    let outputs = one.evaluate(&placed, &views[0], &steps)?;
+    let other = two.evaluate(&placed, &views[1], &steps)?;
+    for (compiled, outputs) in [(one, &outputs), (two, &other)] {
+        let found = &outputs[0].state.poses;
+        let difference = pose_difference(found, &compiled.described.start_poses);
+        if tally.worst("branch", difference / condition, 1e-14).is_ok() {
             continue;
         }
         // Of two ways closer than the rough angles are wrong, these may mean the other.
-        dense(made, said, condition, tally)?;
-        let [here, built] =
-            [found, &made.described.frames].map(|frames| astray(&made.described, frames));
+        check_dense(compiled, outputs, condition, tally)?;
+        let [here, built] = [found, &compiled.described.start_poses]
+            .map(|poses| distance_to_guess(&compiled.described, poses));
         if here >= built {
-            return Err(format!("on another branch, {apart:.1e} away"));
+            return Err(format!("on another branch, {difference:.1e} away"));
         }
         tally.nearer += 1;
         return Ok(());
     }
-    dense(one, &said, condition, tally)?;
-    repeated(one, &standing, &views[0], &steps, &said)?;
-    batched(one, &steps)?;
+    check_dense(one, &outputs, condition, tally)?;
+    check_repeatability(one, &placed, &views[0], &steps, &outputs)?;
+    check_batch(one, &steps)?;
     let [mine, others] =
-        [(one, &said, &views[0]), (two, &other, &views[1])].map(|(made, said, view)| {
-            let acts = said
+        [(one, &outputs, &views[0]), (two, &other, &views[1])].map(|(compiled, outputs, view)| {
+            let forces = outputs
                 .iter()
-                .flat_map(|said| made.actions(&standing, view, said));
-            acts.collect::<Vec<f64>>()
+                .flat_map(|outputs| compiled.actuator_forces(&placed, view, outputs));
+            forces.collect::<Vec<f64>>()
         });
     let scale = mine.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
     let gaps = mine.iter().zip(&others).map(|(a, b)| (a - b).abs());
@@ -315,53 +323,61 @@ fn judge(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
 }
 
 /// The start and some steps away from it, as the original has its coordinates.
-fn steps(made: &Made, standing: &Standing, view: &View, regular: f64) -> Vec<Vec<f64>> {
-    let n = made.described.start.q.len();
+fn steps(
+    built: &BuiltMechanism,
+    placed: &PlacedMechanism,
+    view: &Description,
+    regular: f64,
+) -> Vec<Vec<f64>> {
+    let n = built.described.assembly.q.len();
     // A pose moves by a step over the smallest singular value, and must not become singular by it.
     let small = (0.1 * regular).clamp(1e-6, 0.05);
-    let some = |by: f64| -> Vec<f64> { (0..n).map(|i| by * (1.0 - 0.4 * i as f64)).collect() };
+    let some = |size: f64| -> Vec<f64> { (0..n).map(|i| size * (1.0 - 0.4 * i as f64)).collect() };
     let mut steps: Vec<_> = [0.0, 1.0, -0.7].map(|k| some(k * small)).into();
-    if let (1, Some((from, to))) = (n, made.model.plan().range().limits()) {
-        let sense = view.sense(standing, 0);
+    if let (1, Some((from, to))) = (n, built.model.plan().range().limits()) {
+        let sense = view.coordinate_sign(placed, 0);
         let inside = |q: f64| q > from && q < to;
-        steps.retain(|step| inside(made.described.start.q[0] + sense * step[0]));
+        steps.retain(|step| inside(built.described.assembly.q[0] + sense * step[0]));
     }
     steps
 }
 
 /// How far bodies are turned from their rough angles: Σ of the squared chords.
-fn astray(described: &Described, frames: &[[f64; 3]]) -> f64 {
-    let rough = described.start.rough.iter().zip(frames);
-    let chord = |(rough, frame): (&Option<f64>, &[f64; 3])| {
-        let apart = Vec2::from_angle((*rough)?) - Vec2::from_angle(frame[2]);
-        Some(apart.dot(apart))
+fn distance_to_guess(described: &DescribedMechanism, poses: &[[f64; 3]]) -> f64 {
+    let guesses = described.assembly.initial_guess.iter().zip(poses);
+    let chord = |(guesses, frame): (&Option<f64>, &[f64; 3])| {
+        let difference = Vec2::from_angle((*guesses)?) - Vec2::from_angle(frame[2]);
+        Some(difference.dot(difference))
     };
-    rough.filter_map(chord).sum()
+    guesses.filter_map(chord).sum()
 }
 
 /// How far apart two sets of frames are, m and rad to the nearest turn.
-fn apart(one: &[[f64; 3]], two: &[[f64; 3]]) -> f64 {
+fn pose_difference(one: &[[f64; 3]], two: &[[f64; 3]]) -> f64 {
     let of = |(a, b): (&[f64; 3], &[f64; 3])| {
-        let turn = (a[2] - b[2] + PI).rem_euclid(TAU) - PI;
-        (a[0] - b[0]).abs().max((a[1] - b[1]).abs()).max(turn.abs())
+        let angle = (a[2] - b[2] + PI).rem_euclid(TAU) - PI;
+        (a[0] - b[0])
+            .abs()
+            .max((a[1] - b[1]).abs())
+            .max(angle.abs())
     };
     one.iter().zip(two).map(of).fold(0.0, f64::max)
 }
 
 /// The same bits in another order, in memory that held something else, and in another thread.
-fn repeated(
-    made: &Made,
-    standing: &Standing,
-    view: &View,
+fn check_repeatability(
+    built: &BuiltMechanism,
+    placed: &PlacedMechanism,
+    view: &Description,
     steps: &[Vec<f64>],
-    said: &[Said],
+    outputs: &[ModelOutput],
 ) -> Result<(), String> {
-    let turned: Vec<_> = steps.iter().rev().chain(steps).cloned().collect();
+    let reversed: Vec<_> = steps.iter().rev().chain(steps).cloned().collect();
     let again = std::thread::scope(|scope| {
-        let there = scope.spawn(|| made.say(standing, view, &turned));
+        let there = scope.spawn(|| built.evaluate(placed, view, &reversed));
         there.join().expect("no panic")
     })?;
-    let firsts = said.iter().rev().chain(said);
+    let firsts = outputs.iter().rev().chain(outputs);
     for (k, (first, again)) in firsts.zip(&again).enumerate() {
         if first.bits != again.bits {
             return Err(format!("other bits at evaluation {k}"));
@@ -371,37 +387,49 @@ fn repeated(
 }
 
 /// The reduced model at several coordinates side by side, against each alone.
-fn batched(made: &Made, steps: &[Vec<f64>]) -> Result<(), String> {
-    let Some(exact) = Exact::new(made.model.clone()) else {
+fn check_batch(built: &BuiltMechanism, steps: &[Vec<f64>]) -> Result<(), String> {
+    let Some(exact) = ExactModel::new(built.model.clone()) else {
         return Ok(());
     };
-    let start = made.described.start.q[0];
+    let start = built.described.assembly.q[0];
     let q: Vec<f64> = steps.iter().map(|step| start + step[0]).collect();
     let q: Vec<f64> = q.iter().copied().cycle().take(9).collect();
-    alike(&exact, &q).map(|_| ())
+    compare_batch(&exact, &q).map(|_| ())
 }
 
 /// Against the dense equations.
-fn dense(made: &Made, said: &[Said], condition: f64, tally: &mut Tally) -> Result<(), String> {
-    let states: Vec<State> = said.iter().map(|said| said.state.clone()).collect();
-    let Described {
+fn check_dense(
+    built: &BuiltMechanism,
+    outputs: &[ModelOutput],
+    condition: f64,
+    tally: &mut Tally,
+) -> Result<(), String> {
+    let states: Vec<ClaimedState> = outputs
+        .iter()
+        .map(|outputs| outputs.state.clone())
+        .collect();
+    let DescribedMechanism {
         mechanism, masses, ..
-    } = &made.described;
-    for finding in judge_states(mechanism, masses, &said[0].state.bodies, &states) {
-        if finding.relative.is_nan() {
-            return Err(format!("{}: {}", finding.key, finding.worst));
+    } = &built.described;
+    for finding in check_states(mechanism, masses, &outputs[0].state.poses, &states) {
+        if finding.relative_difference.is_nan() {
+            return Err(format!("{}: {}", finding.key, finding.worst_at));
         }
-        tally.worst(&finding.key, finding.relative / condition, f64::INFINITY)?;
+        tally.worst(
+            &finding.key,
+            finding.relative_difference / condition,
+            f64::INFINITY,
+        )?;
         // Positions differenced twice in time lose half their digits before the condition.
-        let lost = if finding.key == "state-differenced" {
+        let lost = if finding.key == "state-newton-euler-differences" {
             2e-11
         } else {
             1e-13
         };
-        if !finding.pass && finding.relative > lost * condition {
+        if !finding.pass && finding.relative_difference > lost * condition {
             return Err(format!(
                 "{}: {:.1e} where {:.1e} times {condition:.1e} is allowed",
-                finding.key, finding.relative, lost
+                finding.key, finding.relative_difference, lost
             ));
         }
     }
@@ -420,8 +448,8 @@ fn a_thousand_random_mechanisms() {
     });
     let tally = RefCell::new(Tally::default());
     let result = runner.run(&seed(), |seed| {
-        judge(&seed, &mut tally.borrow_mut())
-            .map_err(|fault| TestCaseError::fail(format!("{fault}\n{:?}", seed.grown())))
+        check(&seed, &mut tally.borrow_mut())
+            .map_err(|fault| TestCaseError::fail(format!("{fault}\n{:?}", seed.mechanism())))
     });
     let tally = tally.into_inner();
     println!("{tally:#?}");

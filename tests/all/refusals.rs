@@ -1,11 +1,13 @@
 //! What cannot work is refused, with an error that names the right things and the right numbers.
 
-use crate::cases::CASES;
-use crate::changes::Setup;
-use crate::sketch::{FourBar, Sketch, slider_crank};
-use crate::world::scene;
-use dwell_geometry::{ActuatorId, AssemblyError, BodyId, PlaceError, StructureError, Vec2, vec2};
-use dwell_kinetostatics::{ModelError, Reduced};
+use dwell_geometry::{
+    ActuatorId, AssemblyError, BodyId, PositionError, StructureError, Vec2, vec2,
+};
+use dwell_kinetostatics::{ModelError, ReducedModel};
+use dwell_tests::cases::CASES;
+use dwell_tests::changes::Setup;
+use dwell_tests::fixtures::scene;
+use dwell_tests::sketch::{FourBar, Sketch, slider_crank};
 
 const GROUND: BodyId = Sketch::GROUND;
 
@@ -20,13 +22,13 @@ pub(crate) fn refusal(setup: &Setup) -> AssemblyError {
 
 #[test]
 fn detached_bodies_are_named() {
-    let mut bars = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let mut bars = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
     let stray = bars.sketch.body("stray");
     let [one, two] = ["one", "two"].map(|name| bars.sketch.body(name));
     bars.sketch
         .revolute("S", (one, [1.0, 0.0]), (two, [0.0, 0.0]));
     let bodies = vec![stray, one, two];
-    let want = AssemblyError::Structure(StructureError::Detached { bodies });
+    let want = AssemblyError::Structure(StructureError::NotConnected { bodies });
     assert_eq!(refusal(&bars.setup(1.0, 0.6)), want);
 }
 
@@ -40,13 +42,13 @@ fn two_degrees_of_freedom_need_two_actuators() {
     sketch.revolute("C", (two, [1.0, 0.0]), (three, [1.0, 0.0]));
     sketch.revolute("D", (three, [0.0, 0.0]), (four, [1.0, 0.0]));
     sketch.revolute("E", (GROUND, [1.0, 0.0]), (four, [0.0, 0.0]));
-    sketch.drive("phi", [GROUND, one]);
+    sketch.actuate("phi", [GROUND, one]);
     let error = refusal(&sketch.setup(&[1.0]));
-    let AssemblyError::Structure(StructureError::UnderDriven {
-        dof,
+    let AssemblyError::Structure(StructureError::UnderActuated {
+        degrees_of_freedom: dof,
         actuators,
         bodies,
-        twice,
+        redundant_joints: twice,
     }) = error
     else {
         panic!("{error:?}");
@@ -55,15 +57,15 @@ fn two_degrees_of_freedom_need_two_actuators() {
     assert_eq!(twice, vec![]);
     assert!(!bodies.is_empty() && bodies.iter().all(|b| [two, three, four].contains(b)));
 
-    let mut bars = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let mut bars = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
     let pendulum = bars.sketch.body("pendulum");
     bars.sketch
         .revolute("P", (bars.coupler, [1.0, 0.5]), (pendulum, [0.0, 0.0]));
-    let want = StructureError::UnderDriven {
-        dof: 2,
+    let want = StructureError::UnderActuated {
+        degrees_of_freedom: 2,
         actuators: 1,
         bodies: vec![pendulum],
-        twice: Vec::new(),
+        redundant_joints: Vec::new(),
     };
     assert_eq!(refusal(&bars.setup(1.0, 0.6)), want.into());
 }
@@ -72,40 +74,43 @@ fn two_degrees_of_freedom_need_two_actuators() {
 /// to drive.
 #[test]
 fn no_degree_of_freedom_is_left_to_drive() {
-    let mut barred = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let mut barred = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
     let bar = barred.sketch.body("bar");
     let e = (barred.coupler, [1.0, 0.5]);
     barred.sketch.revolute("E", e, (bar, [0.0, 0.0]));
     barred
         .sketch
         .revolute("F", (bar, [1.0, 0.0]), (GROUND, [1.0, -2.0]));
-    let mut pinned = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let mut pinned = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
     pinned.sketch.revolute("E", e, (GROUND, [1.0, 2.0]));
-    let mut twice = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
-    twice.sketch.drive("psi", [GROUND, twice.rocker]);
-    let mut held = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let mut twice = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
+    twice.sketch.actuate("psi", [GROUND, twice.rocker]);
+    let mut held = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
     let pin = (GROUND, [0.5, 0.5]);
     held.sketch.revolute("E", (held.crank, [0.5, 0.0]), pin);
     for (bars, want) in [(barred, 1), (pinned, 2), (twice, 1), (held, 2)] {
         let mut setup = bars.setup(1.0, 0.6);
         setup
-            .start
+            .assembly
             .q
             .resize(bars.sketch.mechanism.actuators.len(), 1.8);
         let error = refusal(&setup);
-        let AssemblyError::Structure(StructureError::OverConstrained { excess, joints, .. }) =
-            error
+        let AssemblyError::Structure(StructureError::OverConstrained {
+            redundant_count: excess,
+            joints,
+            ..
+        }) = error
         else {
             panic!("{error:?}");
         };
         assert_eq!(excess, want);
         assert!(!joints.is_empty());
     }
-    let mut same = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
-    same.sketch.drive("phi again", [GROUND, same.crank]);
+    let mut same = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
+    same.sketch.actuate("phi again", [GROUND, same.crank]);
     let error = refusal(&same.sketch.setup(&[1.0, 1.0]));
     let want = StructureError::OverConstrained {
-        excess: 1,
+        redundant_count: 1,
         joints: Vec::new(),
         actuators: vec![ActuatorId(0), ActuatorId(1)],
     };
@@ -116,7 +121,7 @@ fn no_degree_of_freedom_is_left_to_drive() {
 /// distance.
 #[test]
 fn a_bar_without_length_is_refused() {
-    let mut bars = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let mut bars = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
     let joints = &mut bars.sketch.mechanism.joints;
     joints[1].points[1] = vec2(0.1 + 0.2, 0.1);
     joints[2].points[0] = vec2(0.3, 0.1);
@@ -138,7 +143,7 @@ fn too_short() -> Vec<(Setup, Vec<BodyId>, f64)> {
         (9.0, 1.0, 5.0),
         (1.0, 4.5, 0.5),
     ] {
-        let bars = FourBar::driven([1.0, coupler, rocker, 4.0]);
+        let bars = FourBar::actuated([1.0, coupler, rocker, 4.0]);
         let bodies = vec![bars.coupler, bars.rocker];
         all.push((bars.setup(0.0, 0.6), bodies, missing));
     }
@@ -153,7 +158,7 @@ fn too_short() -> Vec<(Setup, Vec<BodyId>, f64)> {
 fn bodies_that_do_not_reach_each_other_are_named() {
     for (setup, want, missing) in too_short() {
         let error = refusal(&setup);
-        let AssemblyError::CannotClose {
+        let AssemblyError::NoAssembly {
             bodies,
             joints,
             gap,
@@ -170,7 +175,7 @@ fn bodies_that_do_not_reach_each_other_are_named() {
 #[test]
 fn the_gap_is_the_length_that_is_missing() {
     for (setup, _, missing) in too_short() {
-        let AssemblyError::CannotClose { gap, .. } = refusal(&setup) else {
+        let AssemblyError::NoAssembly { gap, .. } = refusal(&setup) else {
             panic!("closed");
         };
         assert!((gap - missing).abs() < 1e-9, "{gap} for {missing}");
@@ -180,10 +185,10 @@ fn the_gap_is_the_length_that_is_missing() {
 /// What no scene can say, but a caller can.
 #[test]
 fn broken_descriptions_are_refused() {
-    let good = FourBar::driven([1.0, 3.5, 3.0, 4.0]).setup(1.0, 0.6);
+    let good = FourBar::actuated([1.0, 3.5, 3.0, 4.0]).setup(1.0, 0.6);
     let (mut none, mut two) = (good.clone(), good.clone());
-    none.start.q.clear();
-    two.start.q.push(2.0);
+    none.assembly.q.clear();
+    two.assembly.q.push(2.0);
     let (mut joint, mut ground) = (good.clone(), good);
     joint.mechanism.joints[2].bodies[1] = BodyId(9);
     ground.mechanism.ground = 9;
@@ -201,17 +206,19 @@ fn broken_descriptions_are_refused() {
 /// No angle tells the branches apart, nor does one that is not a number.
 #[test]
 fn a_rough_angle_must_be_a_number() {
-    let setup = FourBar::driven([1.0, 3.5, 3.0, 4.0]).setup(1.0, f64::NAN);
+    let setup = FourBar::actuated([1.0, 3.5, 3.0, 4.0]).setup(1.0, f64::NAN);
     refusal(&setup);
 }
 
 #[test]
 fn an_ambiguous_assembly_lists_its_choices() {
-    let bars = FourBar::driven([1.0, 3.5, 3.0, 4.0]);
+    let bars = FourBar::actuated([1.0, 3.5, 3.0, 4.0]);
     let setup = bars.sketch.setup(&[1.0]);
     let error = refusal(&setup);
     let AssemblyError::Ambiguous {
-        bodies, choices, ..
+        bodies,
+        modes: choices,
+        ..
     } = error
     else {
         panic!("{error:?}");
@@ -220,8 +227,8 @@ fn an_ambiguous_assembly_lists_its_choices() {
     assert_eq!(choices.len(), 2);
     assert!((choices[0][0] - choices[1][0]).abs() > 1.0);
     for choice in &choices {
-        let reach = Vec2::from_angle(1.0) + Vec2::from_angle(choice[0]) * 3.5;
-        let gap = vec2(4.0, 0.0) + Vec2::from_angle(choice[1]) * 3.0 - reach;
+        let end_point = Vec2::from_angle(1.0) + Vec2::from_angle(choice[0]) * 3.5;
+        let gap = vec2(4.0, 0.0) + Vec2::from_angle(choice[1]) * 3.0 - end_point;
         assert!(gap.norm() < 1e-14, "{gap:?}");
     }
 }
@@ -231,10 +238,12 @@ fn an_ambiguous_assembly_lists_its_choices() {
 #[test]
 fn an_ambiguous_class_three_group_lists_its_choices() {
     let mut setup = Setup::of(&scene("class-three-six-bar"));
-    setup.start.rough.fill(None);
+    setup.assembly.initial_guess.fill(None);
     let error = refusal(&setup);
     let AssemblyError::Ambiguous {
-        bodies, choices, ..
+        bodies,
+        modes: choices,
+        ..
     } = error
     else {
         panic!("{error:?}");
@@ -242,10 +251,13 @@ fn an_ambiguous_class_three_group_lists_its_choices() {
     assert_eq!((bodies.len(), choices.len()), (4, 2));
     let inertias = choices.iter().map(|choice| {
         for (body, angle) in bodies.iter().zip(choice) {
-            setup.start.rough[body.0] = Some(*angle);
+            setup.assembly.initial_guess[body.0] = Some(*angle);
         }
         let model = setup.model().expect("a model");
-        model.inertia(-0.6, &mut model.work()).expect("a pose").0
+        model
+            .inertia(-0.6, &mut model.workspace())
+            .expect("a pose")
+            .0
     });
     let inertias: Vec<f64> = inertias.collect();
     assert!((inertias[0] - inertias[1]).abs() > 1e-3, "{inertias:?}");
@@ -258,7 +270,7 @@ fn a_class_three_group_that_does_not_reach_is_not_called_singular() {
     let mut setup = Setup::of(&scene("class-three-six-bar"));
     setup.mechanism.joints[6].points[0] = vec2(5.0, 5.0);
     let error = refusal(&setup);
-    let AssemblyError::CannotClose { bodies, gap, .. } = error else {
+    let AssemblyError::NoAssembly { bodies, gap, .. } = error else {
         panic!("{error:?}");
     };
     assert_eq!(bodies.len(), 4);
@@ -270,8 +282,8 @@ fn a_coordinate_must_be_a_number() {
     for case in CASES {
         let model = Setup::of(&case.scene()).model().expect("a model");
         for q in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let error = model.inertia(q, &mut model.work()).unwrap_err();
-            let PlaceError::NotFinite { q: named } = error else {
+            let error = model.inertia(q, &mut model.workspace()).unwrap_err();
+            let PositionError::NotFinite { q: named } = error else {
                 panic!("{}: {error:?}", case.name);
             };
             assert_eq!(named.to_bits(), q.to_bits());

@@ -1,17 +1,18 @@
 //! Numbers of 32 digits and of 7: what rounding does, and that nothing plain is left in what judges it.
 
-use crate::world::{cases, scene};
-use dwell_geometry::{Scalar, Wide};
 use dwell_kinetostatics::{Model, Workspace};
+use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_scene::Scene;
+use dwell_tests::fixtures::{case_names, scene};
 
 /// The cases of one actuator whose relations have no laws: those are evaluated in plain numbers.
 fn models() -> Vec<(String, Model, Vec<f64>)> {
     let model = |name: String| {
         let scene: Scene = scene(&name);
-        let start = scene.assembly.to_start();
-        let wanted = scene.mechanism.reactions();
-        let model = Model::new(&scene.mechanism, &scene.masses, &start, &wanted).expect("a model");
+        let start = scene.assembly.to_configuration();
+        let reactions = scene.mechanism.reactions();
+        let model =
+            Model::new(&scene.mechanism, &scene.masses, &start, &reactions).expect("a model");
         let range = match model.plan().range().limits() {
             Some((from, to)) => [from + 0.1 * (to - from), to - 0.1 * (to - from)],
             None => [start.q[0], start.q[0] + 6.0],
@@ -19,15 +20,19 @@ fn models() -> Vec<(String, Model, Vec<f64>)> {
         let at = |k: usize| range[0] + (range[1] - range[0]) * k as f64 / 7.0;
         (name, model, (0..8).map(at).collect::<Vec<f64>>())
     };
-    let plain = cases().into_iter().filter(|name| name != "cam");
+    let plain = case_names().into_iter().filter(|name| name != "cam");
     let all = plain.map(model);
     all.filter(|(_, model, _)| model.plan().actuators() == 1)
         .collect()
 }
 
-fn inertia(model: &Model, q: Wide, work: &mut Workspace<Wide>) -> [Wide; 2] {
-    let mut at = model.coefficients();
-    model.reduce(q, work, &mut at).expect("a pose");
+fn inertia(
+    model: &Model,
+    q: DoubleDouble,
+    workspace: &mut Workspace<DoubleDouble>,
+) -> [DoubleDouble; 2] {
+    let mut at = model.coefficient_buffer();
+    model.reduce(q, workspace, &mut at).expect("a pose");
     [at.m, at.half_dm]
 }
 
@@ -35,41 +40,42 @@ fn inertia(model: &Model, q: Wide, work: &mut Workspace<Wide>) -> [Wide; 2] {
 /// to h¹² and 1e-32/h. A plain number anywhere on the way would leave 1e-16.
 #[test]
 fn val_wide_inertia_has_its_derivative_to_twenty_three_digits() {
-    let mut seen = 0;
+    let mut compared = 0;
     for (name, model, positions) in models() {
-        let mut work = model.workspace();
+        let mut workspace = model.workspace();
         for &q in &positions {
-            let [_, half_dm] = inertia(&model, Wide::lift(q), &mut work);
-            let mut table: Vec<Wide> = Vec::new();
+            let [_, half_dm] = inertia(&model, DoubleDouble::from_f64(q), &mut workspace);
+            let mut table: Vec<DoubleDouble> = Vec::new();
             for level in 0..6 {
-                let h = Wide::lift(1e-3 / f64::from(1 << level));
-                let [ahead, behind] =
-                    [h, -h].map(|h| inertia(&model, Wide::lift(q) + h, &mut work)[0]);
-                let mut slope = (ahead - behind) / (Wide::lift(4.0) * h);
+                let h = DoubleDouble::from_f64(1e-3 / f64::from(1 << level));
+                let [ahead, behind] = [h, -h]
+                    .map(|h| inertia(&model, DoubleDouble::from_f64(q) + h, &mut workspace)[0]);
+                let mut slope = (ahead - behind) / (DoubleDouble::from_f64(4.0) * h);
                 for (k, entry) in table.iter_mut().enumerate() {
-                    let gain = Wide::lift(4_f64.powi(k as i32 + 1));
-                    let better = slope + (slope - *entry) / (gain - Wide::lift(1.0));
+                    let gain = DoubleDouble::from_f64(4_f64.powi(k as i32 + 1));
+                    let better = slope + (slope - *entry) / (gain - DoubleDouble::from_f64(1.0));
                     (*entry, slope) = (slope, better);
                 }
                 table.push(slope);
             }
-            let off = (table[5] - half_dm).abs().value();
-            let [m, _] = inertia(&model, Wide::lift(q), &mut work);
+            let difference = (table[5] - half_dm).abs().value();
+            let [m, _] = inertia(&model, DoubleDouble::from_f64(q), &mut workspace);
             // Of a mechanism that is steep the twelfth derivative is large.
             assert!(
-                off <= 1e-23 * (m.value() + half_dm.value().abs()),
-                "{name} at {q}: {off:e}"
+                difference <= 1e-23 * (m.value() + half_dm.value().abs()),
+                "{name} at {q}: {difference:e}"
             );
-            seen += 1;
+            compared += 1;
         }
     }
-    assert!(seen > 150, "{seen}");
+    assert!(compared > 150, "{compared}");
 }
 
 /// Short and plain numbers lose the same digits: what is lost belongs to the mechanism.
 #[test]
 fn short_and_plain_numbers_lose_alike() {
-    let off = |value: f64, wide: Wide| (Wide::lift(value) - wide).abs().value();
+    let difference =
+        |value: f64, wide: DoubleDouble| (DoubleDouble::from_f64(value) - wide).abs().value();
     for (name, model, positions) in models() {
         let (mut short, mut plain, mut wide) = (
             model.workspace::<f32>(),
@@ -77,9 +83,9 @@ fn short_and_plain_numbers_lose_alike() {
             model.workspace(),
         );
         let (mut s, mut p, mut w) = (
-            model.coefficients::<f32>(),
-            model.coefficients(),
-            model.coefficients(),
+            model.coefficient_buffer::<f32>(),
+            model.coefficient_buffer(),
+            model.coefficient_buffer(),
         );
         let [mut by_short, mut by_plain, mut m] = [0.0_f64; 3];
         for &q in &positions {
@@ -90,19 +96,23 @@ fn short_and_plain_numbers_lose_alike() {
                 .reduce(f64::from(q), &mut plain, &mut p)
                 .expect("a pose");
             model
-                .reduce(Wide::lift(f64::from(q)), &mut wide, &mut w)
+                .reduce(DoubleDouble::from_f64(f64::from(q)), &mut wide, &mut w)
                 .expect("a pose");
-            by_short = by_short.max(off(f64::from(s.m), w.m));
-            by_plain = by_plain.max(off(p.m, w.m));
+            by_short = by_short.max(difference(f64::from(s.m), w.m));
+            by_plain = by_plain.max(difference(p.m, w.m));
             m = m.max(w.m.value());
         }
         // 155 places are the most that are lost, on the three cranks, one of which is too many.
-        let places = [
+        let precisions = [
             (by_short, f64::from(f32::EPSILON)),
             (by_plain, f64::EPSILON),
         ];
-        for (off, place) in places {
-            assert!(off <= 1000.0 * place * m, "{name}: {:e}", off / m);
+        for (difference, precision) in precisions {
+            assert!(
+                difference <= 1000.0 * precision * m,
+                "{name}: {:e}",
+                difference / m
+            );
         }
     }
 }

@@ -1,16 +1,16 @@
 //! Mechanisms whose bodies are reached over slides, or driven from a body that moves: every truth
 //! holds on them as on the cases.
 
-use dwell_kinetostatics::Reduced;
+use dwell_kinetostatics::ReducedModel;
 use dwell_scene::Scene;
-use dwell_study::PlanSubject;
+use dwell_validation::PlanSubject;
 use dwell_verify::{Case, spread, verify_all};
 
 /// Judges a scene by every truth, and says how large its largest group is.
-fn all_truths(name: &str, text: &str, largest: usize) {
+fn check_scene(name: &str, text: &str, largest: usize) {
     let scene = Scene::parse(name, text).unwrap_or_else(|e| panic!("{name}: {e:?}"));
     let subject = PlanSubject::new(&scene).unwrap_or_else(|e| panic!("{name}: {e:?}"));
-    let groups = subject.exact().model().plan().group_kinds();
+    let groups = subject.exact().model().plan().group_methods();
     assert!(
         groups.iter().all(|(n, _)| *n <= largest),
         "{name}: {groups:?}"
@@ -25,7 +25,7 @@ fn all_truths(name: &str, text: &str, largest: usize) {
     for finding in verify_all(&case, &subject, &[]) {
         println!(
             "{name} {} {:e} {}",
-            finding.key, finding.relative, finding.worst
+            finding.key, finding.relative_difference, finding.worst_at
         );
         assert!(finding.pass, "{name}: {finding:#?} {groups:?} {range:?}");
     }
@@ -34,7 +34,7 @@ fn all_truths(name: &str, text: &str, largest: usize) {
 /// Elliptic trammel: a bar between two sliders of the ground, driven by its angle.
 #[test]
 fn trammel() {
-    all_truths(
+    check_scene(
         "trammel",
         r#"
 [bodies.ground]
@@ -71,7 +71,7 @@ phi = 0.4
 /// Scotch yoke: a block on the crank's pin slides in a yoke that slides on the ground.
 #[test]
 fn scotch_yoke() {
-    all_truths(
+    check_scene(
         "scotch yoke",
         r#"
 [bodies.ground]
@@ -109,7 +109,7 @@ phi = 0.3
 /// relative drive, the rod carried by the cylinder's slide.
 #[test]
 fn boom_driven_at_the_rod() {
-    all_truths(
+    check_scene(
         "boom",
         r#"
 [bodies.ground]
@@ -148,7 +148,7 @@ cylinder = 1.7
 /// Two slides in a row carry the pin of a bar whose other end is pinned to the ground.
 #[test]
 fn cross_slide() {
-    all_truths(
+    check_scene(
         "cross slide",
         r#"
 [bodies.ground]
@@ -186,7 +186,7 @@ phi = 0.7
 /// rail that moves.
 #[test]
 fn rod_on_a_turning_rail() {
-    all_truths(
+    check_scene(
         "turning rail",
         r#"
 [bodies.ground]

@@ -1,12 +1,12 @@
 //! Closed forms of mechanisms made of dyads, held against the numbers; and what is printed of them,
 //! compiled and run.
 
-use crate::cases::CASES;
-use crate::world::{cases, home, model, scene};
-use dwell_kinetostatics::Reduced;
+use dwell_kinetostatics::ReducedModel;
 use dwell_scene::Scene;
-use dwell_study::{Language, Printed, StudyError, symbolic, symbolic_findings};
-use dwell_symbolic::{Form, Symbolic};
+use dwell_study::{FormulaFormat, Language, StudyError, symbolic, symbolic_findings};
+use dwell_symbolic::{ClosedForm, Symbolic};
+use dwell_tests::cases::CASES;
+use dwell_tests::fixtures::{case_names, model, repository_root, scene};
 use dwell_verify::spread;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -39,8 +39,8 @@ const DYADS: [&str; 19] = [
 #[test]
 fn every_reaction_of_every_dyad_case_agrees() {
     let mut found = Vec::new();
-    for name in cases() {
-        if hold(&scene(&name)) {
+    for name in case_names() {
+        if check_scene(&scene(&name)) {
             found.push(name);
         }
     }
@@ -52,13 +52,13 @@ fn every_reaction_of_every_dyad_case_agrees() {
 #[test]
 fn prismatic_joints_agree() {
     for case in CASES {
-        let is_dyads = hold(&case.scene());
+        let is_dyads = check_scene(&case.scene());
         assert_eq!(is_dyads, case.largest <= 2, "{}", case.name);
     }
 }
 
 /// Holds a scene to 1e-12; whether it has closed forms.
-fn hold(scene: &Scene) -> bool {
+fn check_scene(scene: &Scene) -> bool {
     let findings = symbolic_findings(scene).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     for f in &findings {
         // Next to its change points a chain of parallelograms is not better known than this.
@@ -67,7 +67,11 @@ fn hold(scene: &Scene) -> bool {
         } else {
             1e-12
         };
-        assert!(f.pass && f.relative <= tolerance, "{}: {f:?}", scene.name);
+        assert!(
+            f.pass && f.relative_difference <= tolerance,
+            "{}: {f:?}",
+            scene.name
+        );
     }
     !findings.is_empty()
 }
@@ -82,13 +86,16 @@ fn what_is_wrong_is_seen() {
     masses[2].mass *= 1.0 + 1e-6;
     let reactions = scene.mechanism.reactions();
     let q = 0.7;
-    let mut out = exact.model().coefficients();
+    let mut out = exact.model().coefficient_buffer();
     exact
-        .coefficients(q, &mut exact.work(), &mut out)
+        .coefficients(q, &mut exact.workspace(), &mut out)
         .expect("a pose");
     let last = |masses: &[_], k: usize| {
         let symbolic = Symbolic::new(&scene.mechanism, masses, plan).expect("dyads");
-        let values = symbolic.form(Some(reactions[k])).expect("a").evaluate(q);
+        let values = symbolic
+            .closed_form(Some(reactions[k]))
+            .expect("a")
+            .evaluate(q);
         values[values.len() - 4..].to_vec()
     };
     let right = last(&scene.masses, 0);
@@ -101,7 +108,8 @@ fn what_is_wrong_is_seen() {
 }
 
 fn printed(name: &str) -> String {
-    let outcome = symbolic(&scene(name), Printed::Latex, None).unwrap_or_else(|e| panic!("{e}"));
+    let outcome =
+        symbolic(&scene(name), FormulaFormat::Latex, None).unwrap_or_else(|e| panic!("{e}"));
     let (path, bytes) = outcome.files.iter().next().expect("a file");
     assert_eq!(path, Path::new(&format!("{name}-symbolic.md")));
     String::from_utf8(bytes.to_vec()).expect("text")
@@ -110,7 +118,7 @@ fn printed(name: &str) -> String {
 /// The example in the handbook is what is printed.
 #[test]
 fn the_page_shows_what_is_printed() {
-    let page = home().join("docs").join("symbolic.md");
+    let page = repository_root().join("docs").join("symbolic.md");
     let page = std::fs::read_to_string(page).expect("a page");
     let printed = printed("four-bar");
     let formulas = page.lines().filter(|line| line.contains("&="));
@@ -142,9 +150,9 @@ fn the_slider_crank_in_latex() {
 #[test]
 fn what_is_printed_is_repeatable() {
     for printed in [
-        Printed::Latex,
-        Printed::Code(Language::C),
-        Printed::Code(Language::Rust),
+        FormulaFormat::Latex,
+        FormulaFormat::Code(Language::C),
+        FormulaFormat::Code(Language::Rust),
     ] {
         let once = || symbolic(&scene("whitworth"), printed, Some("slot.normal")).expect("forms");
         assert_eq!(once().files, once().files);
@@ -153,7 +161,7 @@ fn what_is_printed_is_repeatable() {
 
 #[test]
 fn what_has_no_closed_form_is_told_with_its_bodies() {
-    for (name, words) in [
+    for (name, text) in [
         ("class-three-six-bar", "they are no dyad"),
         ("stephenson-six-bar", "they are no dyad"),
         ("cam", "a relation has a law"),
@@ -162,16 +170,16 @@ fn what_has_no_closed_form_is_told_with_its_bodies() {
         ("five-bar", "2 actuators"),
     ] {
         let scene = scene(name);
-        let refused = symbolic(&scene, Printed::Latex, None);
+        let refused = symbolic(&scene, FormulaFormat::Latex, None);
         let Err(StudyError::Scene(error)) = refused else {
             panic!("{name}: {refused:?}");
         };
-        assert!(error.message.contains(words), "{name}: {}", error.message);
+        assert!(error.message.contains(text), "{name}: {}", error.message);
         assert!(!error.labels.is_empty(), "{name}");
         assert!(error.help.is_some(), "{name}");
         assert_eq!(symbolic_findings(&scene).expect("none"), []);
     }
-    let refused = symbolic(&scene("four-bar"), Printed::Latex, Some("A.z"));
+    let refused = symbolic(&scene("four-bar"), FormulaFormat::Latex, Some("A.z"));
     let Err(StudyError::Scene(error)) = refused else {
         panic!("{refused:?}");
     };
@@ -195,24 +203,24 @@ fn what_is_printed_computes_the_same() {
         let reaction = *scene.mechanism.reactions().last().expect("a reaction");
         let form = symbolic
             .expect("dyads")
-            .form(Some(reaction))
+            .closed_form(Some(reaction))
             .expect("a form");
         let at = spread(exact.range(), 5);
         for language in [Language::Rust, Language::C, Language::Python] {
-            let Some(rows) = ran(&folder, &form, language, &at) else {
+            let Some(rows) = run_generated_code(&folder, &form, language, &at) else {
                 eprintln!("{language:?}: no tool here, nothing was run");
                 continue;
             };
             assert_eq!(rows.len(), at.len());
             for (row, &q) in rows.iter().zip(&at) {
-                let wanted = form.evaluate(q);
-                assert_eq!(row.len(), wanted.len());
-                let scale = wanted.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
-                for ((one, other), quantity) in row.iter().zip(&wanted).zip(&form.quantities) {
+                let expected = form.evaluate(q);
+                assert_eq!(row.len(), expected.len());
+                let scale = expected.iter().fold(0.0_f64, |s, v| s.max(v.abs()));
+                for ((one, other), quantity) in row.iter().zip(&expected).zip(&form.quantities) {
                     // Shared parts round differently, and powers are by another library.
-                    let apart = (one - other).abs();
+                    let difference = (one - other).abs();
                     assert!(
-                        apart <= 1e-13 * scale,
+                        difference <= 1e-13 * scale,
                         "{name} {language:?} {}: {one} {other}",
                         quantity.code
                     );
@@ -224,7 +232,12 @@ fn what_is_printed_computes_the_same() {
 }
 
 /// The quantities at some coordinates, by a program of this language; none where there is no tool.
-fn ran(folder: &Path, form: &Form, language: Language, at: &[f64]) -> Option<Vec<Vec<f64>>> {
+fn run_generated_code(
+    folder: &Path,
+    form: &ClosedForm,
+    language: Language,
+    at: &[f64],
+) -> Option<Vec<Vec<f64>>> {
     let mut text = form.code(language, "reduced", "a test");
     let codes: Vec<&str> = form.quantities.iter().map(|q| q.code.as_str()).collect();
     let list: Vec<String> = at.iter().map(|q| format!("{q:?}")).collect();
@@ -239,8 +252,11 @@ fn ran(folder: &Path, form: &Form, language: Language, at: &[f64]) -> Option<Vec
             .args(more)
             .output()
             .ok()?;
-        let said = String::from_utf8_lossy(&done.stderr);
-        assert!(done.status.success() && said.is_empty(), "{tool}: {said}");
+        let stderr = String::from_utf8_lossy(&done.stderr);
+        assert!(
+            done.status.success() && stderr.is_empty(),
+            "{tool}: {stderr}"
+        );
         Some(())
     };
     let mut run = match language {
@@ -283,9 +299,9 @@ fn ran(folder: &Path, form: &Form, language: Language, at: &[f64]) -> Option<Vec
         }
     };
     let done = run.output().ok()?;
-    let said = String::from_utf8_lossy(&done.stderr);
-    assert!(done.status.success(), "{language:?}: {said}");
-    let said = String::from_utf8(done.stdout).expect("text");
+    let stderr = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.success(), "{language:?}: {stderr}");
+    let stderr = String::from_utf8(done.stdout).expect("text");
     let row = |line: &str| serde_json::from_str(line).expect("a list of numbers");
-    Some(said.lines().map(row).collect())
+    Some(stderr.lines().map(row).collect())
 }

@@ -1,64 +1,78 @@
 //! Tables of the reduced model: their bounds, that m and ½m′ belong together, and their files.
 
-use crate::world::{self, scene};
-use dwell_dynamics::{Equation, Method, Options, Orbit, State, Until, simulate};
-use dwell_geometry::{PlaceError, Range};
+use dwell_dynamics::{
+    Event, EventKind, EventOccurrence, Method, Options, Orbit, ReducedCoordinate, ReducedOde,
+    ReducedState, solve_reduced,
+};
+use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::table::{FileError, Labels};
-use dwell_kinetostatics::{Coefficients, Entry, Exact, Extent, Model, Reduced, Table, TableError};
+use dwell_kinetostatics::{
+    Coefficients, ExactModel, Model, ReducedModel, TableDomain, TableError, TableQuantity,
+    TabulatedModel,
+};
 use dwell_scene::Scene;
+use dwell_tests::fixtures::{self, scene};
 use std::f64::consts::TAU;
+use std::num::NonZeroUsize;
 
 /// The golden section: steps of it fall on no grid.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
 /// A scene's model with every reaction and all loads; none of several actuators.
-fn loaded(scene: &Scene) -> Option<Exact> {
-    let start = scene.assembly.to_start();
+fn loaded(scene: &Scene) -> Option<ExactModel> {
+    let start = scene.assembly.to_configuration();
     let all = scene.mechanism.reactions();
     let model = Model::new(&scene.mechanism, &scene.masses, &start, &all).expect("a model");
-    let model = model.with_loads(&scene.mechanism, scene.loads.clone());
-    Exact::new(model.expect("loads"))
+    let model = model.with_loads(scene.loads.clone());
+    ExactModel::new(model.expect("loads"))
 }
 
-fn case(name: &str) -> Exact {
+fn case(name: &str) -> ExactModel {
     loaded(&scene(name)).expect("one actuator")
 }
 
 /// All cases of one actuator.
-fn cases() -> Vec<(String, Exact)> {
-    let names = world::cases().into_iter();
+fn cases() -> Vec<(String, ExactModel)> {
+    let names = fixtures::case_names().into_iter();
     names
         .filter_map(|name| Some((name.clone(), loaded(&scene(&name))?)))
         .collect()
 }
 
 /// Points of a table's extent that fall on none of its cells.
-fn points(table: &Table, count: usize) -> impl Iterator<Item = f64> {
-    let [from, to] = table.extent();
+fn points(table: &TabulatedModel, count: usize) -> impl Iterator<Item = f64> {
+    let [from, to] = table.domain();
     (0..count).map(move |i| from + (to - from) * (0.123_456_7 + GOLDEN * i as f64).fract())
 }
 
 /// The coefficients of a table in the order of its bounds.
-fn of_table(table: &Table, exact: &Exact, q: f64) -> Vec<f64> {
-    let (mut at, mut loads) = (exact.model().coefficients(), table.channel_room());
+fn of_table(table: &TabulatedModel, exact: &ExactModel, q: f64) -> Vec<f64> {
+    let (mut at, mut loads) = (exact.model().coefficient_buffer(), table.response_buffer());
     table.coefficients(q, &mut (), &mut at).expect("within");
-    table.channels(q, &mut loads).expect("within");
+    table.unit_load_responses(q, &mut loads).expect("within");
     let Coefficients { m, half_dm, a, b } = at;
     [vec![m, half_dm], a, b, loads.w, loads.c].concat()
 }
 
 /// The same of the exact model.
-fn of_model(exact: &Exact, q: f64) -> Vec<f64> {
+fn of_model(exact: &ExactModel, q: f64) -> Vec<f64> {
     let model = exact.model();
-    let (mut work, mut actions, mut at) =
-        (model.workspace(), model.actions(), model.coefficients());
-    model.reduce(q, &mut work, &mut at).expect("a pose");
+    let (mut workspace, mut result, mut at) = (
+        model.workspace(),
+        model.result_buffer(),
+        model.coefficient_buffer(),
+    );
+    model.reduce(q, &mut workspace, &mut at).expect("a pose");
     let (mut w, mut c) = (Vec::new(), Vec::new());
-    model.enter(0.0, &[q], &[1.0], &mut work).expect("a pose");
+    model
+        .set_state(0.0, &[q], &[1.0], &mut workspace)
+        .expect("a pose");
     for load in 0..model.loads().len() {
-        model.channel(load, &mut work, &mut actions).expect("a run");
-        w.push(-actions.tau[0]);
-        c.extend(&actions.reactions);
+        model
+            .unit_load_response(load, &mut workspace, &mut result)
+            .expect("a run");
+        w.push(-result.tau[0]);
+        c.extend(&result.reactions);
     }
     let Coefficients { m, half_dm, a, b } = at;
     [vec![m, half_dm], a, b, w, c].concat()
@@ -66,51 +80,54 @@ fn of_model(exact: &Exact, q: f64) -> Vec<f64> {
 
 /// What a case's table is asked for: where the exact ½m′ is known to fewer digits, next to change points,
 /// no table can have more. Of a mechanism without ends, as far as it goes in four turns of something.
-fn asked(name: &str, exact: &Exact) -> (f64, Extent) {
+fn requested(name: &str, exact: &ExactModel) -> (f64, TableDomain) {
     let accuracy = match name {
         "n-four-bar-a02" => 1e-8,
         "parallelogram-three-cranks" => 2e-8,
         _ => 1e-12,
     };
     match exact.range() {
-        Range::Endless => (accuracy, Extent::Between(-1.0, 3.0)),
-        _ => (accuracy, Extent::Whole),
+        Range::Unbounded => (accuracy, TableDomain::Between(-1.0, 3.0)),
+        _ => (accuracy, TableDomain::Full),
     }
 }
 
-fn table(name: &str, exact: &Exact) -> Table {
-    let (accuracy, extent) = asked(name, exact);
-    Table::new(exact, accuracy, extent).unwrap_or_else(|e| panic!("{name}: {e}"))
+fn table(name: &str, exact: &ExactModel) -> TabulatedModel {
+    let (accuracy, extent) = requested(name, exact);
+    TabulatedModel::new(exact, accuracy, extent).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
 /// Every coefficient of every case at 10 000 points that no part of the table was made or judged at.
 #[test]
 fn val_tables_keep_their_bounds() {
-    let mut seen = 0;
+    let mut compared = 0;
     for (name, exact) in cases() {
         let table = table(&name, &exact);
-        assert!(table.bound() <= table.accuracy(), "{name}");
+        assert!(table.max_bound() <= table.accuracy(), "{name}");
         let mut largest = vec![0.0_f64; table.bounds().len()];
         for q in points(&table, 10_000) {
-            let (own, truth) = (of_table(&table, &exact, q), of_model(&exact, q));
-            assert_eq!(own.len(), table.bounds().len());
+            let (tabulated, expected) = (of_table(&table, &exact, q), of_model(&exact, q));
+            assert_eq!(tabulated.len(), table.bounds().len());
             for (k, bound) in table.bounds().iter().enumerate() {
-                let (off, most) = ((own[k] - truth[k]).abs(), bound.error * bound.scale);
-                assert!(
-                    off <= most,
-                    "{name}, {} at {q}: {off:e} > {most:e}",
-                    bound.of
+                let (difference, bound_value) = (
+                    (tabulated[k] - expected[k]).abs(),
+                    bound.error * bound.scale,
                 );
-                largest[k] = largest[k].max(truth[k].abs());
+                assert!(
+                    difference <= bound_value,
+                    "{name}, {} at {q}: {difference:e} > {bound_value:e}",
+                    bound.quantity
+                );
+                largest[k] = largest[k].max(expected[k].abs());
             }
         }
         // The scale is the largest value, but for a coefficient that nearly vanishes.
         for (bound, largest) in table.bounds().iter().zip(largest) {
-            assert!(largest <= 1.05 * bound.scale, "{name}, {}", bound.of);
+            assert!(largest <= 1.05 * bound.scale, "{name}, {}", bound.quantity);
         }
-        seen += 1;
+        compared += 1;
     }
-    assert!(seen > 20, "{seen}");
+    assert!(compared > 20, "{compared}");
 }
 
 /// Gauss's rule of four points, exact for a piece of ½m′, gives the difference of m within half a cell, and
@@ -120,38 +137,38 @@ fn half_the_slope_of_a_tables_m_is_its_other_column() {
     for (name, exact) in cases() {
         let table = table(&name, &exact);
         let at = |q: f64| table.inertia(q, &mut ()).expect("within").into();
-        put_together(&Sums {
+        check_integral(&IntegratedFunction {
             name: &name,
             at: &at,
-            extent: table.extent(),
+            extent: table.domain(),
             cells: table.cells()[0],
             scale: table.bounds()[0].scale,
-            comes_back: table.turns().is_some(),
+            is_periodic: table.revolutions().is_some(),
         });
     }
 }
 
 /// A function of a table and half its slope.
-pub(crate) struct Sums<'a> {
+pub(crate) struct IntegratedFunction<'a> {
     pub(crate) name: &'a str,
     pub(crate) at: &'a dyn Fn(f64) -> [f64; 2],
     pub(crate) extent: [f64; 2],
     pub(crate) cells: usize,
     /// Largest value.
     pub(crate) scale: f64,
-    pub(crate) comes_back: bool,
+    pub(crate) is_periodic: bool,
 }
 
 /// Holds a function against the sum of its slope, cell by cell.
-pub(crate) fn put_together(sums: &Sums<'_>) {
-    let &Sums {
+pub(crate) fn check_integral(function: &IntegratedFunction<'_>) {
+    let &IntegratedFunction {
         name,
         at,
         extent: [from, to],
         cells,
         scale,
-        comes_back,
-    } = sums;
+        is_periodic: comes_back,
+    } = function;
     let (inner, outer) = (0.339_981_043_584_856_26, 0.861_136_311_594_052_6);
     let (heavy, light) = (0.652_145_154_862_546_1, 0.347_854_845_137_453_9);
     let rule = [
@@ -166,22 +183,25 @@ pub(crate) fn put_together(sums: &Sums<'_>) {
         let start = from + 2.0 * half * cell as f64;
         // Away from the ends, where a rounding of q may fall into the next cell.
         let (left, right) = (start + 0.01 * half, start + 1.99 * half);
-        let (middle, reach) = (0.5 * (left + right), 0.5 * (right - left));
-        let sum = rule.map(|(x, weight)| weight * at(middle + reach * x)[1]);
-        let climb = 2.0 * reach * sum.iter().sum::<f64>();
+        let (middle, half_width) = (0.5 * (left + right), 0.5 * (right - left));
+        let sum = rule.map(|(x, weight)| weight * at(middle + half_width * x)[1]);
+        let climb = 2.0 * half_width * sum.iter().sum::<f64>();
         let steep = 2.0 * half * sum.iter().fold(0.0_f64, |s, x| s.max(x.abs()));
         // Some roundings of m, and of q where m is steep.
         let rounding = 4e-15 * scale + 1e-15 * steep * cells as f64;
-        let off = (at(right)[0] - at(left)[0] - climb).abs();
+        let difference = (at(right)[0] - at(left)[0] - climb).abs();
         assert!(
-            off < rounding,
-            "{name}, cell {cell}: {off:e} > {rounding:e}"
+            difference < rounding,
+            "{name}, cell {cell}: {difference:e} > {rounding:e}"
         );
         if cell > 0 {
             let across = at(start + 1e-9 * half)[0] - at(start - 1e-9 * half)[0];
             let climb = 4e-9 * half * at(start)[1];
-            let off = (across - climb).abs();
-            assert!(off < rounding, "{name}, at the start of {cell}: {off:e}");
+            let difference = (across - climb).abs();
+            assert!(
+                difference < rounding,
+                "{name}, at the start of {cell}: {difference:e}"
+            );
         }
         let all = rule.map(|(x, weight)| weight * half * at(start + half + half * x)[1]);
         whole += 2.0 * all.iter().sum::<f64>();
@@ -202,31 +222,31 @@ pub(crate) fn put_together(sums: &Sums<'_>) {
 fn val_equal_steps_gain_the_same_energy_on_a_table() {
     for name in ["single-dwell", "crank-rocker"] {
         let exact = case(name);
-        let start = State {
+        let start = ReducedState {
             t: 0.0,
             q: 0.0,
             q_dot: 1.0,
         };
         let period = Orbit::new(&exact, start).expect("a period").period;
-        let truth = stepped(&exact, period);
+        let expected = energies_per_revolution(&exact, period);
         assert!(
-            truth[999].abs() > 1e-9,
+            expected[999].abs() > 1e-9,
             "{name}: nothing to compare: {:e}",
-            truth[999]
+            expected[999]
         );
         for accuracy in [1e-4, 1e-12] {
-            let table = Table::new(&exact, accuracy, Extent::Whole).expect("a table");
-            let own = stepped(&table, period);
-            for (turn, (own, truth)) in own.iter().zip(&truth).enumerate() {
+            let table = TabulatedModel::new(&exact, accuracy, TableDomain::Full).expect("a table");
+            let tabulated = energies_per_revolution(&table, period);
+            for (revolution, (tabulated, expected)) in tabulated.iter().zip(&expected).enumerate() {
                 // Truncation differs as higher derivatives do: 0.01 of the bound is met on the coarse table. The
                 // places at which m is rounded are the same in every turn, so that some 1e-16 of it come back
                 // each time. Interpolating m on its own gained 2 and 60 bounds, keeping what a turn gains 20
                 // and 70.
-                let most = 0.02 * table.bound() + 2e-15 * (turn + 2) as f64;
-                let apart = (own - truth).abs();
+                let max = 0.02 * table.max_bound() + 2e-15 * (revolution + 2) as f64;
+                let difference = (tabulated - expected).abs();
                 assert!(
-                    apart < most,
-                    "{name}, {accuracy:e}, turn {turn}: {apart:e} apart"
+                    difference < max,
+                    "{name}, {accuracy:e}, turn {revolution}: {difference:e} apart"
                 );
             }
         }
@@ -235,9 +255,9 @@ fn val_equal_steps_gain_the_same_energy_on_a_table() {
 
 /// What the energy has gained after each of 1000 turns, as a part of it, by Runge and Kutta's rule of 4 in
 /// 400 steps a turn.
-fn stepped<R: Reduced>(model: &R, period: f64) -> Vec<f64> {
-    let mut equation = Equation::new(model);
-    let first = equation.energy(0.0, 1.0).expect("an energy");
+fn energies_per_revolution<R: ReducedModel>(model: &R, period: f64) -> Vec<f64> {
+    let mut equation = ReducedOde::new(model);
+    let first = equation.kinetic_energy(0.0, 1.0).expect("an energy");
     let (h, mut y) = (period / 400.0, [0.0, 1.0]);
     let mut gains = Vec::new();
     for _ in 0..1000 {
@@ -253,7 +273,7 @@ fn stepped<R: Reduced>(model: &R, period: f64) -> Vec<f64> {
         }
         // With the turns it has made, q would be rounded to 1e-12: by 1000 turns 1e-10 of energy.
         y[0] -= TAU;
-        gains.push(equation.energy(y[0], y[1]).expect("within") / first - 1.0);
+        gains.push(equation.kinetic_energy(y[0], y[1]).expect("within") / first - 1.0);
     }
     gains
 }
@@ -262,7 +282,7 @@ fn stepped<R: Reduced>(model: &R, period: f64) -> Vec<f64> {
 /// error: else that would have a say in the choice.
 #[test]
 fn val_energy_drifts_on_a_table_as_on_the_exact_model() {
-    let start = State {
+    let start = ReducedState {
         t: 0.0,
         q: 0.0,
         q_dot: 1.0,
@@ -271,43 +291,51 @@ fn val_energy_drifts_on_a_table_as_on_the_exact_model() {
     for name in ["single-dwell", "crank-rocker"] {
         let exact = case(name);
         let table = table(name, &exact);
-        let turns = Until::Turns(1000);
-        let [own, truth] = [
-            drift(
-                &table,
-                &simulate(&table, start, turns, &options)
-                    .expect("a run")
-                    .turns,
-            ),
-            drift(
-                &exact,
-                &simulate(&exact, start, turns, &options)
-                    .expect("a run")
-                    .turns,
-            ),
+        let [tabulated, expected] = [
+            drift(&table, start, &options),
+            drift(&exact, start, &options),
         ];
-        let apart: Vec<f64> = own.iter().zip(&truth).map(|(a, b)| (a - b).abs()).collect();
+        let differences: Vec<f64> = tabulated
+            .iter()
+            .zip(&expected)
+            .map(|(a, b)| (a - b).abs())
+            .collect();
         // The steps are not the same: the errors they are chosen by are of the size of the table's.
         assert!(
-            apart[999] < 0.1 * truth[999].abs(),
+            differences[999] < 0.1 * expected[999].abs(),
             "{name}: {:e} apart",
-            apart[999]
+            differences[999]
         );
-        let turn = [Orbit::new(&table, start), Orbit::new(&exact, start)];
-        let [own, truth] = turn.map(|turn| turn.expect("a period").period);
-        assert!((own - truth).abs() < 1e-12 * truth, "{name}: {own} {truth}");
+        let orbits = [Orbit::new(&table, start), Orbit::new(&exact, start)];
+        let [tabulated, expected] = orbits.map(|orbits| orbits.expect("a period").period);
+        assert!(
+            (tabulated - expected).abs() < 1e-12 * expected,
+            "{name}: {tabulated} {expected}"
+        );
     }
 }
 
-/// By turn, what the energy has gained since the first, as a part of it.
-fn drift<R: Reduced>(model: &R, turns: &[State]) -> Vec<f64> {
-    let mut equation = Equation::new(model);
-    let mut energy = |s: &State| equation.energy(s.q, s.q_dot).expect("an energy");
-    let first = energy(&turns[0]);
-    turns.iter().map(|s| energy(s) / first - 1.0).collect()
+/// By revolution of 1000, the gain of energy since the first, as a part of it.
+fn drift<R: ReducedModel>(model: &R, start: ReducedState, options: &Options) -> Vec<f64> {
+    let thousand = Event {
+        kind: EventKind::Revolution(ReducedCoordinate),
+        terminal: NonZeroUsize::new(1000),
+    };
+    let run = solve_reduced(model, start, None, options, &[thousand]).expect("a run");
+    let revolutions = run.event_occurrences;
+    let mut equation = ReducedOde::new(model);
+    let mut energy = |o: &EventOccurrence| {
+        let y = &o.state.y;
+        equation.kinetic_energy(y[0], y[1]).expect("an energy")
+    };
+    let first = energy(&revolutions[0]);
+    revolutions
+        .iter()
+        .map(|s| energy(s) / first - 1.0)
+        .collect()
 }
 
-fn labels(exact: &Exact, scene: &Scene) -> Labels {
+fn labels(exact: &ExactModel, scene: &Scene) -> Labels {
     let reactions = exact.model().reactions().iter();
     Labels {
         scene: scene.hash(),
@@ -326,12 +354,12 @@ fn a_table_is_read_as_it_was_written() {
         let table = table(&name, &exact);
         let labels = labels(&exact, &scene(&name));
         let text = table.to_text(&labels).expect("a text");
-        let (read, known) = Table::from_text(&text).expect("a table");
+        let (read, known) = TabulatedModel::from_text(&text).expect("a table");
         assert_eq!((&read, &known), (&table, &labels), "{name}");
         for q in points(&table, 50) {
-            let [own, again] = [&table, &read].map(|t| of_table(t, &exact, q));
+            let [written, read_back] = [&table, &read].map(|t| of_table(t, &exact, q));
             let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-            assert_eq!(bits(&own), bits(&again), "{name} at {q}");
+            assert_eq!(bits(&written), bits(&read_back), "{name} at {q}");
         }
         assert_eq!(read.to_text(&known).expect("a text"), text, "{name}");
     }
@@ -341,10 +369,10 @@ fn a_table_is_read_as_it_was_written() {
 #[test]
 fn a_damaged_table_is_refused() {
     let exact = case("slider-crank");
-    let table = Table::new(&exact, 1e-3, Extent::Whole).expect("a table");
+    let table = TabulatedModel::new(&exact, 1e-3, TableDomain::Full).expect("a table");
     let labels = labels(&exact, &scene("slider-crank"));
     let text = table.to_text(&labels).expect("a text");
-    let refused = |text: &str| Table::from_text(text).expect_err("a damaged table");
+    let refused = |text: &str| TabulatedModel::from_text(text).expect_err("a damaged table");
     for end in 0..text.len() {
         assert!(text.is_ascii());
         refused(&text[..end]);
@@ -352,8 +380,8 @@ fn a_damaged_table_is_refused() {
         altered[end] ^= 1;
         refused(std::str::from_utf8(&altered).expect("ascii"));
     }
-    assert_eq!(refused(""), FileError::NoTable);
-    assert_eq!(refused("table = 1\n"), FileError::NoTable);
+    assert_eq!(refused(""), FileError::NotATable);
+    assert_eq!(refused("table = 1\n"), FileError::NotATable);
     let later = text.replacen("dwell-table 1", "dwell-table 2", 1);
     assert_eq!(
         refused(&later),
@@ -363,7 +391,10 @@ fn a_damaged_table_is_refused() {
     );
     let cut = &text[..text.len() / 2];
     assert_eq!(refused(cut), FileError::Truncated);
-    assert_eq!(refused(&text.replacen("rad", "raD", 1)), FileError::Altered);
+    assert_eq!(
+        refused(&text.replacen("rad", "raD", 1)),
+        FileError::ChecksumMismatch
+    );
     let mut odd = labels;
     odd.reactions[0] = "two\nlines".to_owned();
     assert!(matches!(table.to_text(&odd), Err(FileError::Labels { .. })));
@@ -376,10 +407,10 @@ fn a_damaged_table_is_refused() {
 fn a_table_reaches_as_far_as_it_says() {
     let exact = case("class-three-six-bar");
     let table = table("class-three-six-bar", &exact);
-    let [from, to] = table.extent();
+    let [from, to] = table.domain();
     let (lowest, highest) = exact.range().limits().expect("limits");
     assert!(lowest < from && to < highest && to - from > 0.9 * (highest - lowest));
-    assert_eq!(table.range(), Range::Followed(from, to));
+    assert_eq!(table.range(), Range::Unresolved(from, to));
     for q in [from, to, 0.5 * (from + to)] {
         assert!(table.inertia(q, &mut ()).is_ok(), "{q}");
     }
@@ -388,27 +419,27 @@ fn a_table_reaches_as_far_as_it_says() {
         assert!(
             matches!(
                 found,
-                Err(PlaceError::OutOfRange { .. } | PlaceError::NotFinite { .. })
+                Err(PositionError::OutOfRange { .. } | PositionError::NotFinite { .. })
             ),
             "{q}"
         );
     }
-    let inner = Table::new(&exact, 1e-9, Extent::Between(0.0, 1.0)).expect("a table");
-    assert_eq!(inner.extent(), [0.0, 1.0]);
+    let inner = TabulatedModel::new(&exact, 1e-9, TableDomain::Between(0.0, 1.0)).expect("a table");
+    assert_eq!(inner.domain(), [0.0, 1.0]);
     assert!(inner.cells()[0] < table.cells()[0] / 4);
 
     let exact = case("crank-rocker");
     let table = self::table("crank-rocker", &exact);
-    assert_eq!((table.range(), table.turns()), (Range::Full, Some(1)));
-    let mut work = exact.work();
+    assert_eq!((table.range(), table.revolutions()), (Range::Full, Some(1)));
+    let mut workspace = exact.workspace();
     for q in [-1e-300, -0.1, 6.283_185_307_179_587, -7.0, 1e3, -1e5, 6.5e6] {
-        let own = table.inertia(q, &mut ()).expect("a turn");
-        let truth = exact.inertia(q, &mut work).expect("a pose");
+        let tabulated = table.inertia(q, &mut ()).expect("a turn");
+        let expected = exact.inertia(q, &mut workspace).expect("a pose");
         // The exact model takes sines of q: its turns are exact. Three roundings of the table's part.
         let scale = table.bounds()[1].scale;
         assert!(
-            (own.1 - truth.1).abs() < 2e-12 * scale,
-            "{q}: {own:?} {truth:?}"
+            (tabulated.1 - expected.1).abs() < 2e-12 * scale,
+            "{q}: {tabulated:?} {expected:?}"
         );
     }
     for q in [f64::NAN, f64::INFINITY, 1e8] {
@@ -420,7 +451,7 @@ fn a_table_reaches_as_far_as_it_says() {
 fn what_cannot_be_tabulated_says_why() {
     let exact = case("crank-rocker");
     for accuracy in [0.0, -1e-9, f64::NAN, 1e-15, 1.0] {
-        let found = Table::new(&exact, accuracy, Extent::Whole);
+        let found = TabulatedModel::new(&exact, accuracy, TableDomain::Full);
         assert!(
             matches!(found, Err(TableError::Accuracy { .. })),
             "{accuracy}"
@@ -432,24 +463,28 @@ fn what_cannot_be_tabulated_says_why() {
         (f64::NAN, 1.0),
         (0.0, f64::INFINITY),
     ] {
-        let found = Table::new(&exact, 1e-6, Extent::Between(from, to));
+        let found = TabulatedModel::new(&exact, 1e-6, TableDomain::Between(from, to));
         assert!(
-            matches!(found, Err(TableError::Extent { .. })),
+            matches!(found, Err(TableError::Domain { .. })),
             "{from} {to}"
         );
     }
     let exact = case("class-three-six-bar");
-    let found = Table::new(&exact, 1e-6, Extent::Between(0.0, 4.0));
-    assert!(matches!(found, Err(TableError::Extent { .. })));
-    let found = Table::new(&case("planetary"), 1e-6, Extent::Whole);
-    assert_eq!(found, Err(TableError::Endless));
+    let found = TabulatedModel::new(&exact, 1e-6, TableDomain::Between(0.0, 4.0));
+    assert!(matches!(found, Err(TableError::Domain { .. })));
+    let found = TabulatedModel::new(&case("planetary"), 1e-6, TableDomain::Full);
+    assert_eq!(found, Err(TableError::Unbounded));
     // Next to its change points the exact ½m′ has nine digits.
-    let found = Table::new(&case("parallelogram-three-cranks"), 1e-10, Extent::Whole);
+    let found = TabulatedModel::new(
+        &case("parallelogram-three-cranks"),
+        1e-10,
+        TableDomain::Full,
+    );
     assert!(
         matches!(
             found,
             Err(TableError::NotReached {
-                what: Entry::HalfDm,
+                what: TableQuantity::HalfDm,
                 ..
             })
         ),

@@ -6,23 +6,18 @@
     reason = "a study, run by hand"
 )]
 
-#[path = "../all/chain/counted.rs"]
-mod counted;
-#[path = "../all/chain/links.rs"]
-#[allow(dead_code, reason = "the tests ask for more")]
-mod links;
-
 use dwell_kinetostatics::Model;
 use dwell_report::{Axis, Chart, Figure, Mark, Panel, Series, Stroke, png};
+use dwell_tests::chain::{counting_scalar, links};
 use std::path::Path;
 use std::time::Instant;
 
 /// Numbers of four-bars.
 const SIZES: [usize; 9] = [1, 3, 10, 30, 100, 300, 1000, 3000, 10000];
 /// A time is the least of this many runs.
-const RUNS: usize = 7;
+const TIMED_RUNS: usize = 7;
 /// Four-bars of the definition, whose errors are drawn.
-const CHAIN: usize = 40;
+const CHAIN_LENGTH: usize = 40;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (mut operations, mut times) = (Vec::new(), Vec::new());
@@ -30,7 +25,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let start = Instant::now();
         let model = links::model(n);
         let built = start.elapsed().as_secs_f64();
-        operations.push([n as f64, counted::operations(&model) as f64]);
+        operations.push([n as f64, counting_scalar::operations(&model) as f64]);
         times.push([n as f64, time(&model, n) * 1e6]);
         let [poses, spent] = [&operations, &times].map(|all| all.last().map_or(0.0, |[_, y]| *y));
         println!(
@@ -48,9 +43,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .into(),
         columns: 2,
         panels: vec![
-            cost("Operations", "operations per pose", "", operations),
-            cost("Time", "time per pose", "µs", times),
-            accuracy(),
+            cost_panel("Operations", "operations per pose", "", operations),
+            cost_panel("Time", "time per pose", "µs", times),
+            accuracy_panel(),
         ],
 ..Figure::default()
 };
@@ -62,24 +57,24 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
 /// Seconds of one pose.
 fn time(model: &Model, n: usize) -> f64 {
-    let mut work = model.workspace::<f64>();
-    let mut actions = model.actions();
+    let mut workspace = model.workspace::<f64>();
+    let mut result = model.result_buffer();
     // All of them at θ between 1 and 2.4.
     let poses = (20_000 / n).max(3);
-    let mut least = f64::INFINITY;
-    for run in 0..RUNS {
+    let mut min = f64::INFINITY;
+    for run in 0..TIMED_RUNS {
         let start = Instant::now();
         for pose in 0..poses {
             let q = 1.0 + 1e-5 * (run * poses + pose) as f64;
-            let done = model.act(&[q], &[0.9], &[-0.6], &mut work, &mut actions);
+            let done = model.inverse_dynamics(&[q], &[0.9], &[-0.6], &mut workspace, &mut result);
             done.expect("a pose");
         }
-        least = least.min(start.elapsed().as_secs_f64() / poses as f64);
+        min = min.min(start.elapsed().as_secs_f64() / poses as f64);
     }
-    least
+    min
 }
 
-fn cost(title: &str, label: &str, unit: &str, points: Vec<[f64; 2]>) -> Panel {
+fn cost_panel(title: &str, label: &str, unit: &str, points: Vec<[f64; 2]>) -> Panel {
     let slope = points.get(points.len() / 2).map(|&through| Mark::Slope {
         order: 1.0,
         through,
@@ -96,12 +91,12 @@ fn cost(title: &str, label: &str, unit: &str, points: Vec<[f64; 2]>) -> Panel {
 }
 
 /// Errors from |sin θ| = 0.5 to 0.001.
-fn accuracy() -> Panel {
-    let model = links::model(CHAIN);
+fn accuracy_panel() -> Panel {
+    let model = links::model(CHAIN_LENGTH);
     let sines = (0..=40).map(|k| 0.5 * 10.0_f64.powf(-2.7 * f64::from(k) / 40.0));
     let (mut torque, mut force) = (Vec::new(), Vec::new());
     for sine in sines {
-        let errors = links::errors(&model, CHAIN, [sine.asin(), 1.0, 0.5]);
+        let errors = links::errors(&model, CHAIN_LENGTH, [sine.asin(), 1.0, 0.5]);
         torque.push([sine, errors[0].max(f64::EPSILON / 8.0)]);
         force.push([sine, errors[1]]);
     }

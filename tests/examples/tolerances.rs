@@ -3,18 +3,18 @@
 //! to be read and explained before it is committed.
 #![allow(clippy::print_stdout, reason = "a study, run by hand")]
 
-use dwell_findings::Finding;
+use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
 
 /// Differences met, and roundings, that a tolerance leaves room for: another machine has another sine.
-const SEEN: f64 = 15.0;
-const ROUNDINGS: f64 = 20.0;
+const DIFFERENCE_FACTOR: f64 = 15.0;
+const ROUNDING_FACTOR: f64 = 20.0;
 /// The part for roundings grows with the condition number, but to no more than this many differences: at another
 /// machine's worst place the rows may be better.
-const ROUNDED: f64 = 10.0;
+const MAX_CONDITION_FACTOR: f64 = 10.0;
 const HEADER: &str = "[tolerances] # measured, with room for another machine's rounding";
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -26,34 +26,34 @@ fn main() -> Result<(), Box<dyn Error>> {
         let name = case.file_name().to_string_lossy().into_owned();
         let holds = case.path().join("scene.toml").is_file();
         if holds && (named.is_empty() || named.contains(&name)) {
-            println!("{name}: {} tolerances", rewritten(&case.path())?);
+            println!("{name}: {} tolerances", rewrite(&case.path())?);
         }
     }
     Ok(())
 }
 
 /// Measures a case and writes its tolerances; how many.
-fn rewritten(case: &Path) -> Result<usize, Box<dyn Error>> {
+fn rewrite(case: &Path) -> Result<usize, Box<dyn Error>> {
     let scene = Scene::read(case.join("scene.toml"))?;
     let file = case.join("case.toml");
     let old = std::fs::read_to_string(&file).unwrap_or_default();
-    let rest = without(&old);
+    let rest = without_tolerances(&old);
     // A key that is left over from another time would be an error.
     let bare = std::env::temp_dir().join(format!("dwell-tolerances-{}", std::process::id()));
     std::fs::create_dir_all(&bare)?;
     std::fs::write(bare.join("case.toml"), &rest)?;
-    let done = dwell_study::validate(&scene, &bare, &dwell_study::silent)?;
+    let validation = dwell_validation::validate(&scene, &bare, &dwell_study::no_progress)?;
     std::fs::remove_dir_all(&bare)?;
-    let mut wanted: BTreeMap<&str, f64> = BTreeMap::new();
+    let mut tolerances: BTreeMap<&str, f64> = BTreeMap::new();
     // Of the integrated ones only truth 6 has a bound by case: the others are factors of an integrator's tolerance.
-    let bound = |f: &&Finding| !f.integrated || f.number() == Some(6);
-    let exact = done.outcome.findings.iter().filter(bound);
-    for finding in exact.filter(|f| f.tolerance > 0.0 && f.relative.is_finite()) {
-        let most = wanted.entry(&finding.key).or_default();
-        *most = most.max(tolerance(finding));
+    let bound = |f: &&Finding| !f.integrated || f.check == Check::MultibodyMotion;
+    let exact = validation.outcome.findings.iter().filter(bound);
+    for finding in exact.filter(|f| f.tolerance > 0.0 && f.relative_difference.is_finite()) {
+        let max = tolerances.entry(&finding.key).or_default();
+        *max = max.max(tolerance(finding));
     }
     let mut block = format!("{HEADER}\n");
-    for (key, tolerance) in &wanted {
+    for (key, tolerance) in &tolerances {
         block += &format!("{key} = {tolerance:.0e}\n");
     }
     let at = rest.find("\n[").map_or(rest.len(), |at| at + 1);
@@ -64,21 +64,22 @@ fn rewritten(case: &Path) -> Result<usize, Box<dyn Error>> {
         head.trim_end().to_owned() + if head.is_empty() { "" } else { "\n" }
     );
     std::fs::write(&file, text.trim_end().to_owned() + "\n")?;
-    Ok(wanted.len())
+    Ok(tolerances.len())
 }
 
 /// Rounded up to one digit.
 fn tolerance(finding: &Finding) -> f64 {
-    let rounding = ROUNDINGS * f64::EPSILON;
-    let more = (rounding * finding.condition).min(ROUNDED * finding.relative);
-    let wanted = (SEEN * finding.relative + more).max(rounding);
-    let unit = 10_f64.powf(wanted.log10().floor());
+    let rounding = ROUNDING_FACTOR * f64::EPSILON;
+    let more = (rounding * finding.condition_number)
+        .min(MAX_CONDITION_FACTOR * finding.relative_difference);
+    let tolerance_bound = (DIFFERENCE_FACTOR * finding.relative_difference + more).max(rounding);
+    let unit = 10_f64.powf(tolerance_bound.log10().floor());
     // Not up for the rounding of this quotient.
-    (wanted / unit - 1e-9).ceil() * unit
+    (tolerance_bound / unit - 1e-9).ceil() * unit
 }
 
 /// The file without its tolerances.
-fn without(text: &str) -> String {
+fn without_tolerances(text: &str) -> String {
     let Some(from) = text.find("[tolerances]") else {
         return text.to_owned();
     };

@@ -94,8 +94,8 @@ def read(folder):
     (coordinate, actuator), = scene["actuators"].items()
     mechanism = Mechanism(folder.name, float(case["free_motion"]["period_s"]), bodies, joints, actuator["angle"][1])
     motion = scene["motion"]
-    rough = scene["assembly"] | {mechanism.crank: motion["start"][coordinate]}
-    assemble(mechanism, rough, motion["start"][coordinate], motion["speed"][coordinate])
+    rough = scene["assembly"] | {mechanism.crank: motion["initial-coordinate"][coordinate]}
+    assemble(mechanism, rough, motion["initial-coordinate"][coordinate], motion["initial-velocity"][coordinate])
     return mechanism
 
 

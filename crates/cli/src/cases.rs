@@ -1,13 +1,12 @@
-//! Which folders are validated.
+//! Finds the folders to validate.
 
 use miette::{Report, miette};
 use std::path::{Path, PathBuf};
 
-/// What makes a folder a case.
+/// The file that every case has.
 const SCENE: &str = "scene.toml";
 
-/// The folders of the named cases, each once, or of all cases below `folder`, in the order of their
-/// names.
+/// The folders of the named cases, each once, or of all cases in `folder`, ordered by name.
 pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Report> {
     let all = list(folder);
     if names.is_empty() {
@@ -29,8 +28,11 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
     let mut found: Vec<PathBuf> = Vec::new();
     for name in names {
         let case = find_one(name, folder, all.as_deref().unwrap_or(&[]))?;
-        let place = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        if found.iter().all(|other| place(other) != place(&case)) {
+        let canonical = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        if found
+            .iter()
+            .all(|other| canonical(other) != canonical(&case))
+        {
             found.push(case);
         }
     }
@@ -51,12 +53,12 @@ fn find_one(name: &str, folder: &Path, all: &[PathBuf]) -> Result<PathBuf, Repor
                 p
             }
         });
-    let places = [
+    let candidates = [
         Some(folder.join(name)),
         of_scene.map(Path::to_owned),
         Some(given.to_owned()),
     ];
-    let case = places
+    let case = candidates
         .into_iter()
         .flatten()
         .find(|p| p.join(SCENE).is_file());

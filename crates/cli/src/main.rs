@@ -1,9 +1,10 @@
-//! The `dwell` command: arguments in, files and messages out.
+//! The `dwell` command: it reads a scene, runs one study of it, writes the files and prints the summary.
 //!
-//! Exit status: 0 good, 1 a check failed, 2 bad input (a scene, an argument, a folder that cannot be
+//! Exit status: 0 success, 1 a check failed or a motion ended early, 2 invalid input (a scene, an argument, a folder that cannot be
 //! written).
 
 mod cases;
+mod former;
 mod options;
 mod validate;
 
@@ -11,18 +12,25 @@ use clap::Parser;
 use dwell_findings::all_pass;
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Accuracy, Command as Run, Followed, Outcome, Progress, Step, StudyError, Sweep, Tabulation,
+    Analysis as Run, Outcome, ParameterSweep, Progress, SolverSettings, Step, StudyError,
+    TableRequest, TrajectoryOutcome,
 };
+use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
 use miette::{Report, miette};
-use options::{Along, Command, Options};
+use options::{Command, Options, TrajectoryArgs};
 use std::io::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
     // clap itself exits with 2 on a bad argument, and with 0 for help.
-    let options = Options::parse();
+    let (arguments, notes) = former::with_current_names(std::env::args_os());
+    for note in notes {
+        // A closed standard error is no reason to panic.
+        let _ = writeln!(std::io::stderr(), "{note}");
+    }
+    let options = Options::parse_from(arguments);
     match run(options) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
@@ -34,7 +42,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Runs a command; whether all its checks passed.
+/// Runs a command, and returns whether all its checks passed.
 fn run(options: Options) -> Result<bool, Report> {
     let Options { command, out } = options;
     if let Command::Schema = command {
@@ -43,28 +51,28 @@ fn run(options: Options) -> Result<bool, Report> {
     }
     if out.exists() && !out.is_dir() {
         return Err(miette!(
-            help = "name a folder with --out; it is made if it is missing",
-            "`{}` is not a folder: no report can be written there",
+            help = "give a folder with --out; it is created if it does not exist",
+            "`{}` is not a folder, so no report can be written there",
             out.display()
         ));
     }
-    let mut unusable = None;
-    let mut stopped = None;
+    let mut failures = None;
+    let mut early_stop = None;
     let outcome = match &command {
-        Command::Check { scene } => told(dwell_study::check(&read(scene)?))?,
+        Command::Check { scene } => report_errors(dwell_study::check(&read(scene)?))?,
         Command::Reduce {
             scene,
-            table,
+            table_accuracy,
             accuracy,
             from,
             to,
         } => {
-            let tabulation = table.or(*accuracy).map(|accuracy| Tabulation {
+            let tabulation = table_accuracy.or(*accuracy).map(|accuracy| TableRequest {
                 accuracy,
-                between: from.zip(*to),
-                demanded: table.is_some(),
+                interval: from.zip(*to),
+                required: table_accuracy.is_some(),
             });
-            told(dwell_study::reduce(&read(scene)?, tabulation))?
+            report_errors(dwell_study::reduce(&read(scene)?, tabulation))?
         }
         Command::Simulate {
             scene,
@@ -72,22 +80,24 @@ fn run(options: Options) -> Result<bool, Report> {
             rtol,
             atol,
             max_step,
-            accuracy: wanted,
-            every,
+            accuracy,
+            sample_interval,
         } => {
-            let accuracy = Accuracy {
-                method: (*method).into(),
-                relative: *rtol,
-                absolute: atol.unwrap_or(*rtol),
-                longest: *max_step,
-                every: *every,
+            let settings = SolverSettings {
+                method: *method,
+                rtol: *rtol,
+                atol: atol.unwrap_or(*rtol),
+                max_step: *max_step,
+                sample_interval: *sample_interval,
             };
             let scene = read(scene)?;
-            let simulate = |heard: Progress<'_>| match *wanted {
-                Some(wanted) => dwell_study::simulate_within(&scene, wanted, *every, heard),
-                None => dwell_study::simulate(&scene, &accuracy, heard),
+            let simulate = |progress: Progress<'_>| match *accuracy {
+                Some(accuracy) => {
+                    dwell_study::simulate_to_accuracy(&scene, accuracy, *sample_interval, progress)
+                }
+                None => dwell_study::simulate(&scene, &settings, progress),
             };
-            followed(simulate, &mut stopped)?
+            run_until_stop(simulate, &mut early_stop)?
         }
         Command::Cycle {
             scene,
@@ -95,79 +105,98 @@ fn run(options: Options) -> Result<bool, Report> {
             method,
             rtol,
         } => {
-            let accuracy = Accuracy {
-                method: (*method).into(),
-                relative: *rtol,
-                absolute: *rtol,
-                ..Accuracy::default()
+            let settings = SolverSettings {
+                method: *method,
+                rtol: *rtol,
+                atol: *rtol,
+                ..SolverSettings::default()
             };
-            told(dwell_study::cycle(&read(scene)?, &accuracy, *fluctuation))?
+            report_errors(dwell_study::cycle(&read(scene)?, &settings, *fluctuation))?
         }
-        Command::Tradeoff { scene } => {
+        Command::WorkPrecision { scene } => {
             let scene = read(scene)?;
-            told(heard(|heard| dwell_study::tradeoff(&scene, heard)))?
+            report_errors(with_progress(|progress| {
+                dwell_validation::work_precision(&scene, progress)
+            }))?
         }
-        Command::Equilibria { scene } => told(dwell_study::equilibria(&read(scene)?))?,
-        Command::Linearise { scene, at } => {
-            told(dwell_study::linearise(&read(scene)?, (*at).into()))?
+        Command::Equilibria { scene } => report_errors(dwell_study::equilibria(&read(scene)?))?,
+        Command::Linearise { scene, about } => {
+            report_errors(dwell_study::linearise(&read(scene)?, *about))?
         }
         Command::Symbolic {
             scene,
-            to,
+            format,
             reaction,
         } => {
             let scene = read(scene)?;
-            told(dwell_study::symbolic(
-                &scene,
-                (*to).into(),
-                reaction.as_deref(),
-            ))?
+            report_errors(dwell_study::symbolic(&scene, *format, reaction.as_deref()))?
         }
-        Command::Kinematics(along) => follow(along, Run::Kinematics, &mut stopped)?,
-        Command::Statics(along) => follow(along, Run::Statics, &mut stopped)?,
-        Command::Kinetostatics(along) => follow(along, Run::Kinetostatics, &mut stopped)?,
-        Command::Calibrate { scene, set, period } => {
+        Command::Kinematics(trajectory) => {
+            run_trajectory(trajectory, Run::Kinematics, &mut early_stop)?
+        }
+        Command::Statics(trajectory) => run_trajectory(trajectory, Run::Statics, &mut early_stop)?,
+        Command::Kinetostatics(trajectory) => {
+            run_trajectory(trajectory, Run::Kinetostatics, &mut early_stop)?
+        }
+        Command::Calibrate {
+            scene,
+            parameter,
+            period,
+        } => {
             let scene = read(scene)?;
-            told(dwell_study::calibrate(&scene, set.as_deref(), *period))?
+            if let Some(path) = parameter {
+                note_former_path(&scene, path);
+            }
+            report_errors(dwell_study::calibrate(
+                &scene,
+                parameter.as_deref(),
+                *period,
+            ))?
         }
         Command::Sweep {
             scene,
             vary,
             samples,
             seed,
-            want,
+            results,
             shard,
             export,
         } => {
             let scene = read(scene)?;
-            let sweep = Sweep {
+            for axis in vary {
+                let path = axis.split(['=', '~', '±']).next().unwrap_or_default();
+                note_former_path(&scene, path.trim());
+            }
+            let sweep = ParameterSweep {
                 vary,
                 samples: *samples,
                 seed: *seed,
-                want,
+                requests: results,
                 shard: *shard,
-                export: export.map(Into::into),
+                export: *export,
                 folder: &out,
             };
-            told(heard(|heard| dwell_study::sweep(&scene, &sweep, heard)))?
+            report_errors(with_progress(|progress| {
+                dwell_study::sweep(&scene, &sweep, progress)
+            }))?
         }
         Command::Validate {
             cases,
             folder,
-            long,
+            slow,
         } => {
-            let (outcome, others) = validate::validate(cases, folder, *long)?;
-            unusable = others;
+            let (outcome, failed) = validate::validate(cases, folder, *slow)?;
+            failures = failed;
             outcome
         }
-        // Printed above: it is neither about a scene nor written into a folder.
+        // Printed above: it needs neither a scene nor a folder.
         Command::Schema => Outcome::default(),
     };
     print(&outcome.summary)?;
     if !outcome.files.is_empty() {
         let written = outcome.files.write(&out).map_err(|e| {
             miette!(
-                help = "nothing was written; another folder can be named with --out",
+                help = "no file was written; choose another folder with --out",
                 "{e}"
             )
         })?;
@@ -176,50 +205,54 @@ fn run(options: Options) -> Result<bool, Report> {
             print(&format!("  {}\n", path.display()))?;
         }
         if written.len() > shown {
-            let more = written.len() - shown;
-            print(&format!("  and {more} more below {}\n", out.display()))?;
+            let rest = written.len() - shown;
+            print(&format!("  and {rest} more below {}\n", out.display()))?;
         }
     }
-    if let Some(reason) = &stopped {
+    if let Some(reason) = &early_stop {
         // A closed standard error is no reason to panic.
         let _ = writeln!(std::io::stderr(), "{reason:?}");
     }
-    match unusable {
-        // Told last: it is what has to be seen to.
+    match failures {
+        // Printed last, so that it is not overlooked.
         Some(report) => Err(report),
-        None => Ok(stopped.is_none() && all_pass(&outcome.findings)),
+        None => Ok(early_stop.is_none() && all_pass(&outcome.findings)),
     }
 }
 
-/// Follows a scene along its way; if that ends early, `stopped` says why.
-fn follow(along: &Along, run: Run, stopped: &mut Option<Report>) -> Result<Outcome, Report> {
-    let scene = read(&along.scene)?;
-    let points = along.points.map(|n| n as usize);
-    followed(
-        |heard| dwell_study::run(&scene, run, points, heard),
-        stopped,
+/// Analyses a scene along its trajectory; if that ends early, `early_stop` holds the reason.
+fn run_trajectory(
+    arguments: &TrajectoryArgs,
+    run: Run,
+    early_stop: &mut Option<Report>,
+) -> Result<Outcome, Report> {
+    let scene = read(&arguments.scene)?;
+    let points = arguments.points.map(|n| n as usize);
+    run_until_stop(
+        |progress| dwell_study::analyse_trajectory(&scene, run, points, progress),
+        early_stop,
     )
 }
 
-/// Shows the progress of what is followed; if it ends early, `stopped` says why.
-fn followed(
-    run: impl FnOnce(Progress<'_>) -> Result<Followed, StudyError>,
-    stopped: &mut Option<Report>,
+/// Runs a study of a trajectory with a progress bar; if the trajectory ends early, `early_stop` holds the reason.
+fn run_until_stop(
+    run: impl FnOnce(Progress<'_>) -> Result<TrajectoryOutcome, StudyError>,
+    early_stop: &mut Option<Report>,
 ) -> Result<Outcome, Report> {
-    let followed = told(heard(run))?;
-    *stopped = followed.stopped.map(|e| Report::new(as_scene_error(e)));
-    Ok(followed.outcome)
+    let done = report_errors(with_progress(run))?;
+    *early_stop = done.early_stop.map(|e| Report::new(as_scene_error(e)));
+    Ok(done.outcome)
 }
 
-/// Long work, with its progress shown.
-fn heard<T>(run: impl FnOnce(Progress<'_>) -> T) -> T {
+/// Runs a long study with a progress bar.
+fn with_progress<T>(run: impl FnOnce(Progress<'_>) -> T) -> T {
     let bar = progress_bar();
-    let heard = |step: Step<'_>| {
+    let progress = |step: Step<'_>| {
         bar.set_length(step.total as u64);
         bar.set_message(step.done.to_owned());
         bar.inc(1);
     };
-    let done = run(&heard);
+    let done = run(&progress);
     bar.finish_and_clear();
     done
 }
@@ -233,12 +266,36 @@ fn progress_bar() -> ProgressBar {
 }
 
 fn read(path: &Path) -> Result<Scene, Report> {
-    Scene::read(path).map_err(Report::new)
+    let scene = Scene::read(path).map_err(Report::new)?;
+    print_warnings(&scene);
+    Ok(scene)
 }
 
-/// A study's error as a report: a scene's with its text, another one as it is.
-fn told<T>(result: Result<T, StudyError>) -> Result<T, Report> {
+/// Shows on standard error which former names the scene uses; the exit status does not change.
+fn print_warnings(scene: &Scene) {
+    for warning in &scene.warnings {
+        // A closed standard error is no reason to panic.
+        let _ = writeln!(std::io::stderr(), "{:?}", Report::new(warning.clone()));
+    }
+}
+
+/// Says on standard error that the path of a number has a former name of a key.
+fn note_former_path(scene: &Scene, path: &str) {
+    if let Some(current) = scene.renamed_path(path) {
+        let _ = writeln!(std::io::stderr(), "note: {path} is now {current}");
+    }
+}
+
+/// A study's error as a report: an error of the scene shows the place in its text.
+fn report_errors<T>(result: Result<T, StudyError>) -> Result<T, Report> {
     result.map_err(|e| Report::new(as_scene_error(e)))
+}
+
+fn validation_error(error: ValidationError) -> SceneError {
+    match error {
+        ValidationError::Study(error) => as_scene_error(error),
+        other => error_without_location(other.to_string()),
+    }
 }
 
 fn as_scene_error(error: StudyError) -> SceneError {
@@ -246,26 +303,26 @@ fn as_scene_error(error: StudyError) -> SceneError {
         StudyError::Scene(scene) => *scene,
         StudyError::Sweep(sweep) => SceneError {
             help: sweep.help(),
-            ..plain(sweep.to_string())
+            ..error_without_location(sweep.to_string())
         },
-        other => plain(other.to_string()),
+        other => error_without_location(other.to_string()),
     }
 }
 
-/// An error that points at no place.
-fn plain(message: String) -> SceneError {
+/// An error that refers to no part of the scene.
+fn error_without_location(message: String) -> SceneError {
     SceneError {
         message,
         help: None,
         labels: Vec::new(),
         text: None,
-        others: Vec::new(),
+        related: Vec::new(),
     }
 }
 
 fn print(text: &str) -> Result<(), Report> {
     match std::io::stdout().write_all(text.as_bytes()) {
-        // Whoever reads has seen enough (such as `dwell … | head`).
+        // The reader closed the pipe, as in `dwell … | head`.
         Err(e) if e.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
         other => other.map_err(|e| miette!("cannot print the results: {e}")),
     }

@@ -1,137 +1,140 @@
-//! The arguments.
+//! The command-line options: the names of fields are the names of options.
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand};
 use dwell_dynamics::Method;
-use dwell_study::{About, Exported, Language, Printed, Shard};
+use dwell_report::TableFormat;
+use dwell_study::{FormulaFormat, Language, OperatingPoint, Shard};
 use std::path::PathBuf;
 
-/// The reduced-parameter dynamics of mechanisms, checked.
+/// Kinetostatics and dynamics of planar mechanisms, with independent checks
 #[derive(Debug, Parser)]
 #[command(name = "dwell", version, arg_required_else_help = true)]
 pub(crate) struct Options {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Folder for the files that are written
+    /// Folder for the output files
     #[arg(long, global = true, default_value = "reports", value_name = "FOLDER")]
     pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Degrees of freedom, groups, branch and range of a scene
+    /// Degrees of freedom, groups, assembly mode and range of a scene
     Check {
         /// The scene file
         scene: PathBuf,
     },
-    /// Reduced parameters over the range: table and pictures
+    /// Reduced parameters over the range: table and figures
     Reduce {
         /// The scene file
         scene: PathBuf,
-        /// Also a table that gives everything back to this part of its largest value, such as 1e-12
-        #[arg(long, value_parser = part, value_name = "ACCURACY", allow_hyphen_values = true)]
-        table: Option<f64>,
-        /// How near everything must be over the whole range, as --accuracy of simulate: what meets it at the least
-        /// cost is picked, exact rows or a table too
-        #[arg(long, value_parser = wanted, value_name = "ACCURACY", allow_hyphen_values = true, conflicts_with = "table")]
+        /// Also write an interpolation table with this accuracy, relative to the largest value of each function, such
+        /// as 1e-12
+        #[arg(long, value_parser = parse_table_accuracy, value_name = "ACCURACY", allow_hyphen_values = true)]
+        table_accuracy: Option<f64>,
+        /// Required relative accuracy over the whole range; uses exact evaluation or a table, whichever is cheaper
+        #[arg(long, value_parser = parse_accuracy, value_name = "ACCURACY", allow_hyphen_values = true, conflicts_with = "table_accuracy")]
         accuracy: Option<f64>,
-        /// The table begins here, in the scene's unit (over all turns, or all but 2 % of the range at each end, if absent)
-        #[arg(long, requires_all = ["table", "to"], value_parser = finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+        /// Lower end of the table, in the scene's unit (default: a full period, or the range without 2 % at each end)
+        #[arg(long, requires_all = ["table_accuracy", "to"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
         from: Option<f64>,
-        /// The table ends here
-        #[arg(long, requires_all = ["table", "from"], value_parser = finite, value_name = "COORDINATE", allow_hyphen_values = true)]
+        /// Upper end of the table, in the scene's unit
+        #[arg(long, requires_all = ["table_accuracy", "from"], value_parser = parse_finite, value_name = "COORDINATE", allow_hyphen_values = true)]
         to: Option<f64>,
     },
-    /// Motion in time under loads and drives, with energies and reactions: tables and pictures
+    /// Free motion under loads and drives, with energies and reactions: tables and figures
     Simulate {
         /// The scene file
         scene: PathBuf,
         /// The integrator
-        #[arg(long, value_enum, default_value_t = MethodName::Bdf)]
-        method: MethodName,
+        #[arg(long, value_parser = choice(METHODS), default_value = "bdf")]
+        method: Method,
         /// Relative tolerance
-        #[arg(long, default_value = "1e-10", value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
+        #[arg(long, default_value = "1e-10", value_parser = parse_tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
         rtol: f64,
-        /// Absolute tolerance, rad and rad/s (as the relative one, if absent)
-        #[arg(long, value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
+        /// Absolute tolerance, in rad and rad/s, or m and m/s (default: that of --rtol)
+        #[arg(long, value_parser = parse_tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
         atol: Option<f64>,
-        /// Longest step, s (as long as the tolerance lets it be, if absent)
-        #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
+        /// Maximum step, s (default: no limit)
+        #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
         max_step: Option<f64>,
-        /// In place of method and tolerance: how near the result must be, in rad and parts of the largest, such as 1e-6;
-        /// or draft (1e-3), standard (1e-6), precise (1e-9), reference (1e-10). What meets it at the least cost is picked
-        #[arg(long, value_parser = wanted, value_name = "ACCURACY", allow_hyphen_values = true,
+        /// Required accuracy, instead of method and tolerance: in rad for angles, else relative to the largest value, such
+        /// as 1e-6; or draft (1e-3), standard (1e-6), precise (1e-9), reference (1e-10). The cheapest method that meets it
+        /// is used
+        #[arg(long, value_parser = parse_accuracy, value_name = "ACCURACY", allow_hyphen_values = true,
               conflicts_with_all = ["method", "rtol", "atol", "max_step"])]
         accuracy: Option<f64>,
-        /// Time between the samples of the table, s (a thousandth of the motion, if absent)
-        #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
-        every: Option<f64>,
+        /// Time between the rows of the table, s (default: a thousandth of the duration)
+        #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
+        sample_interval: Option<f64>,
     },
-    /// The steady cycle of a driven machine, and the flywheel for a wanted evenness
+    /// Steady cycle of a driven machine, and the flywheel for a given coefficient of fluctuation
     Cycle {
         /// The scene file
         scene: PathBuf,
-        /// Wanted coefficient of fluctuation, such as 0.02: tells the flywheel it takes
-        #[arg(long, value_parser = fraction, value_name = "RATIO", allow_hyphen_values = true)]
+        /// Target coefficient of speed fluctuation, such as 0.02; also sizes the flywheel for it
+        #[arg(long, value_parser = parse_fluctuation, value_name = "RATIO", allow_hyphen_values = true)]
         fluctuation: Option<f64>,
         /// The integrator
-        #[arg(long, value_enum, default_value_t = MethodName::Bdf)]
-        method: MethodName,
+        #[arg(long, value_parser = choice(METHODS), default_value = "bdf")]
+        method: Method,
         /// Relative and absolute tolerance
-        #[arg(long, default_value = "1e-10", value_parser = tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
+        #[arg(long, default_value = "1e-10", value_parser = parse_tolerance, value_name = "TOLERANCE", allow_hyphen_values = true)]
         rtol: f64,
     },
-    /// What accuracy costs: every combination of evaluation, integrator and tolerance on the motion, against its
-    /// true error
-    Tradeoff {
+    /// Work–precision diagram: cost against error for every combination of model, integrator and tolerance
+    WorkPrecision {
         /// The scene file
         scene: PathBuf,
     },
-    /// Where a machine stays at rest, with stability and natural frequencies
+    /// Equilibria of a machine, with their stability and natural frequencies
     Equilibria {
         /// The scene file
         scene: PathBuf,
     },
-    /// Small motions about an equilibrium: the matrices A, B, C and D, and eigenvalues
+    /// State-space model linearised about an equilibrium or the initial state: A, B, C, D and eigenvalues
     Linearise {
         /// The scene file
         scene: PathBuf,
-        /// About which state
-        #[arg(long, value_enum, default_value_t = AboutName::Equilibrium)]
-        at: AboutName,
+        /// State to linearise about
+        #[arg(long, value_parser = choice(OPERATING_POINTS), default_value = "equilibrium")]
+        about: OperatingPoint,
     },
-    /// Closed forms of a mechanism made of dyads: positions, m, ½m′ and a reaction's a and b, as LaTeX or code
+    /// Closed forms for a mechanism made of dyads: positions, m, ½m′, and a and b of a reaction, as LaTeX or code
     Symbolic {
         /// The scene file
         scene: PathBuf,
-        /// In which language
-        #[arg(long, value_enum, default_value_t = PrintedName::Latex)]
-        to: PrintedName,
-        /// The reaction, such as A.x (the first that the scene requests, if absent)
+        /// Output format
+        #[arg(long, value_parser = choice(FORMATS), default_value = "latex")]
+        format: FormulaFormat,
+        /// The reaction, such as A.x (default: the first that the scene requests)
         #[arg(long, value_name = "NAME")]
         reaction: Option<String>,
     },
-    /// Positions, speeds and accelerations along the prescribed motion, the sweep or the range
-    Kinematics(Along),
-    /// Actions and reactions under the loads, at rest in each position
-    Statics(Along),
-    /// Actions and reactions under loads and inertia, along the prescribed motion or the sweep
-    Kinetostatics(Along),
-    /// The scene value that gives a wanted period of the free motion
+    /// Positions, velocities and accelerations along the prescribed motion, the sweep or the range
+    Kinematics(TrajectoryArgs),
+    /// Actuator forces and reactions under the loads, at rest in each position
+    Statics(TrajectoryArgs),
+    /// Actuator forces and reactions under loads and inertia, along the prescribed motion or the sweep
+    Kinetostatics(TrajectoryArgs),
+    /// The value of a scene parameter that gives the free motion a target period
     Calibrate {
         /// The scene file
         scene: PathBuf,
-        /// The value, such as crank.inertia (the scene's calibration, if absent)
-        #[arg(long, value_name = "VALUE")]
-        set: Option<String>,
-        /// The wanted period, s (the scene's calibration, if absent)
-        #[arg(long, value_parser = time, value_name = "SECONDS", allow_hyphen_values = true)]
+        /// The parameter to fit, such as crank.inertia (default: that of [calibration])
+        #[arg(long, value_name = "PATH")]
+        parameter: Option<String>,
+        /// Target period, s (default: that of [calibration])
+        #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
         period: Option<f64>,
     },
-    /// A study of many variants of a scene, on all cores, kept in an SQLite file: a run that was ended goes on
+    /// Parameter study over many variants of a scene, on all cores, stored in an SQLite file; an interrupted run can be
+    /// resumed
     Sweep {
         /// The scene file
         scene: PathBuf,
-        /// What varies, in the scene's unit: PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD),
+        /// Parameter to vary, in the scene's unit: PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD),
         /// PATH~uniform(FROM,TO), PATH±TOLERANCE or PATH±PERCENT%; may be given several times
         #[arg(
             long,
@@ -140,10 +143,10 @@ pub(crate) enum Command {
             allow_hyphen_values = true
         )]
         vary: Vec<String>,
-        /// How often what is random is drawn
-        #[arg(long, value_parser = whole, value_name = "COUNT", allow_hyphen_values = true)]
+        /// Number of random samples
+        #[arg(long, value_parser = parse_count, value_name = "COUNT", allow_hyphen_values = true)]
         samples: Option<u64>,
-        /// Which random numbers
+        /// Random seed
         #[arg(
             long,
             default_value_t = 1,
@@ -151,129 +154,133 @@ pub(crate) enum Command {
             allow_hyphen_values = true
         )]
         seed: u64,
-        /// Results, such as period or m.most, or all that begin so, such as m (all, if absent)
-        #[arg(long, value_name = "RESULT", value_delimiter = ',')]
-        want: Vec<String>,
-        /// Only this part of the points, such as 2/8, in a file of its own
+        /// Result columns to compute, by name or prefix, such as period or m (default: all)
+        #[arg(long = "result", value_name = "RESULT", value_delimiter = ',')]
+        results: Vec<String>,
+        /// Compute only this part of the points, such as 2/8, in a separate file
         #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
         shard: Option<Shard>,
-        /// Compute nothing: write what is there, that of shards too
-        #[arg(long, value_enum, value_name = "FORM")]
-        export: Option<ExportName>,
+        /// Compute nothing; only export the stored results, those of all shards included
+        #[arg(long, value_parser = choice(TABLE_FORMATS), value_name = "FORMAT")]
+        export: Option<TableFormat>,
     },
-    /// All checks on all cases, or on those named; exit status 1 if one fails
+    /// Run all checks on all cases, or on the named ones; exit status 1 if a check fails
     Validate {
-        /// Names of cases, or folders with a scene.toml; all cases if none
+        /// Names of cases, or folders with a scene.toml (default: all cases)
         cases: Vec<String>,
-        /// The folder of the cases
-        #[arg(long, default_value = OWN_CASES, value_name = "FOLDER")]
+        /// Folder of the cases
+        #[arg(long, default_value = DEFAULT_CASE_FOLDER, value_name = "FOLDER")]
         folder: PathBuf,
-        /// With the rows of the extremes that take minutes
+        /// Include the extreme-parameter checks that take minutes
         #[arg(long)]
-        long: bool,
+        slow: bool,
     },
-    /// The JSON schema of scenes, for editors that complete TOML
+    /// Print the JSON schema of scene files, for editors
     Schema,
 }
 
-/// The folder of the workbench's own cases.
-pub(crate) const OWN_CASES: &str = "validation";
+/// The folder of Dwell's own cases.
+pub(crate) const DEFAULT_CASE_FOLDER: &str = "validation";
 
 #[derive(Debug, Args)]
-pub(crate) struct Along {
+pub(crate) struct TrajectoryArgs {
     /// The scene file
     pub(crate) scene: PathBuf,
-    /// Positions, the ends among them (as the scene says, if absent)
+    /// Number of positions, both ends included (default: that of the scene)
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
     pub(crate) points: Option<u32>,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum MethodName {
-    /// Implicit, variable order 1 to 5: for whatever is stiff, such as friction
-    Bdf,
-    /// Implicit Runge–Kutta of order 4
-    Esdirk34,
-    /// Implicit, order 2
-    TrBdf2,
-    /// Explicit Runge–Kutta of order 5: for what is smooth
-    Tsit45,
-    /// Explicit Runge–Kutta of order 8: for what is smooth, to many digits
-    Dop853,
+/// The values of an option: name, value, help.
+type Choices<T> = &'static [(&'static str, T, &'static str)];
+
+const METHODS: Choices<Method> = &[
+    (
+        "bdf",
+        Method::Bdf,
+        "Implicit, variable order 1 to 5: for stiff equations, such as those of friction",
+    ),
+    (
+        "esdirk34",
+        Method::Esdirk34,
+        "Implicit Runge–Kutta of order 4",
+    ),
+    ("tr-bdf2", Method::TrBdf2, "Implicit, order 2"),
+    (
+        "tsit45",
+        Method::Tsit45,
+        "Explicit Runge–Kutta of order 5: for smooth motions",
+    ),
+    (
+        "dop853",
+        Method::Dop853,
+        "Explicit Runge–Kutta of order 8: for smooth motions at high accuracy",
+    ),
+];
+
+const OPERATING_POINTS: Choices<OperatingPoint> = &[
+    (
+        "equilibrium",
+        OperatingPoint::Equilibrium,
+        "The equilibrium nearest to the initial state",
+    ),
+    (
+        "initial",
+        OperatingPoint::InitialState,
+        "The initial state of [motion], or else the assembly at rest",
+    ),
+];
+
+const FORMATS: Choices<FormulaFormat> = &[
+    (
+        "latex",
+        FormulaFormat::Latex,
+        "Markdown with formulas in LaTeX",
+    ),
+    (
+        "rust",
+        FormulaFormat::Code(Language::Rust),
+        "A function in Rust",
+    ),
+    ("c", FormulaFormat::Code(Language::C), "A function in C"),
+    (
+        "python",
+        FormulaFormat::Code(Language::Python),
+        "A function in Python",
+    ),
+];
+
+const TABLE_FORMATS: Choices<TableFormat> = &[
+    ("csv", TableFormat::Csv, "Text"),
+    ("npz", TableFormat::Npz, "A NumPy archive"),
+];
+
+/// Former names of values: still accepted, and not shown.
+const FORMER_VALUES: [(&str, &str); 1] = [("initial", "start")];
+
+/// The parser of an option that has one of these values.
+fn choice<T: Copy + Send + Sync>(choices: Choices<T>) -> impl TypedValueParser<Value = T> {
+    let value = |&(name, _, help): &(&'static str, T, &'static str)| {
+        let former = FORMER_VALUES
+            .iter()
+            .filter(move |(current, _)| *current == name);
+        PossibleValue::new(name)
+            .help(help)
+            .aliases(former.map(|(_, former)| *former))
+    };
+    PossibleValuesParser::new(choices.iter().map(value)).try_map(move |given| {
+        let former = FORMER_VALUES.iter().find(|(_, former)| *former == given);
+        let name = former.map_or(given.as_str(), |(current, _)| current);
+        let found = choices.iter().find(|(known, ..)| *known == name);
+        found
+            .map(|(_, value, _)| *value)
+            .ok_or_else(|| format!("unknown value `{given}`"))
+    })
 }
 
-impl From<MethodName> for Method {
-    fn from(name: MethodName) -> Self {
-        match name {
-            MethodName::Bdf => Self::Bdf,
-            MethodName::Esdirk34 => Self::Esdirk34,
-            MethodName::TrBdf2 => Self::TrBdf2,
-            MethodName::Tsit45 => Self::Tsit45,
-            MethodName::Dop853 => Self::Dop853,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum AboutName {
-    /// The equilibrium next to the start
-    Equilibrium,
-    /// The start of [motion], or else of the assembly at rest
-    Start,
-}
-
-impl From<AboutName> for About {
-    fn from(name: AboutName) -> Self {
-        match name {
-            AboutName::Equilibrium => Self::Equilibrium,
-            AboutName::Start => Self::Start,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum ExportName {
-    /// Text, with the messages
-    Csv,
-    /// A NumPy archive
-    Npz,
-}
-
-impl From<ExportName> for Exported {
-    fn from(name: ExportName) -> Self {
-        match name {
-            ExportName::Csv => Self::Csv,
-            ExportName::Npz => Self::Npz,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(crate) enum PrintedName {
-    /// Markdown with formulas in LaTeX
-    Latex,
-    /// A function in Rust
-    Rust,
-    /// A function in C
-    C,
-    /// A function in Python
-    Python,
-}
-
-impl From<PrintedName> for Printed {
-    fn from(name: PrintedName) -> Self {
-        match name {
-            PrintedName::Latex => Self::Latex,
-            PrintedName::Rust => Self::Code(Language::Rust),
-            PrintedName::C => Self::Code(Language::C),
-            PrintedName::Python => Self::Code(Language::Python),
-        }
-    }
-}
-
-/// A coefficient of fluctuation that makes sense: a machine of more than 2 would turn back.
-fn fraction(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
+/// A coefficient of fluctuation: above 2 the machine would turn back.
+fn parse_fluctuation(text: &str) -> Result<f64, String> {
+    let value = parse_number(text)?;
     if value > 0.0 && value < 2.0 {
         Ok(value)
     } else {
@@ -281,17 +288,17 @@ fn fraction(text: &str) -> Result<f64, String> {
     }
 }
 
-fn whole(text: &str) -> Result<u64, String> {
+fn parse_count(text: &str) -> Result<u64, String> {
     text.parse()
-        .map_err(|_| "expected a whole number from 0 on".to_owned())
+        .map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
-fn number(text: &str) -> Result<f64, String> {
+fn parse_number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "not a number".to_owned())
 }
 
-fn finite(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
+fn parse_finite(text: &str) -> Result<f64, String> {
+    let value = parse_number(text)?;
     if value.is_finite() {
         Ok(value)
     } else {
@@ -299,23 +306,23 @@ fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A tolerance that an integrator can keep: below 1e-14 none of them can in double precision, and
-/// above 1e-3 the energy of a motion is off by a quarter within two turns.
-fn tolerance(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
+/// A tolerance of an integrator: below 1e-14 none can meet it in double precision, and above 1e-3 the energy of a
+/// motion is wrong by a quarter within two revolutions.
+fn parse_tolerance(text: &str) -> Result<f64, String> {
+    let value = parse_number(text)?;
     if (1e-14..=1e-3).contains(&value) {
         Ok(value)
     } else {
-        Err("a tolerance is between 1e-14 and 1e-3".to_owned())
+        Err("a tolerance must be between 1e-14 and 1e-3".to_owned())
     }
 }
 
-/// What a result can be asked for: a number, or a preset by its name.
-fn wanted(text: &str) -> Result<f64, String> {
+/// An accuracy: a number, or the name of a preset.
+fn parse_accuracy(text: &str) -> Result<f64, String> {
     let preset = dwell_study::PRESETS.iter().find(|(name, _)| *name == text);
     let value = match preset {
         Some((_, value)) => *value,
-        None => number(text).map_err(|_| {
+        None => parse_number(text).map_err(|_| {
             let names = dwell_study::PRESETS.map(|(name, _)| name).join(", ");
             format!("expected a number such as 1e-6, or one of {names}")
         })?,
@@ -323,25 +330,25 @@ fn wanted(text: &str) -> Result<f64, String> {
     if (1e-13..=1e-2).contains(&value) {
         Ok(value)
     } else {
-        Err("an accuracy is between 1e-13 and 1e-2".to_owned())
+        Err("an accuracy must be between 1e-13 and 1e-2".to_owned())
     }
 }
 
-/// What a table can be asked for: double precision has 1e-14, and above 1e-2 it is none.
-fn part(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
+/// The accuracy of a table: double precision allows 1e-14, and above 1e-2 a table is useless.
+fn parse_table_accuracy(text: &str) -> Result<f64, String> {
+    let value = parse_number(text)?;
     if (1e-14..=1e-2).contains(&value) {
         Ok(value)
     } else {
-        Err("a table's accuracy is between 1e-14 and 1e-2".to_owned())
+        Err("the accuracy of a table must be between 1e-14 and 1e-2".to_owned())
     }
 }
 
-fn time(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
+fn parse_time(text: &str) -> Result<f64, String> {
+    let value = parse_number(text)?;
     if value.is_finite() && value > 0.0 {
         Ok(value)
     } else {
-        Err("expected a time above zero, in seconds".to_owned())
+        Err("expected a positive time in seconds".to_owned())
     }
 }

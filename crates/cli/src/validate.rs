@@ -1,67 +1,74 @@
-//! `dwell validate`: every case, whatever becomes of the others.
+//! `dwell validate`: every case; a case that cannot be validated does not stop the others.
 
-use crate::options::OWN_CASES;
-use crate::{as_scene_error, cases, plain, progress_bar};
+use crate::options::DEFAULT_CASE_FOLDER;
+use crate::{
+    as_scene_error, cases, error_without_location, print_warnings, progress_bar, validation_error,
+};
 use dwell_report::Files;
 use dwell_scene::{Scene, SceneError};
-use dwell_study::{Outcome, Step, Validation, extremes, index, tradeoff};
+use dwell_study::{Outcome, Step};
+use dwell_validation::{Validation, extremes, index, work_precision};
 use miette::{Report, miette};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
-/// Validates the cases in parallel, and with all of the workbench's own ones the extremes (`long`: all of
-/// them). The outcome is that of those that can be validated; the report tells of the others.
+/// Validates the cases in parallel, and with all of Dwell's own cases also the extreme parameters (`slow`: those
+/// that take minutes too). The outcome holds the cases that could be validated, the report the errors of the others.
 pub(crate) fn validate(
     names: &[String],
     folder: &Path,
-    long: bool,
+    slow: bool,
 ) -> Result<(Outcome, Option<Report>), Report> {
     let cases = cases::find(names, folder)?;
     let scenes: Vec<_> = cases
         .iter()
         .map(|case| Scene::read(case.join("scene.toml")))
         .collect();
-    refuse_twins(&cases, &scenes)?;
+    reject_duplicate_names(&cases, &scenes)?;
+    scenes.iter().flatten().for_each(print_warnings);
     let bar = progress_bar();
     let one = |(scene, case): (&Result<Scene, SceneError>, &PathBuf)| {
         let scene = scene.as_ref().map_err(Clone::clone)?;
-        let heard = |step: Step<'_>| {
+        let progress = |step: Step<'_>| {
             bar.set_length((step.total * cases.len()) as u64);
             bar.set_message(format!("{}: {}", scene.name, step.done));
             bar.inc(1);
         };
-        dwell_study::validate(scene, case, &heard).map_err(as_scene_error)
+        dwell_validation::validate(scene, case, &progress).map_err(validation_error)
     };
-    let everything = names.is_empty() && folder == Path::new(OWN_CASES);
+    let all_cases = names.is_empty() && folder == Path::new(DEFAULT_CASE_FOLDER);
     let read: Vec<&Scene> = scenes.iter().flatten().collect();
     let (results, (extremes, costs)): (Vec<Result<Validation, SceneError>>, _) = rayon::join(
         || scenes.par_iter().zip(&cases).map(one).collect(),
         || {
             rayon::join(
-                || (everything || long).then(|| extremes::study(long)),
-                || everything.then(|| tradeoff::reports(&read)),
+                || (all_cases || slow).then(|| extremes::study(slow)),
+                || all_cases.then(|| work_precision::selected_case_reports(&read)),
             )
         },
     );
     bar.finish_and_clear();
-    let (mut all, bad) = gathered(&cases, &scenes, results);
-    for more in [extremes, costs].into_iter().flatten() {
-        let more = more.map_err(as_scene_error)?;
-        all.summary += &more.summary;
-        all.findings.extend(more.findings);
-        all.files.extend("", more.files);
+    let (mut all, failures) = collect_reports(&cases, &scenes, results);
+    for added in [extremes, costs].into_iter().flatten() {
+        let added = added.map_err(as_scene_error)?;
+        all.summary += &added.summary;
+        all.findings.extend(added.findings);
+        all.files.extend("", added.files);
     }
-    Ok((all, bad))
+    Ok((all, failures))
 }
 
-/// Two cases of one name would write the same files.
-fn refuse_twins(cases: &[PathBuf], scenes: &[Result<Scene, SceneError>]) -> Result<(), Report> {
+/// Refuses two cases of one name: they would write the same files.
+fn reject_duplicate_names(
+    cases: &[PathBuf],
+    scenes: &[Result<Scene, SceneError>],
+) -> Result<(), Report> {
     for (k, scene) in scenes.iter().enumerate() {
         let Ok(scene) = scene else { continue };
         let same = |s: &Result<Scene, SceneError>| matches!(s, Ok(s) if s.name == scene.name);
         if let Some(other) = scenes[..k].iter().position(same) {
             return Err(miette!(
-                help = "validate them one after the other, each with an --out of its own",
+                help = "validate them one after the other, each with its own --out",
                 "`{}` and `{}` are both named `{}`: their reports would be the same files",
                 cases[other].display(),
                 cases[k].display(),
@@ -72,7 +79,7 @@ fn refuse_twins(cases: &[PathBuf], scenes: &[Result<Scene, SceneError>]) -> Resu
     Ok(())
 }
 
-fn gathered(
+fn collect_reports(
     cases: &[PathBuf],
     scenes: &[Result<Scene, SceneError>],
     results: Vec<Result<Validation, SceneError>>,
@@ -82,24 +89,24 @@ fn gathered(
         .iter()
         .map(|case| case.display().to_string())
         .collect();
-    let verdicts: Vec<_> = names
+    let case_results: Vec<_> = names
         .iter()
         .zip(scenes)
         .zip(&results)
         .map(|((name, scene), result)| {
-            let told = match (scene, result) {
+            let outcome = match (scene, result) {
                 (Ok(scene), Ok(done)) => Ok((scene, done)),
                 (Err(error), _) | (_, Err(error)) => Err(error.message.clone()),
             };
-            (name.as_str(), told)
+            (name.as_str(), outcome)
         })
         .collect();
-    let mut bad = Vec::new();
+    let mut failures = Vec::new();
     let mut files = Files::new();
     if cases.len() > 1 && results.iter().any(Result::is_ok) {
-        match index(&verdicts) {
+        match index(&case_results) {
             Ok(overview) => files.extend("", overview),
-            Err(error) => bad.push(as_scene_error(error)),
+            Err(error) => failures.push(as_scene_error(error)),
         }
     }
     for result in results {
@@ -109,21 +116,21 @@ fn gathered(
                 all.findings.extend(one.outcome.findings);
                 files.extend("", one.outcome.files);
             }
-            Err(error) => bad.push(error),
+            Err(error) => failures.push(error),
         }
     }
     all.files = files;
-    (all, told(bad))
+    (all, combined_error(failures))
 }
 
 /// All the errors in one report.
-fn told(mut errors: Vec<SceneError>) -> Option<Report> {
+fn combined_error(mut errors: Vec<SceneError>) -> Option<Report> {
     match errors.len() {
         0 => None,
         1 => Some(Report::new(errors.remove(0))),
         n => Some(Report::new(SceneError {
-            others: errors,
-            ..plain(format!("{n} cases cannot be validated"))
+            related: errors,
+            ..error_without_location(format!("{n} cases cannot be validated"))
         })),
     }
 }

@@ -9,227 +9,245 @@
 #[path = "../../kinetostatics/benches/bench/mod.rs"]
 mod bench;
 
-use bench::{Case, Subject, TURN, stop};
+use bench::{Case, FULL_REVOLUTION, Subject, stop};
 use dwell_dynamics::{
-    Dense, Equation, Guidance, Machine, Method, Moving, Next, Options, Orbit, Point, State,
-    Statistics, System, Tabled, integrate,
+    CoordinateMode, DenseOutput, Machine, MachineOde, Method, OdeState, OdeSystem, Options, Orbit,
+    ReducedOde, ReducedState, Statistics, StepControl, TabulatedMachine, integrate,
 };
-use dwell_kinetostatics::{Exact, Extent, Model, Table};
-use dwell_scene::Length;
+use dwell_kinetostatics::{ExactModel, Model, TableDomain, TabulatedModel};
+use dwell_scene::MotionDuration;
 use std::f64::consts::TAU;
 use std::fmt::Display;
 use std::hint::black_box;
 use std::time::Instant;
 
 /// Errors of the coordinate that are asked for, rad.
-const WANTED: [f64; 3] = [1e-3, 1e-6, 1e-9];
+const REQUIRED_ERRORS: [f64; 3] = [1e-3, 1e-6, 1e-9];
 /// Tolerances that are tried, the finest first: tenfold looser each.
-const FINEST: f64 = 1e-13;
-const RUNGS: i32 = 12;
+const MIN_TOLERANCE: f64 = 1e-13;
+const TOLERANCE_COUNT: i32 = 12;
 const METHODS: [Method; 3] = [Method::Bdf, Method::Tsit45, Method::Dop853];
 /// Times each motion is run.
-const TURNS: usize = 60;
+const REPETITIONS: usize = 60;
 /// Periods of a free motion.
 const PERIODS: f64 = 10.0;
 /// A table is built to this part of the tolerance, but to no better than rounding lets it be.
-const PART: f64 = 0.1;
+const TABLE_TOLERANCE_FACTOR: f64 = 0.1;
 /// Times at which a rule of quadrature is compared with that of all digits: at whole periods it is at its best.
-const COMPARED: u32 = 23;
+const COMPARED_TIMES: u32 = 23;
 /// What two methods may differ by where the finest run is the truth, rad: a tenth of the least error.
-const AGREED: f64 = 1e-10;
+const AGREEMENT: f64 = 1e-10;
 
 /// What moves.
 #[allow(clippy::large_enum_variant, reason = "there are three")]
 enum Plant {
-    Free(Exact),
+    Free(ExactModel),
     Loaded(Machine),
 }
 
 /// A motion, and where its coordinate is at the end.
-struct Motion {
+struct MotionCase {
     case: &'static str,
     plant: Plant,
-    start: Point,
+    initial_state: OdeState,
     end: f64,
-    truth: f64,
+    reference: f64,
 }
 
 /// How it is computed.
 #[derive(Debug, Clone, Copy)]
-enum Way {
+enum Computation {
     Exact(Method),
-    Tabled(Method),
+    Tabulated(Method),
     Quadrature,
 }
 
 /// Where a computation came to, and by what work.
-struct Done {
+struct RunResult {
     q: f64,
-    work: Statistics,
+    statistics: Statistics,
 }
 
-impl Motion {
+impl MotionCase {
     fn free(case: &'static str) -> Self {
         let read = Case::read(case);
         let exact = read.model(&[]);
         let Some(motion) = &read.scene.motion else {
             stop(case, "no motion")
         };
-        let (q, q_dot) = (motion.start[0], motion.speed[0]);
-        let orbit = Orbit::new(&exact, State { t: 0.0, q, q_dot });
+        let (q, q_dot) = (motion.initial_coordinates[0], motion.initial_velocities[0]);
+        let orbit = Orbit::new(&exact, ReducedState { t: 0.0, q, q_dot });
         let orbit = orbit.unwrap_or_else(|e| stop(case, &e.to_string()));
         Self {
             case,
             plant: Plant::Free(exact),
-            start: Point {
+            initial_state: OdeState {
                 t: 0.0,
                 y: vec![q, q_dot],
             },
             end: PERIODS * orbit.period,
-            truth: q + PERIODS * TAU,
+            reference: q + PERIODS * TAU,
         }
     }
 
     fn loaded(case: &'static str) -> Self {
         let scene = Case::read(case).scene;
         let shape = &scene.mechanism;
-        let start = scene.assembly.to_start();
+        let start = scene.assembly.to_configuration();
         let model = or_stop(case, Model::new(shape, &scene.masses, &start, &[]));
-        let free = vec![Guidance::Free];
-        let machine = Machine::new(shape, model, &scene.loads, free, &scene.drives);
+        let free = vec![CoordinateMode::Free];
+        let machine = Machine::new(model, &scene.loads, free, &scene.drives);
         let machine = or_stop(case, machine);
         let Some(motion) = &scene.motion else {
             stop(case, "no motion")
         };
-        let Length::Duration(end) = motion.length else {
+        let MotionDuration::Seconds(end) = motion.duration else {
             stop(case, "its motion has no duration")
         };
-        let y = machine.start(&motion.start, &motion.speed);
+        let y = machine.initial_state(&motion.initial_coordinates, &motion.initial_velocities);
         let mut loaded = Self {
             case,
             plant: Plant::Loaded(machine),
-            start: Point { t: 0.0, y },
+            initial_state: OdeState { t: 0.0, y },
             end,
-            truth: f64::NAN,
+            reference: f64::NAN,
         };
-        let [truth, beside] = [(Method::Dop853, 0.1), (Method::Tsit45, 1.0)].map(|(by, finer)| {
-            let done = or_stop(case, loaded.run(Way::Exact(by), finer * FINEST));
-            done.q
-        });
-        assert!((truth - beside).abs() < AGREED, "{truth} {beside}");
-        loaded.truth = truth;
+        let [reference, check] =
+            [(Method::Dop853, 0.1), (Method::Tsit45, 1.0)].map(|(by, finer)| {
+                let done = or_stop(
+                    case,
+                    loaded.run(Computation::Exact(by), finer * MIN_TOLERANCE),
+                );
+                done.q
+            });
+        assert!((reference - check).abs() < AGREEMENT, "{reference} {check}");
+        loaded.reference = reference;
         loaded
     }
 
-    fn state(&self) -> State {
-        State {
-            t: self.start.t,
-            q: self.start.y[0],
-            q_dot: self.start.y[1],
+    fn state(&self) -> ReducedState {
+        ReducedState {
+            t: self.initial_state.t,
+            q: self.initial_state.y[0],
+            q_dot: self.initial_state.y[1],
         }
     }
 
-    fn ways(&self) -> Vec<Way> {
-        let mut ways: Vec<Way> = METHODS
+    fn computations(&self) -> Vec<Computation> {
+        let mut computations: Vec<Computation> = METHODS
             .iter()
-            .flat_map(|&method| [Way::Exact(method), Way::Tabled(method)])
+            .flat_map(|&method| [Computation::Exact(method), Computation::Tabulated(method)])
             .collect();
         if matches!(self.plant, Plant::Free(_)) {
-            ways.push(Way::Quadrature);
+            computations.push(Computation::Quadrature);
         }
-        ways
+        computations
     }
 
     /// The whole computation, the making of a table or rule included.
-    fn run(&self, way: Way, tolerance: f64) -> Result<Done, String> {
-        let told = |e: &dyn Display| e.to_string();
-        let (t, y, speed) = (self.start.t, &self.start.y, self.start.y[1]);
-        let table = (PART * tolerance).max(FINEST);
-        match (way, &self.plant) {
-            (Way::Exact(by), Plant::Free(exact)) => {
-                let mut equation = Equation::new(exact).at_speed(speed);
+    fn run(&self, computation: Computation, tolerance: f64) -> Result<RunResult, String> {
+        let message = |e: &dyn Display| e.to_string();
+        let (t, y, speed) = (
+            self.initial_state.t,
+            &self.initial_state.y,
+            self.initial_state.y[1],
+        );
+        let table = (TABLE_TOLERANCE_FACTOR * tolerance).max(MIN_TOLERANCE);
+        match (computation, &self.plant) {
+            (Computation::Exact(by), Plant::Free(exact)) => {
+                let mut equation = ReducedOde::new(exact).with_speed_scale(speed);
                 self.integrate(&mut equation, by, tolerance)
             }
-            (Way::Tabled(by), Plant::Free(exact)) => {
-                let table = Table::new(exact, table, Extent::Whole).map_err(|e| told(&e))?;
-                let mut equation = Equation::new(&table).at_speed(speed);
+            (Computation::Tabulated(by), Plant::Free(exact)) => {
+                let table = TabulatedModel::new(exact, table, TableDomain::Full)
+                    .map_err(|e| message(&e))?;
+                let mut equation = ReducedOde::new(&table).with_speed_scale(speed);
                 self.integrate(&mut equation, by, tolerance)
             }
-            (Way::Exact(by), Plant::Loaded(machine)) => {
-                let mut moving = Moving::new(machine, t, y).map_err(|e| told(&e))?;
-                self.integrate(&mut moving, by, tolerance)
+            (Computation::Exact(by), Plant::Loaded(machine)) => {
+                let mut ode = MachineOde::new(machine, t, y).map_err(|e| message(&e))?;
+                self.integrate(&mut ode, by, tolerance)
             }
-            (Way::Tabled(by), Plant::Loaded(machine)) => {
-                let table = Tabled::new(machine, table, Extent::Whole).map_err(|e| told(&e))?;
-                let mut moving = table.moving(t, y).map_err(|e| told(&e))?;
-                self.integrate(&mut moving, by, tolerance)
+            (Computation::Tabulated(by), Plant::Loaded(machine)) => {
+                let table = TabulatedMachine::new(machine, table, TableDomain::Full)
+                    .map_err(|e| message(&e))?;
+                let mut ode = table.ode(t, y).map_err(|e| message(&e))?;
+                self.integrate(&mut ode, by, tolerance)
             }
-            (Way::Quadrature, Plant::Free(exact)) => {
-                let orbit = Orbit::within(exact, self.state(), tolerance);
-                let orbit = orbit.map_err(|e| told(&e))?;
-                let work = Statistics {
+            (Computation::Quadrature, Plant::Free(exact)) => {
+                let orbit = Orbit::to_accuracy(exact, self.state(), tolerance);
+                let orbit = orbit.map_err(|e| message(&e))?;
+                let statistics = Statistics {
                     evaluations: orbit.points,
                     ..Statistics::default()
                 };
-                let q = orbit.at(self.end).q;
-                Ok(Done { q, work })
+                let q = orbit.state_at(self.end).q;
+                Ok(RunResult { q, statistics })
             }
-            (Way::Quadrature, Plant::Loaded(_)) => Err("it does not come back".to_owned()),
+            (Computation::Quadrature, Plant::Loaded(_)) => Err("it does not come back".to_owned()),
         }
     }
 
     fn integrate(
         &self,
-        system: &mut dyn System,
+        system: &mut dyn OdeSystem,
         method: Method,
         tolerance: f64,
-    ) -> Result<Done, String> {
+    ) -> Result<RunResult, String> {
         let options = Options::new(method, tolerance);
-        let mut watch = |_: &Point, _: &Point, _: Dense<'_>| Ok(Next::GoOn);
-        let ended = integrate(system, &self.start, Some(self.end), &options, &mut watch);
-        let ended = ended.map_err(|e| e.to_string())?;
-        match ended.failed {
+        let mut observer =
+            |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
+        let termination = integrate(
+            system,
+            &self.initial_state,
+            Some(self.end),
+            &options,
+            &mut observer,
+        );
+        let termination = termination.map_err(|e| e.to_string())?;
+        match termination.error {
             Some(error) => Err(error.to_string()),
-            None => Ok(Done {
-                q: ended.at.y[0],
-                work: ended.statistics,
+            None => Ok(RunResult {
+                q: termination.state.y[0],
+                statistics: termination.statistics,
             }),
         }
     }
 
     /// What a computation is off by at the end; a rule of quadrature at some times before it, too.
-    fn rung(&self, way: Way, tolerance: f64) -> Rung {
-        let Done { q, work } = or_stop(self.case, self.run(way, tolerance));
-        let mut error = (q - self.truth).abs();
-        if let (Way::Quadrature, Plant::Free(exact)) = (way, &self.plant) {
-            let [rule, all] = [tolerance, 0.0]
-                .map(|accuracy| or_stop(self.case, Orbit::within(exact, self.state(), accuracy)));
-            for k in 0..COMPARED {
-                let t = self.end * (f64::from(k) + 0.37) / f64::from(COMPARED);
-                error = error.max((rule.at(t).q - all.at(t).q).abs());
+    fn tolerance_run(&self, computation: Computation, tolerance: f64) -> ToleranceRun {
+        let RunResult { q, statistics } = or_stop(self.case, self.run(computation, tolerance));
+        let mut error = (q - self.reference).abs();
+        if let (Computation::Quadrature, Plant::Free(exact)) = (computation, &self.plant) {
+            let [rule, all] = [tolerance, 0.0].map(|accuracy| {
+                or_stop(self.case, Orbit::to_accuracy(exact, self.state(), accuracy))
+            });
+            for k in 0..COMPARED_TIMES {
+                let t = self.end * (f64::from(k) + 0.37) / f64::from(COMPARED_TIMES);
+                error = error.max((rule.state_at(t).q - all.state_at(t).q).abs());
             }
         }
-        Rung {
+        ToleranceRun {
             tolerance,
             error,
-            work,
+            statistics,
         }
     }
 
     /// One exact evaluation of the equation of motion.
     fn evaluation(&self) -> Subject<'_> {
-        let mut system: Box<dyn System + '_> = match &self.plant {
-            Plant::Free(exact) => Box::new(Equation::new(exact)),
+        let mut system: Box<dyn OdeSystem + '_> = match &self.plant {
+            Plant::Free(exact) => Box::new(ReducedOde::new(exact)),
             Plant::Loaded(machine) => {
-                let moving = Moving::new(machine, self.start.t, &self.start.y);
-                Box::new(or_stop(self.case, moving))
+                let ode = MachineOde::new(machine, self.initial_state.t, &self.initial_state.y);
+                Box::new(or_stop(self.case, ode))
             }
         };
-        let (case, mut y) = (self.case, self.start.y.clone());
+        let (case, mut y) = (self.case, self.initial_state.y.clone());
         let mut out = vec![0.0; y.len()];
-        Subject::new("one exact evaluation", TURN, move |q| {
+        Subject::new("one exact evaluation", FULL_REVOLUTION, move |q| {
             y[0] = q;
-            or_stop(case, system.rates(0.0, &y, &mut out));
+            or_stop(case, system.rhs(0.0, &y, &mut out));
             black_box(&out);
         })
     }
@@ -237,106 +255,115 @@ impl Motion {
 
 /// A tolerance that was tried.
 #[derive(Debug, Clone, Copy)]
-struct Rung {
+struct ToleranceRun {
     tolerance: f64,
     error: f64,
-    work: Statistics,
+    statistics: Statistics,
 }
 
 /// One line of a table.
 struct Row {
-    wanted: f64,
-    way: Way,
-    rung: Rung,
+    required_error: f64,
+    computation: Computation,
+    run: ToleranceRun,
     /// Of all turns, s.
-    least: f64,
+    min_time: f64,
 }
 
 impl Row {
-    fn take_turn(&mut self, motion: &Motion) {
+    fn run_once(&mut self, motion: &MotionCase) {
         let start = Instant::now();
-        let done = black_box(motion.run(self.way, black_box(self.rung.tolerance)));
-        self.least = self.least.min(start.elapsed().as_secs_f64());
-        let off = (or_stop(motion.case, done).q - motion.truth).abs();
-        assert!(off <= self.rung.error, "{:?}: {off:e}", self.way);
+        let result = black_box(motion.run(self.computation, black_box(self.run.tolerance)));
+        self.min_time = self.min_time.min(start.elapsed().as_secs_f64());
+        let error = (or_stop(motion.case, result).q - motion.reference).abs();
+        assert!(error <= self.run.error, "{:?}: {error:e}", self.computation);
     }
 
     fn name(&self) -> String {
-        match self.way {
-            Way::Exact(method) => format!("{}, exact", method.name()),
-            Way::Tabled(method) => format!("{}, its table", method.name()),
-            Way::Quadrature => "quadrature".to_owned(),
+        match self.computation {
+            Computation::Exact(method) => format!("{}, exact", method.name()),
+            Computation::Tabulated(method) => format!("{}, its table", method.name()),
+            Computation::Quadrature => "quadrature".to_owned(),
         }
     }
 }
 
 fn main() {
-    measure(&Motion::free("crank-rocker"));
-    measure(&Motion::free("single-dwell"));
-    measure(&Motion::loaded("four-bar"));
+    measure(&MotionCase::free("crank-rocker"));
+    measure(&MotionCase::free("single-dwell"));
+    measure(&MotionCase::loaded("four-bar"));
 }
 
 /// The rows of a motion by wanted error, each with its tolerance.
-fn rows(motion: &Motion) -> Vec<Row> {
+fn rows(motion: &MotionCase) -> Vec<Row> {
     let mut rows = Vec::new();
-    for way in motion.ways() {
-        let ladder: Vec<Rung> = (0..RUNGS)
-            .map(|rung| motion.rung(way, FINEST * 10_f64.powi(rung)))
+    for computation in motion.computations() {
+        let series: Vec<ToleranceRun> = (0..TOLERANCE_COUNT)
+            .map(|run| motion.tolerance_run(computation, MIN_TOLERANCE * 10_f64.powi(run)))
             .collect();
-        for wanted in WANTED {
-            let reached = ladder.iter().take_while(|rung| rung.error <= wanted);
+        for required_error in REQUIRED_ERRORS {
+            let reached = series.iter().take_while(|run| run.error <= required_error);
             // BDF may end above the least error in ten free periods; its finest is then shown.
-            let rung = match (way, reached.last()) {
-                (_, Some(rung)) => *rung,
-                (Way::Exact(Method::Bdf) | Way::Tabled(Method::Bdf), None) => ladder[0],
-                _ => stop(motion.case, &format!("{way:?}: not within {wanted:e}")),
+            let run = match (computation, reached.last()) {
+                (_, Some(run)) => *run,
+                (Computation::Exact(Method::Bdf) | Computation::Tabulated(Method::Bdf), None) => {
+                    series[0]
+                }
+                _ => stop(
+                    motion.case,
+                    &format!("{computation:?}: not within {required_error:e}"),
+                ),
             };
             rows.push(Row {
-                wanted,
-                way,
-                rung,
-                least: f64::INFINITY,
+                required_error,
+                computation,
+                run,
+                min_time: f64::INFINITY,
             });
         }
     }
     // Stable: by error, and within it as the ways come.
-    rows.sort_by(|a, b| b.wanted.total_cmp(&a.wanted));
+    rows.sort_by(|a, b| b.required_error.total_cmp(&a.required_error));
     rows
 }
 
-fn measure(motion: &Motion) {
+fn measure(motion: &MotionCase) {
     let mut rows = rows(motion);
     let mut one = motion.evaluation();
-    for _ in 0..TURNS {
-        one.take_turn();
+    for _ in 0..REPETITIONS {
+        one.run_round();
         for row in &mut rows {
-            row.take_turn(motion);
+            row.run_once(motion);
         }
     }
-    let evaluation = one.turns.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+    let evaluation = one.times.iter().fold(f64::INFINITY, |a, &b| a.min(b));
     println!("\n{}: {} {evaluation:.0} ns", motion.case, one.name);
     println!(
         "error  way                tolerance  reached  evaluations  Jacobians      us  / evaluation  / DOP853"
     );
     for row in &rows {
-        let beside = |other: &&Row| {
-            other.wanted == row.wanted && matches!(other.way, Way::Exact(Method::Dop853))
+        let is_baseline = |other: &&Row| {
+            other.required_error == row.required_error
+                && matches!(other.computation, Computation::Exact(Method::Dop853))
         };
-        let eighth = rows.iter().find(beside).map_or(f64::NAN, |row| row.least);
-        let Rung {
+        let dop853_time = rows
+            .iter()
+            .find(is_baseline)
+            .map_or(f64::NAN, |row| row.min_time);
+        let ToleranceRun {
             tolerance,
             error,
-            work,
-        } = row.rung;
+            statistics,
+        } = row.run;
         println!(
             "{:5.0e}  {:18} {tolerance:9.0e}  {error:7.1e}  {:11}  {:9}  {:6.0}  {:12.0}  {:8.2}",
-            row.wanted,
+            row.required_error,
             row.name(),
-            work.evaluations,
-            work.jacobians,
-            row.least * 1e6,
-            row.least * 1e9 / evaluation,
-            row.least / eighth
+            statistics.evaluations,
+            statistics.jacobians,
+            row.min_time * 1e6,
+            row.min_time * 1e9 / evaluation,
+            row.min_time / dop853_time
         );
     }
 }

@@ -1,88 +1,91 @@
-//! A motion of one degree of freedom followed through dead points and change points.
+//! A motion of one degree of freedom continued through dead points and change points.
 //!
-//! A coordinate that folds back (a slider at its dead point) says less and less there about the motion,
-//! and its inertia grows beyond all bounds. The motion then goes on in another coordinate of the same
-//! mechanism: another *chart*, in which the actuator is replaced and all else, loads and drives, is the
-//! same. A chart is left when some coordinate moves [`FOLDS`] times as fast as its own, lengths by the
+//! At a dead point a coordinate folds back (a slider at the end of its stroke), and its inertia tends to infinity.
+//! The motion then continues in another coordinate of the same mechanism: another *chart*, which replaces the
+//! actuator and keeps all else, loads and drives. A chart is left when some coordinate moves 8 times as fast as its
+//! own, lengths by the
 //! mechanism's size; the new one is the fastest, so that it is not left again soon.
 //!
 //! A change point, where assembly branches meet, needs no other coordinate, but a chart on the branch
-//! behind it, and a [`Bridge`] across.
+//! behind it, and a [`ChangePointFit`] across.
 
 mod candidates;
-mod counting;
+mod continued_motion;
 mod crossing;
-mod guard;
-mod journey;
+mod monitor;
+mod revolutions;
 
-use crate::bridge::{Bridge, BridgeError};
-use crate::drive::Drive;
-use crate::driver::{Dense, integrate};
+use crate::change_point_fit::{ChangePointFit, ChangePointFitError};
 use crate::error::DynamicsError;
-use crate::follow::{Event, Record, Trace};
-use crate::machine::{Guidance, Machine, MachineError, all_loads};
-use crate::moving::Moving;
+use crate::integrate::integrate;
+use crate::machine::{CoordinateMode, Machine, MachineError, loads_with_drives};
+use crate::machine_ode::MachineOde;
+use crate::ode::{DenseOutput, OdeState};
 use crate::options::Options;
-use crate::system::Point;
-use candidates::{Candidate, actuator, candidates, size};
-use counting::angles_used;
-use crossing::Crossing;
-use dwell_geometry::measure::{BodyStates, Measured};
-use dwell_geometry::mechanism::Told;
-use dwell_geometry::{BodyId, Coordinate, Joint, JointId, Mechanism, Reaction, Start};
-use dwell_kinetostatics::{Load, Magnitude, Mass, Model, ModelError};
-use guard::{Guard, Turning};
-pub use journey::{Change, Journey, Leg, Tracked, Why};
+use crate::solve::{Event, ObservedMachine, RecorderState, Solution};
+use candidates::{Candidate, actuator, candidates, length_scale};
+pub use continued_motion::{
+    ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory, Segment,
+};
+use crossing::ChangePointCrossing;
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use dwell_geometry::mechanism::BranchHint;
+use dwell_geometry::{
+    AssemblyConfiguration, BodyId, Coordinate, Joint, JointId, Mechanism, Reaction,
+};
+use dwell_kinetostatics::{Drive, Load, Mass, Model, ModelError};
+use monitor::{ChartExit, ChartMonitor};
+use revolutions::load_angles;
 
-/// Times by which another coordinate must be the faster for the present one to be left.
-const FOLDS: f64 = 8.0;
-/// Coordinates tried for a chart before the motion is given up.
-const TRIES: usize = 6;
-/// Charts in a row in which nothing moves before the motion is given up.
-const MOST_IDLE: usize = 3;
-/// What is left of the longest step where one was too rough.
-const SHORTER: f64 = 0.25;
-/// How far steps that may have led over a bridge are shortened.
-const SLOWEST: f64 = 1e-2;
-/// Two poses closer than this, rad, are one.
-const SAME: f64 = 1e-6;
+/// A chart is left when another coordinate moves so many times as fast as its own.
+const FOLD_SPEED_RATIO: f64 = 8.0;
+/// Coordinates tried for the next chart before the motion ends.
+const MAX_CANDIDATES: usize = 6;
+/// Successive charts without a step after which the motion ends.
+const MAX_IDLE_CHARTS: usize = 3;
+/// The factor of the longest step after one that was too long.
+const STEP_REDUCTION: f64 = 0.25;
+/// How far steps that may have jumped over a fit window are shortened at most.
+const MIN_STEP_RATIO: f64 = 1e-2;
+/// Poses that differ by less, rad, count as equal.
+const POSE_TOLERANCE: f64 = 1e-6;
 
-/// A mechanism of one degree of freedom with all that moves it.
+/// A mechanism of one degree of freedom with its loads and drives.
 #[derive(Debug, Clone, Copy)]
-pub struct Site<'s> {
+pub struct MachineDescription<'s> {
     /// The mechanism, with one actuator, whose coordinate is free.
     pub mechanism: &'s Mechanism,
     /// By body.
     pub masses: &'s [Mass],
-    /// Where it is put together.
-    pub start: &'s Start,
-    /// What acts on it.
+    /// Its assembly configuration.
+    pub assembly: &'s AssemblyConfiguration,
+    /// Its loads.
     pub loads: &'s [Load],
-    /// What drives it.
+    /// Its drives.
     pub drives: &'s [Drive],
-    /// The reactions of the shown models.
+    /// The reactions of the output models.
     pub reactions: &'s [Reaction],
 }
 
 /// The mechanism in one of its coordinates, on one assembly branch.
 #[derive(Debug, Clone)]
 pub struct Chart {
-    /// What the coordinate is called: the actuator's name at first, then `angle of crank` and the like.
+    /// The name of the coordinate: the actuator's name at first, then `angle of crank` and the like.
     pub name: String,
     /// The coordinate.
     pub coordinate: Coordinate,
     /// The machine that moves.
     pub machine: Machine,
     /// The model with all loads (the drives' last) and the reactions asked for.
-    pub shown: Model,
-    /// By end of its range: whether a bridge was looked for.
-    looked: [bool; 2],
+    pub output_model: Model,
+    /// By end of its range: whether a change-point fit was looked for.
+    limits_searched: [bool; 2],
 }
 
-/// Why an atlas cannot be begun.
+/// Why an atlas cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AtlasError {
-    /// The mechanism cannot be put together.
+    /// The mechanism cannot be assembled.
     #[error(transparent)]
     Model(#[from] ModelError),
     /// Its loads or drives do not fit.
@@ -90,19 +93,19 @@ pub enum AtlasError {
     Machine(#[from] MachineError),
 }
 
-/// The charts of a mechanism, as far as they were needed.
+/// The charts of a mechanism that were needed so far.
 #[derive(Debug, Clone)]
 pub struct Atlas<'s> {
-    site: Site<'s>,
-    coordinates: Vec<Candidate>,
+    description: MachineDescription<'s>,
+    candidates: Vec<Candidate>,
     charts: Vec<Chart>,
-    crossings: Vec<Crossing>,
-    refused: Vec<(f64, BridgeError)>,
-    /// What the bridges are good for.
+    crossings: Vec<ChangePointCrossing>,
+    uncrossable: Vec<(f64, ChangePointFitError)>,
+    /// The tolerance that the change-point fits were made for.
     tolerance: f64,
-    /// By coordinate: after how much its branches follow each other again, once that is known, rad.
+    /// By coordinate: the period, rad, after which its branches repeat, where known.
     periods: Vec<(Coordinate, f64)>,
-    size: f64,
+    length_scale: f64,
 }
 
 impl<'s> Atlas<'s> {
@@ -110,23 +113,23 @@ impl<'s> Atlas<'s> {
     ///
     /// # Errors
     /// [`AtlasError`] where that cannot be built.
-    pub fn new(site: Site<'s>) -> Result<Self, AtlasError> {
-        let size = size(site.mechanism);
-        let coordinates = candidates(site.mechanism, size);
+    pub fn new(description: MachineDescription<'s>) -> Result<Self, AtlasError> {
+        let length_scale = length_scale(description.mechanism);
+        let candidates = candidates(description.mechanism, length_scale);
         let mut atlas = Self {
-            site,
-            coordinates,
+            description,
+            candidates,
             charts: Vec::new(),
             crossings: Vec::new(),
-            refused: Vec::new(),
+            uncrossable: Vec::new(),
             tolerance: f64::INFINITY,
             periods: Vec::new(),
-            size,
+            length_scale,
         };
-        if site.mechanism.actuators.len() != 1 {
-            return Err(MachineError::Guidance.into());
+        if description.mechanism.actuators.len() != 1 {
+            return Err(MachineError::CoordinateModes.into());
         }
-        let home = atlas.build(site.mechanism, site.start)?;
+        let home = atlas.build_chart(description.mechanism, description.assembly)?;
         atlas.charts.push(home);
         Ok(atlas)
     }
@@ -136,298 +139,310 @@ impl<'s> Atlas<'s> {
         &self.charts
     }
 
-    /// The bridges across change points that were needed so far.
-    pub fn bridges(&self) -> impl ExactSizeIterator<Item = &Bridge> {
-        self.crossings.iter().map(|c| c.bridge.as_ref())
+    /// The change-point fits that were needed so far.
+    pub fn change_point_fits(&self) -> impl ExactSizeIterator<Item = &ChangePointFit> {
+        self.crossings.iter().map(|c| c.fit.as_ref())
     }
 
     /// The change points that cannot be crossed, and why.
-    pub fn refused(&self) -> &[(f64, BridgeError)] {
-        &self.refused
+    pub fn uncrossable(&self) -> &[(f64, ChangePointFitError)] {
+        &self.uncrossable
     }
 
-    fn build(&self, mechanism: &Mechanism, start: &Start) -> Result<Chart, AtlasError> {
-        let Site {
+    fn build_chart(
+        &self,
+        mechanism: &Mechanism,
+        assembly: &AssemblyConfiguration,
+    ) -> Result<Chart, AtlasError> {
+        let MachineDescription {
             loads,
             drives,
             reactions,
             ..
-        } = self.site;
+        } = self.description;
         // Witnesses have no mass.
-        let mut masses = self.site.masses.to_vec();
+        let mut masses = self.description.masses.to_vec();
         masses.resize(mechanism.bodies.len().max(masses.len()), Mass::default());
-        let frictions = loads.iter().filter_map(|load| match load.magnitude {
-            Magnitude::Friction(friction) => Some(friction.reactions(mechanism)),
-            _ => None,
-        });
-        let needed: Vec<Reaction> = frictions.flatten().collect();
-        let model = Model::new(mechanism, &masses, start, &needed)?;
-        let free = vec![Guidance::Free; model.plan().actuators()];
-        let machine = Machine::new(mechanism, model, loads, free, drives)?;
-        let all = all_loads(mechanism, loads, drives).map_err(MachineError::from)?;
-        // Friction needs its reactions in the shown model too.
-        let mut asked = reactions.to_vec();
-        asked.extend(needed.iter().filter(|r| !reactions.contains(r)));
-        let shown = Model::new(mechanism, &masses, start, &asked)?;
-        let shown = shown.with_loads(mechanism, all);
+        let model = Model::new(mechanism, &masses, assembly, &[])?;
+        let modes = vec![CoordinateMode::Free; model.plan().actuators()];
+        let machine = Machine::new(model, loads, modes, drives)?;
+        let all = loads_with_drives(mechanism, loads, drives).map_err(MachineError::from)?;
+        let output_model = Model::new(mechanism, &masses, assembly, reactions)?;
+        let output_model = output_model.with_loads(all);
         let (name, coordinate) = match mechanism.actuators.first() {
             Some(actuator) => (actuator.name.clone(), actuator.coordinate()),
-            None => return Err(MachineError::Guidance.into()),
+            None => return Err(MachineError::CoordinateModes.into()),
         };
         Ok(Chart {
             name,
             coordinate,
             machine,
-            shown: shown.map_err(MachineError::from)?,
-            looked: [false; 2],
+            output_model: output_model.map_err(MachineError::from)?,
+            limits_searched: [false; 2],
         })
     }
 
-    /// Drops the bridges where they were made for a looser tolerance than is asked for now.
-    fn sharpen(&mut self, tolerance: f64) {
+    /// Drops the change-point fits if they were made for a looser tolerance.
+    fn tighten_tolerance(&mut self, tolerance: f64) {
         if tolerance < self.tolerance {
             self.tolerance = tolerance;
             self.crossings.clear();
-            self.refused.clear();
+            self.uncrossable.clear();
             self.periods.clear();
             for chart in &mut self.charts {
-                chart.machine.bridges.clear();
-                chart.looked = [false; 2];
+                chart.machine.fit_windows.clear();
+                chart.limits_searched = [false; 2];
             }
         }
     }
 
-    /// Follows the motion from a state of the first chart until a time, through as many charts as it
-    /// takes. Where the first is enough, it is what [`follow`](crate::follow()) finds, to the last bit.
+    /// Integrates the motion from a state of the first chart until `end` (s), through as many charts as it
+    /// takes. Where the first is enough, the result is that of [`solve`](crate::solve()), bit for bit.
     ///
     /// # Errors
     /// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. What
-    /// ends the motion on the way is in [`Journey::failed`].
-    pub fn follow(
+    /// ends the motion on the way is in [`ContinuedMotion::error`].
+    pub fn solve(
         &mut self,
-        start: &Point,
+        start: &OdeState,
         end: f64,
         options: &Options,
         events: &[Event],
-    ) -> Result<Journey, DynamicsError> {
-        self.sharpen(options.relative);
-        let mut journey = Journey::default();
-        let mut record = Record::new(start.t, events);
+    ) -> Result<ContinuedMotion, DynamicsError> {
+        self.tighten_tolerance(options.rtol);
+        let mut motion = ContinuedMotion::default();
+        let mut recorder_state = RecorderState::new(start.t, events);
         let (mut chart, mut at) = (0, start.clone());
-        let asked = options;
-        let (mut options, mut longest) = (*asked, None);
+        let requested = options;
+        let (mut options, mut max_step) = (*requested, None);
         let mut idle = 0;
         loop {
-            self.prepare(chart);
-            let (trace, turning) = match self.leg(chart, &at, end, &options, &mut record) {
-                // What is left after a change is nothing.
-                Err(DynamicsError::TooShort) if !journey.legs.is_empty() => return Ok(journey),
-                Err(error) if !journey.legs.is_empty() => {
-                    journey.failed = Some(error);
-                    return Ok(journey);
-                }
-                leg => leg?,
+            self.prepare_crossings(chart);
+            let (solution, exit) =
+                match self.solve_chart(chart, &at, end, &options, &mut recorder_state) {
+                    // What is left after a change is nothing.
+                    Err(DynamicsError::DurationTooShort) if !motion.segments.is_empty() => {
+                        return Ok(motion);
+                    }
+                    Err(error) if !motion.segments.is_empty() => {
+                        motion.error = Some(error);
+                        return Ok(motion);
+                    }
+                    leg => leg?,
+                };
+            idle = if solution.steps.len() > 1 {
+                0
+            } else {
+                idle + 1
             };
-            idle = if trace.steps.len() > 1 { 0 } else { idle + 1 };
-            options.budget = options.budget.saturating_sub(trace.statistics.steps);
-            if let Some(last) = trace.steps.last() {
+            options.max_steps = options.max_steps.saturating_sub(solution.statistics.steps);
+            if let Some(last) = solution.steps.last() {
                 at.clone_from(last);
             }
-            journey.stopped = trace.stopped;
-            journey.failed = trace.failed.clone();
-            journey.take(chart, trace);
-            if journey.stopped || (journey.failed.is_none() && at.t >= end) {
-                return Ok(journey);
+            motion.terminated_by_event = solution.terminated_by_event;
+            motion.error = solution.error.clone();
+            motion.append(chart, solution);
+            if motion.terminated_by_event || (motion.error.is_none() && at.t >= end) {
+                return Ok(motion);
             }
-            let turning = match turning {
-                Some(Turning::Rough(step)) => {
-                    options.longest = Some(SHORTER * step);
+            let exit = match exit {
+                Some(ChartExit::StepTooLong(step)) => {
+                    options.max_step = Some(STEP_REDUCTION * step);
                     continue;
                 }
-                None if self.slow_down(chart, &at, &mut longest) => {
-                    options.longest = longest;
+                None if self.shorten_steps(chart, &at, &mut max_step) => {
+                    options.max_step = max_step;
                     continue;
                 }
-                None => self.rescue(chart, &at),
-                turning => turning,
+                None => self.fallback_exit(chart, &at),
+                exit => exit,
             };
-            (longest, options.longest) = (None, asked.longest);
+            (max_step, options.max_step) = (None, requested.max_step);
             // A chart that should be left and cannot be ends the motion; so do charts that lead from
             // one to another and nowhere else.
-            let turning = turning.filter(|_| idle < MOST_IDLE);
-            let next = turning.and_then(|turning| self.turn(chart, &at, &turning));
-            let Some((to, y, why)) = next else {
+            let exit = exit.filter(|_| idle < MAX_IDLE_CHARTS);
+            let next = exit.and_then(|exit| self.switch_chart(chart, &at, &exit));
+            let Some((to, y, reason)) = next else {
                 let (t, q) = (at.t, at.y.first().copied().unwrap_or(f64::NAN));
-                journey.failed.get_or_insert(DynamicsError::Limit { t, q });
-                return Ok(journey);
+                motion
+                    .error
+                    .get_or_insert(DynamicsError::LimitPosition { t, q });
+                return Ok(motion);
             };
-            journey.changes.push(Change {
+            motion.changes.push(ChartChange {
                 t: at.t,
                 from: chart,
                 to,
-                why,
+                reason,
             });
             (chart, at.y) = (to, y);
         }
     }
 
-    /// Follows one chart as far as it goes.
-    fn leg(
+    /// Integrates in one chart until the motion ends or leaves it.
+    fn solve_chart(
         &self,
         chart: usize,
-        at: &Point,
+        at: &OdeState,
         end: f64,
         options: &Options,
-        record: &mut Record<'_>,
-    ) -> Result<(Trace, Option<Turning>), DynamicsError> {
-        let own = &self.charts[chart];
-        let mut watcher = record.on(&own.machine, &own.shown, at)?;
-        let mut trace = watcher.trace(at, options);
-        let mut guard = Guard::new(self, chart);
-        if let Some(turning) = guard.folds(at)? {
-            return Ok((trace, Some(turning)));
+        recorder_state: &mut RecorderState<'_>,
+    ) -> Result<(Solution, Option<ChartExit>), DynamicsError> {
+        let current = &self.charts[chart];
+        let observed = ObservedMachine::new(&current.machine, &current.output_model);
+        let mut recorder = recorder_state.recorder(observed, at)?;
+        let mut solution = recorder.begin_solution(at, options);
+        let mut monitor = ChartMonitor::new(self, chart);
+        if let Some(exit_at_start) = monitor.exit_at_fold(at)? {
+            return Ok((solution, Some(exit_at_start)));
         }
-        let mut moving = Moving::new(&own.machine, at.t, &at.y)?;
-        let mut left = None;
-        let mut watch = |before: &Point, now: &Point, dense: Dense<'_>| {
-            guard.watch(before, now, dense, &mut left, |dense| {
-                watcher.step(&mut trace, options, before, now, dense)
+        let mut ode = MachineOde::new(&current.machine, at.t, &at.y)?;
+        let mut exit = None;
+        let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
+            monitor.observe(before, now, dense, &mut exit, |dense| {
+                recorder.record_step(&mut solution, options, before, now, dense)
             })
         };
-        let ended = integrate(&mut moving, at, Some(end), options, &mut watch)?;
-        trace.failed = ended.failed;
-        trace.statistics = ended.statistics;
-        Ok((trace, left))
+        let termination = integrate(&mut ode, at, Some(end), options, &mut observer)?;
+        solution.error = termination.error;
+        solution.statistics = termination.statistics;
+        Ok((solution, exit))
     }
 
     /// Shorter steps for a chart that failed, if it has a bridge that they may have led over.
-    fn slow_down(&self, chart: usize, at: &Point, longest: &mut Option<f64>) -> bool {
-        let spans = self.charts[chart].machine.bridges.iter();
-        let near = spans.map(|span| span.bridge.reach).reduce(f64::min);
-        let (Some(reach), Some(&speed)) = (near, at.y.get(1)) else {
+    fn shorten_steps(&self, chart: usize, at: &OdeState, max_step: &mut Option<f64>) -> bool {
+        let windows = self.charts[chart].machine.fit_windows.iter();
+        let min_radius = windows.map(|window| window.fit.fit_radius).reduce(f64::min);
+        let (Some(fit_radius), Some(&speed)) = (min_radius, at.y.get(1)) else {
             return false;
         };
-        let first = 0.5 * reach / speed.abs();
-        let next = longest.map_or(first, |last| 0.25 * last);
-        let worth = next.is_finite() && next > SLOWEST * first;
-        *longest = Some(next);
+        let first = 0.5 * fit_radius / speed.abs();
+        let next = max_step.map_or(first, |last| 0.25 * last);
+        let worth = next.is_finite() && next > MIN_STEP_RATIO * first;
+        *max_step = Some(next);
         worth
     }
 
     /// The best coordinates besides the present one where a chart ends, if there are better ones.
-    fn rescue(&self, chart: usize, at: &Point) -> Option<Turning> {
-        let ranks = Guard::new(self, chart).ranks(at).ok()?;
-        ranks.better_than(1.0).map(Turning::Ends)
+    fn fallback_exit(&self, chart: usize, at: &OdeState) -> Option<ChartExit> {
+        let speeds = ChartMonitor::new(self, chart).candidate_speeds(at).ok()?;
+        speeds.faster_than(1.0).map(ChartExit::SolutionEnds)
     }
 
     /// The chart to which a motion turns, with its state there.
-    fn turn(
+    fn switch_chart(
         &mut self,
         from: usize,
-        at: &Point,
-        turning: &Turning,
-    ) -> Option<(usize, Vec<f64>, Why)> {
-        match turning {
-            Turning::Rough(_) => None,
-            Turning::Crosses { crossing, above } => {
+        at: &OdeState,
+        exit: &ChartExit,
+    ) -> Option<(usize, Vec<f64>, ChartChangeReason)> {
+        match exit {
+            ChartExit::StepTooLong(_) => None,
+            ChartExit::CrossesChangePoint { crossing, above } => {
                 let to = self.crossings[*crossing].charts[usize::from(*above)];
-                let why = Why::Crosses { bridge: *crossing };
-                Some((to, at.y.clone(), why))
+                let reason = ChartChangeReason::CrossesChangePoint { fit: *crossing };
+                Some((to, at.y.clone(), reason))
             }
-            Turning::Folds(ranks) | Turning::Ends(ranks) => {
-                let why = match turning {
-                    Turning::Folds(_) => Why::Folds {
-                        times: ranks.times(),
+            ChartExit::CoordinateFold(speeds) | ChartExit::SolutionEnds(speeds) => {
+                let reason = match exit {
+                    ChartExit::CoordinateFold(_) => ChartChangeReason::CoordinateFold {
+                        speed_ratio: speeds.max_ratio(),
                     },
-                    _ => Why::Ends,
+                    _ => ChartChangeReason::SolutionEnds,
                 };
-                let tried = ranks.best().take(TRIES);
+                let tried = speeds.fastest_first().take(MAX_CANDIDATES);
                 let tried: Vec<usize> = tried.collect();
                 tried.into_iter().find_map(|candidate| {
-                    let (to, y) = self.change(from, at, candidate)?;
-                    Some((to, y, why))
+                    let (to, y) = self.state_in_chart(from, at, candidate)?;
+                    Some((to, y, reason))
                 })
             }
         }
     }
 
     /// The state in the chart of another coordinate, which may have to be built.
-    fn change(&mut self, from: usize, at: &Point, candidate: usize) -> Option<(usize, Vec<f64>)> {
+    fn state_in_chart(
+        &mut self,
+        from: usize,
+        at: &OdeState,
+        candidate: usize,
+    ) -> Option<(usize, Vec<f64>)> {
         let Candidate {
             name,
             coordinate,
             measured,
             ..
-        } = self.coordinates[candidate].clone();
+        } = self.candidates[candidate].clone();
         let machine = &self.charts[from].machine;
-        let mut work = machine.work();
-        machine.evaluate(at.t, &at.y, &mut work).ok()?;
-        let states = work.inner.states().clone();
-        let [q, q_dot, _] = states.measure(measured);
+        let mut workspace = machine.workspace();
+        machine.evaluate(at.t, &at.y, &mut workspace).ok()?;
+        let states = workspace.inner.states().clone();
+        let [q, q_dot, _] = states.coordinate(measured);
         let mut y = at.y.clone();
         (y[0], y[1]) = (q, q_dot);
-        let there = Point { t: at.t, y };
+        let target = OdeState { t: at.t, y };
         for (to, chart) in self.charts.iter().enumerate() {
             if chart.coordinate == coordinate {
-                let mut there = there.clone();
+                let mut target = target.clone();
                 // Within its own range: which bridge lies at which end depends on whole turns.
-                there.y[0] = chart.machine.model.plan().range().fold(q).unwrap_or(q);
-                if self.agrees(chart, &there, &states) {
-                    return Some((to, there.y));
+                target.y[0] = chart.machine.model.plan().range().wrap(q).unwrap_or(q);
+                if self.matches_pose(chart, &target, &states) {
+                    return Some((to, target.y));
                 }
             }
         }
         let mechanism = Mechanism {
-            actuators: vec![actuator(self.site.mechanism, name, coordinate)?],
-            ..self.site.mechanism.clone()
+            actuators: vec![actuator(self.description.mechanism, name, coordinate)?],
+            ..self.description.mechanism.clone()
         };
-        let (mechanism, rough) = self.counting(mechanism, &states);
-        let mut joints = told(self.site.mechanism, &states);
+        let (mechanism, initial_guess) = self.with_counted_revolutions(mechanism, &states);
+        let mut joints = branch_hints(self.description.mechanism, &states);
         joints.resize(mechanism.joints.len(), None);
-        let start = Start {
+        let assembly = AssemblyConfiguration {
             q: vec![q],
-            rough,
-            joints,
+            initial_guess,
+            branch_hints: joints,
         };
-        let chart = self.build(&mechanism, &start).ok()?;
-        if !self.agrees(&chart, &there, &states) {
+        let chart = self.build_chart(&mechanism, &assembly).ok()?;
+        if !self.matches_pose(&chart, &target, &states) {
             return None;
         }
         self.charts.push(chart);
-        Some((self.charts.len() - 1, there.y))
+        Some((self.charts.len() - 1, target.y))
     }
 
     /// Whether a chart has the bodies where they are, and measures the angles that loads depend on alike.
-    fn agrees(&self, chart: &Chart, at: &Point, states: &BodyStates) -> bool {
-        let mut work = chart.machine.work();
-        if chart.machine.evaluate(at.t, &at.y, &mut work).is_err() {
+    fn matches_pose(&self, chart: &Chart, at: &OdeState, states: &BodyStates) -> bool {
+        let mut workspace = chart.machine.workspace();
+        if chart.machine.evaluate(at.t, &at.y, &mut workspace).is_err() {
             return false;
         }
-        let own = work.inner.states();
+        let chart_states = workspace.inner.states();
         // Beyond the mechanism's bodies come those that its actuator adds.
-        let mut bodies = (0..self.site.mechanism.bodies.len()).map(BodyId);
+        let mut bodies = (0..self.description.mechanism.bodies.len()).map(BodyId);
         let counted = |s: &BodyStates, b: BodyId| s.body(b).angle.is_some();
         let alike = |bodies: [BodyId; 2]| {
-            let apart = own.angle(bodies)[0] - states.angle(bodies)[0];
+            let difference = chart_states.angle(bodies)[0] - states.angle(bodies)[0];
             let loses = bodies
                 .iter()
-                .any(|&b| counted(states, b) && !counted(own, b));
-            apart.abs() < SAME && !loses
+                .any(|&b| counted(states, b) && !counted(chart_states, b));
+            difference.abs() < POSE_TOLERANCE && !loses
         };
-        bodies.all(|b| (own.body(b).turn - states.body(b).turn).norm() < SAME)
-            && angles_used(&self.site).into_iter().all(alike)
+        bodies.all(|b| {
+            (chart_states.body(b).rotation - states.body(b).rotation).norm() < POSE_TOLERANCE
+        }) && load_angles(&self.description).into_iter().all(alike)
     }
 }
 
-/// What the bodies tell of each joint: its travel, or the direction of its line.
-fn told(mechanism: &Mechanism, states: &BodyStates) -> Vec<Option<f64>> {
+/// The branch hint of each joint at a state of the bodies: its travel, or the direction of its line.
+fn branch_hints(mechanism: &Mechanism, states: &BodyStates) -> Vec<Option<f64>> {
     let joints = mechanism.joints.iter().enumerate();
-    let of = |(j, joint): (usize, &Joint)| match joint.kind.told()? {
-        Told::Travel => {
-            let travel = Measured::find(mechanism, Coordinate::Travel(JointId(j)))?;
-            Some(states.measure(travel)[0])
+    let of = |(j, joint): (usize, &Joint)| match joint.kind.branch_hint()? {
+        BranchHint::Travel => {
+            let travel = CoordinateFunction::find(mechanism, Coordinate::Travel(JointId(j)))?;
+            Some(states.coordinate(travel)[0])
         }
-        Told::Direction => {
+        BranchHint::Direction => {
             let line = states.separation(joint.bodies, joint.points).direction?;
             Some(line.angle())
         }

@@ -1,23 +1,22 @@
-//! What a conservative mechanism of one freedom has at a coordinate: inertia, potential, and the force
-//! −V′ that the potential makes.
+//! A conservative system of one degree of freedom: its inertia, its potential V and the force −V′ as functions of
+//! its coordinate.
 
-use crate::equation::positive;
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, positive_inertia};
 use crate::machine::Machine;
-use dwell_geometry::{PlaceError, Range};
-use dwell_kinetostatics::{Actions, Model, Reduced, Workspace};
+use dwell_geometry::{PositionError, Range};
+use dwell_kinetostatics::{InverseDynamics, Model, ReducedModel, Workspace};
 use std::f64::consts::TAU;
 
-/// Turns after which a mechanism that has not come back is taken to go on for ever.
-const MOST_TURNS: u32 = 8;
-/// Where the mechanism is compared with itself some turns on, in parts of a turn.
-const COMPARED: [f64; 7] = [0.0, 0.131, 0.292, 0.417, 0.583, 0.719, 0.877];
-/// Two numbers nearer than this, relatively, are one: solutions of large groups differ by some rounding.
-const SAME: f64 = 1e-9;
+/// Revolutions after which a mechanism that has not repeated itself counts as not periodic.
+const MAX_REVOLUTIONS: u32 = 8;
+/// Phases, as parts of a revolution, at which the mechanism is compared with itself some revolutions on.
+const PHASE_FRACTIONS: [f64; 7] = [0.0, 0.131, 0.292, 0.417, 0.583, 0.719, 0.877];
+/// Numbers that differ by less, relatively, count as equal: solutions of large groups differ by some rounding.
+const PERIODICITY_TOLERANCE: f64 = 1e-9;
 
 /// Inertia, potential and force at a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Held {
+pub(crate) struct EnergyTerms {
     /// m, kg m² or kg.
     pub(crate) m: f64,
     /// V, J.
@@ -26,47 +25,48 @@ pub(crate) struct Held {
     pub(crate) force: f64,
 }
 
-/// Something that moves in one coordinate and loses nothing.
-pub(crate) trait Conservative {
-    /// What it has at `q`.
-    fn held(&mut self, q: f64) -> Result<Held, DynamicsError>;
+/// A system of one coordinate whose energy is constant.
+pub(crate) trait ConservativeSystem {
+    /// Its inertia, potential and force at `q` (rad or m).
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError>;
 
-    /// How far the coordinate reaches.
+    /// The range of the coordinate.
     fn range(&self) -> Range;
 
     /// Whether the coordinate is an angle.
-    fn turns(&self) -> bool;
+    fn is_angle(&self) -> bool;
 
-    /// Whether there is no potential, so that it goes on as it began.
-    fn level(&self) -> bool {
+    /// Whether there is no potential, so that its direction of motion never changes.
+    fn is_potential_free(&self) -> bool {
         false
     }
 
-    /// After how many radians everything is as it was; none if that never happens.
-    fn repeats(&mut self, q: f64) -> Result<Option<f64>, DynamicsError> {
-        if !self.turns() || self.range().limits().is_some() {
+    /// The angle after which everything repeats itself, rad; none if it never does.
+    fn period(&mut self, q: f64) -> Result<Option<f64>, DynamicsError> {
+        if !self.is_angle() || self.range().limits().is_some() {
             return Ok(None);
         }
-        if self.level() && self.range() == Range::Full {
+        if self.is_potential_free() && self.range() == Range::Full {
             return Ok(Some(TAU));
         }
-        let mut here = Vec::with_capacity(COMPARED.len());
-        for part in COMPARED {
-            here.push(self.held(q + TAU * part)?);
+        let mut here = Vec::with_capacity(PHASE_FRACTIONS.len());
+        for part in PHASE_FRACTIONS {
+            here.push(self.energy_terms(q + TAU * part)?);
         }
-        let size = |of: fn(&Held) -> f64| here.iter().fold(0.0_f64, |s, h| s.max(of(h).abs()));
+        let size =
+            |of: fn(&EnergyTerms) -> f64| here.iter().fold(0.0_f64, |s, h| s.max(of(h).abs()));
         let (potential, force) = (size(|h| h.potential), size(|h| h.force));
-        for turns in 1..=MOST_TURNS {
-            let period = TAU * f64::from(turns);
+        for revolutions in 1..=MAX_REVOLUTIONS {
+            let period = TAU * f64::from(revolutions);
             let mut same = true;
-            for (part, h) in COMPARED.iter().zip(&here) {
-                // Beyond what is known of it, it does not come back.
-                let Ok(there) = self.held(q + TAU * part + period) else {
+            for (part, h) in PHASE_FRACTIONS.iter().zip(&here) {
+                // Outside its range it does not repeat itself.
+                let Ok(there) = self.energy_terms(q + TAU * part + period) else {
                     return Ok(None);
                 };
-                same &= (there.m - h.m).abs() <= SAME * h.m
-                    && (there.potential - h.potential).abs() <= SAME * potential
-                    && (there.force - h.force).abs() <= SAME * force;
+                same &= (there.m - h.m).abs() <= PERIODICITY_TOLERANCE * h.m
+                    && (there.potential - h.potential).abs() <= PERIODICITY_TOLERANCE * potential
+                    && (there.force - h.force).abs() <= PERIODICITY_TOLERANCE * force;
             }
             if same {
                 return Ok(Some(period));
@@ -77,16 +77,16 @@ pub(crate) trait Conservative {
 }
 
 /// A mechanism without loads.
-pub(crate) struct Unloaded<'a, R: Reduced> {
+pub(crate) struct UnloadedSystem<'a, R: ReducedModel> {
     pub(crate) model: &'a R,
-    pub(crate) work: R::Work,
+    pub(crate) workspace: R::Workspace,
 }
 
-impl<R: Reduced> Conservative for Unloaded<'_, R> {
-    fn held(&mut self, q: f64) -> Result<Held, DynamicsError> {
-        let (m, _) = self.model.inertia(q, &mut self.work)?;
-        Ok(Held {
-            m: positive(m, q)?,
+impl<R: ReducedModel> ConservativeSystem for UnloadedSystem<'_, R> {
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError> {
+        let (m, _) = self.model.inertia(q, &mut self.workspace)?;
+        Ok(EnergyTerms {
+            m: positive_inertia(m, q)?,
             potential: 0.0,
             force: 0.0,
         })
@@ -96,61 +96,63 @@ impl<R: Reduced> Conservative for Unloaded<'_, R> {
         self.model.range()
     }
 
-    fn turns(&self) -> bool {
+    fn is_angle(&self) -> bool {
         !matches!(self.model.range(), Range::Stroke(..))
     }
 
-    fn level(&self) -> bool {
+    fn is_potential_free(&self) -> bool {
         true
     }
 }
 
 /// A machine of one freedom whose loads all have a potential.
-pub(crate) struct Loaded {
+pub(crate) struct LoadedSystem {
     model: Model,
     flywheel: f64,
-    work: Workspace<f64>,
-    actions: Actions<f64>,
+    workspace: Workspace<f64>,
+    inverse_dynamics: InverseDynamics<f64>,
 }
 
-impl Loaded {
+impl LoadedSystem {
     pub(crate) fn new(machine: &Machine) -> Result<Self, DynamicsError> {
         if machine.model().plan().actuators() != 1 || machine.free() != [0] {
             return Err(DynamicsError::NotConservative {
                 what: "it has not one coordinate, which is free",
             });
         }
-        if !machine.workers().is_empty() {
+        if !machine.nonconservative_sources().is_empty() {
             return Err(DynamicsError::NotConservative {
                 what: "a drive, or a load without a potential, does work on it",
             });
         }
         let model = machine.model().without_reactions();
         Ok(Self {
-            work: model.workspace(),
-            actions: model.actions(),
+            workspace: model.workspace(),
+            inverse_dynamics: model.result_buffer(),
             flywheel: machine.flywheel(0),
             model,
         })
     }
 }
 
-impl Conservative for Loaded {
-    fn held(&mut self, q: f64) -> Result<Held, DynamicsError> {
+impl ConservativeSystem for LoadedSystem {
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError> {
         let Self {
             model,
-            work,
-            actions,
+            workspace,
+            inverse_dynamics: result,
             ..
         } = self;
-        model.enter(0.0, &[q], &[0.0], work)?;
+        model.set_state(0.0, &[q], &[0.0], workspace)?;
         let loads = 0..model.loads().len();
-        let potential = loads.filter_map(|load| model.potential(load, work)).sum();
-        model.loaded(&[0.0], work, actions)?;
-        let force = -actions.tau[0];
-        model.inertial(0, work, actions);
-        Ok(Held {
-            m: positive(actions.tau[0] + self.flywheel, q)?,
+        let potential = loads
+            .filter_map(|load| model.potential_energy(load, workspace))
+            .sum();
+        model.loaded_inverse_dynamics(&[0.0], workspace, result)?;
+        let force = -result.tau[0];
+        model.mass_matrix_column(0, workspace, result);
+        Ok(EnergyTerms {
+            m: positive_inertia(result.tau[0] + self.flywheel, q)?,
             potential,
             force,
         })
@@ -160,23 +162,25 @@ impl Conservative for Loaded {
         self.model.plan().range()
     }
 
-    fn turns(&self) -> bool {
+    fn is_angle(&self) -> bool {
         self.model.plan().is_angle(0)
     }
 }
 
-/// The ends of the range, in the turn in which the motion starts; none if the coordinate turns
-/// fully.
+/// The ends of the range in the revolution in which `q` lies, rad or m; none if there are no limits.
+///
+/// # Errors
+/// [`PositionError::OutOfRange`] if `q` lies outside.
 pub(crate) fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>, DynamicsError> {
     let Some((from, to)) = range.limits() else {
         return Ok(None);
     };
-    let turns = match range {
-        Range::Between(..) => TAU * ((q - from) / TAU).floor(),
+    let shift = match range {
+        Range::Limited(..) => TAU * ((q - from) / TAU).floor(),
         _ => 0.0,
     };
-    if q > to + turns || q < from + turns {
-        return Err(PlaceError::OutOfRange { q, from, to }.into());
+    if q > to + shift || q < from + shift {
+        return Err(PositionError::OutOfRange { q, from, to }.into());
     }
-    Ok(Some((from + turns, to + turns)))
+    Ok(Some((from + shift, to + shift)))
 }

@@ -1,51 +1,51 @@
-//! Equilibria of a loaded machine: states that stay, with the coordinates at rest and the drives' states
-//! settled. Coulomb friction, which fades with the speed here, holds nothing.
+//! Equilibria of a loaded machine: states with the coordinates at rest and constant drive states. Coulomb friction is
+//! regularised here and vanishes at rest, so it keeps nothing in place.
 
 use crate::error::DynamicsError;
-use crate::linear::{Linear, linearise};
 use crate::machine::Machine;
-use crate::moving::Moving;
-use crate::root;
-use crate::system::System;
-use dwell_geometry::small;
+use crate::machine_ode::MachineOde;
+use crate::ode::OdeSystem;
+use crate::state_space::{StateSpace, linearise};
+use dwell_numerics::lu;
+use dwell_numerics::root;
 use std::f64::consts::TAU;
 
 /// Steps over the interval that is searched.
-const STEPS: usize = 512;
+const SEARCH_STEPS: usize = 512;
 /// Steps of Newton's method, and halvings of one.
-const MOST_STEPS: usize = 100;
-const MOST_HALVINGS: usize = 40;
+const MAX_NEWTON_STEPS: usize = 100;
+const MAX_HALVINGS: usize = 40;
 /// Most that a coordinate is moved in a step, rad (or m): an angle further on is another place.
-const MOST_MOVED: f64 = 0.5;
+const MAX_COORDINATE_STEP: f64 = 0.5;
 /// A step this small, relatively, that comes no nearer is rounding.
-const NEAR: f64 = 1e-9;
+const STEP_TOLERANCE: f64 = 1e-9;
 /// A force below this part of the largest is none.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const FORCE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
 /// A real part below this part of the largest eigenvalue is none.
-const UNDAMPED: f64 = 1e-9;
+const DAMPING_TOLERANCE: f64 = 1e-9;
 /// Pivots below this part of the largest leave a matrix without a solution.
-const SINGULAR: f64 = 1e-14;
+const PIVOT_TOLERANCE: f64 = 1e-14;
 
-/// What a small disturbance of an equilibrium does.
+/// The stability of an equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stability {
-    /// It dies out.
+    /// A small disturbance decays.
     Asymptotic,
-    /// It swings on, as without damping.
+    /// A small disturbance oscillates undamped.
     Centre,
-    /// It grows.
+    /// A small disturbance grows.
     Unstable,
-    /// The linearised motion does not tell.
+    /// The linearised motion does not decide.
     Undecided,
 }
 
-/// A swing of the linearised motion.
+/// A vibration mode of the linearised motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mode {
-    /// Natural circular frequency |λ|, rad/s.
-    pub frequency: f64,
+    /// Natural angular frequency |λ|, rad/s.
+    pub angular_frequency: f64,
     /// Damping ratio −Re λ / |λ|.
-    pub damping: f64,
+    pub damping_ratio: f64,
 }
 
 /// An equilibrium.
@@ -54,42 +54,45 @@ pub struct Equilibrium {
     /// The state.
     pub y: Vec<f64>,
     /// The motion linearised there.
-    pub linear: Linear,
+    pub state_space: StateSpace,
     /// Its eigenvalues, 1/s, as real and imaginary parts.
     pub eigenvalues: Vec<[f64; 2]>,
-    /// What a disturbance does.
+    /// Its stability.
     pub stability: Stability,
 }
 
 impl Equilibrium {
     fn new(machine: &Machine, y: Vec<f64>) -> Result<Self, DynamicsError> {
-        let linear = linearise(machine, 0.0, &y)?;
-        let eigenvalues = linear.eigenvalues()?;
+        let state_space = linearise(machine, 0.0, &y)?;
+        let eigenvalues = state_space.eigenvalues()?;
         let stability = stability(&eigenvalues);
         Ok(Self {
             y,
-            linear,
+            state_space,
             eigenvalues,
             stability,
         })
     }
 
-    /// Its swings, the slowest first.
+    /// Its vibration modes, the lowest frequency first.
     pub fn modes(&self) -> Vec<Mode> {
         let mode = |&[re, im]: &[f64; 2]| {
-            let frequency = re.hypot(im);
-            let damping = -re / frequency;
-            (im > 0.0).then_some(Mode { frequency, damping })
+            let angular_frequency = re.hypot(im);
+            let damping_ratio = -re / angular_frequency;
+            (im > 0.0).then_some(Mode {
+                angular_frequency,
+                damping_ratio,
+            })
         };
         let mut modes: Vec<Mode> = self.eigenvalues.iter().filter_map(mode).collect();
-        modes.sort_by(|x, y| x.frequency.total_cmp(&y.frequency));
+        modes.sort_by(|x, y| x.angular_frequency.total_cmp(&y.angular_frequency));
         modes
     }
 }
 
 fn stability(eigenvalues: &[[f64; 2]]) -> Stability {
     let sizes = eigenvalues.iter().map(|[re, im]| re.hypot(*im));
-    let none = UNDAMPED * sizes.fold(0.0, f64::max);
+    let none = DAMPING_TOLERANCE * sizes.fold(0.0, f64::max);
     if eigenvalues.iter().any(|[re, _]| *re > none) {
         Stability::Unstable
     } else if eigenvalues.iter().all(|[re, _]| *re < -none) {
@@ -112,33 +115,36 @@ pub fn equilibria(
     machine: &Machine,
     [from, to]: [f64; 2],
 ) -> Result<Vec<Equilibrium>, DynamicsError> {
-    let mut rest = Rest::new(machine)?;
+    let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
         return Err(DynamicsError::NoEquilibrium {
             what: "only the equilibria of one freedom can be found over an interval",
         });
     }
-    let mut seen = Vec::with_capacity(STEPS + 1);
-    for k in 0..=STEPS {
-        let q = from + (to - from) * k as f64 / STEPS as f64;
-        seen.push((q, rest.acceleration(q)?, rest.slope()?));
+    let mut samples = Vec::with_capacity(SEARCH_STEPS + 1);
+    for k in 0..=SEARCH_STEPS {
+        let q = from + (to - from) * k as f64 / SEARCH_STEPS as f64;
+        samples.push((q, problem.acceleration(q)?, problem.acceleration_slope()?));
     }
-    let size = seen.iter().fold(0.0_f64, |size, s| size.max(s.1.abs()));
+    let size = samples.iter().fold(0.0_f64, |size, s| size.max(s.1.abs()));
     if size == 0.0 {
         return Err(DynamicsError::NoEquilibrium {
             what: "every position is one",
         });
     }
-    let mut zeros = rest.zeros(&seen, size)?;
-    let turns = (to - from) / TAU;
-    let ends = [zeros.first(), zeros.last()] == [Some(&from), Some(&to)];
-    if ends && turns == turns.round() && machine.model().plan().range().period().is_some() {
+    let mut zeros = problem.zeros(&samples, size)?;
+    let revolutions = (to - from) / TAU;
+    let at_both_ends = [zeros.first(), zeros.last()] == [Some(&from), Some(&to)];
+    if at_both_ends
+        && revolutions == revolutions.round()
+        && machine.model().plan().range().period().is_some()
+    {
         zeros.pop();
     }
     let mut found = Vec::with_capacity(zeros.len());
     for q in zeros {
-        rest.acceleration(q)?;
-        found.push(Equilibrium::new(machine, rest.y.clone())?);
+        problem.acceleration(q)?;
+        found.push(Equilibrium::new(machine, problem.y.clone())?);
     }
     Ok(found)
 }
@@ -148,24 +154,27 @@ pub fn equilibria(
 ///
 /// # Errors
 /// As of [`equilibria`].
-pub fn at_rest(machine: &Machine, coordinates: &[f64]) -> Result<Vec<[f64; 2]>, DynamicsError> {
-    let mut rest = Rest::new(machine)?;
+pub fn static_force_and_potential(
+    machine: &Machine,
+    coordinates: &[f64],
+) -> Result<Vec<[f64; 2]>, DynamicsError> {
+    let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
         return Err(DynamicsError::NoEquilibrium {
             what: "only one freedom has a single force over its coordinate",
         });
     }
-    let mut work = machine.work();
+    let mut workspace = machine.workspace();
     let mut found = Vec::with_capacity(coordinates.len());
     for &q in coordinates {
-        let acceleration = rest.acceleration(q)?;
-        let mut moving = rest.y.clone();
-        machine.evaluate(0.0, &moving, &mut work)?;
-        let [still, potential] = machine.energy(&work);
-        moving[1] = 1.0;
-        machine.evaluate(0.0, &moving, &mut work)?;
+        let acceleration = problem.acceleration(q)?;
+        let mut state = problem.y.clone();
+        machine.evaluate(0.0, &state, &mut workspace)?;
+        let [kinetic_at_rest, potential] = machine.energy(&workspace);
+        state[1] = 1.0;
+        machine.evaluate(0.0, &state, &mut workspace)?;
         // Led coordinates stand still here, so that all kinetic energy is that of the free one.
-        let inertia = 2.0 * (machine.energy(&work)[0] - still);
+        let inertia = 2.0 * (machine.energy(&workspace)[0] - kinetic_at_rest);
         found.push([inertia * acceleration, potential]);
     }
     Ok(found)
@@ -176,68 +185,68 @@ pub fn at_rest(machine: &Machine, coordinates: &[f64]) -> Result<Vec<[f64; 2]>, 
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`] where it finds none; and what stands in the way of an evaluation.
 pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium, DynamicsError> {
-    let mut rest = Rest::new(machine)?;
-    rest.y.copy_from_slice(y);
-    rest.still();
+    let mut problem = EquilibriumProblem::new(machine)?;
+    problem.y.copy_from_slice(y);
+    problem.set_at_rest();
     let n = machine.free().len();
     // Coordinates and drives' states, against the rates of speeds and of drives' states.
-    let columns: Vec<usize> = (0..n).chain(2 * n..machine.first_work()).collect();
-    let rows: Vec<usize> = (n..machine.first_work()).collect();
-    rest.solve(&rows, &columns)?;
-    Equilibrium::new(machine, rest.y)
+    let columns: Vec<usize> = (0..n).chain(2 * n..machine.work_offset()).collect();
+    let rows: Vec<usize> = (n..machine.work_offset()).collect();
+    problem.solve(&rows, &columns)?;
+    Equilibrium::new(machine, problem.y)
 }
 
 /// A machine at rest.
-struct Rest<'m> {
+struct EquilibriumProblem<'m> {
     machine: &'m Machine,
-    moving: Option<Moving<'m>>,
+    ode: Option<MachineOde<'m>>,
     y: Vec<f64>,
-    rates: Vec<f64>,
+    rhs: Vec<f64>,
     jacobian: Vec<f64>,
 }
 
-impl<'m> Rest<'m> {
+impl<'m> EquilibriumProblem<'m> {
     fn new(machine: &'m Machine) -> Result<Self, DynamicsError> {
-        if machine.follows_time() {
+        if machine.depends_on_time() {
             return Err(DynamicsError::NoEquilibrium {
                 what: "a load, drive or prescribed motion changes with time",
             });
         }
-        let n = machine.states();
+        let n = machine.state_count();
         Ok(Self {
             machine,
-            moving: None,
+            ode: None,
             y: vec![0.0; n],
-            rates: vec![0.0; n],
+            rhs: vec![0.0; n],
             jacobian: vec![0.0; n * n],
         })
     }
 
-    fn still(&mut self) {
+    fn set_at_rest(&mut self) {
         let n = self.machine.free().len();
         self.y[n..2 * n].fill(0.0);
-        self.y[self.machine.first_work()..].fill(0.0);
+        self.y[self.machine.work_offset()..].fill(0.0);
     }
 
-    fn moving(&mut self) -> Result<(), DynamicsError> {
-        if self.moving.is_none() {
-            self.moving = Some(Moving::new(self.machine, 0.0, &self.y)?);
+    fn ode(&mut self) -> Result<(), DynamicsError> {
+        if self.ode.is_none() {
+            self.ode = Some(MachineOde::new(self.machine, 0.0, &self.y)?);
         }
         Ok(())
     }
 
-    fn rates(&mut self) -> Result<(), DynamicsError> {
-        self.moving()?;
-        match &mut self.moving {
-            Some(moving) => moving.rates(0.0, &self.y, &mut self.rates),
+    fn rhs(&mut self) -> Result<(), DynamicsError> {
+        self.ode()?;
+        match &mut self.ode {
+            Some(ode) => ode.rhs(0.0, &self.y, &mut self.rhs),
             None => Ok(()),
         }
     }
 
-    fn differentiate(&mut self) -> Result<(), DynamicsError> {
-        self.moving()?;
-        match &mut self.moving {
-            Some(moving) => moving.jacobian(0.0, &self.y, &mut self.jacobian),
+    fn evaluate_jacobian(&mut self) -> Result<(), DynamicsError> {
+        self.ode()?;
+        match &mut self.ode {
+            Some(ode) => ode.jacobian(0.0, &self.y, &mut self.jacobian),
             None => Ok(()),
         }
     }
@@ -245,49 +254,52 @@ impl<'m> Rest<'m> {
     /// q̈ at `q`, with the drives settled there.
     fn acceleration(&mut self, q: f64) -> Result<f64, DynamicsError> {
         self.y[0] = q;
-        let memory: Vec<usize> = (2..self.machine.first_work()).collect();
-        if memory.is_empty() {
-            self.rates()?;
+        let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
+        if drive_states.is_empty() {
+            self.rhs()?;
         } else {
-            self.solve(&memory, &memory)?;
+            self.solve(&drive_states, &drive_states)?;
         }
-        Ok(self.rates[1])
+        Ok(self.rhs[1])
     }
 
     /// dq̈/dq at the last position, where the drives stay settled.
-    fn slope(&mut self) -> Result<f64, DynamicsError> {
-        self.differentiate()?;
-        let n = self.machine.states();
-        let memory: Vec<usize> = (2..self.machine.first_work()).collect();
-        let mut answer: Vec<f64> = memory.iter().map(|&i| -self.jacobian[i * n]).collect();
-        self.divide(&memory, &memory, &mut answer)?;
-        let through = memory.iter().zip(&answer);
+    fn acceleration_slope(&mut self) -> Result<f64, DynamicsError> {
+        self.evaluate_jacobian()?;
+        let n = self.machine.state_count();
+        let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
+        let mut response: Vec<f64> = drive_states
+            .iter()
+            .map(|&i| -self.jacobian[i * n])
+            .collect();
+        self.solve_block(&drive_states, &drive_states, &mut response)?;
+        let through = drive_states.iter().zip(&response);
         let more: f64 = through.map(|(&j, dm)| self.jacobian[n + j] * dm).sum();
         Ok(self.jacobian[n] + more)
     }
 
     /// The zeros of q̈ between (q, q̈, dq̈/dq) at many q; `size` is the largest q̈.
-    fn zeros(&mut self, seen: &[(f64, f64, f64)], size: f64) -> Result<Vec<f64>, DynamicsError> {
+    fn zeros(&mut self, samples: &[(f64, f64, f64)], size: f64) -> Result<Vec<f64>, DynamicsError> {
         let mut zeros = Vec::new();
-        zeros.extend((seen[0].1 == 0.0).then_some(seen[0].0));
-        for pair in seen.windows(2) {
+        zeros.extend((samples[0].1 == 0.0).then_some(samples[0].0));
+        for pair in samples.windows(2) {
             let [before, now] = [pair[0], pair[1]];
             if now.1 == 0.0 {
                 zeros.push(now.0);
             } else if before.1 * now.1 < 0.0 {
-                zeros.extend(root::zero(|q| self.acceleration(q), before.0, now.0)?);
+                zeros.extend(root::find(|q| self.acceleration(q), before.0, now.0)?);
             } else if before.1 * before.2 < 0.0 && now.1 * now.2 > 0.0 {
                 // It comes nearer to zero, and goes away from it again.
-                let slope = |q: f64| self.acceleration(q).and_then(|_| self.slope());
-                let Some(nearest) = root::zero(slope, before.0, now.0)? else {
+                let slope = |q: f64| self.acceleration(q).and_then(|_| self.acceleration_slope());
+                let Some(nearest) = root::find(slope, before.0, now.0)? else {
                     continue;
                 };
-                let least = self.acceleration(nearest)?;
-                if least.abs() <= ROUNDING * size {
+                let extremum = self.acceleration(nearest)?;
+                if extremum.abs() <= FORCE_TOLERANCE * size {
                     zeros.push(nearest);
-                } else if least * now.1 < 0.0 {
-                    zeros.extend(root::zero(|q| self.acceleration(q), before.0, nearest)?);
-                    zeros.extend(root::zero(|q| self.acceleration(q), nearest, now.0)?);
+                } else if extremum * now.1 < 0.0 {
+                    zeros.extend(root::find(|q| self.acceleration(q), before.0, nearest)?);
+                    zeros.extend(root::find(|q| self.acceleration(q), nearest, now.0)?);
                 }
             }
         }
@@ -295,24 +307,24 @@ impl<'m> Rest<'m> {
     }
 
     /// Solves with a block of the Jacobian in place.
-    fn divide(
+    fn solve_block(
         &self,
         rows: &[usize],
         columns: &[usize],
         b: &mut [f64],
     ) -> Result<(), DynamicsError> {
-        let n = self.machine.states();
+        let n = self.machine.state_count();
         let entry = |&i: &usize| columns.iter().map(move |&j| self.jacobian[i * n + j]);
         let mut block: Vec<f64> = rows.iter().flat_map(entry).collect();
         let mut pivots = vec![0; rows.len()];
-        let factored = small::factor(&mut block, &mut pivots);
-        let regular = factored.sign != 0.0 && factored.measure > SINGULAR;
+        let factored = lu::factor(&mut block, &mut pivots);
+        let regular = factored.determinant_sign != 0.0 && factored.pivot_ratio > PIVOT_TOLERANCE;
         if !(rows.is_empty() || regular) {
             return Err(DynamicsError::NoEquilibrium {
                 what: "the linear equations for it have no single solution, as with a drive that integrates",
             });
         }
-        small::solve(&block, &pivots, b);
+        lu::solve(&block, &pivots, b);
         Ok(())
     }
 
@@ -323,26 +335,26 @@ impl<'m> Rest<'m> {
             squares.sum::<f64>().sqrt()
         };
         let n = self.machine.free().len();
-        self.rates()?;
-        let mut left = size(&self.rates);
-        for _ in 0..MOST_STEPS {
-            self.differentiate()?;
-            let mut step: Vec<f64> = rows.iter().map(|&i| -self.rates[i]).collect();
-            self.divide(rows, columns, &mut step)?;
+        self.rhs()?;
+        let mut residual = size(&self.rhs);
+        for _ in 0..MAX_NEWTON_STEPS {
+            self.evaluate_jacobian()?;
+            let mut step: Vec<f64> = rows.iter().map(|&i| -self.rhs[i]).collect();
+            self.solve_block(rows, columns, &mut step)?;
             let from = self.y.clone();
             let largest = |of: &dyn Fn(usize, f64) -> f64| {
                 let both = columns.iter().zip(&step);
-                both.fold(0.0_f64, |most, (&j, &step)| most.max(of(j, step)))
+                both.fold(0.0_f64, |max, (&j, &step)| max.max(of(j, step)))
             };
-            let relative = largest(&|j, step| step.abs() / from[j].abs().max(1.0));
+            let relative_step = largest(&|j, step| step.abs() / from[j].abs().max(1.0));
             let moved = largest(&|j, step| if j < n { step.abs() } else { 0.0 });
-            let mut factor = (MOST_MOVED / moved).min(1.0);
+            let mut factor = (MAX_COORDINATE_STEP / moved).min(1.0);
             let mut nearer = false;
-            for _ in 0..MOST_HALVINGS {
+            for _ in 0..MAX_HALVINGS {
                 for (&j, step) in columns.iter().zip(&step) {
                     self.y[j] = from[j] + factor * step;
                 }
-                nearer = self.rates().is_ok() && size(&self.rates) < left;
+                nearer = self.rhs().is_ok() && size(&self.rhs) < residual;
                 if nearer {
                     break;
                 }
@@ -351,14 +363,14 @@ impl<'m> Rest<'m> {
             if !nearer {
                 // Rounding if the whole step was small, else a dead end.
                 self.y = from;
-                self.rates()?;
-                if relative <= NEAR {
+                self.rhs()?;
+                if relative_step <= STEP_TOLERANCE {
                     return Ok(());
                 }
                 break;
             }
-            left = size(&self.rates);
-            if relative <= 4.0 * f64::EPSILON {
+            residual = size(&self.rhs);
+            if relative_step <= 4.0 * f64::EPSILON {
                 return Ok(());
             }
         }

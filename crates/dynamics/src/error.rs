@@ -1,28 +1,35 @@
-//! What can go wrong when a mechanism moves.
+//! The errors of motions.
 
-use dwell_geometry::PlaceError;
+use dwell_geometry::PositionError;
 use dwell_kinetostatics::KinetostaticsError;
+use dwell_numerics::panels::NotResolved;
 use thiserror::Error;
 
 impl From<KinetostaticsError> for DynamicsError {
     fn from(error: KinetostaticsError) -> Self {
         match error {
-            KinetostaticsError::Place(place) => Self::Place(place),
+            KinetostaticsError::Position(position) => Self::Position(position),
             other => Self::Load(other),
         }
+    }
+}
+
+impl From<NotResolved> for DynamicsError {
+    fn from(NotResolved { points, tail }: NotResolved) -> Self {
+        Self::NotResolved { points, tail }
     }
 }
 
 /// A motion that cannot be computed.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DynamicsError {
-    /// A position on the way cannot be reached.
+    /// A position of the motion cannot be reached.
     #[error(transparent)]
-    Place(#[from] PlaceError),
-    /// A load has no direction or magnitude on the way, or friction jams the mechanism.
+    Position(#[from] PositionError),
+    /// A load has no direction or magnitude at some position, or friction jams the mechanism.
     #[error(transparent)]
     Load(KinetostaticsError),
-    /// The generalised inertia is zero (or no number): no finite acceleration answers a force.
+    /// The generalised inertia is not positive: a force has no finite acceleration.
     #[error("the generalised inertia m is {m} kg m² at q = {q} rad: nothing resists there")]
     NoInertia {
         /// The coordinate, rad.
@@ -30,24 +37,24 @@ pub enum DynamicsError {
         /// The inertia there, kg m².
         m: f64,
     },
-    /// The motion reaches a limit position of its actuator, where it passes to another branch.
+    /// The motion reaches a limit position of its actuator, where it passes to another assembly branch.
     #[error(
         "the motion reaches a limit position near q = {q} rad at t = {t} s, and passes to another assembly branch there"
     )]
-    Limit {
+    LimitPosition {
         /// The time of the last state on this branch, s.
         t: f64,
         /// Its coordinate, rad.
         q: f64,
     },
-    /// A tolerance, time or speed that is not usable.
+    /// An option, such as a tolerance, that cannot be used.
     #[error("{what} must be a {must}, not {value}")]
     BadOption {
         /// Which option.
         what: &'static str,
-        /// What it must be.
+        /// What its value must be.
         must: &'static str,
-        /// What it is.
+        /// Its value.
         value: f64,
     },
     /// The integrator produced a state that is not finite.
@@ -56,73 +63,76 @@ pub enum DynamicsError {
         /// The last finite time, s.
         t: f64,
     },
-    /// The step budget is used up.
-    #[error("the budget of {steps} steps is used up at t = {t} s")]
-    Budget {
+    /// The number of steps allowed is used up.
+    #[error("the {max_steps} steps allowed are used up at t = {t} s")]
+    MaxStepsReached {
         /// The time reached, s.
         t: f64,
-        /// The budget.
-        steps: usize,
+        /// The number of steps allowed.
+        max_steps: usize,
     },
-    /// The integrator's steps became too small to go on.
+    /// The integrator's steps became too small to continue.
     #[error("the integrator's steps become too small at t = {t:e} s")]
-    SmallStep {
+    StepTooSmall {
         /// The time reached, s.
         t: f64,
     },
-    /// The motion is shorter than what the integrator can tell from nothing.
-    #[error("the motion is too short to compute: its end is its start, to rounding")]
-    TooShort,
+    /// The motion is too short: its end equals its start to rounding.
+    #[error("the motion is too short to compute: its end equals its start to rounding")]
+    DurationTooShort,
     /// The kinetic energy underflows or overflows.
     #[error(
-        "the kinetic energy is {energy:e} J at {q_dot:e} rad/s: too far from 1 to compute with"
+        "the kinetic energy is {energy:e} J at {q_dot:e} rad/s: too small or too large to compute with"
     )]
-    BadEnergy {
+    EnergyOutOfRange {
         /// The speed at the start, rad/s.
         q_dot: f64,
         /// The energy there, J.
         energy: f64,
     },
-    /// The integrator gave up.
+    /// The integrator failed for another reason.
     #[error("the integrator stopped at t = {t:e} s: {reason}")]
     Solver {
         /// The time reached, s.
         t: f64,
-        /// Its own words.
+        /// Its own message.
         reason: String,
     },
-    /// A free motion that starts at rest has no period of turning.
+    /// A free motion that starts at rest stays at rest.
     #[error("the mechanism starts at rest, and nothing moves it")]
     AtRest,
-    /// The coordinate does not turn fully, so there is no period of turning.
-    #[error("the coordinate turns only from {from} to {to} rad")]
-    NoFullTurn {
+    /// The range of the coordinate is limited, so that the motion has no period of rotation.
+    #[error("the coordinate is limited to the range from {from} to {to} rad")]
+    NoFullRevolution {
         /// Lower limit, rad.
         from: f64,
         /// Upper limit, rad.
         to: f64,
     },
-    /// Something takes or gives energy, or there is not one freedom: energy alone does not tell the motion.
+    /// The motion does not follow from energy alone: something does work that no potential accounts for, or there is
+    /// not one degree of freedom.
     #[error("the motion does not follow from its energy: {what}")]
     NotConservative {
         /// What it is.
         what: &'static str,
     },
-    /// The motion has just the energy of an unstable equilibrium, which it nears for ever.
+    /// The motion has exactly the energy of an unstable equilibrium, which it approaches for ever.
     #[error(
-        "the motion has just the energy to creep up to the unstable equilibrium at q = {q}: it has no period"
+        "the motion approaches the unstable equilibrium at q = {q} asymptotically, with exactly its energy: it has no period"
     )]
-    Creeps {
+    AsymptoticMotion {
         /// The equilibrium, rad or m.
         q: f64,
     },
-    /// The motion neither turns back nor repeats itself.
-    #[error("the motion goes on past q = {q} and neither turns back nor repeats itself")]
-    GoesOn {
+    /// As far as the motion was followed it has neither a turning point nor a period.
+    #[error(
+        "the motion continues beyond q = {q} and has neither a turning point nor a period up to there"
+    )]
+    Undecided {
         /// How far it was followed, rad or m.
         q: f64,
     },
-    /// There is no equilibrium, or no single one, where it was looked for.
+    /// There is no isolated equilibrium where one was looked for.
     #[error("no equilibrium: {what}")]
     NoEquilibrium {
         /// Why not.
@@ -137,20 +147,29 @@ pub enum DynamicsError {
     /// The eigenvalues of a linearisation could not be found.
     #[error("the eigenvalues of the linearised motion cannot be found")]
     NoEigenvalues,
-    /// A motion that should turn comes to rest.
-    #[error("the mechanism comes to rest at q = {q} rad and does not complete the turn")]
-    Stalls {
+    /// A motion that should complete a revolution comes to rest.
+    #[error("the mechanism comes to rest at q = {q} rad and does not complete the revolution")]
+    ComesToRest {
         /// Where, rad.
         q: f64,
     },
-    /// The quadrature over a period did not converge.
+    /// The quadrature over a period does not converge.
     #[error(
-        "{points} points do not resolve the motion over a period (left: {left:.1e} of the period)"
+        "{points} points do not resolve the motion over a period (left: {tail:.1e} of the period)"
     )]
     NotResolved {
         /// Number of points tried last.
         points: usize,
         /// Relative change of the last doubling.
-        left: f64,
+        tail: f64,
     },
+}
+
+/// The inertia `m` (kg m² or kg) at `q`, if it is positive and finite.
+pub(crate) fn positive_inertia(m: f64, q: f64) -> Result<f64, DynamicsError> {
+    if m > 0.0 && m.is_finite() {
+        Ok(m)
+    } else {
+        Err(DynamicsError::NoInertia { q, m })
+    }
 }

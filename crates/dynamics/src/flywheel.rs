@@ -1,4 +1,4 @@
-//! The flywheel that a machine needs to run evenly. The inverse of the coefficient of fluctuation is nearly
+//! The flywheel that a machine needs to keep its speed fluctuation within a limit. The inverse of the coefficient of fluctuation is nearly
 //! a straight line over the inertia, δ ≈ ΔE / (J ω²), so that few cycles are solved for.
 
 use crate::cycle::{Cycle, steady_cycle};
@@ -7,8 +7,8 @@ use crate::machine::Machine;
 use crate::options::Options;
 
 /// Trials for the inertia, and how near the fluctuation must come.
-const MOST_TRIALS: usize = 40;
-const NEAR: f64 = 1e-9;
+const MAX_TRIALS: usize = 40;
+const FLUCTUATION_TOLERANCE: f64 = 1e-9;
 
 impl Machine {
     /// The same machine with a flywheel (kg m² or kg) along a free coordinate, in place of any it had there.
@@ -37,7 +37,7 @@ pub struct Flywheel {
 ///
 /// # Errors
 /// As [`steady_cycle`].
-pub fn flywheel(
+pub fn size_flywheel(
     machine: &Machine,
     guess: &[f64],
     wanted: f64,
@@ -50,12 +50,12 @@ pub fn flywheel(
             value: wanted,
         });
     }
-    let own = machine.flywheel(0);
+    let initial_inertia = machine.flywheel(0);
     let mut guess = guess.to_vec();
     let mut with = |inertia: f64| -> Result<Cycle, DynamicsError> {
-        let heavier = machine.clone().with_flywheel(0, own + inertia);
+        let heavier = machine.clone().with_flywheel(0, initial_inertia + inertia);
         let cycle = steady_cycle(&heavier, &guess, options)?;
-        guess.clone_from(&cycle.start);
+        guess.clone_from(&cycle.initial_state);
         Ok(cycle)
     };
     let cycle = with(0.0)?;
@@ -65,22 +65,22 @@ pub fn flywheel(
             cycle,
         });
     }
-    let off = |cycle: &Cycle| wanted / cycle.fluctuation - 1.0;
-    let mut before = (0.0, off(&cycle));
-    let mut work = machine.work();
-    machine.evaluate(0.0, &cycle.start, &mut work)?;
-    let [kinetic, _] = machine.energy(&work);
-    let mean = 2.0 * kinetic / cycle.start[1].powi(2);
+    let difference = |cycle: &Cycle| wanted / cycle.fluctuation - 1.0;
+    let mut before = (0.0, difference(&cycle));
+    let mut workspace = machine.workspace();
+    machine.evaluate(0.0, &cycle.initial_state, &mut workspace)?;
+    let [kinetic, _] = machine.energy(&workspace);
+    let mean = 2.0 * kinetic / cycle.initial_state[1].powi(2);
     let mut inertia = mean * (cycle.fluctuation / wanted - 1.0);
-    for _ in 0..MOST_TRIALS {
+    for _ in 0..MAX_TRIALS {
         let cycle = with(inertia)?;
-        let now = (inertia, off(&cycle));
-        if now.1.abs() <= NEAR {
+        let now = (inertia, difference(&cycle));
+        if now.1.abs() <= FLUCTUATION_TOLERANCE {
             return Ok(Flywheel { inertia, cycle });
         }
         let slope = (now.1 - before.1) / (now.0 - before.0);
         let next = now.0 - now.1 / slope;
-        // Where the line misleads, half as much or twice.
+        // Limits a step of the secant.
         inertia = if next.is_finite() {
             next.clamp(0.5 * now.0, 4.0 * now.0)
         } else {

@@ -1,48 +1,104 @@
-//! The motion of machines: integration, events, energy, period, steady cycles, equilibria, linearisation.
+//! The motion of machines: equations of motion of mechanisms under loads and drives, their integration with events,
+//! conservative motion by quadrature, steady cycles, equilibria and linearisation.
+//!
+//! A pendulum: its small oscillation has the period 2π √(I/(m g r)), and a solver finds it as an event.
+//!
+//! ```
+//! use dwell_dynamics::{CoordinateMode, Event, EventKind, Machine, Method, OdeState, Options, solve};
+//! use dwell_geometry::body_states::CoordinateFunction;
+//! use dwell_geometry::{
+//!     Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2,
+//! };
+//! use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass, Model};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let bodies = [BodyId(0), BodyId(1)];
+//! let mechanism = Mechanism {
+//!     bodies: ["ground", "bob"].map(|name| Body { name: name.to_owned() }).to_vec(),
+//!     joints: vec![Joint {
+//!         name: "pivot".to_owned(),
+//!         bodies,
+//!         points: [Vec2::ZERO; 2],
+//!         kind: JointKind::Revolute,
+//!     }],
+//!     actuators: vec![Actuator { name: "q".to_owned(), bodies, kind: ActuatorKind::Angle }],
+//!     ..Mechanism::default()
+//! };
+//! // 2 kg at 0.5 m from the pivot; q is the angle from the horizontal, and the start 1e-4 rad from hanging.
+//! let bob = Mass { mass: 2.0, center: vec2(0.5, 0.0), inertia: 0.0 };
+//! let weight = Load {
+//!     name: "gravity".to_owned(),
+//!     kind: LoadKind::Gravity { direction: vec2(0.0, -1.0) },
+//!     magnitude: Magnitude::Constant(9.81),
+//! };
+//! let q = 1e-4 - std::f64::consts::FRAC_PI_2;
+//! let assembly =
+//!     AssemblyConfiguration { q: vec![q], initial_guess: vec![None; 2], ..AssemblyConfiguration::default() };
+//! let model = Model::new(&mechanism, &[Mass::default(), bob], &assembly, &[])?;
+//! let machine = Machine::new(model, &[weight], vec![CoordinateMode::Free], &[])?;
+//!
+//! let start = OdeState { t: 0.0, y: machine.initial_state(&[q], &[0.0]) };
+//! let reversal = Event { kind: EventKind::Reversal(CoordinateFunction::Angle(bodies)), terminal: None };
+//! let options = Options::new(Method::Dop853, 1e-12);
+//! let solution = solve(&machine, machine.model(), &start, 5.0, &options, &[reversal])?.completed()?;
+//! let times: Vec<f64> = solution.event_occurrences.iter().map(|o| o.state.t).collect();
+//! let period = times[2] - times[0];
+//! assert!((period / (std::f64::consts::TAU * (0.5_f64 / 9.81).sqrt()) - 1.0).abs() < 1e-6);
+//! # Ok(())
+//! # }
+//! ```
 
-mod along;
 pub mod atlas;
-mod bridge;
+mod change_point_fit;
 mod conservative;
 pub mod cycle;
-pub mod drive;
-pub mod driver;
-mod eighth;
-pub mod equation;
+mod dop853;
+mod drive;
 pub mod equilibrium;
 pub mod error;
-pub mod fate;
 pub mod flywheel;
-pub mod follow;
-mod fourier;
-pub mod free;
-pub mod linear;
+pub mod integrate;
+mod libration;
 pub mod machine;
-pub mod moving;
+pub mod machine_ode;
+pub mod motion_class;
+pub mod ode;
 pub mod options;
 pub mod orbit;
-mod panels;
-pub mod root;
-mod swing;
-pub mod system;
-pub mod tabled;
+pub mod reduced_ode;
+pub mod solve;
+pub mod state_space;
+pub mod tabulated;
+mod time_density;
 
-pub use atlas::{Atlas, AtlasError, Change, Chart, Journey, Leg, Site, Tracked, Why};
-pub use bridge::{Bridge, BridgeError};
-pub use cycle::{Cycle, run_up, steady_cycle};
-pub use drive::{Drive, DriveError, DriveKind, Motor, Regulator};
-pub use driver::{Dense, Ended, Next, Watch, integrate};
-pub use equation::Equation;
-pub use equilibrium::{Equilibrium, Mode, Stability, at_rest, equilibria, equilibrium_near};
+pub use atlas::{
+    Atlas, AtlasError, Chart, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,
+    MachineDescription, Segment,
+};
+pub use change_point_fit::{ChangePointFit, ChangePointFitError};
+pub use cycle::{Cycle, initial_transient, steady_cycle};
+pub use drive::DriveError;
+pub use equilibrium::{
+    Equilibrium, Mode, Stability, equilibria, equilibrium_near, static_force_and_potential,
+};
 pub use error::DynamicsError;
-pub use fate::{Fate, fate};
-pub use flywheel::{Flywheel, flywheel};
-pub use follow::{Event, Occurrence, Shown, Trace, Trigger, follow, follow_by, follow_orbit};
-pub use free::{Run, State, Until, simulate};
-pub use linear::{Linear, linearise};
-pub use machine::{Guidance, Machine, MachineError, MachineWork, Worker, all_loads};
-pub use moving::Moving;
+pub use flywheel::{Flywheel, size_flywheel};
+pub use integrate::integrate;
+pub use machine::{
+    CoordinateMode, Machine, MachineError, MachineWorkspace, NonconservativeSource,
+    loads_with_drives,
+};
+pub use machine_ode::MachineOde;
+pub use motion_class::{MotionClass, motion_class};
+pub use ode::{
+    DenseOutput, OdeState, OdeSystem, ReducedState, StepControl, StepObserver, Termination,
+};
 pub use options::{Method, Options, Statistics};
 pub use orbit::Orbit;
-pub use system::{Point, System};
-pub use tabled::{NotTabled, OnTable, Tabled};
+pub use reduced_ode::{ReducedCoordinate, ReducedOde, ReducedOutputs, solve_reduced};
+pub use solve::{
+    Event, EventKind, EventOccurrence, Observed, ObservedMachine, ObservedValue, Solution, solve,
+    solve_orbit, solve_system,
+};
+pub use state_space::{StateSpace, linearise};
+pub use tabulated::{TabulatedMachine, TabulatedMachineOde, TabulationError};

@@ -1,8 +1,8 @@
-//! How to integrate, and what it took.
+//! Options of an integration, and the work that it took.
 
 use crate::error::DynamicsError;
 
-/// How to integrate.
+/// An integration method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     /// Implicit, variable order 1 to 5 (backward differentiation).
@@ -27,7 +27,7 @@ impl Method {
         Self::Dop853,
     ];
 
-    /// The name used in commands and tables.
+    /// Its name in commands and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Bdf => "BDF",
@@ -38,8 +38,8 @@ impl Method {
         }
     }
 
-    /// Whether it solves equations at each step.
-    pub fn implicit(self) -> bool {
+    /// Whether it solves equations for each step.
+    pub fn is_implicit(self) -> bool {
         !matches!(self, Self::Tsit45 | Self::Dop853)
     }
 }
@@ -50,15 +50,15 @@ pub struct Options {
     /// The method.
     pub method: Method,
     /// Relative tolerance on every state.
-    pub relative: f64,
-    /// Absolute tolerance, rad or m and rad/s or m/s; on other states in proportion to their weight.
-    pub absolute: f64,
-    /// Most steps to be taken.
-    pub budget: usize,
-    /// Longest step, s; none for as long as the tolerance lets it be.
-    pub longest: Option<f64>,
-    /// Distance of equally spaced samples by dense output, s; none for no samples.
-    pub every: Option<f64>,
+    pub rtol: f64,
+    /// Absolute tolerance, rad or m and rad/s or m/s; on other states times their error weight.
+    pub atol: f64,
+    /// Highest number of steps.
+    pub max_steps: usize,
+    /// Longest step, s; none: as long as the tolerance allows.
+    pub max_step: Option<f64>,
+    /// Time between equally spaced samples by dense output, s; none: no samples.
+    pub sample_interval: Option<f64>,
 }
 
 impl Options {
@@ -66,30 +66,30 @@ impl Options {
     pub fn new(method: Method, tolerance: f64) -> Self {
         Self {
             method,
-            relative: tolerance,
-            absolute: tolerance,
-            budget: 2_000_000,
-            longest: None,
-            every: None,
+            rtol: tolerance,
+            atol: tolerance,
+            max_steps: 2_000_000,
+            max_step: None,
+            sample_interval: None,
         }
     }
 
-    /// Options that the integrator would answer with an endless loop are refused here.
+    /// Refuses options that would make the integrator loop endlessly.
     pub(crate) fn check(&self) -> Result<(), DynamicsError> {
         let usable = |value: f64| value.is_finite() && value > 0.0;
         let refuse = |what, must, value| Err(DynamicsError::BadOption { what, must, value });
-        if !(self.relative.is_finite() && self.relative >= 0.0) {
-            return refuse("the relative tolerance", "number from 0", self.relative);
+        if !(self.rtol.is_finite() && self.rtol >= 0.0) {
+            return refuse("the relative tolerance", "number from 0", self.rtol);
         }
-        if !usable(self.absolute) {
-            return refuse("the absolute tolerance", "positive number", self.absolute);
+        if !usable(self.atol) {
+            return refuse("the absolute tolerance", "positive number", self.atol);
         }
-        match (self.longest, self.every) {
-            (Some(longest), _) if !usable(longest) => {
-                refuse("the longest step", "positive time", longest)
+        match (self.max_step, self.sample_interval) {
+            (Some(max_step), _) if !usable(max_step) => {
+                refuse("the longest step", "positive time", max_step)
             }
-            (_, Some(every)) if !usable(every) => {
-                refuse("the distance of samples", "positive time", every)
+            (_, Some(sample_interval)) if !usable(sample_interval) => {
+                refuse("the distance of samples", "positive time", sample_interval)
             }
             _ => Ok(()),
         }
@@ -102,9 +102,9 @@ pub struct Statistics {
     /// Steps taken.
     pub steps: usize,
     /// Steps rejected for their error.
-    pub rejected: usize,
-    /// Of those taken by the explicit method of order 8, those that only stability keeps from being longer.
-    pub stiff: usize,
+    pub rejected_steps: usize,
+    /// Of the steps taken by DOP853, those whose length only stability limits.
+    pub stiff_steps: usize,
     /// Evaluations of the equation of motion.
     pub evaluations: usize,
     /// Evaluations of its Jacobian.

@@ -1,242 +1,252 @@
-//! The conservative motion of a mechanism of one freedom, by quadrature: no integrator.
+//! The conservative motion of a mechanism of one degree of freedom, by quadrature: no integrator.
 //!
 //! Its kinetic energy E_c(q) follows from its coordinate. Of a phase s that grows by 2π in a period,
 //!
 //! ```text
-//! turning    q = q₀ + P s/2π             dt/ds = (P/2π) √(m / 2E_c)        (1)
-//! swinging   q = (a + b)/2 − h cos s     dt/ds = √(m / 2g)                 (2)
+//! rotation   q = q₀ + P s/2π             dt/ds = (P/2π) √(m / 2E_c)        (1)
+//! libration  q = (a + b)/2 − h cos s     dt/ds = √(m / 2g)                 (2)
 //!            g = E_c / ((q − a)(b − q)),   h = (b − a)/2
 //! t(s) = c₀ s + Σ (c_k sin ks + s_k (1 − cos ks)) / k                     (3)
 //! T = ∮ dt/ds ds = 2π c₀                                                  (4)
 //! ```
 //!
-//! with P what everything repeats itself after, a and b the turning points, and c_k, s_k the Fourier
+//! with P the angle after which everything repeats itself, a and b the turning points, and c_k, s_k the Fourier
 //! coefficients of dt/ds. Both kinds of dt/ds are smooth and periodic, so that the trapezoid rule has all
-//! digits of (4) and (3) all of the time history. Where dt/ds is too sharp for equal steps, next to a summit
-//! or where next to nothing resists, it is summed by panels.
+//! digits of (4) and (3) all of the time history. Where dt/ds is too sharp for equally spaced points, next to a
+//! maximum of V or where the inertia is small, it is integrated on panels.
 
-use crate::conservative::{Conservative, Held, Loaded, Unloaded};
+use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, UnloadedSystem};
 use crate::error::DynamicsError;
-use crate::fate::{Fate, Flight};
-use crate::fourier::{MANY, Series, refine};
-use crate::free::State;
+use crate::libration::{Libration, phase_of};
 use crate::machine::Machine;
-use crate::panels::{Panels, Slowness};
-use crate::swing::Swing;
-use dwell_kinetostatics::Reduced;
+use crate::motion_class::{EnergyScan, MotionClass};
+use crate::ode::ReducedState;
+use crate::time_density::TimeDensity;
+use dwell_kinetostatics::ReducedModel;
+use dwell_numerics::fourier::{FourierSeries, SHARP_POINTS, refine_samples};
+use dwell_numerics::panels::Panels;
 use std::f64::consts::TAU;
 
 /// Steps of Newton's method, halvings among them, to a phase.
-const MOST_STEPS: usize = 100;
+const MAX_NEWTON_STEPS: usize = 100;
 
 /// A conservative motion that repeats itself, known at every time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Orbit {
-    start: State,
+    initial_state: ReducedState,
     /// Time of one period, s.
     pub period: f64,
     /// Kinetic and potential energy, J.
     pub energy: f64,
     /// The largest kinetic energy at the points of the rule, J.
-    pub kinetic: f64,
+    pub max_kinetic: f64,
     /// Points of the rule that resolved it.
     pub points: usize,
     /// The last Fourier coefficients as a part of the mean: what rounding leaves in a point.
-    pub rounding: f64,
-    /// Whether it turns or swings, and where.
-    pub fate: Fate,
-    way: Way,
+    pub tail: f64,
+    /// Whether it is a rotation or a libration, and where.
+    pub motion_class: MotionClass,
+    kind: OrbitKind,
     /// Phase of the start, and the time (s) from phase zero to it.
-    phase: f64,
-    lead: f64,
+    initial_phase: f64,
+    time_offset: f64,
     /// dt/ds, s/rad.
-    slowness: Slowness,
+    time_density: TimeDensity,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Way {
+enum OrbitKind {
     /// Growth of the coordinate in a period, rad.
-    Turning(f64),
+    Rotation(f64),
     /// The turning points.
-    Swinging([f64; 2]),
+    Libration([f64; 2]),
 }
 
 impl Orbit {
     /// The motion of a model without loads.
     ///
     /// # Errors
-    /// [`DynamicsError::NoFullTurn`], [`DynamicsError::AtRest`], [`DynamicsError::BadEnergy`],
+    /// [`DynamicsError::NoFullRevolution`], [`DynamicsError::AtRest`], [`DynamicsError::EnergyOutOfRange`],
     /// [`DynamicsError::NoInertia`], or [`DynamicsError::NotResolved`] when the inertia varies too
     /// sharply.
-    pub fn new<R: Reduced>(model: &R, start: State) -> Result<Self, DynamicsError> {
-        Self::within(model, start, 0.0)
+    pub fn new<R: ReducedModel>(model: &R, start: ReducedState) -> Result<Self, DynamicsError> {
+        Self::to_accuracy(model, start, 0.0)
     }
 
-    /// The same with a rule of only so many points that what it leaves is below this part of the mean: the time
-    /// then errs by about this part of a period.
+    /// The same to an accuracy: with the fewest points whose truncation error is below this part of the mean, so that
+    /// times err by about this part of a period.
     ///
     /// # Errors
     /// As [`Orbit::new`].
-    pub fn within<R: Reduced>(
+    pub fn to_accuracy<R: ReducedModel>(
         model: &R,
-        start: State,
+        start: ReducedState,
         accuracy: f64,
     ) -> Result<Self, DynamicsError> {
-        let work = model.work();
-        Self::of(&mut Unloaded { model, work }, start, accuracy)
+        let workspace = model.workspace();
+        Self::of_system(&mut UnloadedSystem { model, workspace }, start, accuracy)
     }
 
     /// The motion of a machine of one freedom whose loads all have a potential.
     ///
     /// # Errors
-    /// As [`Orbit::new`]; [`DynamicsError::NotConservative`], [`DynamicsError::Creeps`],
-    /// [`DynamicsError::GoesOn`].
-    pub fn loaded(machine: &Machine, start: State) -> Result<Self, DynamicsError> {
-        Self::of(&mut Loaded::new(machine)?, start, 0.0)
+    /// As [`Orbit::new`]; [`DynamicsError::NotConservative`], [`DynamicsError::AsymptoticMotion`],
+    /// [`DynamicsError::Undecided`].
+    pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self, DynamicsError> {
+        Self::of_system(&mut LoadedSystem::new(machine)?, start, 0.0)
     }
 
-    fn of(
-        field: &mut dyn Conservative,
-        start: State,
+    fn of_system(
+        system: &mut dyn ConservativeSystem,
+        start: ReducedState,
         accuracy: f64,
     ) -> Result<Self, DynamicsError> {
-        let range = field.range();
-        let (flight, fate) = Flight::new(&mut *field, start)?;
-        let (held, kinetic) = (flight.start, flight.kinetic);
-        match fate {
-            Fate::Turns { period, .. } => {
-                let along = period * start.q_dot.signum();
-                Self::turning(field, (start, held, kinetic), (along, fate), accuracy)
+        let range = system.range();
+        let (scan, class) = EnergyScan::new(&mut *system, start)?;
+        let (terms, kinetic) = (scan.initial_terms, scan.kinetic);
+        match class {
+            MotionClass::Rotation { period, .. } => {
+                let angle_per_period = period * start.q_dot.signum();
+                Self::rotation(
+                    system,
+                    (start, terms, kinetic),
+                    (angle_per_period, class),
+                    accuracy,
+                )
             }
-            Fate::Swings { between } => Self::swinging(field, start, (held, kinetic), between),
-            Fate::Creeps { to: q } => Err(DynamicsError::Creeps { q }),
-            Fate::Rests => Err(DynamicsError::AtRest),
-            Fate::GoesOn { to: q } => Err(DynamicsError::GoesOn { q }),
-            Fate::Ends { at } => {
+            MotionClass::Libration { turning_points } => {
+                Self::libration(system, start, (terms, kinetic), turning_points)
+            }
+            MotionClass::Asymptotic { to: q } => Err(DynamicsError::AsymptoticMotion { q }),
+            MotionClass::Equilibrium => Err(DynamicsError::AtRest),
+            MotionClass::Undecided { to: q } => Err(DynamicsError::Undecided { q }),
+            MotionClass::ReachesLimit { at } => {
                 let (from, to) = range.limits().unwrap_or((at, at));
-                Err(DynamicsError::NoFullTurn { from, to })
+                Err(DynamicsError::NoFullRevolution { from, to })
             }
         }
     }
 
-    fn turning(
-        field: &mut dyn Conservative,
-        (start, held, kinetic): (State, Held, f64),
-        (along, fate): (f64, Fate),
+    fn rotation(
+        system: &mut dyn ConservativeSystem,
+        (start, terms, kinetic): (ReducedState, EnergyTerms, f64),
+        (angle_per_period, class): (f64, MotionClass),
         accuracy: f64,
     ) -> Result<Self, DynamicsError> {
         // The same position without its whole turns, which would cost it digits.
-        let first = start.q % along;
-        let mut known: Vec<Held> = Vec::new();
+        let first = start.q % angle_per_period;
+        let mut samples: Vec<EnergyTerms> = Vec::new();
         loop {
-            known = refine(known, |part| field.held(first + along * part))?;
-            let mut values = Vec::with_capacity(known.len());
-            let mut most = 0.0_f64;
-            for at in &known {
-                let left = kinetic + (held.potential - at.potential);
-                most = most.max(left);
-                values.push(along.abs() / TAU * (at.m / (2.0 * left)).sqrt());
+            samples = refine_samples(samples, |part| {
+                system.energy_terms(first + angle_per_period * part)
+            })?;
+            let mut values = Vec::with_capacity(samples.len());
+            let mut max_kinetic = 0.0_f64;
+            for at in &samples {
+                let kinetic_left = kinetic + (terms.potential - at.potential);
+                max_kinetic = max_kinetic.max(kinetic_left);
+                values.push(angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left)).sqrt());
             }
-            let points = known.len();
+            let points = samples.len();
             let size = values.iter().sum::<f64>() / points as f64;
-            let series = Series::new(&values, size);
-            let (slowness, points) = if series.resolved || series.left < accuracy {
-                (Slowness::Even(series), points)
-            } else if points >= MANY {
-                let panels = Panels::new(|phase| {
-                    let at = field.held(first + along * (phase / TAU))?;
-                    let left = kinetic + (held.potential - at.potential);
-                    Ok(along.abs() / TAU * (at.m / (2.0 * left)).sqrt())
+            let series = FourierSeries::new(&values, size);
+            let (time_density, points) = if series.is_resolved || series.tail < accuracy {
+                (TimeDensity::Fourier(series), points)
+            } else if points >= SHARP_POINTS {
+                let panels = Panels::new::<DynamicsError>(|phase| {
+                    let at = system.energy_terms(first + angle_per_period * (phase / TAU))?;
+                    let kinetic_left = kinetic + (terms.potential - at.potential);
+                    Ok(angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left)).sqrt())
                 })?;
                 let taken = points + panels.points;
-                (Slowness::Sharp(panels), taken)
+                (TimeDensity::Piecewise(panels), taken)
             } else {
                 continue;
             };
             return Ok(Self {
-                start,
-                period: TAU * slowness.mean(),
-                energy: kinetic + held.potential,
-                kinetic: most,
+                initial_state: start,
+                period: TAU * time_density.mean(),
+                energy: kinetic + terms.potential,
+                max_kinetic,
                 points,
-                rounding: slowness.left(),
-                fate,
-                way: Way::Turning(along),
-                phase: 0.0,
-                lead: 0.0,
-                slowness,
+                tail: time_density.tail(),
+                motion_class: class,
+                kind: OrbitKind::Rotation(angle_per_period),
+                initial_phase: 0.0,
+                time_offset: 0.0,
+                time_density,
             });
         }
     }
 
-    fn swinging(
-        field: &mut dyn Conservative,
-        start: State,
-        (held, kinetic): (Held, f64),
-        between: [f64; 2],
+    fn libration(
+        system: &mut dyn ConservativeSystem,
+        start: ReducedState,
+        (terms, kinetic): (EnergyTerms, f64),
+        turning_points: [f64; 2],
     ) -> Result<Self, DynamicsError> {
-        let swing = Swing::new(field, start.q, kinetic, between)?;
-        let up = swing.phase(start.q);
-        let phase = if start.q_dot < 0.0 { TAU - up } else { up };
-        let [_, lead] = swing.slowness.at(phase);
+        let libration = Libration::new(system, start.q, kinetic, turning_points)?;
+        let up = libration.phase(start.q);
+        let initial_phase = if start.q_dot < 0.0 { TAU - up } else { up };
+        let [_, time_offset] = libration.time_density.eval(initial_phase);
         Ok(Self {
-            start,
-            period: TAU * swing.slowness.mean(),
-            energy: kinetic + held.potential,
-            kinetic: swing.most,
-            points: swing.points,
-            rounding: swing.slowness.left(),
-            fate: Fate::Swings {
-                between: swing.ends,
+            initial_state: start,
+            period: TAU * libration.time_density.mean(),
+            energy: kinetic + terms.potential,
+            max_kinetic: libration.max_kinetic,
+            points: libration.points,
+            tail: libration.time_density.tail(),
+            motion_class: MotionClass::Libration {
+                turning_points: libration.turning_points,
             },
-            way: Way::Swinging(swing.ends),
-            phase,
-            lead,
-            slowness: swing.slowness,
+            kind: OrbitKind::Libration(libration.turning_points),
+            initial_phase,
+            time_offset,
+            time_density: libration.time_density,
         })
     }
 
-    /// Where it starts.
-    pub fn start(&self) -> State {
-        self.start
+    /// The state at the start.
+    pub fn initial_state(&self) -> ReducedState {
+        self.initial_state
     }
 
-    /// The first time (s), not before the start, at which the coordinate is `q` (rad or m), by (3); of a
-    /// turning motion also the time before. None where a swing never comes.
+    /// The first time (s), not before the start, at which the coordinate is `q` (rad or m), by (3); of a rotation
+    /// also a time before the start. None where a libration never reaches `q`.
     pub fn time_at(&self, q: f64) -> Option<f64> {
-        match self.way {
-            Way::Turning(along) => {
-                let way = (q - self.start.q) / along;
-                let turns = way.floor();
-                let [_, within] = self.slowness.at(TAU * (way - turns));
-                Some(self.start.t + self.period * turns + within)
+        match self.kind {
+            OrbitKind::Rotation(angle_per_period) => {
+                let periods = (q - self.initial_state.q) / angle_per_period;
+                let whole_periods = periods.floor();
+                let [_, elapsed] = self.time_density.eval(TAU * (periods - whole_periods));
+                Some(self.initial_state.t + self.period * whole_periods + elapsed)
             }
-            Way::Swinging(ends) => {
-                let up = phase_of(q, ends)?;
+            OrbitKind::Libration(turning_points) => {
+                let up = phase_of(q, turning_points)?;
                 let first = [up, TAU - up, TAU + up]
                     .into_iter()
-                    .find(|&phase| phase >= self.phase);
-                let [_, time] = self.slowness.at(first.unwrap_or(2.0 * TAU - up));
-                Some(self.start.t + time - self.lead)
+                    .find(|&phase| phase >= self.initial_phase);
+                let [_, time] = self.time_density.eval(first.unwrap_or(2.0 * TAU - up));
+                Some(self.initial_state.t + time - self.time_offset)
             }
         }
     }
 
     /// The state at time `t` (s), by Newton's method on (3).
-    pub fn at(&self, t: f64) -> State {
-        let periods = ((t - self.start.t) / self.period).floor();
-        let wanted = t - self.start.t - periods * self.period + self.lead;
-        let (mut low, mut high) = (self.phase, self.phase + TAU);
-        let mut phase = low + (wanted - self.lead) / self.period * TAU;
-        for _ in 0..MOST_STEPS {
-            let [slowness, time] = self.slowness.at(phase);
-            let off = wanted - time;
-            if off > 0.0 {
+    pub fn state_at(&self, t: f64) -> ReducedState {
+        let periods = ((t - self.initial_state.t) / self.period).floor();
+        let wanted = t - self.initial_state.t - periods * self.period + self.time_offset;
+        let (mut low, mut high) = (self.initial_phase, self.initial_phase + TAU);
+        let mut phase = low + (wanted - self.time_offset) / self.period * TAU;
+        for _ in 0..MAX_NEWTON_STEPS {
+            let [time_density, time] = self.time_density.eval(phase);
+            let residual = wanted - time;
+            if residual > 0.0 {
                 low = phase;
             } else {
                 high = phase;
             }
-            let mut next = phase + off / slowness;
+            let mut next = phase + residual / time_density;
             if !(low..=high).contains(&next) {
                 next = 0.5 * (low + high);
             }
@@ -246,25 +256,22 @@ impl Orbit {
                 break;
             }
         }
-        let [slowness, _] = self.slowness.at(phase);
-        let (q, by_phase) = match self.way {
-            Way::Turning(along) => (self.start.q + along * (periods + phase / TAU), along / TAU),
-            Way::Swinging([a, b]) => {
+        let [time_density, _] = self.time_density.eval(phase);
+        let (q, by_phase) = match self.kind {
+            OrbitKind::Rotation(angle_per_period) => (
+                self.initial_state.q + angle_per_period * (periods + phase / TAU),
+                angle_per_period / TAU,
+            ),
+            OrbitKind::Libration([a, b]) => {
                 let (sin, cos) = phase.sin_cos();
                 let half = 0.5 * (b - a);
                 (a + half * (1.0 - cos), half * sin)
             }
         };
-        State {
+        ReducedState {
             t,
             q,
-            q_dot: by_phase / slowness,
+            q_dot: by_phase / time_density,
         }
     }
-}
-
-/// The phase of the way up at which a swing passes `q`; none if it does not.
-pub(crate) fn phase_of(q: f64, [a, b]: [f64; 2]) -> Option<f64> {
-    let [from, to] = [q - a, b - q];
-    (from >= 0.0 && to >= 0.0).then(|| 2.0 * from.sqrt().atan2(to.sqrt()))
 }

@@ -1,62 +1,82 @@
 //! Plain results of a check: what was compared, where, how far apart, the tolerance and the verdict.
+//! The type belongs to the crates that make findings and to those that print them, and knows neither.
+//!
+//! ```
+//! use dwell_findings::{Check, Finding, all_pass};
+//!
+//! let finding = Finding {
+//!     key: "power".into(),
+//!     check: Check::Power,
+//!     relative_difference: 2e-13,
+//!     tolerance: 1e-12,
+//!     pass: true,
+//!     ..Finding::default()
+//! };
+//! assert_eq!(finding.check.to_string(), "4 power");
+//! assert!(all_pass(&[finding]));
+//! ```
 
-use serde::Serialize;
+mod check;
+mod table;
 
-/// One comparison of a result with an independent truth.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+pub use check::Check;
+pub use table::{Column, Table};
+
+/// One comparison of a result with an independent reference.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
     /// Short stable key, such as `m-energy`.
     pub key: String,
-    /// Which truth of the workbench it rests on, such as `2 finite differences`.
-    pub truth: String,
-    /// What was compared with what, in words, with the equation.
-    pub compared: String,
+    /// The independent check that it belongs to.
+    pub check: Check,
+    /// What was compared with what.
+    pub comparison: String,
     /// Over which positions or times.
-    pub over: String,
+    pub domain: String,
     /// The largest absolute difference, in `unit`.
-    pub absolute: f64,
+    pub absolute_difference: f64,
     /// Unit of the absolute difference.
     pub unit: String,
     /// The largest difference relative to `scale`.
-    pub relative: f64,
-    /// What the relative difference is relative to, in words.
+    pub relative_difference: f64,
+    /// What the relative difference is relative to.
     pub scale: String,
-    /// Where the largest difference was met, such as `phi = 1.3 rad, slide.normal`.
-    pub worst: String,
+    /// Where the largest difference occurred, such as `phi = 1.3 rad, slide.normal`.
+    pub worst_at: String,
     /// The bound on the judged difference (the relative one unless `scale` says otherwise).
     pub tolerance: f64,
     /// Why the tolerance is what it is.
-    pub why: String,
-    /// Condition number of the dense scaled rows at the worst place; 1 where it has no meaning.
-    pub condition: f64,
-    /// Whether what is judged was integrated in time: its error is a factor times the integrator's
+    pub tolerance_reason: String,
+    /// Condition number of the scaled constraint Jacobian there; 1 where it has no meaning.
+    pub condition_number: f64,
+    /// Whether the checked value was integrated in time: its error is then a factor times the integrator's
     /// tolerance, not rounding.
     pub integrated: bool,
     /// The verdict: the difference is finite and within the tolerance.
     pub pass: bool,
 }
 
-/// The most that a tolerance may be, in differences met and in condition numbers times the unit of the last
-/// place: above it a check would let pass what it could have seen.
-const SEEN: f64 = 100.0;
-const ROUNDINGS: f64 = 50.0;
+/// The largest admissible tolerance, in measured differences and in condition numbers times the machine epsilon: a
+/// larger one would let errors pass that the check can detect.
+const MAX_TOLERANCE_FACTOR: f64 = 100.0;
+const MAX_ROUNDINGS: f64 = 50.0;
 
 impl Default for Finding {
     /// Nothing compared yet: a failure.
     fn default() -> Self {
         Self {
             key: String::new(),
-            truth: String::new(),
-            compared: String::new(),
-            over: String::new(),
-            absolute: f64::NAN,
+            check: Check::default(),
+            comparison: String::new(),
+            domain: String::new(),
+            absolute_difference: f64::NAN,
             unit: String::new(),
-            relative: f64::NAN,
+            relative_difference: f64::NAN,
             scale: "none".to_owned(),
-            worst: String::new(),
+            worst_at: String::new(),
             tolerance: 0.0,
-            why: String::new(),
-            condition: 1.0,
+            tolerance_reason: String::new(),
+            condition_number: 1.0,
             integrated: false,
             pass: false,
         }
@@ -64,27 +84,24 @@ impl Default for Finding {
 }
 
 impl Finding {
-    /// The most that the tolerance may be: 100 times the difference met, and 50 roundings times the condition.
-    pub fn most(&self) -> f64 {
-        SEEN * self.relative + ROUNDINGS * f64::EPSILON * self.condition
+    /// The largest admissible tolerance: 100 times the measured difference plus 50 machine epsilons times the
+    /// condition number.
+    pub fn max_tolerance(&self) -> f64 {
+        MAX_TOLERANCE_FACTOR * self.relative_difference
+            + MAX_ROUNDINGS * f64::EPSILON * self.condition_number
     }
 
-    /// Whether the tolerance is above that. Integrated results are judged by slopes and factors, and
-    /// a finding that compared nothing has no slack.
-    pub fn slack(&self) -> bool {
-        !self.integrated && self.tolerance > self.most()
+    /// Whether the tolerance is above [`Finding::max_tolerance`]. Integrated results are exempt, since slopes and
+    /// factors of the integrator's tolerance judge them; a finding that compared nothing is never loose.
+    pub fn is_loose(&self) -> bool {
+        !self.integrated && self.tolerance > self.max_tolerance()
     }
 
-    /// The number of its truth, by which findings are put together.
-    pub fn number(&self) -> Option<usize> {
-        self.truth.split(' ').next()?.parse().ok()
-    }
-
-    /// Judges by another tolerance, with the reason for it. What could not be compared still fails.
-    pub fn within(&mut self, tolerance: f64, why: &str) {
+    /// Replaces the tolerance, with the reason for it, and the verdict. What could not be compared still fails.
+    pub fn set_tolerance(&mut self, tolerance: f64, reason: &str) {
         self.tolerance = tolerance;
-        self.why = why.to_owned();
-        self.pass = self.relative <= tolerance;
+        self.tolerance_reason = reason.to_owned();
+        self.pass = self.relative_difference <= tolerance;
     }
 }
 
@@ -97,43 +114,42 @@ pub fn all_pass(findings: &[Finding]) -> bool {
 mod tests {
     use super::*;
 
-    fn met(relative: f64, tolerance: f64) -> Finding {
+    fn finding_of(relative: f64, tolerance: f64) -> Finding {
         Finding {
-            relative,
+            relative_difference: relative,
             tolerance,
-            truth: "3 released constraint".into(),
+            check: Check::ReleasedConstraint,
             ..Finding::default()
         }
     }
 
     #[test]
-    fn a_tolerance_is_slack_above_a_hundred_differences_and_fifty_roundings() {
-        assert!(!met(1e-12, 1e-10).slack());
-        assert!(met(1e-12, 1.1e-10).slack());
-        // Nothing is seen, but 50 roundings are allowed for: 1.1e-14, and times the condition.
-        assert!(!met(0.0, 1e-14).slack() && met(0.0, 1.2e-14).slack());
-        let ill = Finding {
-            condition: 1e3,
-            ..met(0.0, 1e-11)
+    fn a_tolerance_is_loose_above_a_hundred_differences_and_fifty_roundings() {
+        assert!(!finding_of(1e-12, 1e-10).is_loose());
+        assert!(finding_of(1e-12, 1.1e-10).is_loose());
+        // No difference, but 50 roundings are allowed: 1.1e-14, times the condition number.
+        assert!(!finding_of(0.0, 1e-14).is_loose() && finding_of(0.0, 1.2e-14).is_loose());
+        let ill_conditioned = Finding {
+            condition_number: 1e3,
+            ..finding_of(0.0, 1e-11)
         };
-        assert!(!ill.slack());
+        assert!(!ill_conditioned.is_loose());
         let integrated = Finding {
             integrated: true,
-            ..met(1e-12, 1e-8)
+            ..finding_of(1e-12, 1e-8)
         };
-        assert!(!integrated.slack());
-        assert_eq!(integrated.number(), Some(3));
+        assert!(!integrated.is_loose());
     }
 
     #[test]
-    fn another_tolerance_is_another_verdict_but_for_what_was_not_compared() {
-        let mut finding = met(1e-12, 1e-10);
-        finding.within(1e-11, "measured");
+    fn another_tolerance_changes_the_verdict_unless_nothing_was_compared() {
+        let mut finding = finding_of(1e-12, 1e-10);
+        finding.set_tolerance(1e-11, "measured");
         assert!(finding.pass);
-        finding.within(1e-13, "measured");
+        finding.set_tolerance(1e-13, "measured");
         assert!(!finding.pass);
-        finding.relative = f64::NAN;
-        finding.within(1.0, "measured");
+        finding.relative_difference = f64::NAN;
+        finding.set_tolerance(1.0, "measured");
         assert!(!finding.pass);
     }
 }

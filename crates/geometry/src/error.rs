@@ -1,5 +1,5 @@
-//! What can go wrong in a mechanism: in its structure, in its assembly, and at one position.
-//! Errors carry ids; whoever holds the names (the mechanism) and the places (the scene) adds them.
+//! Errors of a mechanism: in its structure, in its assembly, and at one position.
+//! They carry ids; the caller, who has the mechanism and the scene, adds names and places.
 
 use crate::mechanism::{ActuatorId, BodyId, JointId};
 use thiserror::Error;
@@ -9,50 +9,50 @@ use thiserror::Error;
 pub enum StructureError {
     /// No chain of joints leads from the ground to these bodies.
     #[error("no chain of joints connects {} bodies with the ground", bodies.len())]
-    Detached {
+    NotConnected {
         /// The bodies that are not reached.
         bodies: Vec<BodyId>,
     },
-    /// More ways to move than actuators.
-    #[error("{dof} degrees of freedom, but {actuators} actuators drive them")]
-    UnderDriven {
+    /// More degrees of freedom than actuators.
+    #[error("the mechanism has {degrees_of_freedom} degrees of freedom, but {actuators} actuators")]
+    UnderActuated {
         /// Degrees of freedom by counting unknowns and equations.
-        dof: usize,
+        degrees_of_freedom: usize,
         /// Number of actuators.
         actuators: usize,
         /// Bodies whose motion nothing determines.
         bodies: Vec<BodyId>,
-        /// Joints that hold each other twice, so that counting alone would not tell.
-        twice: Vec<JointId>,
+        /// Redundant joints, which hide the freedom when constraints are only counted.
+        redundant_joints: Vec<JointId>,
     },
-    /// More constraints or actuators than ways to move.
-    #[error("{} constraints more than the bodies can follow", excess)]
+    /// More constraints or actuators than degrees of freedom.
+    #[error("the mechanism is over-constrained: {redundant_count} constraints too many")]
     OverConstrained {
         /// How many equations are too many.
-        excess: usize,
-        /// Joints among which the surplus lies.
+        redundant_count: usize,
+        /// Joints among which the redundant constraints are.
         joints: Vec<JointId>,
-        /// Actuators among which the surplus lies.
+        /// Actuators among which they are.
         actuators: Vec<ActuatorId>,
     },
-    /// A joint, an actuator or the ground refers to a body that is not there, or the start does not
-    /// fit the mechanism. No scene can say this; a caller can.
-    #[error("the description does not fit together: {what}")]
+    /// A joint, an actuator or the ground refers to something that does not exist, or the assembly configuration does not
+    /// fit the mechanism. No scene can cause this; a library caller can.
+    #[error("the description of the mechanism is inconsistent: {reason}")]
     Malformed {
-        /// What does not fit.
-        what: &'static str,
+        /// What is inconsistent.
+        reason: &'static str,
     },
 }
 
-/// The mechanism cannot be put together at the start as asked.
+/// The mechanism cannot be assembled at the given coordinates.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum AssemblyError {
-    /// The structure is already wrong.
+    /// An error in the structure.
     #[error(transparent)]
     Structure(#[from] StructureError),
-    /// A group of bodies does not close at the start.
-    #[error("the bodies do not reach each other at the start: {gap:.3e} m are missing")]
-    CannotClose {
+    /// The loops of a group cannot be closed at the given coordinates.
+    #[error("the loops cannot be closed at assembly: {gap:.3e} m are missing")]
+    NoAssembly {
         /// Bodies of the group.
         bodies: Vec<BodyId>,
         /// Joints that stay open.
@@ -60,41 +60,43 @@ pub enum AssemblyError {
         /// The length that is missing, m.
         gap: f64,
     },
-    /// Several ways to assemble, and nothing says which.
-    #[error("{} ways to assemble, and nothing rough that tells them apart", choices.len())]
+    /// Several assembly modes are equally near to the initial guess.
+    #[error("{} assembly modes, and the initial guess does not distinguish them", modes.len())]
     Ambiguous {
-        /// The bodies whose angles tell them apart.
+        /// The bodies whose angles distinguish the modes.
         bodies: Vec<BodyId>,
-        /// The joints that do where no body does, by their travels or directions.
+        /// The joints that distinguish them where no body does, by their travels or directions.
         joints: Vec<JointId>,
-        /// For each way that may be meant, the angle (rad) of each of `bodies`, and the travel (m)
+        /// For each possible mode, the angle (rad) of each of `bodies`, and the travel (m)
         /// or direction (rad) of each of `joints`.
-        choices: Vec<Vec<f64>>,
+        modes: Vec<Vec<f64>>,
     },
-    /// Joints hold bodies twice, and not in the same way.
-    #[error("joints that hold the same bodies twice contradict each other: {gap:.3e} m stay open")]
+    /// Redundant joints contradict each other.
+    #[error("redundant joints contradict each other: {gap:.3e} m stay open")]
     Inconsistent {
         /// Those joints.
         joints: Vec<JointId>,
         /// How many constraints are too many.
-        excess: usize,
+        redundant_count: usize,
         /// What stays open, m.
         gap: f64,
     },
-    /// Gears, or a rack and its pinion, stand at another distance than their radii ask for.
-    #[error("gears stand {distance} m apart, and their radii ask for {wanted} m")]
+    /// Gears, or a rack and its pinion, do not stand at the distance that their radii require.
+    #[error("the gears are {distance} m apart, but their pitch radii require {required} m")]
     NotMeshing {
         /// The joint.
         joint: JointId,
         /// Distance of the centres, or of the pinion's centre from the pitch line (positive on the
         /// side of the normal), m.
         distance: f64,
-        /// What the radii ask for, m.
-        wanted: f64,
+        /// The distance that the radii require, m.
+        required: f64,
     },
-    /// The start is a position where the driven system is singular.
-    #[error("the start is a singular position: the actuator does not determine the motion there")]
-    SingularStart {
+    /// The driven system is singular at assembly.
+    #[error(
+        "the assembly is at a singular position: the actuator does not determine the motion there"
+    )]
+    SingularAssembly {
         /// Bodies of the group.
         bodies: Vec<BodyId>,
         /// Its joints.
@@ -102,12 +104,12 @@ pub enum AssemblyError {
     },
 }
 
-/// No pose, or no motion, at one position. Small and `Copy`: it is made in the inner loop.
+/// No pose, or no motion, at one position. Small and `Copy`: it is created in the inner loop.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-pub enum PlaceError {
-    /// The bodies of a group cannot reach each other: the coordinate is outside the range.
+pub enum PositionError {
+    /// The loops of a group cannot be closed: the coordinate is outside the range.
     #[error("group {group} cannot close at q = {q}: {gap:.3e} m are missing")]
-    Unreachable {
+    NoAssembly {
         /// Index of the group in the plan.
         group: usize,
         /// The coordinate of the first actuator, rad.
@@ -116,16 +118,18 @@ pub enum PlaceError {
         gap: f64,
     },
     /// The group's Jacobian is singular: a limit position of this actuator.
-    #[error("group {group} is singular at q = {q} (relative determinant {measure:.1e})")]
+    #[error(
+        "group {group} is singular at q = {q} (relative determinant {relative_determinant:.1e})"
+    )]
     Singular {
         /// Index of the group in the plan.
         group: usize,
         /// The coordinate of the first actuator, rad.
         q: f64,
         /// Determinant relative to the lengths that make it.
-        measure: f64,
+        relative_determinant: f64,
     },
-    /// Newton's method closed the group on another assembly branch than the start's.
+    /// Newton's method closed the group on another branch than that of the assembly.
     #[error("group {group} closes on another assembly branch at q = {q}")]
     OtherBranch {
         /// Index of the group in the plan.
@@ -135,15 +139,15 @@ pub enum PlaceError {
     },
     /// Newton's method did not close the group.
     #[error("group {group} did not close at q = {q} (residual {residual:.1e} m)")]
-    NotClosed {
+    NotConverged {
         /// Index of the group in the plan.
         group: usize,
         /// The coordinate of the first actuator, rad.
         q: f64,
-        /// What is left of the residual, m.
+        /// The remaining residual, m.
         residual: f64,
     },
-    /// The coordinate lies outside the range that was found for it.
+    /// The coordinate is outside the range of the actuator.
     #[error("q = {q} is outside the range of the actuator, {from} to {to}")]
     OutOfRange {
         /// The coordinate, rad.
@@ -159,24 +163,24 @@ pub enum PlaceError {
         /// The coordinate.
         q: f64,
     },
-    /// Poses side by side were asked for ([`Lanes`](crate::Lanes)) of a mechanism whose groups go different
-    /// ways at different coordinates: each is to be evaluated alone.
-    #[error("the poses at q = {q} and beside it can only be evaluated one by one")]
-    Apart {
+    /// Several poses were requested at once ([`Lanes`](dwell_numerics::Lanes)), but a decision differs between their
+    /// coordinates: each is to be evaluated alone.
+    #[error("the poses near q = {q} cannot be evaluated together in SIMD lanes")]
+    LanesDiverge {
         /// The first of the coordinates.
         q: f64,
     },
 }
 
-impl PlaceError {
-    /// The group the error speaks of.
+impl PositionError {
+    /// The group in which the error occurred.
     pub fn group(&self) -> Option<usize> {
         match *self {
-            Self::Unreachable { group, .. }
+            Self::NoAssembly { group, .. }
             | Self::Singular { group, .. }
             | Self::OtherBranch { group, .. }
-            | Self::NotClosed { group, .. } => Some(group),
-            Self::OutOfRange { .. } | Self::NotFinite { .. } | Self::Apart { .. } => None,
+            | Self::NotConverged { group, .. } => Some(group),
+            Self::OutOfRange { .. } | Self::NotFinite { .. } | Self::LanesDiverge { .. } => None,
         }
     }
 }

@@ -1,45 +1,72 @@
-//! Bodies, joints and actuators; the structure of a mechanism; its positions, velocities and accelerations.
+//! Planar mechanisms: bodies, joints and actuators; their structure; their positions, velocities and accelerations.
+//! A [`Mechanism`] describes one, and [`Plan::compile`] assembles it and fixes the order in which it is evaluated.
+//!
+//! ```
+//! use dwell_geometry::{
+//!     Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Plan, vec2,
+//! };
+//!
+//! // A four-bar: crank 1 m, coupler 3 m, rocker 3 m, and 3 m between the pins on the ground.
+//! let body = |name: &str| Body { name: name.into() };
+//! let pin = |name: &str, first, second, on_first, on_second| Joint {
+//!     name: name.into(),
+//!     bodies: [BodyId(first), BodyId(second)],
+//!     points: [on_first, on_second],
+//!     kind: JointKind::Revolute,
+//! };
+//! let four_bar = Mechanism {
+//!     bodies: ["ground", "crank", "coupler", "rocker"].map(body).into(),
+//!     ground: 0,
+//!     joints: vec![
+//!         pin("A", 0, 1, vec2(0.0, 0.0), vec2(0.0, 0.0)),
+//!         pin("B", 1, 2, vec2(1.0, 0.0), vec2(0.0, 0.0)),
+//!         pin("C", 2, 3, vec2(3.0, 0.0), vec2(3.0, 0.0)),
+//!         pin("D", 0, 3, vec2(3.0, 0.0), vec2(0.0, 0.0)),
+//!     ],
+//!     actuators: vec![Actuator { name: "q".into(), bodies: [BodyId(0), BodyId(1)], kind: ActuatorKind::Angle }],
+//!     couplings: Vec::new(),
+//! };
+//!
+//! // Assembled with the crank along the ground; the approximate angle of the rocker selects the assembly mode.
+//! let plan = Plan::compile(
+//!     &four_bar,
+//!     &AssemblyConfiguration {
+//!         q: vec![0.0],
+//!         initial_guess: vec![None, None, None, Some(1.5)],
+//!         branch_hints: Vec::new(),
+//!     },
+//! )?;
+//! let mut pose = plan.pose();
+//! plan.positions(&[60_f64.to_radians()], &mut pose)?;
+//! let [x, y, angle] = plan.body_frames(&four_bar, &pose)[3]; // m, m, rad
+//! let c = [x + 3.0 * angle.cos(), y + 3.0 * angle.sin()]; // the pin between coupler and rocker
+//! let b = [0.5, 0.75_f64.sqrt()];
+//! assert!(((c[0] - b[0]).hypot(c[1] - b[1]) - 3.0).abs() < 1e-14);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-mod assemble;
-pub mod circle;
-mod construct;
+mod assembly;
+mod body_frames;
+pub mod body_states;
+mod compiler;
+pub mod constraint_rows;
 pub mod error;
-pub mod frames;
-pub mod groups;
-mod lanes;
-mod large;
-mod locate;
-pub mod lower;
-pub mod measure;
+mod follow_branch;
 pub mod mechanism;
 pub mod mobility;
 pub mod motion;
-mod need;
-mod place;
 pub mod plan;
 pub mod plane;
-pub mod range;
-pub mod relation;
-mod rough;
-pub mod rows;
-pub mod scalar;
-mod seeds;
-pub mod small;
-mod solve;
-mod tall;
-pub mod tree;
-mod ways;
-pub mod wide;
+mod positions;
+pub mod structure;
 
-pub use error::{AssemblyError, PlaceError, StructureError};
-pub use lanes::Lanes;
+pub use error::{AssemblyError, PositionError, StructureError};
 pub use mechanism::{
-    Actuator, ActuatorId, Body, BodyId, Component, Coordinate, Drive, Joint, JointId, JointKind,
-    Mechanism, Reaction, Relation, Told,
+    Actuator, ActuatorId, ActuatorKind, Body, BodyId, BranchHint, Component, Coordinate, Coupling,
+    Joint, JointId, JointKind, Mechanism, Reaction,
 };
-pub use motion::{Balance, Motion};
-pub use plan::{Plan, Pose, Start};
+pub use motion::{ForceBalance, Motion};
+pub use plan::range::{Range, RangeLimit};
+pub use plan::{AssemblyConfiguration, Plan, Pose};
 pub use plane::{Vec2, vec2};
-pub use range::{End, Range};
-pub use scalar::{Dual, Scalar};
-pub use wide::Wide;
+pub use structure::{coupling, frames, groups, lower, tree};

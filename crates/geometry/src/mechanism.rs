@@ -1,5 +1,7 @@
-//! The plain description of a mechanism: bodies, the joints between them, and the actuators
+//! The description of a mechanism: bodies, the joints between them, and the actuators
 //! whose coordinates are the independent ones. Lengths in m, angles in rad.
+
+mod size;
 
 use crate::plane::Vec2;
 use dwell_laws::Law;
@@ -28,8 +30,8 @@ pub struct Mechanism {
     pub joints: Vec<Joint>,
     /// Every actuator: one independent coordinate each.
     pub actuators: Vec<Actuator>,
-    /// What joints of kind [`JointKind::Relation`] relate.
-    pub relations: Vec<Relation>,
+    /// The couplings of the joints of kind [`JointKind::Coupling`].
+    pub couplings: Vec<Coupling>,
 }
 
 /// A rigid body, known to geometry by its name alone.
@@ -48,11 +50,11 @@ pub struct Joint {
     pub bodies: [BodyId; 2],
     /// The joint's point on each body, in that body's frame, in m.
     pub points: [Vec2; 2],
-    /// What it lets move.
+    /// Its kind: which relative motion it allows.
     pub kind: JointKind,
 }
 
-/// What a joint lets move. With P₁, P₂ the joint's points on its two bodies, θ₁, θ₂ the angles of
+/// Which relative motion a joint allows. With P₁, P₂ the joint's points on its two bodies, θ₁, θ₂ the angles of
 /// their frames, t the axis in the first body (in the plane's directions) and n that axis turned +90°.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum JointKind {
@@ -75,7 +77,7 @@ pub enum JointKind {
         angle: f64,
     },
     /// Two gears with their centres at the points; other joints keep these at their distance. With
-    /// ψ the direction of P₂ − P₁: r₂ (θ₂ − ψ) ± r₁ (θ₁ − ψ) stays what it is at the start (+ for an
+    /// ψ the direction of P₂ − P₁: r₂ (θ₂ − ψ) ± r₁ (θ₁ − ψ) keeps its value at assembly (+ for an
     /// external pair, − for an internal one).
     Gear {
         /// Pitch radii, m, both above zero.
@@ -104,14 +106,14 @@ pub enum JointKind {
         /// The distance, m, above zero.
         length: f64,
     },
-    /// Two coordinates are related by a law (a cam, a table): [`Mechanism::relations`] of this index.
-    Relation(usize),
+    /// Two coordinates are coupled by a law (a cam, a table): [`Mechanism::couplings`] of this index.
+    Coupling(usize),
 }
 
-/// Something that can be measured on a mechanism, driven, or related to another.
+/// A coordinate of a mechanism that can be measured, driven, or coupled to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Coordinate {
-    /// Angle of the second body's frame from the first's, rad, whole turns counted.
+    /// Angle of the second body's frame from the first's, rad, whole revolutions counted.
     Angle([BodyId; 2]),
     /// Travel of a prismatic joint or a slot: t·(P₂ − P₁), m.
     Travel(JointId),
@@ -131,13 +133,13 @@ impl Coordinate {
     }
 }
 
-/// Two related coordinates: `of` = law(`by`). The joint's two bodies are those of `of`.
+/// Two coupled coordinates: `dependent` = law(`independent`). The joint's two bodies are those of `dependent`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Relation {
+pub struct Coupling {
     /// The coordinate that is a function of the other.
-    pub of: Coordinate,
-    /// The other.
-    pub by: Coordinate,
+    pub dependent: Coordinate,
+    /// The argument of the law.
+    pub independent: Coordinate,
     /// The function, SI.
     pub law: Law,
 }
@@ -150,12 +152,12 @@ pub struct Actuator {
     /// The first and the second body: the actuator's action τ is that of the first on the second.
     pub bodies: [BodyId; 2],
     /// Which of their coordinates it drives.
-    pub drive: Drive,
+    pub kind: ActuatorKind,
 }
 
 /// What an actuator drives.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Drive {
+pub enum ActuatorKind {
     /// The angle of the second body's frame from the first's; τ is a couple, N·m.
     #[default]
     Angle,
@@ -169,10 +171,10 @@ pub enum Drive {
 impl Actuator {
     /// The coordinate it drives.
     pub fn coordinate(&self) -> Coordinate {
-        match self.drive {
-            Drive::Angle => Coordinate::Angle(self.bodies),
-            Drive::Travel(joint) => Coordinate::Travel(joint),
-            Drive::Length(points) => Coordinate::Length {
+        match self.kind {
+            ActuatorKind::Angle => Coordinate::Angle(self.bodies),
+            ActuatorKind::Travel(joint) => Coordinate::Travel(joint),
+            ActuatorKind::Length(points) => Coordinate::Length {
                 bodies: self.bodies,
                 points,
             },
@@ -189,7 +191,7 @@ pub enum Component {
     Y,
     /// Force along the normal, the first body's axis turned +90°, N (prismatic, slot, rolling).
     Normal,
-    /// Couple, N·m: about the second body's point (prismatic, weld), or of an angular relation.
+    /// Couple, N·m: about the second body's point (prismatic, weld), or of an angular coupling.
     Moment,
     /// Tangential tooth force at the pitch point, N: positive when it turns the second body
     /// counter-clockwise (gear), or pushes the pinion along the axis (rack).
@@ -199,7 +201,7 @@ pub enum Component {
     /// Force along the line from the first point to the second, N: positive when it pushes the
     /// points apart (distance).
     Axial,
-    /// Force along a related travel or length, N (relation).
+    /// Force along a coupled travel or length, N (coupling).
     Force,
 }
 
@@ -222,14 +224,21 @@ impl Component {
     pub fn unit(self) -> &'static str {
         match self {
             Self::Moment => "N m",
-            _ => "N",
+            Self::X
+            | Self::Y
+            | Self::Normal
+            | Self::Tooth
+            | Self::Tangent
+            | Self::Axial
+            | Self::Force => "N",
         }
     }
 }
 
-/// What a rough number tells of a joint at the start ([`Start::joints`](crate::Start::joints)).
+/// The coordinate of a joint that an approximate value at assembly is about
+/// ([`AssemblyConfiguration::branch_hints`](crate::AssemblyConfiguration::branch_hints)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Told {
+pub enum BranchHint {
     /// The travel t·(P₂ − P₁) of a prismatic joint or a slot, m.
     Travel,
     /// The angle of the line from P₁ to P₂ of a distance, rad.
@@ -237,17 +246,52 @@ pub enum Told {
 }
 
 impl JointKind {
-    /// What a rough number can tell of such a joint at the start, if anything.
-    pub fn told(self) -> Option<Told> {
+    /// The coordinate of such a joint by which an approximate value can select an assembly mode, if there is one.
+    pub fn branch_hint(self) -> Option<BranchHint> {
         match self {
-            Self::Prismatic { .. } | Self::Slot { .. } => Some(Told::Travel),
-            Self::Distance { .. } => Some(Told::Direction),
-            _ => None,
+            Self::Prismatic { .. } | Self::Slot { .. } => Some(BranchHint::Travel),
+            Self::Distance { .. } => Some(BranchHint::Direction),
+            Self::Revolute
+            | Self::Weld { .. }
+            | Self::Gear { .. }
+            | Self::Rack { .. }
+            | Self::Rolling { .. }
+            | Self::Coupling(_) => None,
+        }
+    }
+
+    /// The axis t, in the first body's frame, along which [`Coordinate::Travel`] of such a joint is measured; none where
+    /// the joint has no travel.
+    pub fn travel_axis(self) -> Option<Vec2> {
+        match self {
+            Self::Prismatic { axes } => Some(axes[0]),
+            Self::Slot { axis } => Some(axis),
+            Self::Revolute
+            | Self::Weld { .. }
+            | Self::Gear { .. }
+            | Self::Rack { .. }
+            | Self::Rolling { .. }
+            | Self::Distance { .. }
+            | Self::Coupling(_) => None,
+        }
+    }
+
+    /// Whether its two points coincide in every position.
+    pub(crate) fn holds_points_together(self) -> bool {
+        match self {
+            Self::Revolute | Self::Weld { .. } => true,
+            Self::Prismatic { .. }
+            | Self::Slot { .. }
+            | Self::Gear { .. }
+            | Self::Rack { .. }
+            | Self::Rolling { .. }
+            | Self::Distance { .. }
+            | Self::Coupling(_) => false,
         }
     }
 
     /// The components of the reaction, in the order of the constraint rows.
-    pub fn components(self, relations: &[Relation]) -> &'static [Component] {
+    pub fn components(self, couplings: &[Coupling]) -> &'static [Component] {
         use Component::{Axial, Force, Moment, Normal, Tangent, Tooth, X, Y};
         match self {
             Self::Revolute => &[X, Y],
@@ -257,8 +301,8 @@ impl JointKind {
             Self::Gear { .. } | Self::Rack { .. } => &[Tooth],
             Self::Rolling { .. } => &[Normal, Tangent],
             Self::Distance { .. } => &[Axial],
-            Self::Relation(r) => match relations.get(r) {
-                Some(relation) if relation.of.is_angle() => &[Moment],
+            Self::Coupling(r) => match couplings.get(r) {
+                Some(coupling) if coupling.dependent.is_angle() => &[Moment],
                 _ => &[Force],
             },
         }
@@ -279,7 +323,7 @@ impl Mechanism {
     /// in the order of [`Mechanism::components`]. "Reaction k" everywhere means this order.
     pub fn reactions(&self) -> Vec<Reaction> {
         let of_joint = |(j, joint): (usize, &Joint)| {
-            let components = joint.kind.components(&self.relations).iter();
+            let components = joint.kind.components(&self.couplings).iter();
             components.map(move |&component| Reaction {
                 joint: JointId(j),
                 component,
@@ -291,7 +335,7 @@ impl Mechanism {
     /// The components of a joint's reaction, in the order of its constraint rows.
     pub fn components(&self, joint: JointId) -> &'static [Component] {
         let kind = self.joints.get(joint.0).map(|j| j.kind);
-        kind.map_or(&[], |kind| kind.components(&self.relations))
+        kind.map_or(&[], |kind| kind.components(&self.couplings))
     }
 
     /// The reaction's name, such as `slide.normal`.

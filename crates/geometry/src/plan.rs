@@ -1,35 +1,34 @@
-//! The compiled form of a mechanism: a flat list of steps that place it, group by group. A plan
-//! is constant and shared; what it computes lives in a caller's [`Pose`] and
-//! [`Motion`](crate::motion::Motion).
+//! The compiled form of a mechanism: a flat list of steps that compute its positions, group by group. A plan
+//! is constant and shared; results live in a caller's [`Pose`] and [`Motion`](crate::motion::Motion).
 
-mod arms;
-mod build;
-mod compile;
-mod parts;
+mod group_info;
+mod pruning;
+pub(crate) mod range;
+pub(crate) mod stored_poses;
 
-use crate::frames::Frames;
-use crate::groups::Group;
-use crate::lower::{Bond, Lowered, Measure};
 use crate::mechanism::{BodyId, JointId};
+use crate::plan::range::{Range, RangeLimit};
+use crate::plan::stored_poses::StoredPoses;
 use crate::plane::Vec2;
-use crate::range::{End, Range};
-use crate::relation::Row;
-use crate::scalar::Scalar;
-use crate::seeds::Seeds;
-use crate::tree::{Arm, Tree};
+use crate::structure::coupling::CouplingEquation;
+use crate::structure::frames::Frames;
+use crate::structure::groups::Group;
+use crate::structure::lower::{KinematicPair, Lowered, LoweredCoordinate};
+use crate::structure::tree::{FrameVector, Tree};
+use dwell_numerics::Scalar;
 use std::collections::HashMap;
 
-/// How and where the mechanism is put together.
+/// At which coordinates and in which assembly mode the mechanism is assembled.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Start {
+pub struct AssemblyConfiguration {
     /// The coordinate of each actuator at assembly, rad or m.
     pub q: Vec<f64>,
-    /// Rough angle of each body, where one is given, rad: picks the assembly branch.
-    pub rough: Vec<Option<f64>>,
-    /// What is known roughly of each joint, where it is: picks the branch too, where the angles of the
-    /// bodies do not. The travel of a prismatic joint or a slot, m, or the direction of a distance,
-    /// rad ([`Told`](crate::mechanism::Told)). Empty where nothing is known of any joint.
-    pub joints: Vec<Option<f64>>,
+    /// Approximate angle of each body, where one is given, rad: picks the assembly branch.
+    pub initial_guess: Vec<Option<f64>>,
+    /// By joint, an approximate coordinate where one is given: selects the assembly mode where the angles of the bodies
+    /// do not. It is the travel of a prismatic joint or a slot, m, or the direction of a distance, rad
+    /// ([`BranchHint`](crate::mechanism::BranchHint)). Empty where no joint has one.
+    pub branch_hints: Vec<Option<f64>>,
 }
 
 /// A mechanism compiled for evaluation.
@@ -38,174 +37,180 @@ pub struct Plan {
     pub(crate) lowered: Lowered,
     pub(crate) frames: Frames,
     pub(crate) tree: Tree,
-    pub(crate) arms: Vec<Arm>,
-    pub(crate) carried: Vec<Carried>,
-    pub(crate) closures: Vec<Closure>,
-    pub(crate) relations: Vec<Row>,
-    pub(crate) groups: Vec<Assur>,
+    pub(crate) frame_vectors: Vec<FrameVector>,
+    pub(crate) moving_bodies: Vec<MovingBody>,
+    pub(crate) loop_closures: Vec<LoopClosure>,
+    pub(crate) couplings: Vec<CouplingEquation>,
+    pub(crate) groups: Vec<AssurGroup>,
     pub(crate) steps: Vec<Step>,
-    /// By bond: its place in the tree or among the closures.
-    pub(crate) bond_places: Vec<BondPlace>,
+    /// By kinematic pair: whether it is in the tree or closes a loop.
+    pub(crate) pair_roles: Vec<PairRole>,
     /// By group: the step that solves it.
     pub(crate) solve_steps: Vec<usize>,
     /// By class: the frame whose angle is the unknown (the ground's for class 0).
-    pub(crate) class_roots: Vec<usize>,
-    /// The frames that turn with the ground but for the actuators, each after the one it is
-    /// turned from.
-    pub(crate) driven: Vec<Driven>,
-    /// By frame: whether its whole turns are counted, because a relation or a load needs its angle.
-    pub(crate) counted: Vec<bool>,
-    /// By body: the whole turns that it is ahead of its frame, rad.
-    pub(crate) turns: Vec<f64>,
-    /// By frame of a line of centres: the frame beside which its turns are counted, and how far it is
-    /// turned from it, rad.
-    pub(crate) beside: HashMap<usize, (usize, f64)>,
+    pub(crate) class_frames: Vec<usize>,
+    /// The frames that actuators turn from the ground, each after the one it is turned from.
+    pub(crate) actuated_frames: Vec<ActuatedFrame>,
+    /// By frame: whether its whole revolutions are counted, because a coupling or a load needs its angle.
+    pub(crate) revolution_counted: Vec<bool>,
+    /// By body: the whole revolutions between it and its frame, rad.
+    pub(crate) revolution_offsets: Vec<f64>,
+    /// By frame of a line of centres: the carrier's frame, with which its revolutions are counted, and its constant angle
+    /// from that, rad.
+    pub(crate) carrier_phases: HashMap<usize, (usize, f64)>,
     /// By slide: the actuator that drives it.
-    pub(crate) driven_slides: Vec<Option<usize>>,
+    pub(crate) actuated_slides: Vec<Option<usize>>,
     /// By actuator: whether it drives an angle rather than a length.
     pub(crate) angular: Vec<bool>,
-    /// The largest length in it, m: what a step of a driven length is measured against.
-    pub(crate) reach: f64,
-    pub(crate) start: Vec<f64>,
+    /// The largest length in the loops and the tree, m: a step of a driven length is a part of it.
+    pub(crate) size: f64,
+    pub(crate) assembly_coordinates: Vec<f64>,
     pub(crate) range: Range,
     /// Where the range ends, downwards and upwards, if it does.
-    pub(crate) ends: [Option<End>; 2],
-    /// The pose at the start, once it is assembled.
-    pub(crate) home: Option<Box<Pose<f64>>>,
+    pub(crate) range_limits: [Option<RangeLimit>; 2],
+    /// The pose at assembly.
+    pub(crate) assembly_pose: Option<Box<Pose<f64>>>,
     /// By reaction of the mechanism: whether the loads determine it; empty where they determine all.
-    pub(crate) unique: Vec<bool>,
+    pub(crate) determinate: Vec<bool>,
     /// By group: the ways in which it closes at the start.
-    pub(crate) branches: Vec<Branches>,
+    pub(crate) group_modes: Vec<GroupModes>,
 }
 
-/// The ways in which a group closes at the start.
+/// The assembly modes of a group at the start.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Branches {
-    /// The bodies whose angles tell them apart.
+pub struct GroupModes {
+    /// The bodies whose angles distinguish the modes.
     pub bodies: Vec<BodyId>,
-    /// The joints that do where no body does: [`JointKind::told`](crate::mechanism::JointKind::told)
-    /// says by what.
+    /// The joints that distinguish them where no body does:
+    /// [`JointKind::branch_hint`](crate::mechanism::JointKind::branch_hint) says by which coordinate.
     pub joints: Vec<JointId>,
-    /// For each way, the angle of each of `bodies`, rad, and the travel or direction of each of
-    /// `joints`, m or rad; the way that was picked comes first.
-    pub ways: Vec<Vec<f64>>,
+    /// For each mode, the angle of each of `bodies`, rad, and the travel or direction of each of
+    /// `joints`, m or rad; the selected mode comes first.
+    pub modes: Vec<Vec<f64>>,
 }
 
-/// Where a bond is in the plan.
+/// What a kinematic pair does in the plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BondPlace {
-    /// It carries a body: index in [`Plan::carried`].
-    Carries(usize),
-    /// It closes a loop: index in [`Plan::closures`].
-    Closes(usize),
+pub enum PairRole {
+    /// It connects a body with its parent in the tree: index in [`Plan::moving_bodies`].
+    TreeJoint(usize),
+    /// It closes a loop: index in [`Plan::loop_closures`].
+    LoopJoint(usize),
 }
 
-/// A moving body, in the order in which bodies carry each other.
+/// A moving body, in the order of the tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Carried {
+pub struct MovingBody {
     /// The body; an index beyond the mechanism's bodies is an added, massless one.
     pub body: usize,
-    /// The bond that carries it.
-    pub bond: usize,
-    /// Place of the body that carries it in the same order; none for the ground.
+    /// The pair that connects it with its parent.
+    pub pair: usize,
+    /// Index of its parent in the same order; none for the ground.
     pub parent: Option<usize>,
     /// Its frame.
     pub frame: usize,
-    /// The frame of the body that carries it.
+    /// The frame of its parent.
     pub parent_frame: usize,
-    /// The rotated arm from the parent's root to the joint; none where it has no length or
+    /// The rotated vector from the parent's root to the joint; none where it has no length or
     /// belongs to the ground itself. (A body that slides without turning carries moments by it.)
-    pub arm: Option<usize>,
+    pub joint_vector: Option<usize>,
     /// The slide of a prismatic joint: its index, and the rotated direction of its travel.
     pub slide: Option<(usize, usize)>,
 }
 
 /// A frame turned from another one by an actuator's coordinate, times `sign`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Driven {
+pub(crate) struct ActuatedFrame {
     pub(crate) frame: usize,
     pub(crate) parent: usize,
     pub(crate) actuator: usize,
     pub(crate) sign: f64,
     /// The frame whose angle is the unknown of its class.
-    pub(crate) root: usize,
-    /// Whether its whole turns are counted.
-    pub(crate) counted: bool,
+    pub(crate) class_frame: usize,
+    /// Whether its whole revolutions are counted.
+    pub(crate) revolution_counted: bool,
 }
 
-/// A loop with its arms in the plan's table: L = P₂ − P₁ = fixed + Σ arms + Σ travel · direction.
+/// A loop with its vectors in the plan's table: L = P₂ − P₁ = fixed + Σ vectors + Σ travel · direction.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Closure {
-    /// The bond that closes the loop.
-    pub bond: usize,
+pub struct LoopClosure {
+    /// The pair that closes the loop.
+    pub pair: usize,
     /// The part of the loop on the ground, m.
     pub fixed: Vec2,
-    /// The arms it sums, as (arm, frame).
-    pub arms: Vec<(usize, usize)>,
-    /// The slides it passes, as (slide, direction arm, frame).
+    /// The vectors it sums, as (vector, frame).
+    pub vectors: Vec<(usize, usize)>,
+    /// The slides it passes, as (slide, direction vector, frame).
     pub slides: Vec<(usize, usize, usize)>,
-    /// For a slide whose travel nothing measures, the rotated axis of its first body, as (arm, frame).
+    /// For a slide whose travel nothing measures, the rotated axis of its first body, as (vector, frame).
     pub axis: Option<(usize, usize)>,
 }
 
-/// A group with what its way of solving needs.
+/// A group with what its method of solution needs.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Assur {
+pub(crate) struct AssurGroup {
     pub(crate) group: Group,
-    pub(crate) kind: Kind,
-    /// The driven frames of its classes, each after the one it is turned from.
-    pub(crate) driven: Vec<Driven>,
-    /// The closures of the group, with what lies behind them.
-    pub(crate) behind: Vec<Behind>,
-    /// Sum of the lengths in its loops, m: what residuals are small against.
+    pub(crate) kind: GroupKind,
+    /// The actuated frames of its classes, each after the one it is turned from.
+    pub(crate) actuated_frames: Vec<ActuatedFrame>,
+    /// The loops of the group, each with the parts that earlier groups or actuators move.
+    pub(crate) known_terms: Vec<KnownTerms>,
+    /// Sum of the lengths in its loops, m: residuals are compared with it.
     pub(crate) size: f64,
-    /// A power of two near `size`: travels are counted in it, so that pivots can be compared.
+    /// A power of two near `size`, m: the unit of travels in the Jacobian, so that pivots can be compared.
     pub(crate) scale: f64,
-    /// Where Newton's method starts, and where whole turns are counted from.
-    pub(crate) seeds: Seeds,
-    /// Whether a closed form leaves turns to be counted.
-    pub(crate) counts: bool,
-    /// Whether the seeds are needed.
-    pub(crate) remembers: bool,
-    /// Whether nothing that was asked for needs it.
-    pub(crate) skipped: bool,
+    /// Where Newton's method starts, and where whole revolutions are counted from.
+    pub(crate) stored_poses: StoredPoses,
+    /// Whether revolutions are to be counted after a closed form.
+    pub(crate) counts_revolutions: bool,
+    /// Whether the stored poses are needed.
+    pub(crate) uses_stored_poses: bool,
+    /// Whether it is left out, because no requested result needs it.
+    pub(crate) pruned: bool,
+}
+
+impl AssurGroup {
+    /// What the row of a coupling is multiplied by: one between angles is compared with loops by the size of its group.
+    pub(crate) fn coupling_weight<T: Scalar>(&self, coupling: &CouplingEquation) -> T {
+        T::from_f64(if coupling.angular { self.scale } else { 1.0 })
+    }
 }
 
 /// The part of a closure that an earlier group or an actuator moves: its multiplier acts there too.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Behind {
+pub(crate) struct KnownTerms {
     pub(crate) closure: usize,
-    /// The axis of a prismatic closure, and its frame if that is behind.
+    /// The axis of a prismatic loop joint, and its frame if an earlier group or an actuator moves it.
     pub(crate) axis: Option<usize>,
-    pub(crate) turning: Option<usize>,
-    /// Arms, with their frames.
-    pub(crate) arms: Vec<(usize, usize)>,
-    /// All slides of the closure, as (slide, direction arm, frame).
+    pub(crate) axis_frame: Option<usize>,
+    /// Vectors, with their frames.
+    pub(crate) vectors: Vec<(usize, usize)>,
+    /// All slides of the closure, as (slide, direction vector, frame).
     pub(crate) slides: Vec<(usize, usize, usize)>,
 }
 
 /// How a group is solved.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Kind {
-    Pin(Pin),
-    Aim(Aim),
-    Solved(Solved),
+pub(crate) enum GroupKind {
+    RrrDyad(RrrDyad),
+    GuidedPoint(GuidedPoint),
+    Factored(FactoredGroup),
 }
 
 /// Two bodies pinned to each other and to known points: a triangle.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Pin {
+pub(crate) struct RrrDyad {
     pub(crate) closure: usize,
-    /// The two arms that turn, and their frames.
-    pub(crate) arms: [usize; 2],
+    /// The two vectors that turn, and their frames.
+    pub(crate) vectors: [usize; 2],
     pub(crate) frames: [usize; 2],
-    /// The arms in their frames, each over its length squared: turns one back to its rotation.
+    /// The vectors in their frames, each over its length squared: recovers the rotation from the rotated vector.
     pub(crate) per_square: [Vec2; 2],
-    /// Squares of the arms' sum, difference and (second less first) lengths, m².
-    pub(crate) sum2: f64,
-    pub(crate) gap2: f64,
-    pub(crate) excess: f64,
-    /// The other arms of the loop: those on the ground, and those that move.
+    /// Squares of the vectors' sum, difference and (second less first) lengths, m².
+    pub(crate) sum_squared: f64,
+    pub(crate) difference_squared: f64,
+    pub(crate) square_difference: f64,
+    /// The other vectors of the loop: those on the ground, and those that move.
     pub(crate) fixed: Vec2,
     pub(crate) known: Vec<(usize, usize)>,
     /// Sign of arm₁ × arm₂: the assembly branch.
@@ -214,22 +219,22 @@ pub(crate) struct Pin {
 
 /// A body turned until a point of its loop lies on a line.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Aim {
+pub(crate) struct GuidedPoint {
     pub(crate) closure: usize,
     pub(crate) frame: usize,
     /// The rotated axis of the line, with its frame.
     pub(crate) axis: (usize, usize),
-    /// Whether the line turns (a slotted guide) or the arm does (a connecting rod).
-    pub(crate) line_turns: bool,
-    /// The rotated arm that comes with the solution: the axis, or the arm of the loop.
-    pub(crate) found: usize,
-    /// The arms of the loop that move.
-    pub(crate) arms: Vec<(usize, usize)>,
-    /// The arm of the loop in the turning frame.
+    /// Whether the line turns (a slotted guide) or the vector does (a connecting rod).
+    pub(crate) line_rotates: bool,
+    /// The rotated vector that comes with the solution: the axis, or the vector of the loop.
+    pub(crate) found_vector: usize,
+    /// The vectors of the loop that move.
+    pub(crate) vectors: Vec<(usize, usize)>,
+    /// The vector of the loop in the turning frame.
     pub(crate) local: Vec2,
-    /// The unit vector that is found: the line's normal, or the arm's direction.
+    /// The unit vector that is found: the line's normal, or the vector's direction.
     pub(crate) unit: Vec2,
-    /// The other arms of the loop: those on the ground, and those that move.
+    /// The other vectors of the loop: those on the ground, and those that move.
     pub(crate) fixed: Vec2,
     pub(crate) known: Vec<(usize, usize)>,
     /// Sign of −∂(normal distance)/∂angle: the assembly branch.
@@ -238,95 +243,107 @@ pub(crate) struct Aim {
 
 /// Any other group, whose motion and forces come from the factors of its Jacobian.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Solved {
-    pub(crate) how: How,
+pub(crate) struct FactoredGroup {
+    pub(crate) method: PlacementMethod,
     /// Numbers of equations and unknowns.
     pub(crate) rows: usize,
     pub(crate) columns: usize,
     /// Where its factors begin in [`Pose::lu`], and its pivots in [`Pose::pivots`].
-    pub(crate) lu: usize,
-    pub(crate) pivots: usize,
+    pub(crate) lu_offset: usize,
+    pub(crate) pivots_offset: usize,
     /// Sign of the determinant at the start.
     pub(crate) branch: f64,
     /// Sign of the root that a construction takes.
-    pub(crate) side: f64,
+    pub(crate) root_sign: f64,
+}
+
+impl FactoredGroup {
+    /// Room for its factors: those of a tall matrix keep a factor for each column beside it.
+    pub(crate) fn factor_len(&self) -> usize {
+        let head_count = if self.rows > self.columns {
+            self.columns
+        } else {
+            0
+        };
+        self.rows * self.columns + head_count
+    }
 }
 
 /// How a group is placed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum How {
-    /// Newton's method from stored seeds.
+pub(crate) enum PlacementMethod {
+    /// Newton's method from stored poses.
     Newton,
     /// Its equations are linear in its unknowns.
     Linear,
     /// Gears whose lines of centres turn with their carriers: linear in the angles.
-    Geared,
+    GearTrain,
     /// Two classes turn until a loop closes: a triangle with sides that may change.
     Triangle(usize, usize),
     /// A class turns and a slide travels until a loop closes.
-    Reach(usize, usize),
+    LineCircle(usize, usize),
     /// A class turns until a point lies on a line.
-    Guide(usize),
+    PointOnLine(usize),
 }
 
-/// One step of placing.
+/// One step of the computation of positions.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Step {
-    /// Turn a frame by an actuator's coordinate.
-    Turn(Driven),
+    /// Rotate a frame by an actuator's coordinate.
+    RotateFrame(ActuatedFrame),
     /// Set a slide to an actuator's coordinate: (slide, actuator).
-    Slide(usize, usize),
+    SetSlide(usize, usize),
     /// Solve a group.
-    Solve(usize),
-    /// Rotate an arm whose frame has become known.
-    Rotate(usize, Arm),
+    SolveGroup(usize),
+    /// Rotate a vector whose frame has become known.
+    RotateVector(usize, FrameVector),
 }
 
-/// What placing computes: the orientation of every frame and every rotated arm.
+/// What the computation of positions gives: the orientation of every frame and every rotated vector.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pose<T> {
     /// The actuators' coordinates, rad or m.
     pub q: Vec<T>,
     /// By frame: (cos, sin).
-    pub turn: Vec<Vec2<T>>,
-    /// By frame: its angle with whole turns counted, rad; only where a relation or a load needs it.
+    pub rotation: Vec<Vec2<T>>,
+    /// By frame: its angle with whole revolutions counted, rad; only where a coupling or a load needs it.
     pub angle: Vec<T>,
-    /// By arm: its components in ground axes, m.
-    pub arm: Vec<Vec2<T>>,
+    /// By vector: its components in ground axes, m.
+    pub vector: Vec<Vec2<T>>,
     /// By slide of the tree: its travel, m.
-    pub slide: Vec<T>,
-    /// By closure: along a prismatic chord's axis, the travel P₂ − P₁, m.
-    pub travel: Vec<T>,
+    pub slide_travel: Vec<T>,
+    /// By closure: along a prismatic loop joint's axis, the travel P₂ − P₁, m.
+    pub closure_travel: Vec<T>,
     /// By closed-form group: one over the determinant of its Jacobian.
-    pub(crate) inverse: Vec<T>,
+    pub(crate) inverse_determinant: Vec<T>,
     pub(crate) lu: Vec<T>,
     pub(crate) pivots: Vec<usize>,
-    pub(crate) work: Vec<T>,
-    pub(crate) path: Vec<T>,
+    pub(crate) workspace: Vec<T>,
+    pub(crate) path_coordinates: Vec<T>,
 }
 
 impl Plan {
-    /// A pose with the right sizes, to be filled by [`Plan::place`].
+    /// A pose with the right sizes, to be filled by [`Plan::positions`].
     pub fn pose<T: Scalar>(&self) -> Pose<T> {
-        let solved = || {
+        let factored_group = || {
             self.groups.iter().filter_map(|g| match &g.kind {
-                Kind::Solved(solved) => Some(solved),
+                GroupKind::Factored(factored_group) => Some(factored_group),
                 _ => None,
             })
         };
-        let zero = T::lift(0.0);
+        let zero = T::from_f64(0.0);
         Pose {
             q: vec![zero; self.actuators()],
-            turn: vec![Vec2::IDENTITY.lift(); self.frames.frames.len()],
+            rotation: vec![Vec2::IDENTITY.cast(); self.frames.frames.len()],
             angle: vec![zero; self.frames.frames.len()],
-            arm: self.arms.iter().map(|a| a.local.lift()).collect(),
-            slide: vec![zero; self.tree.slides.len()],
-            travel: vec![zero; self.closures.len()],
-            inverse: vec![zero; self.groups.len()],
-            lu: vec![zero; solved().map(Solved::room).sum()],
-            pivots: vec![0; solved().map(|s| s.columns).sum()],
-            work: vec![zero; solved().map(|s| s.rows).max().unwrap_or(0)],
-            path: vec![zero; self.actuators()],
+            vector: self.frame_vectors.iter().map(|a| a.local.cast()).collect(),
+            slide_travel: vec![zero; self.tree.slide_pairs.len()],
+            closure_travel: vec![zero; self.loop_closures.len()],
+            inverse_determinant: vec![zero; self.groups.len()],
+            lu: vec![zero; factored_group().map(FactoredGroup::factor_len).sum()],
+            pivots: vec![0; factored_group().map(|s| s.columns).sum()],
+            workspace: vec![zero; factored_group().map(|s| s.rows).max().unwrap_or(0)],
+            path_coordinates: vec![zero; self.actuators()],
         }
     }
 
@@ -341,28 +358,28 @@ impl Plan {
     }
 
     /// The coordinates at which the mechanism was assembled, rad or m.
-    pub fn start(&self) -> &[f64] {
-        &self.start
+    pub fn assembly_coordinates(&self) -> &[f64] {
+        &self.assembly_coordinates
     }
 
-    /// How far the single actuator can go on this branch.
+    /// The range of the single actuator on this branch.
     pub fn range(&self) -> Range {
         self.range
     }
 
     /// Where and why the range ends, downwards and upwards.
-    pub fn ends(&self) -> [Option<End>; 2] {
-        self.ends
+    pub fn range_limits(&self) -> [Option<RangeLimit>; 2] {
+        self.range_limits
     }
 
     /// The moving bodies, each after the one that carries it.
-    pub fn carried(&self) -> &[Carried] {
-        &self.carried
+    pub fn moving_bodies(&self) -> &[MovingBody] {
+        &self.moving_bodies
     }
 
     /// The loops, by index.
-    pub fn closures(&self) -> &[Closure] {
-        &self.closures
+    pub fn loop_closures(&self) -> &[LoopClosure] {
+        &self.loop_closures
     }
 
     /// The orientations of the bodies.
@@ -370,78 +387,78 @@ impl Plan {
         &self.frames
     }
 
-    /// The tree that carries the bodies.
+    /// The spanning tree of joints.
     pub fn tree(&self) -> &Tree {
         &self.tree
     }
 
-    /// The relations between angles and travels, by index, their coupling evaluated by the plan.
-    pub fn relation(&self, index: usize) -> &Row {
-        &self.relations[index]
+    /// A coupling between angles and travels, by index.
+    pub fn coupling(&self, index: usize) -> &CouplingEquation {
+        &self.couplings[index]
     }
 
-    /// The pins, slides and welds that the mechanism is made of; the bonds of joints come first.
-    pub fn bonds(&self) -> &[Bond] {
-        &self.lowered.bonds
+    /// The kinematic pairs (pins, slides and welds) that the mechanism is lowered to; those of joints come first.
+    pub fn pairs(&self) -> &[KinematicPair] {
+        &self.lowered.pairs
     }
 
-    /// A joint's first bond and its relation.
-    pub fn parts(&self, joint: JointId) -> (Option<usize>, Option<usize>) {
-        self.lowered.of_joint[joint.0]
+    /// Indices of a joint's first kinematic pair and of its coupling.
+    pub fn joint_parts(&self, joint: JointId) -> (Option<usize>, Option<usize>) {
+        self.lowered.joint_parts[joint.0]
     }
 
-    /// Whether the loads determine a reaction, by its index in [`Mechanism::reactions`](crate::mechanism::Mechanism::reactions). Where joints
-    /// repeat each other they do not: of all forces that balance the loads, the smallest are given.
-    pub fn is_unique(&self, reaction: usize) -> bool {
-        self.unique.get(reaction).copied().unwrap_or(true)
+    /// Whether the loads determine a reaction, by its index in [`Mechanism::reactions`](crate::mechanism::Mechanism::reactions). Reactions of
+    /// redundant joints are not: of all forces that balance the loads, the smallest are given.
+    pub fn is_determinate(&self, reaction: usize) -> bool {
+        self.determinate.get(reaction).copied().unwrap_or(true)
     }
 
-    /// Where a bond is in the plan.
-    pub fn bond_place(&self, bond: usize) -> BondPlace {
-        self.bond_places[bond]
+    /// What a kinematic pair does in the plan.
+    pub fn pair_role(&self, pair: usize) -> PairRole {
+        self.pair_roles[pair]
     }
 
     /// By an actuator that drives a length: its slide.
-    pub fn slide_of(&self, actuator: usize) -> Option<usize> {
-        self.driven_slides
+    pub fn slide_of_actuator(&self, actuator: usize) -> Option<usize> {
+        self.actuated_slides
             .iter()
             .position(|&by| by == Some(actuator))
     }
 
-    /// The derivative of a relation with the angle of each body it names.
-    pub fn relation_couples<T: Scalar>(
+    /// The derivative of a coupling with the angle of each body it names.
+    pub fn coupling_angle_derivatives<T: Scalar>(
         &self,
-        relation: usize,
+        coupling: usize,
         pose: &Pose<T>,
-        mut couple: impl FnMut(usize, T),
+        mut add: impl FnMut(usize, T),
     ) {
-        let ratio = &self.lowered.ratios[relation];
-        let mut each = |sum: &[(Measure, f64)], by: T| {
-            for &(measure, factor) in sum {
-                if let Measure::Angle(body) = measure {
-                    couple(body, by * T::lift(factor));
+        let lowered_coupling = &self.lowered.couplings[coupling];
+        let mut add_terms = |sum: &[(LoweredCoordinate, f64)], by: T| {
+            for &(coordinate, factor) in sum {
+                if let LoweredCoordinate::Angle(body) = coordinate {
+                    add(body, by * T::from_f64(factor));
                 }
             }
         };
-        each(&ratio.of, T::lift(1.0));
-        if let Some((_, sum)) = &ratio.law {
-            let slope = self.relations[relation].slope(&pose.angle, &pose.slide);
-            each(sum, -slope);
+        add_terms(&lowered_coupling.dependent, T::from_f64(1.0));
+        if let Some((_, sum)) = &lowered_coupling.law {
+            let slope = self.couplings[coupling].slope(&pose.angle, &pose.slide_travel);
+            add_terms(sum, -slope);
         }
     }
 
     /// By slide: the actuator that drives it, if any.
-    pub fn driven_slides(&self) -> &[Option<usize>] {
-        &self.driven_slides
+    pub fn actuated_slides(&self) -> &[Option<usize>] {
+        &self.actuated_slides
     }
 
-    /// Number of relations.
-    pub fn relations(&self) -> usize {
-        self.relations.len()
+    /// Number of couplings.
+    pub fn couplings(&self) -> usize {
+        self.couplings.len()
     }
 
-    /// For each group, the ways in which it closes at the start.
-    pub fn branches(&self) -> &[Branches] {
-        &self.branches
+    /// The assembly modes of each group.
+    pub fn group_modes(&self) -> &[GroupModes] {
+        &self.group_modes
     }
 }

@@ -1,10 +1,10 @@
-//! Vectors of the plane. A direction (cos, sin) is a `Vec2` of unit length, and turns
+//! Vectors of the plane. A rotation (cos θ, sin θ) is a `Vec2` of unit length, and rotates
 //! another vector by complex multiplication.
 //!
-//! Operators tell the line that uses them, not their own: a kind of number that watches its
-//! operations (the fault study of the test package) then sees the term that is meant.
+//! Operators report their caller's source line (`#[track_caller]`): a number type that records its operations (the
+//! mutation tests) then sees the term that uses them.
 
-use crate::scalar::Scalar;
+use dwell_numerics::Scalar;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
 
 /// A vector of the plane, or a rotation as (cos θ, sin θ).
@@ -25,7 +25,7 @@ pub const fn vec2<T>(x: T, y: T) -> Vec2<T> {
 impl Vec2<f64> {
     /// The zero vector.
     pub const ZERO: Self = vec2(0.0, 0.0);
-    /// The rotation by nothing.
+    /// The rotation by zero.
     pub const IDENTITY: Self = vec2(1.0, 0.0);
 
     /// The unit vector at `angle` (rad) from the x axis.
@@ -49,20 +49,20 @@ impl Vec2<f64> {
         self.x.is_finite() && self.y.is_finite()
     }
 
-    /// The same constants as another kind of number.
+    /// The same constants as another number type.
     #[inline(always)]
     #[track_caller]
-    pub fn lift<T: Scalar>(self) -> Vec2<T> {
-        vec2(T::lift(self.x), T::lift(self.y))
+    pub fn cast<T: Scalar>(self) -> Vec2<T> {
+        vec2(T::from_f64(self.x), T::from_f64(self.y))
     }
 }
 
 impl<T: Scalar> Vec2<T> {
-    /// Zero, as any kind of number.
+    /// Zero, as any number type.
     #[inline(always)]
     #[track_caller]
     pub fn zero() -> Self {
-        vec2(T::lift(0.0), T::lift(0.0))
+        vec2(T::from_f64(0.0), T::from_f64(0.0))
     }
 
     /// Scalar product.
@@ -79,24 +79,24 @@ impl<T: Scalar> Vec2<T> {
         self.x * other.y - self.y * other.x
     }
 
-    /// The vector turned by +90°.
+    /// The vector rotated by +90°.
     #[inline(always)]
     #[track_caller]
     pub fn perp(self) -> Self {
         vec2(-self.y, self.x)
     }
 
-    /// The vector turned by the rotation `by` = (cos, sin).
+    /// The vector rotated by `by` = (cos, sin).
     #[inline(always)]
     #[track_caller]
-    pub fn turn(self, by: Self) -> Self {
+    pub fn rotate(self, by: Self) -> Self {
         vec2(self.x * by.x - self.y * by.y, self.x * by.y + self.y * by.x)
     }
 
-    /// The vector turned back by the rotation `by` = (cos, sin).
+    /// The vector rotated by the inverse of `by` = (cos, sin).
     #[inline(always)]
     #[track_caller]
-    pub fn turn_back(self, by: Self) -> Self {
+    pub fn rotate_inverse(self, by: Self) -> Self {
         vec2(self.x * by.x + self.y * by.y, self.y * by.x - self.x * by.y)
     }
 }

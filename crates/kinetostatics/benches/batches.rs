@@ -6,37 +6,37 @@
 //! branches of the sine cannot be foreseen, and in order, as a sweep has them.
 
 mod bench;
-mod hand_written_general;
-mod hand_written_reduced;
+mod closed_form_general;
+mod closed_form_reduced;
 
-use bench::{Case, EVALUATIONS, STEP, reactions, stop};
+use bench::{Case, EVALUATIONS, GOLDEN_ANGLE, reactions, stop};
+use closed_form_general::General;
+use closed_form_reduced::{Body, FourBar, SliderCrank};
 use dwell_geometry::{
-    Actuator, Body as Named, BodyId, Drive, Joint, JointKind, Mechanism, Reaction, Start, Vec2,
-    vec2,
+    Actuator, ActuatorKind, AssemblyConfiguration, Body as Named, BodyId, Joint, JointKind,
+    Mechanism, Reaction, Vec2, vec2,
 };
-use dwell_kinetostatics::{Batch, Exact, Mass, Model, Reduced};
+use dwell_kinetostatics::{Batch, ExactModel, Mass, Model, ReducedModel};
 use dwell_scene::Scene;
-use hand_written_general::General;
-use hand_written_reduced::{Body, FourBar, SliderCrank};
 use rayon::ThreadPool;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::hint::black_box;
 use std::time::Instant;
 
 /// Turns of each subject.
-const TURNS: usize = 200;
+const ROUNDS: usize = 200;
 /// The chains: numbers of four-bars.
 const CHAINS: [usize; 7] = [1, 3, 10, 30, 100, 300, 1000];
 
 /// By hand: from coordinates to m, ½m′, a and b; one after another where each coordinate has something of the last
 /// m, as an integrator's has, or as the processor likes.
-type ByHand = Box<dyn Fn(&[f64], Option<f64>, &mut [[f64; 4]])>;
+type ClosedFormBatch = Box<dyn Fn(&[f64], Option<f64>, &mut [[f64; 4]])>;
 
 /// A mechanism by hand and by Dwell.
-struct Pair {
+struct Comparison {
     name: &'static str,
-    hand: ByHand,
-    exact: Exact,
+    closed_form: ClosedFormBatch,
+    exact: ExactModel,
 }
 
 /// One thread, and all of them.
@@ -54,9 +54,9 @@ fn main() {
         one: pool(1),
         all: pool(0),
     };
-    let pairs = [single_dwell(), four_bar(), slider_crank()];
-    for pair in &pairs {
-        agree(pair, &coordinates(0, false));
+    let comparisons = [single_dwell(), four_bar(), slider_crank()];
+    for comparison in &comparisons {
+        agree(comparison, &coordinates(0, false));
     }
     println!(
         "m, m'/2 and one reaction pair: least ns a pose; ratios to the hand (in batches: to both)"
@@ -66,9 +66,9 @@ fn main() {
         "{:26}{:^24}{:^25}{:^23}{count:^23}",
         "", "each waits: hand, Dwell", "none waits: hand, Dwell", "batches, 1 thread"
     );
-    for pair in &pairs {
+    for comparison in &comparisons {
         for ordered in [false, true] {
-            compare(pair, ordered, &threads);
+            compare(comparison, ordered, &threads);
         }
     }
     chains(&threads.one);
@@ -76,72 +76,89 @@ fn main() {
 }
 
 /// Coordinates over a turn for one turn of the subjects, none of them met before.
-fn coordinates(turn: usize, ordered: bool) -> Vec<f64> {
-    let phase = 0.1 + turn as f64 * STEP / 3.0;
+fn coordinates(round: usize, ordered: bool) -> Vec<f64> {
+    let phase = 0.1 + round as f64 * GOLDEN_ANGLE / 3.0;
     let step = if ordered {
         TAU / EVALUATIONS as f64
     } else {
-        STEP
+        GOLDEN_ANGLE
     };
     let all = (0..EVALUATIONS).map(|k| phase + k as f64 * step);
     all.map(|q| q.rem_euclid(TAU)).collect()
 }
 
-fn compare(pair: &Pair, ordered: bool, threads: &Threads) {
-    let exact = &pair.exact;
-    let mut by_hand = vec![[0.0; 4]; EVALUATIONS];
-    let (mut batch, mut work) = (Batch::default(), exact.work());
-    let mut out = exact.model().coefficients();
-    let mut least = [f64::INFINITY; 6];
-    for turn in 0..TURNS {
-        let q = coordinates(turn, ordered);
-        for waiting in [true, false] {
+fn compare(comparison: &Comparison, ordered: bool, threads: &Threads) {
+    let exact = &comparison.exact;
+    let mut closed_form_values = vec![[0.0; 4]; EVALUATIONS];
+    let (mut batch, mut workspace) = (Batch::default(), exact.workspace());
+    let mut out = exact.model().coefficient_buffer();
+    let mut min_ns = [f64::INFINITY; 6];
+    for round in 0..ROUNDS {
+        let q = coordinates(round, ordered);
+        for latency_bound in [true, false] {
             // Nothing, but the processor does not know.
-            let part = waiting.then(|| black_box(0.0));
-            let at = usize::from(!waiting);
-            time(&mut least[at], || {
-                (pair.hand)(black_box(&q), part, &mut by_hand);
-                black_box(&by_hand);
+            let part = latency_bound.then(|| black_box(0.0));
+            let at = usize::from(!latency_bound);
+            time(&mut min_ns[at], || {
+                (comparison.closed_form)(black_box(&q), part, &mut closed_form_values);
+                black_box(&closed_form_values);
             });
-            time(&mut least[2 + at], || {
+            time(&mut min_ns[2 + at], || {
                 for &q in black_box(&q) {
                     let q = part.map_or(q, |part| q + part * out.m);
-                    black_box(exact.coefficients(q, &mut work, &mut out).is_ok());
+                    black_box(exact.coefficients(q, &mut workspace, &mut out).is_ok());
                     black_box(&out);
                 }
             });
         }
-        for (pool, least) in [&threads.one, &threads.all]
+        for (pool, min_ns) in [&threads.one, &threads.all]
             .into_iter()
-            .zip(&mut least[4..])
+            .zip(&mut min_ns[4..])
         {
             pool.install(|| {
-                time(least, || {
-                    exact.reduce_all(black_box(&q), &mut batch);
+                time(min_ns, || {
+                    exact.reduce_batch(black_box(&q), &mut batch);
                     black_box(&batch);
                 });
             });
         }
     }
-    let [hand_waits, hand, waits, one, lanes, all] = least;
+    let [
+        closed_form_latency,
+        closed_form_throughput,
+        latency,
+        throughput,
+        lanes,
+        all,
+    ] = min_ns;
     let order = if ordered { "in order" } else { "in no order" };
-    print!("{:14}{order:12}", pair.name);
-    print!("{hand_waits:8.1}{waits:9.1}{:7.2}", waits / hand_waits);
-    print!("{hand:9.1}{one:9.1}{:7.2}", one / hand);
+    print!("{:14}{order:12}", comparison.name);
+    print!(
+        "{closed_form_latency:8.1}{latency:9.1}{:7.2}",
+        latency / closed_form_latency
+    );
+    print!(
+        "{closed_form_throughput:9.1}{throughput:9.1}{:7.2}",
+        throughput / closed_form_throughput
+    );
     for ns in [lanes, all] {
-        print!("{ns:9.1}{:7.2}{:7.2}", ns / hand_waits, ns / hand);
+        print!(
+            "{ns:9.1}{:7.2}{:7.2}",
+            ns / closed_form_latency,
+            ns / closed_form_throughput
+        );
     }
     println!();
 }
 
-fn time(least: &mut f64, act: impl FnOnce()) {
+fn time(min_ns: &mut f64, evaluate: impl FnOnce()) {
     let start = Instant::now();
-    act();
-    *least = least.min(start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64);
+    evaluate();
+    *min_ns = min_ns.min(start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64);
 }
 
 /// IFToMM's A02: N four-bars in a row, all links 1 m and 1 kg. Its m is (4 N + 1)/3, whatever the angle.
-fn chain(n: usize) -> Exact {
+fn chain(n: usize) -> ExactModel {
     let body = |_| Named {
         name: "link".into(),
     };
@@ -167,7 +184,7 @@ fn chain(n: usize) -> Exact {
         actuators: vec![Actuator {
             name: "theta".into(),
             bodies: [BodyId(0), BodyId(1)],
-            drive: Drive::Angle,
+            kind: ActuatorKind::Angle,
         }],
         ..Mechanism::default()
     };
@@ -176,16 +193,16 @@ fn chain(n: usize) -> Exact {
         center: vec2(0.5, 0.0),
         inertia: 1.0 / 12.0,
     };
-    let start = Start {
+    let assembly = AssemblyConfiguration {
         q: vec![FRAC_PI_2],
-        rough: (0..2 * n + 2)
+        initial_guess: (0..2 * n + 2)
             .map(|b| Some(if b % 2 == 1 { FRAC_PI_2 } else { 0.0 }))
             .collect(),
-        ..Start::default()
+        ..AssemblyConfiguration::default()
     };
-    let model = Model::new(&mechanism, &vec![bar; 2 * n + 2], &start, &[]);
+    let model = Model::new(&mechanism, &vec![bar; 2 * n + 2], &assembly, &[]);
     let model = model.unwrap_or_else(|e| stop("chain", &e.to_string()));
-    Exact::new(model).unwrap_or_else(|| stop("chain", "it has several actuators"))
+    ExactModel::new(model).unwrap_or_else(|| stop("chain", "it has several actuators"))
 }
 
 /// What a group costs in chains of more and more of them.
@@ -194,61 +211,68 @@ fn chains(thread: &ThreadPool) {
     println!("{:>8}{:>16}{:>16}", "N", "one by one", "in batches");
     for n in CHAINS {
         let exact = chain(n);
-        let (mut work, mut batch) = (exact.work(), Batch::default());
+        let (mut workspace, mut batch) = (exact.workspace(), Batch::default());
         let count = (EVALUATIONS / n).max(64);
-        let mut least = [f64::INFINITY; 2];
-        for turn in 0..TURNS / 10 {
+        let mut min_ns = [f64::INFINITY; 2];
+        for round in 0..ROUNDS / 10 {
             // Clear of the flat positions, where it is singular.
-            let at = |k: usize| 0.5 + 2.0 * ((k + turn * count) as f64 * STEP / TAU).fract();
+            let at =
+                |k: usize| 0.5 + 2.0 * ((k + round * count) as f64 * GOLDEN_ANGLE / TAU).fract();
             let q: Vec<f64> = (0..count).map(at).collect();
             let part = EVALUATIONS as f64 / (count * n) as f64;
             let mut spent = [f64::INFINITY; 2];
             time(&mut spent[0], || {
                 for &q in black_box(&q) {
-                    black_box(exact.inertia(q, &mut work).is_ok());
+                    black_box(exact.inertia(q, &mut workspace).is_ok());
                 }
             });
             thread.install(|| {
                 time(&mut spent[1], || {
-                    exact.reduce_all(black_box(&q), &mut batch);
+                    exact.reduce_batch(black_box(&q), &mut batch);
                 });
             });
-            for (least, spent) in least.iter_mut().zip(spent) {
-                *least = least.min(spent * part);
+            for (min_ns, spent) in min_ns.iter_mut().zip(spent) {
+                *min_ns = min_ns.min(spent * part);
             }
             let m = (4.0 * n as f64 + 1.0) / 3.0;
             for (k, &q) in q.iter().enumerate() {
-                let one = exact.inertia(q, &mut work).ok();
+                let one = exact.inertia(q, &mut workspace).ok();
                 assert_eq!(one, Some((batch.m[k], batch.half_dm[k])), "{n} at {q}");
                 // A rounding of a link is handed on N times, divided by sin q each time.
-                let [off, slope] = [batch.m[k] - m, batch.half_dm[k]].map(|v| v.abs() / m);
+                let [difference, slope] = [batch.m[k] - m, batch.half_dm[k]].map(|v| v.abs() / m);
                 assert!(
-                    off < 1e-11 && slope < 1e-11,
-                    "{n} at {q}: {off:e} {slope:e}"
+                    difference < 1e-11 && slope < 1e-11,
+                    "{n} at {q}: {difference:e} {slope:e}"
                 );
             }
         }
-        println!("{n:8}{:16.1}{:16.1}", least[0], least[1]);
+        println!("{n:8}{:16.1}{:16.1}", min_ns[0], min_ns[1]);
     }
 }
 
 /// What more requested reactions of the single-dwell cost; those of more are the same to the last bit.
 fn requested() {
     let case = Case::read("single-dwell");
-    let every = case.scene.mechanism.reactions();
-    let models = [0, 1, 4, every.len()].map(|count| {
-        let some: Vec<Reaction> = every[every.len() - count..].to_vec();
+    let all_reactions = case.scene.mechanism.reactions();
+    let models = [0, 1, 4, all_reactions.len()].map(|count| {
+        let some: Vec<Reaction> = all_reactions[all_reactions.len() - count..].to_vec();
         case.model(&some)
     });
-    let mut works = models.each_ref().map(|model| model.work());
-    let mut outs = models.each_ref().map(|model| model.model().coefficients());
-    let mut least = [f64::INFINITY; 4];
-    for turn in 0..TURNS {
-        let q = coordinates(turn, false);
+    let mut workspaces = models.each_ref().map(|model| model.workspace());
+    let mut outs = models
+        .each_ref()
+        .map(|model| model.model().coefficient_buffer());
+    let mut min_ns = [f64::INFINITY; 4];
+    for round in 0..ROUNDS {
+        let q = coordinates(round, false);
         for (i, model) in models.iter().enumerate() {
-            time(&mut least[i], || {
+            time(&mut min_ns[i], || {
                 for &q in black_box(&q) {
-                    black_box(model.coefficients(q, &mut works[i], &mut outs[i]).is_ok());
+                    black_box(
+                        model
+                            .coefficients(q, &mut workspaces[i], &mut outs[i])
+                            .is_ok(),
+                    );
                     black_box(&outs[i]);
                 }
             });
@@ -261,12 +285,12 @@ fn requested() {
         }
     }
     println!("\nsingle-dwell, by requested reactions: least ns a pose, ratio to none");
-    for (model, ns) in models.iter().zip(least) {
-        println!("{:8}{ns:16.1}{:16.2}", model.reactions(), ns / least[0]);
+    for (model, ns) in models.iter().zip(min_ns) {
+        println!("{:8}{ns:16.1}{:16.2}", model.reactions(), ns / min_ns[0]);
     }
 }
 
-fn every(at: impl Fn(f64) -> [f64; 4] + 'static) -> ByHand {
+fn batch_of(at: impl Fn(f64) -> [f64; 4] + 'static) -> ClosedFormBatch {
     Box::new(move |q, part, out| match part {
         Some(part) => {
             let mut last = 0.0;
@@ -283,13 +307,13 @@ fn every(at: impl Fn(f64) -> [f64; 4] + 'static) -> ByHand {
     })
 }
 
-fn single_dwell() -> Pair {
+fn single_dwell() -> Comparison {
     let case = Case::read("single-dwell");
     let general = General::new();
-    Pair {
+    Comparison {
         name: "single-dwell",
         exact: case.model(&reactions(&case.scene, "slide.normal")),
-        hand: every(move |q| general.at(q)),
+        closed_form: batch_of(move |q| general.at(q)),
     }
 }
 
@@ -304,60 +328,63 @@ fn body(scene: &Scene, name: &str) -> Body {
     }
 }
 
-fn four_bar() -> Pair {
+fn four_bar() -> Comparison {
     let case = Case::read("crank-rocker");
-    let hand = FourBar {
+    let closed_form = FourBar {
         bars: [1.0, 3.5, 3.0, 4.0],
         bodies: ["crank", "coupler", "rocker"].map(|name| body(&case.scene, name)),
     };
-    Pair {
+    Comparison {
         name: "four-bar",
         exact: case.model(&reactions(&case.scene, "C.x")),
-        hand: every(move |q| hand.at(q)),
+        closed_form: batch_of(move |q| closed_form.at(q)),
     }
 }
 
-fn slider_crank() -> Pair {
+fn slider_crank() -> Comparison {
     let case = Case::read("slider-crank");
-    let hand = SliderCrank {
+    let closed_form = SliderCrank {
         bars: [0.08, 0.28],
         offset: 0.025,
         bodies: ["crank", "rod"].map(|name| body(&case.scene, name)),
         piston: body(&case.scene, "piston").mass,
     };
-    Pair {
+    Comparison {
         name: "slider-crank",
         exact: case.model(&reactions(&case.scene, "guide.normal")),
-        hand: every(move |q| hand.at(q)),
+        closed_form: batch_of(move |q| closed_form.at(q)),
     }
 }
 
 /// Holds all against each other: the batch against single evaluations to the last bit, both against the
 /// hand to rounding.
-fn agree(pair: &Pair, q: &[f64]) {
-    let mut truth = vec![[0.0; 4]; q.len()];
-    (pair.hand)(q, None, &mut truth);
+fn agree(comparison: &Comparison, q: &[f64]) {
+    let mut reference = vec![[0.0; 4]; q.len()];
+    (comparison.closed_form)(q, None, &mut reference);
     let mut batch = Batch::default();
-    pair.exact.reduce_all(q, &mut batch);
-    let (mut work, mut out) = (pair.exact.work(), pair.exact.model().coefficients());
-    let (mut largest, mut apart) = ([0.0_f64; 4], [0.0_f64; 4]);
+    comparison.exact.reduce_batch(q, &mut batch);
+    let (mut workspace, mut out) = (
+        comparison.exact.workspace(),
+        comparison.exact.model().coefficient_buffer(),
+    );
+    let (mut largest, mut difference) = ([0.0_f64; 4], [0.0_f64; 4]);
     for (i, &q) in q.iter().enumerate() {
-        let done = pair.exact.coefficients(q, &mut work, &mut out);
-        done.unwrap_or_else(|e| stop(pair.name, &e.to_string()));
+        let done = comparison.exact.coefficients(q, &mut workspace, &mut out);
+        done.unwrap_or_else(|e| stop(comparison.name, &e.to_string()));
         let one = [out.m, out.half_dm, out.a[0], out.b[0]];
         let all = [batch.m[i], batch.half_dm[i], batch.a[i], batch.b[i]];
-        assert_eq!(one, all, "{} at {q}", pair.name);
+        assert_eq!(one, all, "{} at {q}", comparison.name);
         for k in 0..4 {
-            largest[k] = largest[k].max(truth[i][k].abs());
-            apart[k] = apart[k].max((one[k] - truth[i][k]).abs());
+            largest[k] = largest[k].max(reference[i][k].abs());
+            difference[k] = difference[k].max((one[k] - reference[i][k]).abs());
         }
     }
     for (name, k) in [("m", 0), ("m'/2", 1), ("a", 2), ("b", 3)] {
-        let scaled = apart[k] / largest[k];
+        let scaled = difference[k] / largest[k];
         assert!(
             scaled < 1e-12,
             "{}: {name} differs by {scaled:e} of its largest",
-            pair.name
+            comparison.name
         );
     }
 }

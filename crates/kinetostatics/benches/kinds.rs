@@ -5,7 +5,7 @@
 //! their largest error within the accuracy. The library's table is the one of degree 7; these have no turns
 //! to take off and no ends to look out for.
 
-use dwell_kinetostatics::{Exact, Extent, Model, Reduced, Table};
+use dwell_kinetostatics::{ExactModel, Model, ReducedModel, TableDomain, TabulatedModel};
 use dwell_scene::Scene;
 use std::f64::consts::{PI, TAU};
 use std::hint::black_box;
@@ -15,14 +15,14 @@ use std::time::Instant;
 /// The golden section: an irrational part.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 const EVALUATIONS: usize = 4000;
-const TURNS: usize = 200;
+const ROUNDS: usize = 200;
 /// Points at which a table is held against the exact model.
 const CHECKED: usize = 4000;
 
 /// A table of m and ½m′.
 trait Kind: Sized {
     /// Of so many cells or terms, over [0, length].
-    fn make(exact: &Exact, length: f64, size: usize) -> Self;
+    fn build(exact: &ExactModel, length: f64, size: usize) -> Self;
     fn at(&self, q: f64) -> [f64; 2];
     fn bytes(&self) -> usize;
     /// How the error goes with the size: as its inverse to this power, or as a geometric series.
@@ -30,13 +30,13 @@ trait Kind: Sized {
 }
 
 /// Pieces of degree 2N − 1 through values and slopes at N places of a cell; T = 2N + 1.
-struct Pieces<const N: usize, const T: usize> {
+struct Piecewise<const N: usize, const T: usize> {
     cells: Vec<[[f64; 2]; T]>,
     per_cell: f64,
 }
 
 /// The places of Gauss and Lobatto.
-fn places(count: usize) -> Vec<f64> {
+fn lobatto_nodes(count: usize) -> Vec<f64> {
     match count {
         2 => vec![-1.0, 1.0],
         3 => vec![-1.0, 0.0, 1.0],
@@ -52,34 +52,34 @@ fn places(count: usize) -> Vec<f64> {
 }
 
 /// Hermite's polynomial by rising powers, from values and slopes at places.
-fn hermite(places: &[f64], data: &[[f64; 2]]) -> Vec<f64> {
-    let terms = 2 * places.len();
+fn hermite(nodes: &[f64], data: &[[f64; 2]]) -> Vec<f64> {
+    let terms = 2 * nodes.len();
     let mut difference: Vec<f64> = (0..terms).map(|i| data[i / 2][0]).collect();
     for order in 1..terms {
         for i in (order..terms).rev() {
             difference[i] = if order == 1 && i % 2 == 1 {
                 data[i / 2][1]
             } else {
-                let apart = places[i / 2] - places[(i - order) / 2];
-                (difference[i] - difference[i - 1]) / apart
+                let spacing = nodes[i / 2] - nodes[(i - order) / 2];
+                (difference[i] - difference[i - 1]) / spacing
             };
         }
     }
     let mut powers = vec![0.0; terms];
     for i in (0..terms).rev() {
         for j in (1..terms).rev() {
-            powers[j] = powers[j - 1] - places[i / 2] * powers[j];
+            powers[j] = powers[j - 1] - nodes[i / 2] * powers[j];
         }
-        powers[0] = difference[i] - places[i / 2] * powers[0];
+        powers[0] = difference[i] - nodes[i / 2] * powers[0];
     }
     powers
 }
 
-impl<const N: usize, const T: usize> Kind for Pieces<N, T> {
+impl<const N: usize, const T: usize> Kind for Piecewise<N, T> {
     const ORDER: Option<f64> = Some(2.0 * N as f64);
 
-    fn make(exact: &Exact, length: f64, size: usize) -> Self {
-        let (places, mut work) = (places(N), exact.work());
+    fn build(exact: &ExactModel, length: f64, size: usize) -> Self {
+        let (nodes, mut workspace) = (lobatto_nodes(N), exact.workspace());
         let half = 0.5 * length / size as f64;
         let mut m = None;
         let mut left = None;
@@ -87,10 +87,10 @@ impl<const N: usize, const T: usize> Kind for Pieces<N, T> {
         for cell in 0..size {
             let middle = half * (2 * cell + 1) as f64;
             let mut data = Vec::with_capacity(N);
-            for (i, x) in places.iter().enumerate() {
+            for (i, x) in nodes.iter().enumerate() {
                 let known = left.filter(|_| i == 0);
                 let at = known.unwrap_or_else(|| {
-                    let at = exact.curvature(middle + half * x, &mut work);
+                    let at = exact.inertia_derivatives(middle + half * x, &mut workspace);
                     at.unwrap_or_else(|e| stop(&e.to_string()))
                 });
                 left = Some(at);
@@ -98,7 +98,7 @@ impl<const N: usize, const T: usize> Kind for Pieces<N, T> {
                 data.push([at.half_dm, at.half_ddm * half]);
             }
             let mut coefficients = [[0.0; 2]; T];
-            for (j, g) in hermite(&places, &data).into_iter().enumerate() {
+            for (j, g) in hermite(&nodes, &data).into_iter().enumerate() {
                 coefficients[j][1] = g;
                 coefficients[j + 1][0] = 2.0 * half * g / (j + 1) as f64;
             }
@@ -146,20 +146,20 @@ struct Fourier {
 impl Kind for Fourier {
     const ORDER: Option<f64> = None;
 
-    fn make(exact: &Exact, length: f64, size: usize) -> Self {
-        let (mut work, points) = (exact.work(), 2 * size);
+    fn build(exact: &ExactModel, length: f64, size: usize) -> Self {
+        let (mut workspace, points) = (exact.workspace(), 2 * size);
         let at = |i: usize| {
-            let m = exact.inertia(length * i as f64 / points as f64, &mut work);
+            let m = exact.inertia(length * i as f64 / points as f64, &mut workspace);
             m.unwrap_or_else(|e| stop(&e.to_string())).0
         };
         let samples: Vec<f64> = (0..points).map(at).collect();
-        let turned: Vec<(f64, f64)> = (0..points)
+        let phases: Vec<(f64, f64)> = (0..points)
             .map(|i| (TAU * i as f64 / points as f64).sin_cos())
             .collect();
         let term = |k: usize| {
             let mut sum = [0.0; 2];
             for (i, m) in samples.iter().enumerate() {
-                let (sin, cos) = turned[i * k % points];
+                let (sin, cos) = phases[i * k % points];
                 sum = [sum[0] + m * cos, sum[1] - m * sin];
             }
             let scale = if k == 0 { 1.0 } else { 2.0 } / points as f64;
@@ -198,11 +198,11 @@ struct Chebyshev {
 impl Kind for Chebyshev {
     const ORDER: Option<f64> = None;
 
-    fn make(exact: &Exact, length: f64, size: usize) -> Self {
-        let mut work = exact.work();
+    fn build(exact: &ExactModel, length: f64, size: usize) -> Self {
+        let mut workspace = exact.workspace();
         let angle = |i: usize| PI * (i as f64 + 0.5) / size as f64;
         let at = |i: usize| {
-            let both = exact.inertia(0.5 * length * (1.0 + angle(i).cos()), &mut work);
+            let both = exact.inertia(0.5 * length * (1.0 + angle(i).cos()), &mut workspace);
             both.unwrap_or_else(|e| stop(&e.to_string()))
         };
         let samples: Vec<(f64, f64)> = (0..size).map(at).collect();
@@ -236,19 +236,19 @@ impl Kind for Chebyshev {
 }
 
 /// The exact model at points off every grid, and the largest values.
-struct Truth {
+struct Reference {
     at: Vec<(f64, [f64; 2])>,
     largest: [f64; 2],
 }
 
-impl Truth {
-    fn new(exact: &Exact, length: f64) -> Self {
-        let mut work = exact.work();
+impl Reference {
+    fn new(exact: &ExactModel, length: f64) -> Self {
+        let mut workspace = exact.workspace();
         let mut largest = [0.0_f64; 2];
         let mut at = Vec::new();
         for i in 0..CHECKED {
             let q = length * (0.1 + GOLDEN * i as f64).fract();
-            let both = exact.inertia(q, &mut work);
+            let both = exact.inertia(q, &mut workspace);
             let (m, slope) = both.unwrap_or_else(|e| stop(&e.to_string()));
             largest = [largest[0].max(m.abs()), largest[1].max(slope.abs())];
             at.push((q, [m, slope]));
@@ -257,20 +257,25 @@ impl Truth {
     }
 
     fn error(&self, kind: &impl Kind) -> f64 {
-        let mut most = 0.0_f64;
-        for (q, truth) in &self.at {
-            let own = kind.at(*q);
+        let mut max_error = 0.0_f64;
+        for (q, reference) in &self.at {
+            let tabulated = kind.at(*q);
             for k in 0..2 {
-                most = most.max((own[k] - truth[k]).abs() / self.largest[k]);
+                max_error = max_error.max((tabulated[k] - reference[k]).abs() / self.largest[k]);
             }
         }
-        most
+        max_error
     }
 }
 
 /// The smallest size that keeps the accuracy.
-fn smallest<K: Kind>(exact: &Exact, truth: &Truth, length: f64, accuracy: f64) -> usize {
-    let enough = |size: usize| 4.0 * truth.error(&K::make(exact, length, size)) <= accuracy;
+fn smallest<K: Kind>(
+    exact: &ExactModel,
+    reference: &Reference,
+    length: f64,
+    accuracy: f64,
+) -> usize {
+    let enough = |size: usize| 4.0 * reference.error(&K::build(exact, length, size)) <= accuracy;
     let (mut below, mut size) = (1, 4);
     while !enough(size) {
         if size > 20_000 {
@@ -291,33 +296,33 @@ fn smallest<K: Kind>(exact: &Exact, truth: &Truth, length: f64, accuracy: f64) -
 
 /// The coordinates are known beforehand: a turn taken off in the loop is a branch that is often guessed wrong.
 fn nanoseconds<R>(length: f64, mut at: impl FnMut(f64) -> R) -> f64 {
-    let place = |i: usize| length * (0.1 + GOLDEN * i as f64).fract();
-    let places: Vec<f64> = (0..EVALUATIONS).map(place).collect();
-    let mut least = f64::INFINITY;
-    for _ in 0..TURNS {
+    let coordinate = |i: usize| length * (0.1 + GOLDEN * i as f64).fract();
+    let coordinates: Vec<f64> = (0..EVALUATIONS).map(coordinate).collect();
+    let mut min_ns = f64::INFINITY;
+    for _ in 0..ROUNDS {
         let start = Instant::now();
-        for &q in &places {
+        for &q in &coordinates {
             black_box(at(black_box(q)));
         }
-        least = least.min(start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64);
+        min_ns = min_ns.min(start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64);
     }
-    least
+    min_ns
 }
 
 fn microseconds<R>(mut make: impl FnMut() -> R) -> f64 {
-    let mut least = f64::INFINITY;
+    let mut min_us = f64::INFINITY;
     for _ in 0..50 {
         let start = Instant::now();
         black_box(make());
-        least = least.min(start.elapsed().as_secs_f64() * 1e6);
+        min_us = min_us.min(start.elapsed().as_secs_f64() * 1e6);
     }
-    least
+    min_us
 }
 
-fn row<K: Kind>(name: &str, exact: &Exact, truth: &Truth, length: f64, accuracy: f64) {
-    let size = smallest::<K>(exact, truth, length, accuracy);
-    let made = microseconds(|| K::make(exact, length, size));
-    let kind = K::make(exact, length, size);
+fn row<K: Kind>(name: &str, exact: &ExactModel, reference: &Reference, length: f64, accuracy: f64) {
+    let size = smallest::<K>(exact, reference, length, accuracy);
+    let made = microseconds(|| K::build(exact, length, size));
+    let kind = K::build(exact, length, size);
     let cost = nanoseconds(length, |q| kind.at(q));
     let unit = if K::ORDER.is_some() { "cells" } else { "terms" };
     println!(
@@ -333,30 +338,31 @@ fn main() {
         ("crank-rocker", 2.0),
     ] {
         let exact = read(case);
-        let truth = Truth::new(&exact, length);
+        let reference = Reference::new(&exact, length);
         println!("\n{case}, from 0 to {length:.3} rad");
         for accuracy in [1e-6, 1e-9, 1e-12] {
-            row::<Pieces<2, 5>>("pieces of degree 3", &exact, &truth, length, accuracy);
-            row::<Pieces<3, 7>>("pieces of degree 5", &exact, &truth, length, accuracy);
-            row::<Pieces<4, 9>>("pieces of degree 7", &exact, &truth, length, accuracy);
-            row::<Pieces<5, 11>>("pieces of degree 9", &exact, &truth, length, accuracy);
+            row::<Piecewise<2, 5>>("pieces of degree 3", &exact, &reference, length, accuracy);
+            row::<Piecewise<3, 7>>("pieces of degree 5", &exact, &reference, length, accuracy);
+            row::<Piecewise<4, 9>>("pieces of degree 7", &exact, &reference, length, accuracy);
+            row::<Piecewise<5, 11>>("pieces of degree 9", &exact, &reference, length, accuracy);
             if length == TAU {
-                row::<Fourier>("Fourier's series", &exact, &truth, length, accuracy);
+                row::<Fourier>("Fourier's series", &exact, &reference, length, accuracy);
             } else {
-                row::<Chebyshev>("Chebyshev's series", &exact, &truth, length, accuracy);
+                row::<Chebyshev>("Chebyshev's series", &exact, &reference, length, accuracy);
             }
             library(&exact, length, accuracy);
         }
     }
 }
 
-fn library(exact: &Exact, length: f64, accuracy: f64) {
-    let extent = if length == TAU {
-        Extent::Whole
+fn library(exact: &ExactModel, length: f64, accuracy: f64) {
+    let domain = if length == TAU {
+        TableDomain::Full
     } else {
-        Extent::Between(0.0, length)
+        TableDomain::Between(0.0, length)
     };
-    let make = || Table::new(exact, accuracy, extent).unwrap_or_else(|e| stop(&e.to_string()));
+    let make =
+        || TabulatedModel::new(exact, accuracy, domain).unwrap_or_else(|e| stop(&e.to_string()));
     let (made, table) = (microseconds(make), make());
     let cost = nanoseconds(length, |q| table.inertia(q, &mut ()));
     println!(
@@ -367,14 +373,14 @@ fn library(exact: &Exact, length: f64, accuracy: f64) {
     );
 }
 
-fn read(case: &str) -> Exact {
+fn read(case: &str) -> ExactModel {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
     let scene = Scene::read(home.join(case).join("scene.toml"));
     let scene = scene.unwrap_or_else(|e| stop(&e.to_string()));
-    let start = scene.assembly.to_start();
-    let model = Model::new(&scene.mechanism, &scene.masses, &start, &[]);
+    let assembly = scene.assembly.to_configuration();
+    let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &[]);
     let model = model.unwrap_or_else(|e| stop(&e.to_string()));
-    Exact::new(model).unwrap_or_else(|| stop("it has several actuators"))
+    ExactModel::new(model).unwrap_or_else(|| stop("it has several actuators"))
 }
 
 fn stop(why: &str) -> ! {

@@ -5,7 +5,7 @@
 //! as many cells as the table has, no turns to take off, no end to look out for; it gives m and ½m′ (or
 //! one of them), to some 1e-6 where the table gives 1e-12.
 
-use dwell_kinetostatics::{Exact, Extent, Model, Reduced, Table};
+use dwell_kinetostatics::{ExactModel, Model, ReducedModel, TableDomain, TabulatedModel};
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -14,7 +14,7 @@ use std::time::Instant;
 
 /// Evaluations in one turn of a subject, and turns of each.
 const EVALUATIONS: usize = 4000;
-const TURNS: usize = 400;
+const ROUNDS: usize = 400;
 /// The golden section: an irrational part.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// What the tables are asked for.
@@ -27,11 +27,11 @@ struct Cubic {
 }
 
 impl Cubic {
-    fn new(model: &Exact, cells: usize) -> Self {
-        let (mut work, width) = (model.work(), TAU / cells as f64);
+    fn new(model: &ExactModel, cells: usize) -> Self {
+        let (mut workspace, width) = (model.workspace(), TAU / cells as f64);
         let mut at = |i: usize| {
             let q = width * (i % cells) as f64;
-            let inertia = model.inertia(q, &mut work);
+            let inertia = model.inertia(q, &mut workspace);
             inertia.unwrap_or_else(|e| stop(&e.to_string()))
         };
         let cell = |i: usize| {
@@ -72,32 +72,32 @@ impl Cubic {
 struct Subject<'a> {
     name: &'static str,
     evaluate: Box<dyn FnMut() + 'a>,
-    least: f64,
+    min_ns: f64,
 }
 
 impl<'a> Subject<'a> {
     fn new<R>(name: &'static str, mut at: impl FnMut(f64) -> R + 'a) -> Self {
         // Known beforehand: a turn taken off in the loop is a branch that is often guessed wrong, and costs
         // more than a table.
-        let place = |i: usize| TAU * (0.1 + GOLDEN * i as f64).fract();
-        let places: Vec<f64> = (0..EVALUATIONS).map(place).collect();
+        let coordinate = |i: usize| TAU * (0.1 + GOLDEN * i as f64).fract();
+        let coordinates: Vec<f64> = (0..EVALUATIONS).map(coordinate).collect();
         let evaluate = Box::new(move || {
-            for &q in &places {
+            for &q in &coordinates {
                 black_box(at(black_box(q)));
             }
         });
         Self {
             name,
             evaluate,
-            least: f64::INFINITY,
+            min_ns: f64::INFINITY,
         }
     }
 
-    fn take_turn(&mut self) {
+    fn run_round(&mut self) {
         let start = Instant::now();
         (self.evaluate)();
         let ns = start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64;
-        self.least = self.least.min(ns);
+        self.min_ns = self.min_ns.min(ns);
     }
 }
 
@@ -113,19 +113,19 @@ fn main() {
 fn make(case: &str) {
     let exact = read(case, false);
     for accuracy in [1e-6, 1e-9, 1e-12] {
-        let mut least = f64::INFINITY;
+        let mut min_us = f64::INFINITY;
         let mut cells = 0;
         let mut bound = 0.0;
         for _ in 0..200 {
             let start = Instant::now();
-            let table = Table::new(&exact, accuracy, Extent::Whole);
+            let table = TabulatedModel::new(&exact, accuracy, TableDomain::Full);
             let table = black_box(table.unwrap_or_else(|e| stop(&e.to_string())));
-            least = least.min(start.elapsed().as_secs_f64() * 1e6);
+            min_us = min_us.min(start.elapsed().as_secs_f64() * 1e6);
             cells = table.cells()[0];
-            bound = table.bound();
+            bound = table.max_bound();
         }
         println!(
-            "{case}: m and m'/2 to {accuracy:.0e}: {cells} cells, bound {bound:.1e}, made in {least:.0} us"
+            "{case}: m and m'/2 to {accuracy:.0e}: {cells} cells, bound {bound:.1e}, made in {min_us:.0} us"
         );
     }
 }
@@ -133,14 +133,17 @@ fn make(case: &str) {
 fn measure(case: &str) {
     let exact = read(case, true);
     let made = Instant::now();
-    let table = Table::new(&exact, ACCURACY, Extent::Whole);
+    let table = TabulatedModel::new(&exact, ACCURACY, TableDomain::Full);
     let table = table.unwrap_or_else(|e| stop(&e.to_string()));
     let made = made.elapsed().as_secs_f64() * 1e3;
     let cubic = Cubic::new(&exact, table.cells()[0]);
-    let off = agree(&exact, &table, &cubic);
+    let difference = agree(&exact, &table, &cubic);
 
-    let (mut work, mut exact_work) = (exact.work(), exact.work());
-    let (mut out, mut own) = (exact.model().coefficients(), exact.model().coefficients());
+    let (mut workspace, mut exact_workspace) = (exact.workspace(), exact.workspace());
+    let (mut out, mut tabulated) = (
+        exact.model().coefficient_buffer(),
+        exact.model().coefficient_buffer(),
+    );
     let mut subjects = [
         Subject::new("bare loop", |q| q),
         Subject::new("bare cubic, m alone", |q| cubic.m(q)),
@@ -149,75 +152,84 @@ fn measure(case: &str) {
         Subject::new("… 1000 turns on", |q| {
             table.inertia(q + 1000.0 * TAU, &mut ())
         }),
-        Subject::new("table, m, m'/2 and m''/2", |q| table.curvature(q, &mut ())),
+        Subject::new("table, m, m'/2 and m''/2", |q| {
+            table.inertia_derivatives(q, &mut ())
+        }),
         Subject::new("table, all coefficients", |q| {
-            let done = table.coefficients(q, &mut (), &mut own).is_ok();
-            black_box(&own);
+            let done = table.coefficients(q, &mut (), &mut tabulated).is_ok();
+            black_box(&tabulated);
             done
         }),
-        Subject::new("exact, m and m'/2", |q| exact.inertia(q, &mut work)),
+        Subject::new("exact, m and m'/2", |q| exact.inertia(q, &mut workspace)),
         Subject::new("exact, all coefficients", |q| {
-            let done = exact.coefficients(q, &mut exact_work, &mut out).is_ok();
+            let done = exact
+                .coefficients(q, &mut exact_workspace, &mut out)
+                .is_ok();
             black_box(&out);
             done
         }),
     ];
-    for _ in 0..TURNS {
+    for _ in 0..ROUNDS {
         for subject in &mut subjects {
-            subject.take_turn();
+            subject.run_round();
         }
     }
     let [cells, others, _] = table.cells();
     let [bytes, all] = table.bytes();
     println!(
         "\n{case}: table of {ACCURACY:.0e}, made in {made:.0} ms, bound {:.1e}, met {:.1e} (the cubic: {:.0e})",
-        table.bound(),
-        off[0],
-        off[1]
+        table.max_bound(),
+        difference[0],
+        difference[1]
     );
     println!(
         "{cells} cells of m and m'/2 in {bytes} bytes; {others} of a and b, {all} bytes in all"
     );
-    let [alone, both] = [subjects[1].least, subjects[2].least];
+    let [alone, both] = [subjects[1].min_ns, subjects[2].min_ns];
     println!("                               ns   / cubic of m   / cubic of both");
-    for Subject { name, least, .. } in &subjects {
+    for Subject {
+        name,
+        min_ns: least,
+        ..
+    } in &subjects
+    {
         let (one, two) = (least / alone, least / both);
         println!("{name:26}{least:8.1}{one:13.2}{two:16.2}");
     }
 }
 
 /// The largest differences from the exact model as parts of the largest value: of the table, of the cubic.
-fn agree(exact: &Exact, table: &Table, cubic: &Cubic) -> [f64; 2] {
-    let mut work = exact.work();
-    let (mut largest, mut off) = ([0.0_f64; 2], [[0.0_f64; 2]; 2]);
+fn agree(exact: &ExactModel, table: &TabulatedModel, cubic: &Cubic) -> [f64; 2] {
+    let mut workspace = exact.workspace();
+    let (mut largest, mut difference) = ([0.0_f64; 2], [[0.0_f64; 2]; 2]);
     for i in 0..10_000 {
         let q = TAU * (0.1 + GOLDEN * f64::from(i)).fract();
-        let truth = exact.inertia(q, &mut work);
-        let (m, half_dm) = truth.unwrap_or_else(|e| stop(&e.to_string()));
+        let reference = exact.inertia(q, &mut workspace);
+        let (m, half_dm) = reference.unwrap_or_else(|e| stop(&e.to_string()));
         let found = table.inertia(q, &mut ());
         let found = found.unwrap_or_else(|e| stop(&e.to_string()));
-        for (off, (n, slope)) in off.iter_mut().zip([found, cubic.both(q)]) {
-            off[0] = off[0].max((n - m).abs());
-            off[1] = off[1].max((slope - half_dm).abs());
+        for (difference, (n, slope)) in difference.iter_mut().zip([found, cubic.both(q)]) {
+            difference[0] = difference[0].max((n - m).abs());
+            difference[1] = difference[1].max((slope - half_dm).abs());
         }
         largest = [largest[0].max(m), largest[1].max(half_dm.abs())];
     }
-    off.map(|[m, slope]| (m / largest[0]).max(slope / largest[1]))
+    difference.map(|[m, slope]| (m / largest[0]).max(slope / largest[1]))
 }
 
-fn read(case: &str, loaded: bool) -> Exact {
+fn read(case: &str, all_reactions: bool) -> ExactModel {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
     let scene = Scene::read(home.join(case).join("scene.toml"));
     let scene = scene.unwrap_or_else(|e| stop(&e.to_string()));
-    let start = scene.assembly.to_start();
-    let reactions = if loaded {
+    let assembly = scene.assembly.to_configuration();
+    let reactions = if all_reactions {
         scene.mechanism.reactions()
     } else {
         Vec::new()
     };
-    let model = Model::new(&scene.mechanism, &scene.masses, &start, &reactions);
+    let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &reactions);
     let model = model.unwrap_or_else(|e| stop(&e.to_string()));
-    Exact::new(model).unwrap_or_else(|| stop("it has several actuators"))
+    ExactModel::new(model).unwrap_or_else(|| stop("it has several actuators"))
 }
 
 fn stop(why: &str) -> ! {

@@ -1,96 +1,66 @@
-//! Coulomb friction in joints. What a joint rubs with depends on its reaction, and that on what rubs:
+//! Coulomb friction in joints. The friction of a joint depends on its reaction, and the reaction on the friction:
 //!
 //! ```text
 //! F_j = −µ_j g_j(R_j) tanh(v_j/v₀_j),    R = R⁰ + C F                         (1)
 //! ```
 //!
-//! with g the force times the radius in a pin, or the sum of what presses on the ends of a guide; R⁰ the
+//! with g the force times the radius in a pin, or the sum of the forces on the ends of a guide; R⁰ the
 //! reactions without friction and C what a unit of each friction adds to them. Where coordinates are
-//! free, R⁰ and C hold what their accelerations answer. Newton's method solves (1) from F = 0. The
+//! free, R⁰ and C include the effect of their accelerations. Newton's method solves (1) from F = 0. The
 //! determinant of its Jacobian is 1 without friction; where it is no longer positive the mechanism jams:
 //! the same state has two accelerations, or none.
 
-use crate::kinetostatics::KinetostaticsError;
-use crate::load::{Friction, LoadKind, Magnitude};
-use crate::model::{Actions, Model, Workspace};
-use dwell_geometry::measure::Measured;
-use dwell_geometry::{Component, JointKind, Mechanism, Reaction, Scalar, small};
+use crate::error::KinetostaticsError;
+use crate::load::{Friction, FrictionContact, Load, LoadKind};
+use crate::pass::InverseDynamics;
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use dwell_geometry::{Mechanism, Reaction};
+use dwell_numerics::{Scalar, lu};
 
-/// Newton's steps before a state is said to jam.
-const MOST_STEPS: usize = 60;
-/// A change of the frictions below this part of them is none.
-const SETTLED: f64 = 4.0 * f64::EPSILON;
-/// Below this part it is none if it falls no further: next to where it jams, rounding is amplified.
-const STUCK: f64 = 1e-6;
+/// Newton's steps after which a state counts as jammed.
+const MAX_ITERATIONS: usize = 60;
+/// Newton's method has converged when the forces change by less than this part of them,
+const STEP_TOLERANCE: f64 = 4.0 * f64::EPSILON;
+/// or by less than this part if the change no longer falls: next to a jam, rounding is amplified.
+const STAGNATION_TOLERANCE: f64 = 1e-6;
 
-/// A friction with what it needs of the model.
+/// A friction, compiled for a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Rub {
-    /// Its load.
+pub(crate) struct JointFriction {
+    /// Index of its load.
     pub(crate) load: usize,
-    /// The reactions it depends on, by their place in the model's.
-    pub(crate) reactions: [Option<usize>; 2],
+    /// Indices of the reactions it depends on; none for a component that it does not need.
+    reactions: [Option<usize>; 2],
     friction: Friction,
-    turns: bool,
-    /// Its speed is that of this coordinate.
-    travel: Measured,
+    /// The coordinate whose speed is that of the surfaces.
+    coordinate: CoordinateFunction,
 }
 
-impl Friction {
-    /// What is wrong with it, if anything.
-    pub(crate) fn check(&self, mechanism: &Mechanism, kind: LoadKind) -> Result<(), &'static str> {
-        let Some(joint) = mechanism.joints.get(self.joint.0) else {
-            return Err("it rubs in a joint that is not there");
-        };
-        let numbers = [self.coefficient, self.size];
-        let fades = self.fade > 0.0;
-        if !(fades && numbers.iter().all(|n| n.is_finite() && *n >= 0.0)) {
-            return Err("a coefficient, size or speed of friction that makes no sense");
-        }
-        let fits = match (joint.kind, kind) {
-            (JointKind::Revolute, LoadKind::Torque { bodies }) => bodies == joint.bodies,
-            (JointKind::Prismatic { .. } | JointKind::Slot { .. }, LoadKind::Slide(guide)) => {
-                guide.bodies == joint.bodies
-            }
-            _ => false,
-        };
-        if fits {
-            Ok(())
-        } else {
-            Err("its joint is no revolute joint, prismatic joint or slot between its bodies")
-        }
-    }
-
-    /// The reactions it depends on.
-    pub fn reactions(&self, mechanism: &Mechanism) -> Vec<Reaction> {
-        let joint = self.joint;
-        let components = mechanism.components(joint).iter();
-        let wanted = components.filter(|c| **c != Component::Moment || self.size > 0.0);
-        wanted
-            .map(|&component| Reaction { joint, component })
-            .collect()
-    }
-
+impl FrictionContact {
     /// g(R), N·m or N, and its derivatives by both components.
-    fn pressure<T: Scalar>(&self, turns: bool, [x, y]: [T; 2]) -> (T, [T; 2]) {
-        let (zero, size) = (T::lift(0.0), T::lift(self.size));
-        if turns {
-            let square = x * x + y * y;
-            if square.value() == 0.0 {
-                return (zero, [zero; 2]);
+    fn force<T: Scalar>(self, [x, y]: [T; 2]) -> (T, [T; 2]) {
+        let zero = T::from_f64(0.0);
+        let length = match self {
+            Self::Pin { radius } => {
+                let radius = T::from_f64(radius);
+                let square = x * x + y * y;
+                if square.value() == 0.0 {
+                    return (zero, [zero; 2]);
+                }
+                let force = square.sqrt();
+                return (radius * force, [radius * x / force, radius * y / force]);
             }
-            let force = square.sqrt();
-            return (size * force, [size * x / force, size * y / force]);
-        }
+            Self::Guide { length } => length,
+        };
         // The force x at the middle of the guide and the moment y press on its ends.
-        let half = T::lift(0.5);
-        let (lever, ends) = if self.size > 0.0 {
-            let lever = T::lift(1.0 / self.size);
+        let half = T::from_f64(0.5);
+        let (lever, ends) = if length > 0.0 {
+            let lever = T::from_f64(1.0 / length);
             (lever, [half * x + lever * y, half * x - lever * y])
         } else {
             (zero, [half * x; 2])
         };
-        let signs = ends.map(|end| T::lift(if end.value() < 0.0 { -1.0 } else { 1.0 }));
+        let signs = ends.map(|end| T::from_f64(if end.value() < 0.0 { -1.0 } else { 1.0 }));
         let sum = ends[0] * signs[0] + ends[1] * signs[1];
         (
             sum,
@@ -99,146 +69,147 @@ impl Friction {
     }
 }
 
-/// Working memory of a solution for the frictions.
+/// Working memory of [`solve`].
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Rubbing<T> {
+pub(crate) struct FrictionWorkspace<T> {
     /// By friction: µ tanh(v/v₀).
-    grip: Vec<T>,
+    friction_factor: Vec<T>,
     /// By friction: F.
-    force: Vec<T>,
-    matrix: Vec<T>,
+    pub(crate) force: Vec<T>,
+    jacobian: Vec<T>,
     step: Vec<T>,
     pivots: Vec<usize>,
 }
 
-impl<T: Scalar> Rubbing<T> {
+impl<T: Scalar> FrictionWorkspace<T> {
     pub(crate) fn new(count: usize) -> Self {
-        let zero = T::lift(0.0);
+        let zero = T::from_f64(0.0);
         Self {
-            grip: vec![zero; count],
+            friction_factor: vec![zero; count],
             force: vec![zero; count],
-            matrix: vec![zero; count * count],
+            jacobian: vec![zero; count * count],
             step: vec![zero; count],
             pivots: vec![0; count],
         }
     }
 }
 
-impl Rub {
-    /// The frictions among a model's loads.
-    ///
-    /// # Errors
-    /// The load whose joint's reactions the model does not compute.
-    pub(crate) fn find(mechanism: &Mechanism, model: &Model) -> Result<Vec<Self>, usize> {
-        let mut found = Vec::new();
-        for (load, one) in model.loads().iter().enumerate() {
-            let Magnitude::Friction(friction) = one.magnitude else {
-                continue;
-            };
-            let mut reactions = [None; 2];
-            for (place, wanted) in reactions.iter_mut().zip(friction.reactions(mechanism)) {
-                let computed = model.reactions().iter().position(|r| *r == wanted);
-                *place = Some(computed.ok_or(load)?);
+impl JointFriction {
+    /// The frictions among a model's loads, which depend on reactions that the model computes.
+    pub(crate) fn compile(
+        mechanism: &Mechanism,
+        loads: &[Load],
+        reactions: &[Reaction],
+    ) -> Vec<Self> {
+        let compile = |(load, one): (usize, &Load)| {
+            let friction = one.friction()?;
+            let mut indices = [None; 2];
+            let required = friction.required_reactions(mechanism);
+            for (index, required) in indices.iter_mut().zip(required) {
+                *index = reactions.iter().position(|r| *r == required);
             }
-            let travel = match one.kind {
-                LoadKind::Slide(guide) => guide.travel(),
-                _ => Measured::Angle(mechanism.joints[friction.joint.0].bodies),
+            // The check of the loads leaves no other kinds.
+            let coordinate = match one.kind {
+                LoadKind::SlideForce(guide) => guide.travel(),
+                _ => CoordinateFunction::Angle(mechanism.joints[friction.joint.0].bodies),
             };
-            found.push(Self {
+            Some(Self {
                 load,
-                reactions,
+                reactions: indices,
                 friction,
-                turns: matches!(one.kind, LoadKind::Torque { .. }),
-                travel,
-            });
-        }
-        Ok(found)
+                coordinate,
+            })
+        };
+        loads.iter().enumerate().filter_map(compile).collect()
     }
 
-    fn of<T: Scalar>(&self, reactions: &[T]) -> [T; 2] {
+    /// µ tanh(v/v₀).
+    fn factor<T: Scalar>(&self, states: &BodyStates<T>) -> T {
+        let [_, velocity, _] = states.coordinate(self.coordinate);
+        let speed = self.friction.regularization_speed;
+        let tanh = (velocity.value() / speed).tanh();
+        let slope = (1.0 - tanh * tanh) / speed;
+        velocity.compose(&[tanh, slope, 0.0, 0.0]) * T::from_f64(self.friction.coefficient)
+    }
+
+    fn components<T: Scalar>(&self, reactions: &[T]) -> [T; 2] {
         self.reactions
-            .map(|place| place.map_or(T::lift(0.0), |k| reactions[k]))
+            .map(|index| index.map_or(T::from_f64(0.0), |k| reactions[k]))
     }
 }
 
-impl Model {
-    /// The loads that are frictions, by their place in [`Model::loads`].
-    pub fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.rubs.iter().map(|rub| rub.load)
+/// Solves (1): `frictionless` are the reactions without friction, `responses[j]` what a unit of friction j adds to
+/// each. The frictions are then in `workspace.force`.
+///
+/// # Errors
+/// [`KinetostaticsError::SelfLocking`] where there is no unique solution.
+pub(crate) fn solve<T: Scalar>(
+    frictions: &[JointFriction],
+    states: &BodyStates<T>,
+    frictionless: &[T],
+    responses: &[InverseDynamics<T>],
+    workspace: &mut FrictionWorkspace<T>,
+) -> Result<(), KinetostaticsError> {
+    let load = frictions.first().map_or(0, |friction| friction.load);
+    let self_locking = KinetostaticsError::SelfLocking { load };
+    for (joint_friction, factor) in frictions.iter().zip(&mut workspace.friction_factor) {
+        *factor = joint_friction.factor(states);
     }
+    workspace.force.fill(T::from_f64(0.0));
+    let (mut converged, mut last) = (0, f64::INFINITY);
+    for _ in 0..MAX_ITERATIONS {
+        let largest = workspace.linearise(frictions, frictionless, responses);
+        let factored = lu::factor(&mut workspace.jacobian, &mut workspace.pivots);
+        if factored.determinant_sign <= 0.0 || factored.pivot_ratio < f64::EPSILON {
+            return Err(self_locking);
+        }
+        lu::solve(&workspace.jacobian, &workspace.pivots, &mut workspace.step);
+        let mut change = 0.0_f64;
+        for (force, step) in workspace.force.iter_mut().zip(&workspace.step) {
+            *force += *step;
+            change = change.max(step.value().abs());
+        }
+        // One step past convergence: it makes the derivative of a dual number exact.
+        let stagnated = change <= STAGNATION_TOLERANCE * largest && change > 0.5 * last;
+        converged += usize::from(change <= STEP_TOLERANCE * largest || stagnated);
+        last = change;
+        if converged == 2 {
+            return Ok(());
+        }
+        if !change.is_finite() {
+            return Err(self_locking);
+        }
+    }
+    Err(self_locking)
+}
 
-    /// Solves (1) at the state last entered: `without` are the reactions at zero friction, and
-    /// `by_unit[j]` what a unit of friction j adds to each (its [channel](Model::channel), and what free
-    /// coordinates answer it with). The frictions become the magnitudes of their
-    /// loads; what the loads do to the bodies is brought up to date.
-    ///
-    /// # Errors
-    /// [`KinetostaticsError::Jams`] where there is no single solution.
-    pub fn rub<T: Scalar>(
-        &self,
-        without: &[T],
-        by_unit: &[Actions<T>],
-        work: &mut Workspace<T>,
-    ) -> Result<(), KinetostaticsError> {
-        let loaded = &mut work.loaded;
-        let rubbing = &mut loaded.rubbing;
-        let n = self.rubs.len();
-        for (rub, grip) in self.rubs.iter().zip(&mut rubbing.grip) {
-            let [_, speed, _] = loaded.states.measure(rub.travel);
-            let tanh = (speed.value() / rub.friction.fade).tanh();
-            let slope = (1.0 - tanh * tanh) / rub.friction.fade;
-            *grip = speed.through(&[tanh, slope, 0.0, 0.0]) * T::lift(rub.friction.coefficient);
+impl<T: Scalar> FrictionWorkspace<T> {
+    /// Residual and Jacobian of (1) at the current forces, and the largest |µ g tanh|.
+    fn linearise(
+        &mut self,
+        frictions: &[JointFriction],
+        frictionless: &[T],
+        responses: &[InverseDynamics<T>],
+    ) -> f64 {
+        let n = frictions.len();
+        let mut largest = 0.0_f64;
+        for (j, joint_friction) in frictions.iter().enumerate() {
+            let mut reaction = joint_friction.components(frictionless);
+            for (force, response) in self.force.iter().zip(responses) {
+                let [x, y] = joint_friction.components(&response.reactions);
+                reaction[0] += x * *force;
+                reaction[1] += y * *force;
+            }
+            let (contact_force, [by_x, by_y]) = joint_friction.friction.contact.force(reaction);
+            let factor = self.friction_factor[j];
+            self.step[j] = -(self.force[j] + factor * contact_force);
+            for (k, response) in responses.iter().enumerate() {
+                let [x, y] = joint_friction.components(&response.reactions);
+                let diagonal = if j == k { 1.0 } else { 0.0 };
+                self.jacobian[j * n + k] = T::from_f64(diagonal) + factor * (by_x * x + by_y * y);
+            }
+            largest = largest.max((factor * contact_force).value().abs());
         }
-        rubbing.force.fill(T::lift(0.0));
-        let (mut settled, mut last) = (0, f64::INFINITY);
-        for _ in 0..MOST_STEPS {
-            let mut size = 0.0_f64;
-            for (j, rub) in self.rubs.iter().enumerate() {
-                let mut reaction = rub.of(without);
-                for (force, unit) in rubbing.force.iter().zip(by_unit) {
-                    let [x, y] = rub.of(&unit.reactions);
-                    reaction[0] += x * *force;
-                    reaction[1] += y * *force;
-                }
-                let (pressure, [by_x, by_y]) = rub.friction.pressure(rub.turns, reaction);
-                let grip = rubbing.grip[j];
-                rubbing.step[j] = -(rubbing.force[j] + grip * pressure);
-                for (k, unit) in by_unit.iter().enumerate() {
-                    let [x, y] = rub.of(&unit.reactions);
-                    let own = if j == k { 1.0 } else { 0.0 };
-                    rubbing.matrix[j * n + k] = T::lift(own) + grip * (by_x * x + by_y * y);
-                }
-                size = size.max((grip * pressure).value().abs());
-            }
-            let factored = small::factor(&mut rubbing.matrix, &mut rubbing.pivots);
-            let jams = KinetostaticsError::Jams {
-                load: self.rubs.first().map_or(0, |rub| rub.load),
-            };
-            if factored.sign <= 0.0 || factored.measure < f64::EPSILON {
-                return Err(jams);
-            }
-            small::solve(&rubbing.matrix, &rubbing.pivots, &mut rubbing.step);
-            let mut change = 0.0_f64;
-            for (force, step) in rubbing.force.iter_mut().zip(&rubbing.step) {
-                *force += *step;
-                change = change.max(step.value().abs());
-            }
-            // One step past convergence: it makes the derivative of a dual number exact.
-            let stuck = change <= STUCK * size && change > 0.5 * last;
-            settled += usize::from(change <= SETTLED * size || stuck);
-            last = change;
-            if settled == 2 {
-                for (rub, force) in self.rubs.iter().zip(&rubbing.force) {
-                    loaded.loads.magnitude[rub.load] = *force;
-                }
-                return self.loads.act(&loaded.states, &mut loaded.loads);
-            }
-            if !change.is_finite() {
-                return Err(jams);
-            }
-        }
-        Err(KinetostaticsError::Jams {
-            load: self.rubs.first().map_or(0, |rub| rub.load),
-        })
+        largest
     }
 }

@@ -1,36 +1,62 @@
-//! Masses, reactions and the reduced model of a mechanism.
+//! Masses, loads, joint reactions and actuator actions of a mechanism, and its reduced model m(q) q̈ + ½m′(q) q̇² = Q. A
+//! [`Model`] is constant and shared between threads; an evaluation writes into a [`Workspace`] of one thread.
+//!
+//! The reduced model of a uniform bar of 2 kg and 1 m that swings about its end: m is its moment of inertia
+//! about the joint, mL²/3, and the horizontal reaction at q = 90° is −m L/2 per unit of q̈.
+//!
+//! ```
+//! use dwell_geometry::{
+//!     Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2,
+//! };
+//! use dwell_kinetostatics::{ExactModel, Mass, Model, ReducedModel};
+//!
+//! let bodies = [BodyId(0), BodyId(1)]; // the ground and the bar
+//! let mechanism = Mechanism {
+//!     bodies: ["ground", "bar"].map(|name| Body { name: name.into() }).into(),
+//!     joints: vec![Joint {
+//!         name: "A".into(),
+//!         bodies,
+//!         points: [Vec2::ZERO; 2],
+//!         kind: JointKind::Revolute,
+//!     }],
+//!     actuators: vec![Actuator { name: "q".into(), bodies, kind: ActuatorKind::Angle }],
+//!     ..Mechanism::default()
+//! };
+//! let bar = Mass { mass: 2.0, center: vec2(0.5, 0.0), inertia: 2.0 / 12.0 };
+//! let start = AssemblyConfiguration { q: vec![0.0], initial_guess: vec![None; 2], ..Default::default() };
+//! let model = Model::new(&mechanism, &[Mass::default(), bar], &start, &mechanism.reactions())?;
+//!
+//! let reduced = ExactModel::new(model).ok_or("one actuator")?;
+//! let (mut workspace, mut found) = (reduced.workspace(), reduced.model().coefficient_buffer());
+//! reduced.coefficients(90f64.to_radians(), &mut workspace, &mut found)?;
+//! assert!((found.m - 2.0 / 3.0).abs() < 1e-15);
+//! assert!((found.a[0] + 1.0).abs() < 1e-15); // A.x
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-pub mod acts;
-pub mod balance;
-pub mod batch;
-mod bearing;
-mod channels;
-#[cfg(target_arch = "x86_64")]
-mod four;
+pub mod drive;
+pub mod error;
 mod friction;
-pub mod kinetostatics;
-pub mod ledger;
 pub mod load;
-mod magnitudes;
-pub mod mass;
+mod mass;
 pub mod model;
-mod reactions;
+mod pass;
 pub mod reduced;
+pub mod results;
 mod rounding;
-mod runs;
-pub mod section;
 pub mod table;
-mod turns;
 
-pub use acts::{Act, By, LoadError, LoadState};
-pub use balance::{PowerBalance, Shaking, Wrench};
-pub use batch::Batch;
-pub use kinetostatics::KinetostaticsError;
-pub use ledger::Ledger;
-pub use load::{Friction, Guide, Load, LoadKind, Magnitude, Signal};
-pub use magnitudes::Sense;
+pub use drive::{Drive, DriveKind, Motor, SpeedController};
+pub use error::{KinetostaticsError, LoadError, ModelError};
+pub use load::{
+    AppliedWrench, CompiledSignal, ForceSource, Friction, FrictionContact, Guide, Load, LoadKind,
+    LoadState, Magnitude, Signal,
+};
 pub use mass::Mass;
-pub use model::{Actions, Model, ModelError, Workspace};
-pub use reduced::{Coefficients, Exact, ExactWork, Inertia, Reduced};
-pub use section::{Distribution, LinkForces, Section};
-pub use table::{Channels, Entry, Extent, Table, TableError};
+pub use model::{Model, Workspace};
+pub use pass::InverseDynamics;
+pub use reduced::{Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
+pub use results::{
+    Distribution, FreeBodyForces, LinkForces, PowerBalance, Section, ShakingForce, Wrench,
+};
+pub use table::{TableDomain, TableError, TableQuantity, TabulatedModel, UnitLoadResponses};

@@ -1,8 +1,23 @@
-//! What acts on a mechanism from outside: each load is a shape that the configuration fixes, times a
-//! magnitude that may depend on time and on what moves.
+//! Loads: each is a shape fixed by the configuration, times a magnitude that may depend on time and on the motion.
+//!
+//! This file describes them; the files below it compile and evaluate them.
 
-use dwell_geometry::measure::Measured;
-use dwell_geometry::{BodyId, Coordinate, JointId, Mechanism, Vec2};
+mod compiled;
+mod couple_points;
+mod friction;
+mod signal;
+mod state;
+mod wrench;
+
+pub(crate) use compiled::CompiledLoads;
+pub(crate) use couple_points::find_couple_points;
+pub use friction::{Friction, FrictionContact};
+pub use signal::CompiledSignal;
+pub use state::LoadState;
+pub use wrench::{AppliedWrench, ForceSource};
+
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{BodyId, Coordinate, Mechanism, Vec2};
 use dwell_laws::{Expression, Law};
 
 /// A named load.
@@ -33,7 +48,7 @@ pub enum LoadKind {
         /// Unit vector of the force.
         direction: Vec2,
         /// Whether the direction is given in, and turns with, the body's frame; else the ground's.
-        follows: bool,
+        body_fixed: bool,
     },
     /// A couple F, N·m, of the first body on the second.
     Torque {
@@ -47,7 +62,7 @@ pub enum LoadKind {
         /// The point on each, m.
         points: [Vec2; 2],
         /// Free length, m.
-        free: f64,
+        free_length: f64,
     },
     /// A torsional spring: F is its stiffness, N·m/rad; couple −F (angle − free) of the first body
     /// on the second.
@@ -56,7 +71,7 @@ pub enum LoadKind {
         bodies: [BodyId; 2],
         /// Free angle of the second from the first, rad; whole turns are those of
         /// [`Model::with_loads`](crate::Model::with_loads).
-        free: f64,
+        free_angle: f64,
     },
     /// A damper between two points: F is its constant, N·s/m; it resists with F × d(length)/dt.
     Damper {
@@ -66,19 +81,19 @@ pub enum LoadKind {
         points: [Vec2; 2],
     },
     /// A torsional damper: F is its constant, N·m·s/rad; couple −F × relative speed on the second.
-    TorsionDamper {
+    RotationalDamper {
         /// The bodies.
         bodies: [BodyId; 2],
     },
     /// A force F, N, that pushes two points apart.
-    Push {
+    PointToPointForce {
         /// The bodies.
         bodies: [BodyId; 2],
         /// The point on each, m.
         points: [Vec2; 2],
     },
-    /// A force F, N, along the slide of a joint: of its first body on its second, at the second's point.
-    Slide(Guide),
+    /// A force F, N, of a joint's first body on its second along their slide, at the second body's point.
+    SlideForce(Guide),
     /// Viscous friction in a slide: F is its constant, N·s/m; it resists with F × speed of travel.
     SlideDamper(Guide),
 }
@@ -95,34 +110,36 @@ pub struct Guide {
 }
 
 impl LoadKind {
-    /// A couple or force along a coordinate, that grows it where it is positive; none if the coordinate
-    /// is not there.
+    /// A couple or force along a coordinate, positive in the direction in which the coordinate grows; none if the
+    /// mechanism has no such coordinate.
     pub fn along(mechanism: &Mechanism, coordinate: Coordinate) -> Option<Self> {
-        Some(match Measured::find(mechanism, coordinate)? {
-            Measured::Angle(bodies) => Self::Torque { bodies },
-            Measured::Travel {
+        Some(match CoordinateFunction::find(mechanism, coordinate)? {
+            CoordinateFunction::Angle(bodies) => Self::Torque { bodies },
+            CoordinateFunction::Travel {
                 bodies,
                 points,
                 axis,
-            } => Self::Slide(Guide {
+            } => Self::SlideForce(Guide {
                 bodies,
                 points,
                 axis,
             }),
-            Measured::Length { bodies, points } => Self::Push { bodies, points },
+            CoordinateFunction::Length { bodies, points } => {
+                Self::PointToPointForce { bodies, points }
+            }
         })
     }
 }
 
 impl Guide {
     /// The travel of the second point along it.
-    pub fn travel(&self) -> Measured {
+    pub fn travel(&self) -> CoordinateFunction {
         let &Self {
             bodies,
             points,
             axis,
         } = self;
-        Measured::Travel {
+        CoordinateFunction::Travel {
             bodies,
             points,
             axis,
@@ -130,49 +147,34 @@ impl Guide {
     }
 }
 
-/// Coulomb friction in a joint: the couple −µ r |R| tanh(ω/ω₀) on the second body of a revolute joint, the
-/// force −µ N tanh(v/v₀) along a slide, N the sum of what presses on the guide. The load must be a
-/// [`LoadKind::Torque`] or a [`LoadKind::Slide`] between the joint's bodies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Friction {
-    /// The joint.
-    pub joint: JointId,
-    /// Coefficient of friction µ.
-    pub coefficient: f64,
-    /// Radius r of the pin, m; or the length of the guide, m, at whose ends it presses (0: at one point).
-    pub size: f64,
-    /// Speed ω₀ or v₀ below which the friction fades, rad/s or m/s.
-    pub fade: f64,
-}
-
 /// The magnitude of a load.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Magnitude {
-    /// Always the same.
+    /// A constant.
     Constant(f64),
     /// A law of one signal.
     Law(Signal, Law),
     /// An expression of several signals, one for each variable it was parsed with, in their order.
     Expression(Expression, Vec<Signal>),
-    /// As the joint's own reactions make it.
+    /// Coulomb friction, from the joint's own reactions.
     Friction(Friction),
-    /// What [`Workspace::give`](crate::Workspace::give) said last: of a drive, for whoever evaluates it
-    /// from these signals.
-    Given(Vec<Signal>),
+    /// The value that [`Workspace::set_magnitude`](crate::Workspace::set_magnitude) was given last: of a drive,
+    /// which is evaluated outside the model from these signals.
+    External(Vec<Signal>),
 }
 
 impl Magnitude {
-    /// What it depends on.
+    /// The signals it depends on.
     pub fn signals(&self) -> &[Signal] {
         match self {
             Self::Constant(_) | Self::Friction(_) => &[],
             Self::Law(signal, _) => std::slice::from_ref(signal),
-            Self::Expression(_, signals) | Self::Given(signals) => signals,
+            Self::Expression(_, signals) | Self::External(signals) => signals,
         }
     }
 }
 
-/// What a magnitude can depend on.
+/// A quantity that a magnitude can depend on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Signal {
     /// Time, s.
@@ -180,36 +182,62 @@ pub enum Signal {
     /// A coordinate, rad or m.
     Value(Coordinate),
     /// Its speed, rad/s or m/s.
-    Speed(Coordinate),
+    Velocity(Coordinate),
 }
 
 impl Load {
-    /// Whether it has a potential energy: gravity, springs and forces that keep their direction, where
-    /// their magnitude is constant.
-    pub fn conservative(&self) -> bool {
-        let shaped = matches!(
-            self.kind,
-            LoadKind::Gravity { .. }
-                | LoadKind::Force { follows: false, .. }
-                | LoadKind::Spring { .. }
-                | LoadKind::TorsionSpring { .. }
-        );
-        shaped && matches!(self.magnitude, Magnitude::Constant(_))
+    /// Whether it has a potential energy: gravity, springs and forces of constant direction, where the magnitude is
+    /// constant.
+    pub fn is_conservative(&self) -> bool {
+        let has_potential = match self.kind {
+            LoadKind::Force { body_fixed, .. } => !body_fixed,
+            LoadKind::Gravity { .. } | LoadKind::Spring { .. } | LoadKind::TorsionSpring { .. } => {
+                true
+            }
+            LoadKind::Torque { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => false,
+        };
+        has_potential && matches!(self.magnitude, Magnitude::Constant(_))
     }
 
-    /// The pairs of bodies whose angle it feels, with whole turns: a torsional spring's own, and those
-    /// its magnitude depends on.
-    pub fn angles(&self) -> Vec<[BodyId; 2]> {
-        let own = match self.kind {
+    /// The friction that makes its magnitude, if it is one.
+    pub fn friction(&self) -> Option<Friction> {
+        match self.magnitude {
+            Magnitude::Friction(friction) => Some(friction),
+            Magnitude::Constant(_)
+            | Magnitude::Law(..)
+            | Magnitude::Expression(..)
+            | Magnitude::External(_) => None,
+        }
+    }
+
+    /// The pairs of bodies on whose relative angle it depends, with whole revolutions: those of a torsional spring
+    /// and those of its magnitude's signals.
+    pub fn angle_pairs(&self) -> Vec<[BodyId; 2]> {
+        let spring_pair = match self.kind {
             LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
-            _ => None,
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => None,
         };
         let signals = self.magnitude.signals().iter();
-        let sensed = signals.filter_map(|signal| match *signal {
+        let signal_pairs = signals.filter_map(|signal| match *signal {
             Signal::Value(Coordinate::Angle(pair)) => Some(pair),
-            _ => None,
+            Signal::Value(Coordinate::Travel(_) | Coordinate::Length { .. })
+            | Signal::Velocity(_)
+            | Signal::Time => None,
         });
-        own.into_iter().chain(sensed).collect()
+        spring_pair.into_iter().chain(signal_pairs).collect()
     }
 
     /// The bodies it acts on and those whose motion its magnitude depends on. Gravity acts on those
@@ -222,13 +250,13 @@ impl Load {
             | LoadKind::Spring { bodies, .. }
             | LoadKind::TorsionSpring { bodies, .. }
             | LoadKind::Damper { bodies, .. }
-            | LoadKind::Push { bodies, .. }
-            | LoadKind::TorsionDamper { bodies }
-            | LoadKind::Slide(Guide { bodies, .. })
+            | LoadKind::PointToPointForce { bodies, .. }
+            | LoadKind::RotationalDamper { bodies }
+            | LoadKind::SlideForce(Guide { bodies, .. })
             | LoadKind::SlideDamper(Guide { bodies, .. }) => bodies.to_vec(),
         };
         for signal in self.magnitude.signals() {
-            let (Signal::Value(coordinate) | Signal::Speed(coordinate)) = *signal else {
+            let (Signal::Value(coordinate) | Signal::Velocity(coordinate)) = *signal else {
                 continue;
             };
             bodies.extend(match coordinate {

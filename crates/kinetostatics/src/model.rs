@@ -1,326 +1,225 @@
-//! A mechanism with masses, ready to be evaluated: inertia forces, the actuators' actions, and
-//! the reactions that were asked for.
+//! A mechanism with masses and loads, ready to be evaluated.
 
-use crate::acts::Loads;
-use crate::friction::Rub;
-use crate::kinetostatics::Loaded;
+mod equation_terms;
+mod kinetostatics;
+mod revolutions;
+mod workspace;
+
+pub use workspace::Workspace;
+
+use crate::error::ModelError;
+use crate::friction::JointFriction;
+use crate::load::{CompiledLoads, Load};
 use crate::mass::Mass;
-use crate::reactions::Sources;
-use crate::runs::{Prescribed, Runs};
-use dwell_geometry::measure::BodyStates;
-use dwell_geometry::{
-    AssemblyError, BodyId, Mechanism, Motion, PlaceError, Plan, Pose, Reaction, Scalar, Start, Vec2,
-};
-use thiserror::Error;
+use crate::pass::{GivenMotion, InertialBody, InverseDynamics, PassModel, ReactionSources};
+use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::{AssemblyConfiguration, BodyId, Mechanism, Plan, PositionError, Reaction};
+use dwell_numerics::Scalar;
+use std::sync::Arc;
 
-/// The model of a mechanism: constant, shared between threads.
+/// The model of a mechanism with its masses and loads: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model {
-    pub(crate) plan: Plan,
-    pub(crate) massive: Vec<Massive>,
-    /// The bodies whose roots move and that carry mass, each after the one that carries it.
-    pub(crate) links: Vec<Link>,
-    /// By frame: moment of inertia of its bodies about their roots, kg m².
-    pub(crate) inertia: Vec<f64>,
-    pub(crate) sources: Sources,
+    mechanism: Arc<Mechanism>,
+    pub(crate) pass_model: PassModel,
+    /// The requested reactions, then the others on which friction depends.
     reactions: Vec<Reaction>,
+    /// How many reactions are requested.
+    requested: usize,
     /// By body; the ground has none.
     pub(crate) masses: Vec<Mass>,
-    pub(crate) loads: Loads,
-    pub(crate) rubs: Vec<Rub>,
-    /// Where it was put together.
-    pub(crate) start: Start,
-}
-
-/// A carried body that has inertia.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Massive {
-    pub(crate) carried: usize,
-    pub(crate) body: usize,
-    pub(crate) frame: usize,
-    pub(crate) mass: f64,
-    /// About the centre of mass, and about the body's root, kg m².
-    pub(crate) inertia: f64,
-    pub(crate) about_root: f64,
-    /// From the body's root to its centre of mass, in its frame, and its first moment, kg m; none
-    /// where root and centre coincide.
-    pub(crate) arm: Option<Vec2>,
-    pub(crate) first: Option<Vec2>,
-    /// Whether its root is fixed to the ground.
-    pub(crate) at_rest: bool,
-}
-
-/// A body whose root moves, with what inertia forces need of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Link {
-    pub(crate) carried: usize,
-    pub(crate) frame: usize,
-    /// The link that carries it; none where that root is fixed to the ground.
-    pub(crate) parent: Option<usize>,
-    /// The arm that carries it, with its frame.
-    pub(crate) arm: Option<(usize, usize)>,
-    /// The slide that carries it, and the direction of its travel.
-    pub(crate) slide: Option<(usize, usize)>,
-    /// Of the body alone, kg.
-    pub(crate) mass: f64,
-    /// First moment of the body about its root, in its frame, kg m; none if zero.
-    pub(crate) first: Option<Vec2>,
-}
-
-/// Why a model cannot be built.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum ModelError {
-    /// The mechanism cannot be put together.
-    #[error(transparent)]
-    Assembly(#[from] AssemblyError),
-    /// A reaction that no joint of the mechanism has.
-    #[error("the mechanism has no such reaction: {0:?}")]
-    Reaction(Reaction),
-    /// Not one mass for each body, or one that is negative or not finite.
-    #[error("the masses do not fit the bodies")]
-    Masses,
-}
-
-/// Working memory for evaluations of a model in one thread.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Workspace<T> {
-    /// The last pose.
-    pub pose: Pose<T>,
-    /// The last motion.
-    pub motion: Motion<T>,
-    pub(crate) unit: Runs<T, 2>,
-    pub(crate) run: Runs<T, 1>,
-    pub(crate) loaded: Loaded<T>,
-}
-
-/// The actuators' actions and the requested reactions in one state of motion.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Actions<T> {
-    /// By actuator: its action on its second body, N·m.
-    pub tau: Vec<T>,
-    /// By requested reaction: N or N·m.
-    pub reactions: Vec<T>,
-}
-
-impl<T: Scalar> Actions<T> {
-    /// Reads them off a run.
-    pub(crate) fn take(&mut self, model: &Model, pose: &Pose<T>, run: &Runs<T, 1>) {
-        for (i, tau) in self.tau.iter_mut().enumerate() {
-            *tau = run.tau(model, i)[0];
-        }
-        for (k, value) in self.reactions.iter_mut().enumerate() {
-            *value = run.reaction(model, pose, k)[0];
-        }
-    }
+    pub(crate) loads: CompiledLoads,
+    joint_frictions: Vec<JointFriction>,
+    /// The configuration in which it was assembled.
+    assembly: AssemblyConfiguration,
 }
 
 impl Model {
-    /// Compiles a mechanism with one mass for each body, for the reactions asked for.
+    /// Compiles a mechanism with one mass for each body, for the requested reactions.
     ///
     /// # Errors
-    /// [`ModelError`] when the mechanism cannot be put together or the masses do not fit.
+    /// [`ModelError`] when the mechanism cannot be assembled, the masses do not fit it, or it has no such reaction.
     pub fn new(
         mechanism: &Mechanism,
         masses: &[Mass],
-        start: &Start,
+        assembly: &AssemblyConfiguration,
         reactions: &[Reaction],
     ) -> Result<Self, ModelError> {
-        let sound = |m: &Mass| {
+        let valid = |m: &Mass| {
             m.mass >= 0.0
                 && m.inertia >= 0.0
                 && m.mass.is_finite()
                 && m.inertia.is_finite()
                 && m.center.is_finite()
         };
-        if masses.len() != mechanism.bodies.len() || !masses.iter().all(sound) {
+        if masses.len() != mechanism.bodies.len() || !masses.iter().all(valid) {
             return Err(ModelError::Masses);
         }
-        known(mechanism, reactions)?;
-        let plan = Plan::compile(mechanism, start)?;
-        let moves = moving(&plan);
-        let massive: Vec<Massive> = plan
-            .carried()
-            .iter()
-            .enumerate()
-            .filter_map(|(i, carried)| {
-                let Mass {
-                    mass,
-                    inertia,
-                    center,
-                } = masses.get(carried.body).copied().unwrap_or_default();
-                let arm = plan.tree().arm(plan.frames(), carried.body, center).local;
-                let arm = (arm != Vec2::ZERO && mass > 0.0).then_some(arm);
-                (mass > 0.0 || inertia > 0.0).then(|| Massive {
-                    carried: i,
-                    body: carried.body,
-                    frame: carried.frame,
-                    mass,
-                    inertia,
-                    about_root: inertia + arm.map_or(0.0, |arm| mass * arm.dot(arm)),
-                    arm,
-                    first: arm.map(|arm| arm * mass),
-                    at_rest: !moves[i],
-                })
-            })
-            .collect();
-        let mut inertia = vec![0.0; plan.frames().frames.len()];
-        for body in &massive {
-            inertia[body.frame] += body.about_root;
-        }
-        let links = links(&plan, &moves, &massive);
-        let sources = Sources::find(mechanism, &plan, reactions);
+        require_reactions(mechanism, reactions)?;
+        let plan = Plan::compile(mechanism, assembly)?;
+        let pass_model = PassModel::new(mechanism, plan, masses);
         let mut masses = masses.to_vec();
         masses[mechanism.ground] = Mass::default();
-        Ok(Self {
-            plan,
-            massive,
-            links,
-            inertia,
-            sources,
-            reactions: reactions.to_vec(),
+        let mut model = Self {
+            mechanism: Arc::new(mechanism.clone()),
+            pass_model,
+            reactions: Vec::new(),
+            requested: 0,
             masses,
-            loads: Loads::default(),
-            rubs: Vec::new(),
-            start: start.clone(),
-        })
+            loads: CompiledLoads::default(),
+            joint_frictions: Vec::new(),
+            assembly: assembly.clone(),
+        };
+        model.compile_reactions(reactions);
+        Ok(model)
     }
 
-    /// The same model without the groups that no inertia, no load and none of the bodies `wanted`
-    /// needs; [`Plan::skipped`] tells them. What remains is the same to the last bit: nothing acts on
-    /// the groups left out, so their reactions are zero. The range stays that of the whole mechanism.
+    /// Compiles the requested reactions and those on which the friction of the loads depends.
+    fn compile_reactions(&mut self, requested: &[Reaction]) {
+        let frictions = self.loads().iter().filter_map(Load::friction);
+        let required = frictions.flat_map(|friction| friction.required_reactions(&self.mechanism));
+        let mut reactions = requested.to_vec();
+        for reaction in required {
+            if !reactions.contains(&reaction) {
+                reactions.push(reaction);
+            }
+        }
+        self.requested = requested.len();
+        self.joint_frictions = JointFriction::compile(&self.mechanism, self.loads(), &reactions);
+        self.pass_model.reaction_sources =
+            ReactionSources::compile(&self.mechanism, &self.pass_model.plan, &reactions);
+        self.reactions = reactions;
+    }
+
+    /// The same model without the groups on which no inertia, no load and none of the bodies `wanted`
+    /// depends; they are [`Plan::pruned_groups`]. The results of the others are the same to the last bit. Nothing acts
+    /// on the pruned groups, so their reactions are zero. The range stays that of the whole mechanism.
     #[must_use]
-    pub fn only_for(self, mechanism: &Mechanism, wanted: &[BodyId]) -> Self {
-        let loads = self.loads().iter().flat_map(|load| load.bodies(mechanism));
-        let asked: Vec<BodyId> = loads.chain(wanted.iter().copied()).collect();
-        self.keep(&asked)
+    pub fn pruned_for(self, wanted: &[BodyId]) -> Self {
+        let loads = self.loads().iter();
+        let loaded = loads.flat_map(|load| load.bodies(&self.mechanism));
+        let needed: Vec<BodyId> = loaded.chain(wanted.iter().copied()).collect();
+        self.retain_bodies(&needed)
     }
 
-    /// The same mechanism for its inertia alone: no reaction, no load, and only the groups that
-    /// place something with inertia.
-    pub(crate) fn inertia_alone(&self) -> Self {
-        let mut bare = self.without_reactions();
-        bare.loads = Loads::default();
-        bare.rubs.clear();
-        bare.keep(&[])
+    /// The same mechanism for its inertia alone: no reaction, no load, and only the groups on which a body with
+    /// inertia depends.
+    pub(crate) fn inertia_only(&self) -> Self {
+        let mut model = self.clone();
+        model.loads = CompiledLoads::default();
+        model.compile_reactions(&[]);
+        model.retain_bodies(&[])
     }
 
-    /// Leaves out the groups that neither inertia nor these bodies need.
-    fn keep(mut self, bodies: &[BodyId]) -> Self {
-        let massive = self.massive.iter().map(|m| m.body);
-        let needed = self
-            .plan
-            .needed_for(massive.chain(bodies.iter().map(|b| b.0)));
-        self.plan = self.plan.only(&needed);
+    /// Prunes the groups on which neither inertia nor these bodies depend.
+    fn retain_bodies(mut self, bodies: &[BodyId]) -> Self {
+        let bodies = bodies.iter().map(|b| b.0);
+        let inertial = self.pass_model.inertial_bodies.iter().map(|b| b.body);
+        let needed = self.plan().groups_needed_by(inertial.chain(bodies));
+        self.pass_model.plan = self.pass_model.plan.retain_groups(&needed);
         self
     }
 
-    /// The same mechanism for these reactions instead of those it was made for.
+    /// The same model for these reactions instead of those that were requested.
     ///
     /// # Errors
     /// [`ModelError::Reaction`] for a reaction that no joint of the mechanism has.
-    pub fn for_reactions(
-        mut self,
-        mechanism: &Mechanism,
-        reactions: &[Reaction],
-    ) -> Result<Self, ModelError> {
-        known(mechanism, reactions)?;
-        self.sources = Sources::find(mechanism, &self.plan, reactions);
-        self.reactions = reactions.to_vec();
+    pub fn with_reactions(mut self, reactions: &[Reaction]) -> Result<Self, ModelError> {
+        require_reactions(&self.mechanism, reactions)?;
+        self.compile_reactions(reactions);
         Ok(self)
     }
 
-    /// The same mechanism with no reaction asked for.
+    /// The same model with no requested reaction.
     pub fn without_reactions(&self) -> Self {
-        let mut bare = self.clone();
-        bare.sources.clear();
-        bare.reactions.clear();
-        bare
+        let mut model = self.clone();
+        model.compile_reactions(&[]);
+        model
     }
 
-    /// The compiled mechanism.
+    /// The mechanism it was compiled from.
+    pub fn mechanism(&self) -> &Mechanism {
+        &self.mechanism
+    }
+
+    /// The compiled plan of the mechanism.
+    #[inline]
     pub fn plan(&self) -> &Plan {
-        &self.plan
+        &self.pass_model.plan
     }
 
-    /// The reactions that are computed, in their order.
+    /// The reactions that are computed: the requested ones in their order, then the others on which the friction of
+    /// the loads depends.
     pub fn reactions(&self) -> &[Reaction] {
         &self.reactions
     }
 
-    /// Working memory for one thread.
-    pub fn workspace<T: Scalar>(&self) -> Workspace<T> {
-        Workspace {
-            pose: self.plan.pose(),
-            motion: self.plan.motion(),
-            unit: Runs::new(&self.plan, self.links.len()),
-            run: Runs::new(&self.plan, self.links.len()),
-            loaded: Loaded::new(self),
+    /// A buffer for the results of this model.
+    pub fn result_buffer<T: Scalar>(&self) -> InverseDynamics<T> {
+        InverseDynamics {
+            tau: vec![T::from_f64(0.0); self.pass_model.plan.actuators()],
+            reactions: vec![T::from_f64(0.0); self.reactions.len()],
         }
     }
 
-    /// Room for the actions of this model.
-    pub fn actions<T: Scalar>(&self) -> Actions<T> {
-        Actions {
-            tau: vec![T::lift(0.0); self.plan.actuators()],
-            reactions: vec![T::lift(0.0); self.reactions.len()],
-        }
-    }
-
-    /// Kinetostatics of inertia alone, without the loads: the actuators' actions and the reactions for
+    /// Inverse dynamics of inertia alone, without loads: the actuators' actions and the reactions for
     /// prescribed coordinates `q` (rad), speeds (rad/s) and accelerations (rad/s²): Jᵀ[λ; τ] = M ẍ + h.
     ///
     /// # Errors
-    /// [`PlaceError`] when there is no pose at `q`.
-    pub fn act<T: Scalar>(
+    /// [`PositionError`] when there is no pose at `q`.
+    pub fn inverse_dynamics<T: Scalar>(
         &self,
         q: &[T],
         q_dot: &[T],
         q_ddot: &[T],
-        work: &mut Workspace<T>,
-        actions: &mut Actions<T>,
-    ) -> Result<(), PlaceError> {
+        workspace: &mut Workspace<T>,
+        result: &mut InverseDynamics<T>,
+    ) -> Result<(), PositionError> {
         let Workspace {
-            pose, motion, run, ..
-        } = work;
-        self.plan.place(q, pose)?;
-        self.plan.speeds(pose, q_dot, motion);
-        self.plan.accelerations(pose, q_ddot, motion);
-        run.evaluate(self, pose, Prescribed(motion));
-        actions.take(self, pose, run);
+            pose, motion, pass, ..
+        } = workspace;
+        self.pass_model.plan.positions(q, pose)?;
+        self.pass_model.plan.velocities(pose, q_dot, motion);
+        self.pass_model.plan.accelerations(pose, q_ddot, motion);
+        pass.evaluate(&self.pass_model, pose, GivenMotion(motion));
+        result.read_from(&self.pass_model, pose, pass);
         Ok(())
     }
 
-    /// Kinetic energy ½ Σ m v² + I ω² at the state last entered, J.
-    pub fn kinetic(&self, work: &Workspace<f64>) -> f64 {
-        let states = work.states();
-        let energy = |body: &Massive| {
+    /// Kinetic energy ½ Σ m v² + I ω² at the state set last, J.
+    pub fn kinetic_energy(&self, workspace: &Workspace<f64>) -> f64 {
+        let states = workspace.states();
+        let energy = |body: &InertialBody| {
             let id = BodyId(body.body);
             let velocity = states.point(id, self.masses[id.0].center).velocity;
-            let spin = states.body(id).spin;
-            0.5 * (body.mass * velocity.dot(velocity) + body.inertia * spin * spin)
+            let angular_velocity = states.body(id).angular_velocity;
+            0.5 * (body.mass * velocity.dot(velocity)
+                + body.inertia * angular_velocity * angular_velocity)
         };
-        self.massive.iter().map(energy).sum()
+        self.pass_model.inertial_bodies.iter().map(energy).sum()
     }
 
-    /// Twice the kinetic energy at unit speed, Σ m v² + I ω², and half its derivative by power,
-    /// Σ m v·a + I ω α, both at the pose, speeds and accelerations in `work`: another way to m
-    /// and ½m′, with no reaction in it.
-    pub fn energy_and_power(&self, work: &Workspace<f64>) -> (f64, f64) {
-        let mut states = BodyStates::new(&self.plan);
-        states.fill(&self.plan, &work.pose, &work.motion);
-        let [energy, power] = self.sums(&states);
+    /// [`Model::inertia_sums`] at the pose, velocities and accelerations of the workspace: m and ½m′ by another method,
+    /// in which no reaction takes part.
+    pub fn workspace_inertia_sums(&self, workspace: &Workspace<f64>) -> (f64, f64) {
+        let mut states = BodyStates::new(&self.pass_model.plan);
+        states.fill(&self.pass_model.plan, &workspace.pose, &workspace.motion);
+        let [energy, power] = self.inertia_sums(&states);
         (energy, power)
     }
 
     /// Σ m v² + I ω² and Σ m v·a + I ω α of some states of the bodies: at unit speed and zero
     /// acceleration of one coordinate, m and ½m′.
-    pub fn sums<T: Scalar>(&self, states: &BodyStates<T>) -> [T; 2] {
-        let (mut energy, mut power) = (T::lift(0.0), T::lift(0.0));
-        for body in &self.massive {
+    pub fn inertia_sums<T: Scalar>(&self, states: &BodyStates<T>) -> [T; 2] {
+        let (mut energy, mut power) = (T::from_f64(0.0), T::from_f64(0.0));
+        for body in &self.pass_model.inertial_bodies {
             let id = BodyId(body.body);
             let center = states.point(id, self.masses[id.0].center);
-            let (w, a) = (states.body(id).spin, states.body(id).spin_rate);
-            let (mass, inertia) = (T::lift(body.mass), T::lift(body.inertia));
+            let (w, a) = (
+                states.body(id).angular_velocity,
+                states.body(id).angular_acceleration,
+            );
+            let (mass, inertia) = (T::from_f64(body.mass), T::from_f64(body.inertia));
             energy += mass * center.velocity.dot(center.velocity) + inertia * w * w;
             power += mass * center.velocity.dot(center.acceleration) + inertia * w * a;
         }
@@ -329,55 +228,10 @@ impl Model {
 }
 
 /// Refuses a reaction that no joint of the mechanism has.
-fn known(mechanism: &Mechanism, reactions: &[Reaction]) -> Result<(), ModelError> {
+fn require_reactions(mechanism: &Mechanism, reactions: &[Reaction]) -> Result<(), ModelError> {
     let unknown = |r: &&Reaction| !mechanism.components(r.joint).contains(&r.component);
     match reactions.iter().find(unknown) {
         Some(reaction) => Err(ModelError::Reaction(*reaction)),
         None => Ok(()),
     }
-}
-
-/// By carried body: whether its root moves.
-fn moving(plan: &Plan) -> Vec<bool> {
-    let mut moves: Vec<bool> = Vec::with_capacity(plan.carried().len());
-    for body in plan.carried() {
-        let carried = body.parent.is_some_and(|parent| moves[parent]);
-        moves.push(carried || body.arm.is_some() || body.slide.is_some());
-    }
-    moves
-}
-
-/// The bodies whose inertia forces must be carried: those whose roots move, if they or what they
-/// carry have mass.
-fn links(plan: &Plan, moves: &[bool], massive: &[Massive]) -> Vec<Link> {
-    let carried = plan.carried();
-    let mut mass = vec![0.0; carried.len()];
-    let mut first = vec![None; carried.len()];
-    for body in massive {
-        mass[body.carried] = body.mass;
-        first[body.carried] = body.first;
-    }
-    let mut bears: Vec<bool> = mass.iter().map(|&m| m > 0.0).collect();
-    for (i, body) in carried.iter().enumerate().rev() {
-        if let (true, Some(parent)) = (bears[i], body.parent) {
-            bears[parent] = true;
-        }
-    }
-    let mut links: Vec<Link> = Vec::new();
-    let mut place = vec![None; carried.len()];
-    for (i, body) in carried.iter().enumerate() {
-        if moves[i] && bears[i] {
-            place[i] = Some(links.len());
-            links.push(Link {
-                carried: i,
-                frame: body.frame,
-                parent: body.parent.and_then(|parent| place[parent]),
-                arm: body.arm.map(|arm| (arm, body.parent_frame)),
-                slide: body.slide,
-                mass: mass[i],
-                first: first[i],
-            });
-        }
-    }
-    links
 }

@@ -1,17 +1,24 @@
-//! The reduced model of a mechanism of one degree of freedom, from two unit kinetostatic runs:
+//! The reduced model of a mechanism of one degree of freedom, from two unit passes:
 //!
 //! ```text
 //! m q̈ + ½ m′ q̇² = Q                                            (1)
 //! R_k = a_k q̈ + b_k q̇²                                         (2)
-//! run 1 (q̇ = 1, q̈ = 0):  τ = ½ m′,  reaction k = b_k            (3)
-//! run 2 (q̇ = 0, q̈ = 1):  τ = m,     reaction k = a_k            (4)
+//! pass 1 (q̇ = 1, q̈ = 0):  τ = ½ m′,  reaction k = b_k            (3)
+//! pass 2 (q̇ = 0, q̈ = 1):  τ = m,     reaction k = a_k            (4)
 //! ```
 //!
 //! (Jordi, Zayas and Cardona 2008, eq. 3, in the consistent form of docs/theory.md.)
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+mod batch;
+
+pub use batch::Batch;
+
 use crate::model::{Model, Workspace};
-use crate::runs::Unit;
-use dwell_geometry::{Dual, PlaceError, Range, Scalar};
+use crate::pass::UnitMotions;
+use dwell_geometry::{PositionError, Range};
+use dwell_numerics::{Dual, Scalar};
 
 /// The coefficients of the reduced model at one coordinate.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -20,13 +27,13 @@ pub struct Coefficients<T = f64> {
     pub m: T,
     /// Half its derivative, ½m′, kg m².
     pub half_dm: T,
-    /// By requested reaction: what multiplies q̈, kg m or kg m².
+    /// By requested reaction: the coefficient of q̈, kg m or kg m².
     pub a: Vec<T>,
-    /// By requested reaction: what multiplies q̇², kg m or kg m².
+    /// By requested reaction: the coefficient of q̇², kg m or kg m².
     pub b: Vec<T>,
 }
 
-/// What the equation of motion and its Jacobian need at one coordinate.
+/// The generalised inertia and its derivatives at one coordinate, for the equation of motion and its Jacobian.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Inertia {
     /// m, kg m².
@@ -39,63 +46,70 @@ pub struct Inertia {
 
 /// A reduced model of one degree of freedom, exact or tabulated. Constant and shared; an
 /// evaluation writes into the caller's working memory.
-pub trait Reduced: Sync {
+pub trait ReducedModel: Sync {
     /// Working memory of one thread.
-    type Work: Send;
+    type Workspace: Send;
 
     /// Working memory for one thread.
-    fn work(&self) -> Self::Work;
+    fn workspace(&self) -> Self::Workspace;
 
     /// Number of reactions.
     fn reactions(&self) -> usize;
 
-    /// How far the coordinate reaches.
+    /// The range of the coordinate.
     fn range(&self) -> Range;
 
     /// m and ½m′ at `q` (rad).
     ///
     /// # Errors
-    /// [`PlaceError`] when there is no pose at `q`.
-    fn inertia(&self, q: f64, work: &mut Self::Work) -> Result<(f64, f64), PlaceError>;
+    /// [`PositionError`] when there is no pose at `q`.
+    fn inertia(&self, q: f64, work: &mut Self::Workspace) -> Result<(f64, f64), PositionError>;
 
     /// m, ½m′ and ½m″ at `q` (rad).
     ///
     /// # Errors
-    /// [`PlaceError`] when there is no pose at `q`.
-    fn curvature(&self, q: f64, work: &mut Self::Work) -> Result<Inertia, PlaceError>;
+    /// [`PositionError`] when there is no pose at `q`.
+    fn inertia_derivatives(
+        &self,
+        q: f64,
+        work: &mut Self::Workspace,
+    ) -> Result<Inertia, PositionError>;
 
     /// All coefficients at `q` (rad).
     ///
     /// # Errors
-    /// [`PlaceError`] when there is no pose at `q`.
+    /// [`PositionError`] when there is no pose at `q`.
     fn coefficients(
         &self,
         q: f64,
-        work: &mut Self::Work,
+        work: &mut Self::Workspace,
         out: &mut Coefficients,
-    ) -> Result<(), PlaceError>;
+    ) -> Result<(), PositionError>;
 }
 
 /// Working memory of the exact reduced model: one for values, one for derivatives.
 #[derive(Debug, Clone)]
-pub struct ExactWork {
-    plain: Workspace<f64>,
+pub struct ExactWorkspace {
+    real: Workspace<f64>,
     dual: Workspace<Dual>,
 }
 
 /// The reduced model evaluated from the mechanism itself. The model must have one actuator.
 #[derive(Debug, Clone)]
-pub struct Exact {
+pub struct ExactModel {
     model: Model,
-    /// The same mechanism with no reaction asked for: what the equation of motion needs.
-    bare: Model,
+    /// The same mechanism without reactions: enough for the equation of motion.
+    inertia_model: Model,
 }
 
-impl Exact {
+impl ExactModel {
     /// The reduced model of a mechanism; none unless it has exactly one actuator.
     pub fn new(model: Model) -> Option<Self> {
-        let bare = model.inertia_alone();
-        (model.plan().actuators() == 1).then_some(Self { model, bare })
+        let inertia_model = model.inertia_only();
+        (model.plan().actuators() == 1).then_some(Self {
+            model,
+            inertia_model,
+        })
     }
 
     /// The mechanism it is evaluated from.
@@ -103,61 +117,64 @@ impl Exact {
         &self.model
     }
 
-    pub(crate) fn bare(&self) -> &Model {
-        &self.bare
+    pub(crate) fn inertia_model(&self) -> &Model {
+        &self.inertia_model
     }
 }
 
 impl Model {
     /// The reduced coefficients at `q` (rad) in any kind of number, for one actuator.
     ///
-    /// With q̇ = 0 the acceleration equations are those of the velocities, so run 2's accelerations
-    /// are run 1's velocities: both runs cost one pose, one velocity and one acceleration stage.
+    /// With q̇ = 0 the acceleration equations are those of the velocities, so pass 2's accelerations
+    /// are pass 1's velocities: both passes cost one pose, one velocity and one acceleration stage.
     ///
     /// # Errors
-    /// [`PlaceError`] when there is no pose at `q`.
-    // All that it passes through is inlined: one pose is evaluated in a tenth less, and a batch is in one function
+    /// [`PositionError`] when there is no pose at `q`.
+    // The whole evaluation is inlined: one pose takes a tenth less time, and a batch becomes one function that is
     // compiled for the processor's registers.
     #[inline(always)]
     pub fn reduce<T: Scalar>(
         &self,
         q: T,
-        work: &mut Workspace<T>,
+        workspace: &mut Workspace<T>,
         out: &mut Coefficients<T>,
-    ) -> Result<(), PlaceError> {
+    ) -> Result<(), PositionError> {
         let Workspace {
-            pose, motion, unit, ..
-        } = work;
-        let (zero, one) = (T::lift(0.0), T::lift(1.0));
-        self.plan().place(&[q], pose)?;
-        self.plan().speeds(pose, &[one], motion);
+            pose,
+            motion,
+            unit_passes: unit,
+            ..
+        } = workspace;
+        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+        self.plan().positions(&[q], pose)?;
+        self.plan().velocities(pose, &[one], motion);
         self.plan().accelerations(pose, &[zero], motion);
-        unit.evaluate(self, pose, Unit(motion));
-        [out.half_dm, out.m] = unit.tau(self, 0);
+        unit.evaluate(&self.pass_model, pose, UnitMotions(motion));
+        [out.half_dm, out.m] = unit.tau(&self.pass_model, 0);
         for (k, (a, b)) in out.a.iter_mut().zip(&mut out.b).enumerate() {
-            [*b, *a] = unit.reaction(self, pose, k);
+            [*b, *a] = unit.reaction(&self.pass_model, pose, k);
         }
         Ok(())
     }
 
-    /// Room for the coefficients of this model.
-    pub fn coefficients<T: Scalar>(&self) -> Coefficients<T> {
+    /// A buffer for the coefficients of this model.
+    pub fn coefficient_buffer<T: Scalar>(&self) -> Coefficients<T> {
         Coefficients {
-            m: T::lift(0.0),
-            half_dm: T::lift(0.0),
-            a: vec![T::lift(0.0); self.reactions().len()],
-            b: vec![T::lift(0.0); self.reactions().len()],
+            m: T::from_f64(0.0),
+            half_dm: T::from_f64(0.0),
+            a: vec![T::from_f64(0.0); self.reactions().len()],
+            b: vec![T::from_f64(0.0); self.reactions().len()],
         }
     }
 }
 
-impl Reduced for Exact {
-    type Work = ExactWork;
+impl ReducedModel for ExactModel {
+    type Workspace = ExactWorkspace;
 
-    fn work(&self) -> ExactWork {
-        ExactWork {
-            plain: self.model.workspace(),
-            dual: self.bare.workspace(),
+    fn workspace(&self) -> ExactWorkspace {
+        ExactWorkspace {
+            real: self.model.workspace(),
+            dual: self.inertia_model.workspace(),
         }
     }
 
@@ -169,16 +186,21 @@ impl Reduced for Exact {
         self.model.plan().range()
     }
 
-    fn inertia(&self, q: f64, work: &mut ExactWork) -> Result<(f64, f64), PlaceError> {
+    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> Result<(f64, f64), PositionError> {
         let mut out = Coefficients::default();
-        self.bare.reduce(q, &mut work.plain, &mut out)?;
+        self.inertia_model
+            .reduce(q, &mut workspace.real, &mut out)?;
         Ok((out.m, out.half_dm))
     }
 
-    fn curvature(&self, q: f64, work: &mut ExactWork) -> Result<Inertia, PlaceError> {
+    fn inertia_derivatives(
+        &self,
+        q: f64,
+        workspace: &mut ExactWorkspace,
+    ) -> Result<Inertia, PositionError> {
         let mut out = Coefficients::default();
-        self.bare
-            .reduce(Dual::variable(q), &mut work.dual, &mut out)?;
+        self.inertia_model
+            .reduce(Dual::variable(q), &mut workspace.dual, &mut out)?;
         Ok(Inertia {
             m: out.m.v,
             half_dm: out.half_dm.v,
@@ -189,9 +211,9 @@ impl Reduced for Exact {
     fn coefficients(
         &self,
         q: f64,
-        work: &mut ExactWork,
+        workspace: &mut ExactWorkspace,
         out: &mut Coefficients,
-    ) -> Result<(), PlaceError> {
-        self.model.reduce(q, &mut work.plain, out)
+    ) -> Result<(), PositionError> {
+        self.model.reduce(q, &mut workspace.real, out)
     }
 }

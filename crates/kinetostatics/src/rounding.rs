@@ -1,66 +1,68 @@
-//! What rounding does to a result: it is evaluated again in numbers of two words, of 32 digits.
+//! Estimates of the rounding errors of a result: it is evaluated again in double-double numbers, of 32 digits.
 //!
-//! The estimate of an error is the difference of both, and one last place of the result: what its lengths and
-//! masses are rounded to when the model is compiled is not seen by evaluating twice.
+//! The estimate is the difference of both, plus one unit in the last place of the result, because evaluating twice does
+//! not show the rounding of lengths and masses when the model is compiled.
 
-use crate::kinetostatics::KinetostaticsError;
-use crate::model::{Actions, Model, Workspace};
+use crate::error::KinetostaticsError;
+use crate::model::{Model, Workspace};
+use crate::pass::InverseDynamics;
 use crate::reduced::Coefficients;
-use dwell_geometry::{PlaceError, Scalar, Wide};
+use dwell_geometry::PositionError;
+use dwell_numerics::{DoubleDouble, Scalar};
 
-/// How far a number is from the wide one, and one last place.
-fn off(value: f64, wide: Wide) -> f64 {
-    (Wide::lift(value) - wide).abs().value() + f64::EPSILON * value.abs()
+/// The difference from the precise number, plus one unit in the last place.
+fn rounding_error(value: f64, precise: DoubleDouble) -> f64 {
+    (DoubleDouble::from_f64(value) - precise).abs().value() + f64::EPSILON * value.abs()
 }
 
-fn all_off(errors: &mut [f64], values: &[f64], wide: &[Wide]) {
-    for ((error, &value), &wide) in errors.iter_mut().zip(values).zip(wide) {
-        *error = off(value, wide);
+fn rounding_errors(errors: &mut [f64], values: &[f64], precise: &[DoubleDouble]) {
+    for ((error, &value), &precise) in errors.iter_mut().zip(values).zip(precise) {
+        *error = rounding_error(value, precise);
     }
 }
 
 impl Model {
-    /// The estimated rounding errors, to `errors`, of the reduced coefficients `at` that
+    /// Estimates into `errors` the rounding errors of the reduced `coefficients` that
     /// [`Model::reduce`] found at `q` (rad or m), each in its own unit.
     ///
     /// # Errors
-    /// [`PlaceError`] when there is no pose at `q`.
-    pub fn reduce_errors(
+    /// [`PositionError`] when there is no pose at `q`.
+    pub fn reduction_rounding_errors(
         &self,
         q: f64,
-        at: &Coefficients,
-        work: &mut Workspace<Wide>,
+        coefficients: &Coefficients,
+        workspace: &mut Workspace<DoubleDouble>,
         errors: &mut Coefficients,
-    ) -> Result<(), PlaceError> {
-        let mut wide = self.coefficients();
-        self.reduce(Wide::lift(q), work, &mut wide)?;
-        errors.m = off(at.m, wide.m);
-        errors.half_dm = off(at.half_dm, wide.half_dm);
-        all_off(&mut errors.a, &at.a, &wide.a);
-        all_off(&mut errors.b, &at.b, &wide.b);
+    ) -> Result<(), PositionError> {
+        let mut precise = self.coefficient_buffer();
+        self.reduce(DoubleDouble::from_f64(q), workspace, &mut precise)?;
+        errors.m = rounding_error(coefficients.m, precise.m);
+        errors.half_dm = rounding_error(coefficients.half_dm, precise.half_dm);
+        rounding_errors(&mut errors.a, &coefficients.a, &precise.a);
+        rounding_errors(&mut errors.b, &coefficients.b, &precise.b);
         Ok(())
     }
 
-    /// The estimated rounding errors, to `errors` (N·m or N), of the `actions` that
-    /// [`Model::kinetostatics`] found in a state of motion. The laws of loads and relations are
+    /// Estimates into `errors` (N·m or N) the rounding errors of the `result` that
+    /// [`Model::kinetostatics`] found in a state of motion. The laws of loads and couplings are
     /// evaluated in plain numbers in both.
     ///
     /// # Errors
     /// As [`Model::kinetostatics`].
-    pub fn action_errors(
+    pub fn kinetostatics_rounding_errors(
         &self,
         t: f64,
         [q, q_dot, q_ddot]: [&[f64]; 3],
-        actions: &Actions<f64>,
-        work: &mut Workspace<Wide>,
-        errors: &mut Actions<f64>,
+        result: &InverseDynamics<f64>,
+        workspace: &mut Workspace<DoubleDouble>,
+        errors: &mut InverseDynamics<f64>,
     ) -> Result<(), KinetostaticsError> {
-        let lift = |values: &[f64]| values.iter().map(|&v| Wide::lift(v)).collect();
-        let [q, q_dot, q_ddot]: [Vec<Wide>; 3] = [q, q_dot, q_ddot].map(lift);
-        let mut wide = self.actions();
-        self.kinetostatics(t, &q, &q_dot, &q_ddot, work, &mut wide)?;
-        all_off(&mut errors.tau, &actions.tau, &wide.tau);
-        all_off(&mut errors.reactions, &actions.reactions, &wide.reactions);
+        let lift = |values: &[f64]| values.iter().map(|&v| DoubleDouble::from_f64(v)).collect();
+        let [q, q_dot, q_ddot]: [Vec<DoubleDouble>; 3] = [q, q_dot, q_ddot].map(lift);
+        let mut precise = self.result_buffer();
+        self.kinetostatics(t, &q, &q_dot, &q_ddot, workspace, &mut precise)?;
+        rounding_errors(&mut errors.tau, &result.tau, &precise.tau);
+        rounding_errors(&mut errors.reactions, &result.reactions, &precise.reactions);
         Ok(())
     }
 }

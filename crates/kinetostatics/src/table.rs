@@ -1,66 +1,67 @@
 //! Tables of the reduced model: m, ½m′, a, b, w and c as piecewise polynomials of the coordinate, in place
 //! of the mechanism.
 //!
-//! How many cells a table has follows from how fast the coefficients of a global series fall ([`fit`]:
-//! trigonometric over full turns, Chebyshev's over a limited extent); its values come from cells of equal
-//! size at a constant cost ([`pieces`]); how far it is off is measured, not estimated ([`bound`]).
+//! The number of cells follows from how fast the coefficients of a global series fall (`sizing`:
+//! trigonometric over full turns, Chebyshev's over a limited domain); values come from cells of equal
+//! size at a constant cost (`piecewise`); the error is measured, not estimated (`bound`).
 //!
-//! A limited range ends at limit positions, where everything grows without bound, so a table covers an inner
-//! part of it. Outside there is an error and no value: a table that is read from a file has no mechanism to
-//! fall back on, and a motion that changed from one to the other would change its energy.
+//! A limited range ends at limit positions, where all coefficients grow without bound, so a table covers an inner
+//! part of it. Outside it returns an error: a table that is read from a file has no mechanism to
+//! evaluate instead, and a motion that changed from one to the other would change its energy.
 
 mod bound;
+mod build;
 mod file;
-mod fit;
-mod make;
-mod pieces;
-mod source;
+mod piecewise;
+mod sampler;
+mod sizing;
 
+pub use build::{ColumnSampler, SlopeSampler, TableBuilder};
 pub use file::{FileError, Labels};
-pub use make::{Fill, Maker, Slopes};
-pub use pieces::{Columns, Curve};
-pub use source::Inertias;
+pub use piecewise::{IntegratedCurve, PiecewiseColumns};
+pub use sampler::InertiaSampler;
 
-use crate::kinetostatics::KinetostaticsError;
-use crate::reduced::{Coefficients, Exact, Inertia, Reduced};
-use dwell_geometry::{Dual, PlaceError, Range};
-use pieces::Grid;
-use source::Source;
+use crate::error::KinetostaticsError;
+use crate::reduced::{Coefficients, ExactModel, Inertia, ReducedModel};
+use dwell_geometry::{PositionError, Range};
+use dwell_numerics::Dual;
+use piecewise::Grid;
+use sampler::ModelSampler;
 use std::fmt;
 use thiserror::Error;
 
-/// Over which coordinates a table reaches.
+/// The domain of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Extent {
+pub enum TableDomain {
     /// All turns of a mechanism that turns fully; of a limited range all but 2 % of it at each end.
-    Whole,
+    Full,
     /// From one coordinate to another, rad or m.
     Between(f64, f64),
 }
 
 /// A function of the coordinate that a table may hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Entry {
+pub enum TableQuantity {
     /// m.
     M,
     /// ½m′.
     HalfDm,
-    /// What multiplies q̈ in a reaction.
+    /// The coefficient of q̈ in a reaction.
     A {
         /// Index of the reaction.
         reaction: usize,
     },
-    /// What multiplies q̇² in a reaction.
+    /// The coefficient of q̇² in a reaction.
     B {
         /// Index of the reaction.
         reaction: usize,
     },
-    /// What one unit of a load gives the coordinate.
+    /// The generalised force of one unit of a load.
     W {
         /// Index of the load.
         load: usize,
     },
-    /// What one unit of a load gives a reaction.
+    /// The reaction to one unit of a load.
     C {
         /// Index of the load.
         load: usize,
@@ -71,19 +72,19 @@ pub enum Entry {
     V,
     /// ½V′.
     HalfDv,
-    /// Something measured that loads or drives depend on, less what it gains evenly with q.
+    /// A coordinate on which loads or drives depend, less its uniform growth with q.
     S {
         /// Its index.
-        measured: usize,
+        coordinate: usize,
     },
     /// Its derivative by q.
     Ds {
         /// Its index.
-        measured: usize,
+        coordinate: usize,
     },
 }
 
-impl fmt::Display for Entry {
+impl fmt::Display for TableQuantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::M => write!(f, "m"),
@@ -94,8 +95,12 @@ impl fmt::Display for Entry {
             Self::C { load, reaction } => write!(f, "c of load {load} and reaction {reaction}"),
             Self::V => write!(f, "the potential V"),
             Self::HalfDv => write!(f, "the slope of the potential, ½V′"),
-            Self::S { measured } => write!(f, "measured coordinate {measured}"),
-            Self::Ds { measured } => write!(f, "the slope of measured coordinate {measured}"),
+            Self::S {
+                coordinate: measured,
+            } => write!(f, "measured coordinate {measured}"),
+            Self::Ds {
+                coordinate: measured,
+            } => write!(f, "the slope of measured coordinate {measured}"),
         }
     }
 }
@@ -109,40 +114,40 @@ pub enum TableError {
         /// What was asked for.
         accuracy: f64,
     },
-    /// An extent that is empty, not finite or not inside the range.
+    /// A domain that is empty, not finite or not inside the range.
     #[error("a table cannot reach from {from} to {to}: that is empty, or leaves the range")]
-    Extent {
+    Domain {
         /// Lower end, rad or m.
         from: f64,
         /// Upper end, rad or m.
         to: f64,
     },
-    /// The range has no end and the mechanism does not come back.
+    /// The range has no end and the mechanism is not periodic.
     #[error("the range has no ends: say from where to where the table is to reach")]
-    Endless,
+    Unbounded,
     /// A coefficient that is not the same a period later, such as that of a spring that winds up.
     #[error(
         "{what} does not come back after a turn: say from where to where the table is to reach"
     )]
     NotPeriodic {
         /// Which.
-        what: Entry,
+        what: TableQuantity,
     },
     /// The coefficients of the series do not fall to the accuracy.
     #[error(
-        "not smooth enough for a table over so much: {points} samples leave {left:.1e} of the largest value"
+        "not smooth enough for a table over so much: {points} samples leave {residual:.1e} of the largest value"
     )]
     NotSmooth {
         /// Samples taken.
         points: usize,
         /// The last coefficients, as a part of the largest value.
-        left: f64,
+        residual: f64,
     },
     /// No number of cells reaches the accuracy.
     #[error("no table of {accuracy:e}: {what} is known to {reached:.1e} of its largest value")]
     NotReached {
         /// The coefficient that is furthest off.
-        what: Entry,
+        what: TableQuantity,
         /// The best bound that was reached, as a part of the scale.
         reached: f64,
         /// What was asked for.
@@ -153,27 +158,27 @@ pub enum TableError {
     Exact(#[from] KinetostaticsError),
 }
 
-impl From<PlaceError> for TableError {
-    fn from(error: PlaceError) -> Self {
+impl From<PositionError> for TableError {
+    fn from(error: PositionError) -> Self {
         Self::Exact(error.into())
     }
 }
 
-/// What is known of one coefficient of a table.
+/// The measured error bound of one coefficient of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bound {
-    /// Which.
-    pub of: Entry,
-    /// What it is measured by: its largest value (for one that nearly vanishes, a thousandth of the
+    /// The coefficient.
+    pub quantity: TableQuantity,
+    /// Its scale: its largest value (of one that nearly vanishes, a thousandth of the
     /// largest of its kind), in its own unit.
     pub scale: f64,
-    /// It is off by no more than this part of the scale.
+    /// Its error is at most this part of the scale.
     pub error: f64,
 }
 
-/// What the loads do at one coordinate.
+/// The responses to one unit of each load at one coordinate.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Channels {
+pub struct UnitLoadResponses {
     /// By load: w.
     pub w: Vec<f64>,
     /// By load, then by reaction: c.
@@ -182,44 +187,44 @@ pub struct Channels {
 
 /// A table of the whole reduced model of one degree of freedom.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct TabulatedModel {
     accuracy: f64,
-    angle: bool,
-    inertia: Curve,
-    reactions: Columns,
-    loads: Columns,
+    is_angle: bool,
+    inertia: IntegratedCurve,
+    reactions: PiecewiseColumns,
+    loads: PiecewiseColumns,
     /// How many reactions and loads.
     counts: [usize; 2],
     /// m and ½m′, then a, b, w and c.
     bounds: Vec<Bound>,
 }
 
-impl Table {
+impl TabulatedModel {
     /// A table of a model with its reactions and loads, in which every coefficient is within `accuracy`
     /// of its largest value.
     ///
     /// # Errors
     /// [`TableError`] when there is nothing to reach over, or the accuracy cannot be kept.
-    pub fn new(exact: &Exact, accuracy: f64, extent: Extent) -> Result<Self, TableError> {
-        let mut maker = Maker::new(exact.range(), extent, accuracy)?;
-        let mut source = Source::new(exact);
+    pub fn new(exact: &ExactModel, accuracy: f64, domain: TableDomain) -> Result<Self, TableError> {
+        let mut builder = TableBuilder::new(exact.range(), domain, accuracy)?;
+        let mut sampler = ModelSampler::new(exact);
         let model = exact.model();
         let counts = [model.reactions().len(), model.loads().len()];
-        let (both, reactions, loads) = entries(counts);
-        let inertia = maker.curve(both, &mut exact.slopes())?;
-        let alike = |one, other| source::alike(exact, one, other);
-        let mut columns = |which: &[Entry]| {
-            let mut fill = |q: f64, out: &mut [Dual]| source.fill(which, q, out);
-            maker.columns(which, &alike, &mut fill)
+        let (both, reactions, loads) = table_quantities(counts);
+        let inertia = builder.curve(both, &mut exact.inertia_sampler())?;
+        let same_kind = |one, other| sampler::same_kind(exact, one, other);
+        let mut columns = |quantities: &[TableQuantity]| {
+            let mut sample = |q: f64, out: &mut [Dual]| sampler.sample(quantities, q, out);
+            builder.columns(quantities, &same_kind, &mut sample)
         };
         Ok(Self {
             accuracy,
-            angle: model.plan().is_angle(0),
+            is_angle: model.plan().is_angle(0),
             inertia,
             reactions: columns(&reactions)?,
             loads: columns(&loads)?,
             counts,
-            bounds: maker.bounds(),
+            bounds: builder.bounds(),
         })
     }
 
@@ -228,25 +233,25 @@ impl Table {
         self.accuracy
     }
 
-    /// The turns after which it repeats itself; none of a limited extent.
-    pub fn turns(&self) -> Option<u32> {
-        Some(self.inertia.grid.turns).filter(|&turns| turns > 0)
+    /// The revolutions after which it repeats; none of a limited domain.
+    pub fn revolutions(&self) -> Option<u32> {
+        Some(self.inertia.grid.revolutions).filter(|&revolutions| revolutions > 0)
     }
 
-    /// From where to where it reaches, rad or m; of a mechanism that turns fully, one period.
-    pub fn extent(&self) -> [f64; 2] {
+    /// Its domain, rad or m; of a mechanism that turns fully, one period.
+    pub fn domain(&self) -> [f64; 2] {
         let Grid { from, length, .. } = self.inertia.grid;
         [from, from + length]
     }
 
-    /// How far each coefficient may be off: m, ½m′, then a and b of all reactions, w and c of all loads.
+    /// The error bound of each coefficient: m, ½m′, then a and b of all reactions, w and c of all loads.
     pub fn bounds(&self) -> &[Bound] {
         &self.bounds
     }
 
     /// The largest of all bounds, as a part of the scale.
-    pub fn bound(&self) -> f64 {
-        self.bounds.iter().fold(0.0, |most, b| most.max(b.error))
+    pub fn max_bound(&self) -> f64 {
+        self.bounds.iter().fold(0.0, |max, b| max.max(b.error))
     }
 
     /// Cells of m and ½m′, of the reactions, of the loads; none where there are none.
@@ -267,10 +272,10 @@ impl Table {
         ]
     }
 
-    /// Room for the channels of all loads.
-    pub fn channel_room(&self) -> Channels {
+    /// A buffer for the responses to all loads.
+    pub fn response_buffer(&self) -> UnitLoadResponses {
         let [reactions, loads] = self.counts;
-        Channels {
+        UnitLoadResponses {
             w: vec![0.0; loads],
             c: vec![0.0; loads * reactions],
         }
@@ -279,52 +284,63 @@ impl Table {
     /// w and c of all loads at `q` (rad or m).
     ///
     /// # Errors
-    /// [`PlaceError`] outside the table.
-    pub fn channels(&self, q: f64, out: &mut Channels) -> Result<(), PlaceError> {
-        self.loads.at(q, &mut out.w, &mut out.c)
+    /// [`PositionError`] outside the table.
+    pub fn unit_load_responses(
+        &self,
+        q: f64,
+        out: &mut UnitLoadResponses,
+    ) -> Result<(), PositionError> {
+        self.loads.eval(q, &mut out.w, &mut out.c)
     }
 }
 
-impl Reduced for Table {
-    type Work = ();
+impl ReducedModel for TabulatedModel {
+    type Workspace = ();
 
-    fn work(&self) {}
+    fn workspace(&self) {}
 
     fn reactions(&self) -> usize {
         self.counts[0]
     }
 
     fn range(&self) -> Range {
-        match (self.turns(), self.extent()) {
+        match (self.revolutions(), self.domain()) {
             (Some(1), _) => Range::Full,
-            (Some(turns), _) => Range::Turns(turns),
-            // Nothing is known beyond; where a limit position is, the table has not come to.
-            (None, [from, to]) => Range::Followed(from, to),
+            (Some(revolutions), _) => Range::Revolutions(revolutions),
+            // Nothing is known beyond its ends, which are no limit positions.
+            (None, [from, to]) => Range::Unresolved(from, to),
         }
     }
 
     #[inline]
-    fn inertia(&self, q: f64, (): &mut ()) -> Result<(f64, f64), PlaceError> {
-        self.inertia.at(q).map(<(f64, f64)>::from)
+    fn inertia(&self, q: f64, (): &mut ()) -> Result<(f64, f64), PositionError> {
+        self.inertia.eval(q).map(<(f64, f64)>::from)
     }
 
-    fn curvature(&self, q: f64, (): &mut ()) -> Result<Inertia, PlaceError> {
-        self.inertia.curvature(q)
+    fn inertia_derivatives(&self, q: f64, (): &mut ()) -> Result<Inertia, PositionError> {
+        self.inertia.derivatives(q)
     }
 
-    fn coefficients(&self, q: f64, (): &mut (), out: &mut Coefficients) -> Result<(), PlaceError> {
-        [out.m, out.half_dm] = self.inertia.at(q)?;
-        self.reactions.at(q, &mut out.a, &mut out.b)
+    fn coefficients(
+        &self,
+        q: f64,
+        (): &mut (),
+        out: &mut Coefficients,
+    ) -> Result<(), PositionError> {
+        [out.m, out.half_dm] = self.inertia.eval(q)?;
+        self.reactions.eval(q, &mut out.a, &mut out.b)
     }
 }
 
 /// The coefficients in their order: m and ½m′, those of the reactions, those of the loads.
-fn entries([reactions, loads]: [usize; 2]) -> ([Entry; 2], Vec<Entry>, Vec<Entry>) {
-    let a = (0..reactions).map(|reaction| Entry::A { reaction });
-    let b = (0..reactions).map(|reaction| Entry::B { reaction });
-    let w = (0..loads).map(|load| Entry::W { load });
-    let c =
-        (0..loads).flat_map(|load| (0..reactions).map(move |reaction| Entry::C { load, reaction }));
-    let inertia = [Entry::M, Entry::HalfDm];
+fn table_quantities(
+    [reactions, loads]: [usize; 2],
+) -> ([TableQuantity; 2], Vec<TableQuantity>, Vec<TableQuantity>) {
+    let a = (0..reactions).map(|reaction| TableQuantity::A { reaction });
+    let b = (0..reactions).map(|reaction| TableQuantity::B { reaction });
+    let w = (0..loads).map(|load| TableQuantity::W { load });
+    let c = (0..loads)
+        .flat_map(|load| (0..reactions).map(move |reaction| TableQuantity::C { load, reaction }));
+    let inertia = [TableQuantity::M, TableQuantity::HalfDm];
     (inertia, a.chain(b).collect(), w.chain(c).collect())
 }

@@ -4,7 +4,8 @@
 use allocation_counter::measure;
 use dwell_geometry::{BodyId, Coordinate, vec2};
 use dwell_kinetostatics::{
-    Exact, Ledger, Load, LoadKind, Magnitude, Model, Reduced, Shaking, Signal,
+    ExactModel, FreeBodyForces, Load, LoadKind, Magnitude, Model, ReducedModel, ShakingForce,
+    Signal,
 };
 use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::Scene;
@@ -19,11 +20,11 @@ fn case(name: &str) -> Scene {
 }
 
 /// A scene's model with every reaction.
-fn model(scene: &Scene) -> Exact {
-    let start = scene.assembly.to_start();
+fn model(scene: &Scene) -> ExactModel {
+    let assembly = scene.assembly.to_configuration();
     let reactions = scene.mechanism.reactions();
-    let model = Model::new(&scene.mechanism, &scene.masses, &start, &reactions);
-    Exact::new(model.expect("it assembles")).expect("one actuator")
+    let model = Model::new(&scene.mechanism, &scene.masses, &assembly, &reactions);
+    ExactModel::new(model.expect("it assembles")).expect("one actuator")
 }
 
 /// Number of allocations of an evaluation that succeeds or fails as expected.
@@ -45,27 +46,31 @@ fn an_evaluation_allocates_nothing() {
     ] {
         let name = &scene.name;
         let model = model(&scene);
-        let groups = model.model().plan().group_kinds();
+        let groups = model.model().plan().group_methods();
         let sizes = groups.iter().map(|(n, _)| *n);
         assert_eq!(sizes.max(), Some(largest), "{name}");
         assert!(model.reactions() > 0);
 
-        let mut work = model.work();
-        let mut out = model.model().coefficients();
-        let start = model.model().plan().start()[0];
+        let mut workspace = model.workspace();
+        let mut out = model.model().coefficient_buffer();
+        let assembled = model.model().plan().assembly_coordinates()[0];
         let beyond = match model.range().limits() {
             None => f64::NAN,
             Some((_, to)) => to + 0.3,
         };
         for k in 0..20 {
-            let q = start + 0.05 * f64::from(k);
+            let q = assembled + 0.05 * f64::from(k);
             let counts = [
                 allocations(name, true, || {
-                    model.coefficients(q, &mut work, &mut out).is_ok()
+                    model.coefficients(q, &mut workspace, &mut out).is_ok()
                 }),
-                allocations(name, true, || model.inertia(q, &mut work).is_ok()),
-                allocations(name, true, || model.curvature(q, &mut work).is_ok()),
-                allocations(name, false, || model.inertia(beyond, &mut work).is_ok()),
+                allocations(name, true, || model.inertia(q, &mut workspace).is_ok()),
+                allocations(name, true, || {
+                    model.inertia_derivatives(q, &mut workspace).is_ok()
+                }),
+                allocations(name, false, || {
+                    model.inertia(beyond, &mut workspace).is_ok()
+                }),
             ];
             assert_eq!(counts, [0; 4], "{name} at {q}");
         }
@@ -74,13 +79,13 @@ fn an_evaluation_allocates_nothing() {
 
 /// Loads of every cost: weight, a spring, a magnitude that has to be measured, a torque.
 fn loads(model: &Model) -> Vec<Load> {
-    let ground = model.plan().tree().carries[0].parent;
-    let bodies = [ground, model.plan().carried()[0].body].map(BodyId);
+    let ground = model.plan().tree().joints[0].parent;
+    let bodies = [ground, model.plan().moving_bodies()[0].body].map(BodyId);
     let points = [vec2(0.3, 0.2), vec2(-0.1, 0.4)];
     let spring = LoadKind::Spring {
         bodies,
         points,
-        free: 0.02,
+        free_length: 0.02,
     };
     let length = Coordinate::Length { bodies, points };
     let law = Law::Polynomial(Polynomial::motion(1.0, 2.0, 3.0));
@@ -89,7 +94,7 @@ fn loads(model: &Model) -> Vec<Load> {
     let formula = Magnitude::Expression(formula, vec![Signal::Time, Signal::Value(length)]);
     [
         (LoadKind::Gravity { direction }, Magnitude::Constant(9.81)),
-        (spring, Magnitude::Law(Signal::Speed(length), law)),
+        (spring, Magnitude::Law(Signal::Velocity(length), law)),
         (LoadKind::Torque { bodies }, formula),
     ]
     .map(|(kind, magnitude)| Load {
@@ -107,24 +112,24 @@ fn loads_and_balances_allocate_nothing() {
         case("class-three-six-bar"),
         Scene::parse("yoke.toml", YOKE).expect("a scene"),
     ] {
-        let (name, mechanism) = (&scene.name, &scene.mechanism);
+        let name = &scene.name;
         let model = model(&scene).model().clone();
         let loads = loads(&model);
-        let model = model.with_loads(mechanism, loads).expect("they fit");
-        let ledger = Ledger::new(mechanism, &model).expect("every reaction");
-        let (mut work, mut actions) = (model.workspace(), model.actions());
-        let mut acts = Vec::with_capacity(100);
+        let model = model.with_loads(loads).expect("they fit");
+        let free_body_forces = FreeBodyForces::new(&model).expect("every reaction");
+        let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
+        let mut wrenches = Vec::with_capacity(100);
         let mut powers = [0.0; 3];
-        let q = [model.plan().start()[0] + 0.1];
+        let q = [model.plan().assembly_coordinates()[0] + 0.1];
         let spent = allocations(name, true, || {
-            let done = model.kinetostatics(0.5, &q, &[2.0], &[-3.0], &mut work, &mut actions);
-            model.generalised_forces(&mut work, &mut powers);
-            model.load_powers(&work, &mut powers);
-            ledger.acts(&model, &work, &actions, &mut acts);
-            let shaking = ledger.shaking(&model, &work, &acts);
-            let power = model.power(&work, &actions);
-            let rest = model.statics(0.5, &q, &mut work, &mut actions);
-            done.is_ok() && rest.is_ok() && power.scale > 0.0 && shaking != Shaking::default()
+            let done = model.kinetostatics(0.5, &q, &[2.0], &[-3.0], &mut workspace, &mut result);
+            model.generalised_forces(&mut workspace, &mut powers);
+            model.load_powers(&workspace, &mut powers);
+            free_body_forces.wrenches(&model, &workspace, &result, &mut wrenches);
+            let shaking = free_body_forces.shaking_force(&model, &workspace, &wrenches);
+            let power = model.power_balance(&workspace, &result);
+            let rest = model.statics(0.5, &q, &mut workspace, &mut result);
+            done.is_ok() && rest.is_ok() && power.scale > 0.0 && shaking != ShakingForce::default()
         });
         assert_eq!(spent, 0, "{name}");
     }
@@ -135,8 +140,8 @@ fn an_allocation_would_be_counted() {
     let scene = case("crank-rocker");
     let model = model(&scene);
     let count = allocations("work", true, || {
-        let mut work = model.work();
-        model.inertia(0.0, &mut work).is_ok()
+        let mut workspace = model.workspace();
+        model.inertia(0.0, &mut workspace).is_ok()
     });
     assert!(count > 0);
 }

@@ -54,7 +54,7 @@ pub enum LawError {
 }
 
 /// `value`, if it is finite.
-pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, LawError> {
+pub(crate) fn require_finite(name: &'static str, value: f64) -> Result<f64, LawError> {
     if value.is_finite() {
         Ok(value)
     } else {
@@ -63,8 +63,8 @@ pub(crate) fn finite(name: &'static str, value: f64) -> Result<f64, LawError> {
 }
 
 /// `value`, if it is finite and greater than zero.
-pub(crate) fn positive(name: &'static str, value: f64) -> Result<f64, LawError> {
-    if finite(name, value)? > 0.0 {
+pub(crate) fn require_positive(name: &'static str, value: f64) -> Result<f64, LawError> {
+    if require_finite(name, value)? > 0.0 {
         Ok(value)
     } else {
         Err(LawError::NotPositive { name, value })

@@ -21,13 +21,13 @@ pub enum Law {
 
 impl Law {
     /// The value and its first three derivatives at `x`, by analysis, not by differences.
-    pub fn at(&self, x: f64) -> [f64; 4] {
+    pub fn eval(&self, x: f64) -> [f64; 4] {
         match self {
-            Self::Polynomial(polynomial) => polynomial.derivatives(x),
-            Self::Profile(profile) => profile.at(x),
-            Self::Spline(spline) => spline.at(x),
-            Self::Sinusoid(sinusoid) => sinusoid.at(x),
-            Self::Expression(expression) => expression.along(&[x], 0),
+            Self::Polynomial(polynomial) => polynomial.eval(x),
+            Self::Profile(profile) => profile.eval(x),
+            Self::Spline(spline) => spline.eval(x),
+            Self::Sinusoid(sinusoid) => sinusoid.eval(x),
+            Self::Expression(expression) => expression.derivatives_wrt(&[x], 0),
         }
     }
 
@@ -35,24 +35,24 @@ impl Law {
     /// number before the jump and the first after it. Only an expression can jump (`floor`, `sign`,
     /// `step`, `if`); of several jumps it is the one that shows most. A jump of less than
     /// 10⁻⁶ of the value is none, nor is what cannot be told from it, a slope of 10⁹ and more.
-    pub fn jump(&self, from: f64, to: f64) -> Option<[f64; 2]> {
+    pub fn discontinuity(&self, from: f64, to: f64) -> Option<[f64; 2]> {
         let Self::Expression(_) = self else {
             return None;
         };
         // What is left of a difference of values when both ends' derivatives have explained
         // theirs: for a smooth law of the fifth order in the step, for a jump never less.
         let unexplained = |a: f64, b: f64| {
-            let ([p, v, c, _], [q, w, d, _], h) = (self.at(a), self.at(b), b - a);
+            let ([p, v, c, _], [q, w, d, _], h) = (self.eval(a), self.eval(b), b - a);
             (q - p - 0.5 * h * (v + w) - h * h / 12.0 * (c - d)).abs()
         };
-        let least = JUMP * self.at(from)[0].abs().max(self.at(to)[0].abs());
+        let min_jump = JUMP_TOLERANCE * self.eval(from)[0].abs().max(self.eval(to)[0].abs());
         let (mut a, mut b) = (from, to);
         // What is not a number is no jump.
-        let may_jump = unexplained(a, b) > least;
+        let may_jump = unexplained(a, b) > min_jump;
         if !may_jump {
             return None;
         }
-        for _ in 0..HALVINGS {
+        for _ in 0..MAX_HALVINGS {
             let middle = 0.5 * (a + b);
             if middle == a || middle == b {
                 break;
@@ -63,25 +63,25 @@ impl Law {
                 a = middle;
             }
         }
-        ((self.at(b)[0] - self.at(a)[0]).abs() > least).then_some([a, b])
+        ((self.eval(b)[0] - self.eval(a)[0]).abs() > min_jump).then_some([a, b])
     }
 }
 
 /// Smallest jump, as a part of the value.
-const JUMP: f64 = 1e-6;
+const JUMP_TOLERANCE: f64 = 1e-6;
 /// Halvings of a step, down to the rounding of numbers of its size.
-const HALVINGS: usize = 60;
+const MAX_HALVINGS: usize = 60;
 
 #[cfg(test)]
 mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::{Shape, Travel};
+    use crate::{Rise, Shape};
 
     /// One law of each kind, and every shape of profile.
     fn laws() -> Vec<Law> {
-        let travel = Travel {
+        let rise = Rise {
             start: 0.5,
             rise: 2.0,
             duration: 3.0,
@@ -104,9 +104,7 @@ mod tests {
             Shape::Cycloidal,
             Shape::Trapezoidal { ramp: 0.7 },
         ] {
-            laws.push(Law::Profile(
-                Profile::new(shape, travel).expect("a profile"),
-            ));
+            laws.push(Law::Profile(Profile::new(shape, rise).expect("a profile")));
         }
         laws
     }
@@ -119,9 +117,9 @@ mod tests {
         for law in laws() {
             // No knot of the spline, no end or corner of a profile within the stencil.
             for x in [-0.83, 0.41, 0.9, 1.55] {
-                let exact = law.at(x);
+                let exact = law.eval(x);
                 for k in 0..3 {
-                    let d = |n: f64| law.at(x + n * h)[k] - law.at(x - n * h)[k];
+                    let d = |n: f64| law.eval(x + n * h)[k] - law.eval(x - n * h)[k];
                     let difference = (45.0 * d(1.0) - 9.0 * d(2.0) + d(3.0)) / (60.0 * h);
                     let error = (difference - exact[k + 1]).abs();
                     assert!(error < 5e-10, "{law:?} at {x}, {}: {error:e}", k + 1);
@@ -133,7 +131,7 @@ mod tests {
     #[test]
     fn not_a_number_stays_visible() {
         for law in laws() {
-            assert!(law.at(f64::NAN).iter().all(|d| d.is_nan()), "{law:?}");
+            assert!(law.eval(f64::NAN).iter().all(|d| d.is_nan()), "{law:?}");
         }
     }
 
@@ -147,7 +145,7 @@ mod tests {
             ("cos(x) + 0.01*step(x - 0.123)", 0.123),
         ] {
             for [from, to] in [[0.0, 1.0], [1.0, 0.0]] {
-                let [a, b] = law(text).jump(from, to).expect(text);
+                let [a, b] = law(text).discontinuity(from, to).expect(text);
                 // A few roundings of 1, on both sides of it.
                 assert!((a - b).abs() < 1e-15 && (a - at).abs() < 1e-15, "{text}");
                 assert!((at - a) * (at - b) <= 0.0, "{text}: {a} {b}");
@@ -163,16 +161,16 @@ mod tests {
             "1e60*x",
             "ln(x - 2)",
         ] {
-            assert_eq!(law(text).jump(0.0, 1.0), None, "{text}");
+            assert_eq!(law(text).discontinuity(0.0, 1.0), None, "{text}");
         }
         for law in laws() {
-            assert_eq!(law.jump(-1.0, 3.0), None, "{law:?}");
+            assert_eq!(law.discontinuity(-1.0, 3.0), None, "{law:?}");
         }
     }
 
     #[test]
     fn a_law_of_two_variables_is_not_a_number() {
         let law = Law::Expression(Expression::parse("x + y", &["x", "y"]).expect("a formula"));
-        assert!(law.at(1.0)[0].is_nan());
+        assert!(law.eval(1.0)[0].is_nan());
     }
 }

@@ -17,6 +17,6 @@ pub use error::LawError;
 pub use expression::{Expression, ExpressionError};
 pub use law::Law;
 pub use polynomial::Polynomial;
-pub use profile::{Profile, Shape, Travel};
+pub use profile::{Profile, Rise, Shape};
 pub use sinusoid::Sinusoid;
 pub use spline::Spline;

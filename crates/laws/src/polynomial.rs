@@ -24,19 +24,14 @@ impl Polynomial {
         }
     }
 
-    /// The value and its first and second derivative at time `t`.
-    pub fn at(&self, t: f64) -> [f64; 3] {
-        self.derivatives(t)
-    }
-
-    /// The value and its first N − 1 derivatives at `t`.
+    /// The value and its first three derivatives at time `t`.
     ///
     /// Horner's rule on all sums at once: with p ← p t + c for the value, the k-th derivative
     /// divided by k!, s, obeys s ← s t + (the one before it), each with the old terms.
-    pub(crate) fn derivatives<const N: usize>(&self, t: f64) -> [f64; N] {
-        let mut sums = [0.0; N];
+    pub fn eval(&self, t: f64) -> [f64; 4] {
+        let mut sums = [0.0; 4];
         for &c in self.coefficients.iter().rev() {
-            for k in (1..N).rev() {
+            for k in (1..4).rev() {
                 sums[k] = sums[k] * t + sums[k - 1];
             }
             sums[0] = sums[0] * t + c;
@@ -55,8 +50,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_motion_starts_where_it_was_told_to() {
-        assert_eq!(Polynomial::motion(0.5, -2.0, 3.0).at(0.0), [0.5, -2.0, 3.0]);
+    fn a_motion_starts_with_the_given_values() {
+        assert_eq!(
+            Polynomial::motion(0.5, -2.0, 3.0).eval(0.0),
+            [0.5, -2.0, 3.0, 0.0]
+        );
     }
 
     /// t⁴ − 2 t³ + 5 at t = 3: 81 − 54 + 5, 4·27 − 6·9, 12·9 − 12·3.
@@ -65,20 +63,19 @@ mod tests {
         let law = Polynomial {
             coefficients: vec![5.0, 0.0, 0.0, -2.0, 1.0],
         };
-        assert_eq!(law.at(3.0), [32.0, 54.0, 72.0]);
-        // The third: 24·3 − 12.
-        assert_eq!(law.derivatives(3.0), [32.0, 54.0, 72.0, 60.0]);
+        // The third derivative: 24·3 − 12.
+        assert_eq!(law.eval(3.0), [32.0, 54.0, 72.0, 60.0]);
     }
 
     #[test]
     fn constants_and_nothing_at_all() {
-        assert_eq!(Polynomial::constant(4.0).at(-7.0), [4.0, 0.0, 0.0]);
-        assert_eq!(Polynomial::default().at(1.0), [0.0; 3]);
+        assert_eq!(Polynomial::constant(4.0).eval(-7.0), [4.0, 0.0, 0.0, 0.0]);
+        assert_eq!(Polynomial::default().eval(1.0), [0.0; 4]);
     }
 
     /// An infinite or missing time is not hidden.
     #[test]
     fn not_a_number_stays_visible() {
-        assert!(Polynomial::motion(0.0, 1.0, 0.0).at(f64::NAN)[0].is_nan());
+        assert!(Polynomial::motion(0.0, 1.0, 0.0).eval(f64::NAN)[0].is_nan());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::error::{LawError, finite, positive};
+use crate::error::{LawError, require_finite, require_positive};
 
 /// The shape of a motion from rest to rest (for the three first R. L. Norton, *Cam Design and
 /// Manufacturing Handbook*, chapter 3). Peaks: speed times rise/duration, acceleration times
@@ -26,7 +26,7 @@ pub enum Shape {
 
 /// From where to where, and when.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Travel {
+pub struct Rise {
     /// The value before the motion.
     pub start: f64,
     /// By how much the value changes, upwards or downwards.
@@ -42,7 +42,7 @@ pub struct Travel {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Profile {
     shape: Shape,
-    travel: Travel,
+    rise: Rise,
 }
 
 impl Profile {
@@ -51,28 +51,28 @@ impl Profile {
     /// # Errors
     /// [`LawError::NotFinite`], [`LawError::NotPositive`] for the duration or the ramp,
     /// [`LawError::RampTooLong`].
-    pub fn new(shape: Shape, travel: Travel) -> Result<Self, LawError> {
-        finite("start", travel.start)?;
-        finite("rise", travel.rise)?;
-        finite("delay", travel.delay)?;
-        let duration = positive("duration", travel.duration)?;
+    pub fn new(shape: Shape, rise: Rise) -> Result<Self, LawError> {
+        require_finite("start", rise.start)?;
+        require_finite("rise", rise.rise)?;
+        require_finite("delay", rise.delay)?;
+        let duration = require_positive("duration", rise.duration)?;
         if let Shape::Trapezoidal { ramp } = shape
-            && 2.0 * positive("ramp", ramp)? > duration
+            && 2.0 * require_positive("ramp", ramp)? > duration
         {
             return Err(LawError::RampTooLong { ramp, duration });
         }
-        Ok(Self { shape, travel })
+        Ok(Self { shape, rise })
     }
 
     /// The value and its first three derivatives at `x`. At an end, where a derivative may jump,
     /// those of the rest.
-    pub fn at(&self, x: f64) -> [f64; 4] {
-        let Travel {
+    pub fn eval(&self, x: f64) -> [f64; 4] {
+        let Rise {
             start,
             rise,
             duration,
             delay,
-        } = self.travel;
+        } = self.rise;
         if x <= delay {
             return [start, 0.0, 0.0, 0.0];
         }
@@ -101,18 +101,18 @@ impl Shape {
     /// The unit motion and its derivatives at 0 ≤ u ≤ ½.
     fn first_half(self, u: f64, duration: f64) -> [f64; 4] {
         let w = u * (1.0 - u);
-        let turn = 1.0 - 2.0 * u;
+        let w_prime = 1.0 - 2.0 * u;
         match self {
             Self::Polynomial345 => [
                 u * u * u * (10.0 + u * (-15.0 + u * 6.0)),
                 30.0 * w * w,
-                60.0 * w * turn,
+                60.0 * w * w_prime,
                 60.0 * (1.0 - 6.0 * w),
             ],
             Self::Polynomial4567 => [
                 u * u * u * u * (35.0 + u * (-84.0 + u * (70.0 - u * 20.0))),
                 140.0 * w * w * w,
-                420.0 * w * w * turn,
+                420.0 * w * w * w_prime,
                 840.0 * w * (1.0 - 5.0 * w),
             ],
             Self::Cycloidal => {
@@ -150,7 +150,7 @@ mod tests {
         Shape::Cycloidal,
         Shape::Trapezoidal { ramp: 0.1 },
     ];
-    const TRAVEL: Travel = Travel {
+    const RISE: Rise = Rise {
         start: -0.3,
         rise: 1.7,
         duration: 0.5,
@@ -158,7 +158,7 @@ mod tests {
     };
 
     fn profile(shape: Shape) -> Profile {
-        Profile::new(shape, TRAVEL).expect("a profile")
+        Profile::new(shape, RISE).expect("a profile")
     }
 
     #[test]
@@ -166,10 +166,10 @@ mod tests {
         for shape in SHAPES {
             let law = profile(shape);
             for x in [f64::NEG_INFINITY, -1.0, 0.25] {
-                assert_eq!(law.at(x), [-0.3, 0.0, 0.0, 0.0]);
+                assert_eq!(law.eval(x), [-0.3, 0.0, 0.0, 0.0]);
             }
             for x in [0.75, 0.8, f64::INFINITY] {
-                assert_eq!(law.at(x), [-0.3 + 1.7, 0.0, 0.0, 0.0]);
+                assert_eq!(law.eval(x), [-0.3 + 1.7, 0.0, 0.0, 0.0]);
             }
         }
     }
@@ -182,10 +182,13 @@ mod tests {
         for (shape, smooth) in SHAPES.into_iter().zip([2, 3, 2, 1]) {
             let law = profile(shape);
             for x in [0.25 + 0.5e-9, 0.75 - 0.5e-9] {
-                let at = law.at(x);
-                assert!(at[1..=smooth].iter().all(|d| d.abs() < 2e-5), "{at:?}");
+                let derivatives = law.eval(x);
+                assert!(
+                    derivatives[1..=smooth].iter().all(|d| d.abs() < 2e-5),
+                    "{derivatives:?}"
+                );
                 if smooth < 3 {
-                    assert!(at[smooth + 1].abs() > 1.0, "{at:?}");
+                    assert!(derivatives[smooth + 1].abs() > 1.0, "{derivatives:?}");
                 }
             }
         }
@@ -205,20 +208,23 @@ mod tests {
         ];
         for (shape, [speed, acceleration]) in SHAPES.into_iter().zip(peaks) {
             let law = profile(shape);
-            let mut seen = [0.0_f64; 2];
+            let mut found = [0.0_f64; 2];
             for i in 0..=1000 {
                 for n in [1000.0, 1001.0] {
-                    let at = law.at(0.25 + 0.5 * f64::from(i) / n);
-                    seen = [seen[0].max(at[1].abs()), seen[1].max(at[2].abs())];
+                    let derivatives = law.eval(0.25 + 0.5 * f64::from(i) / n);
+                    found = [
+                        found[0].max(derivatives[1].abs()),
+                        found[1].max(derivatives[2].abs()),
+                    ];
                 }
             }
-            for (seen, peak) in [
-                (seen[0], speed * 1.7 / 0.5),
-                (seen[1], acceleration * 1.7 / 0.25),
+            for (found, peak) in [
+                (found[0], speed * 1.7 / 0.5),
+                (found[1], acceleration * 1.7 / 0.25),
             ] {
                 assert!(
-                    seen <= peak * (1.0 + 1e-15) && seen > peak * (1.0 - 1e-5),
-                    "{shape:?}: {seen} {peak}"
+                    found <= peak * (1.0 + 1e-15) && found > peak * (1.0 - 1e-5),
+                    "{shape:?}: {found} {peak}"
                 );
             }
         }
@@ -232,9 +238,9 @@ mod tests {
     fn both_halves_are_alike() {
         for shape in SHAPES {
             let law = profile(shape);
-            assert!((law.at(0.5)[0] - (-0.3 + 0.85)).abs() < 4e-16);
+            assert!((law.eval(0.5)[0] - (-0.3 + 0.85)).abs() < 4e-16);
             for d in [0.01, 0.1, 0.2] {
-                let [a, b] = [law.at(0.5 - d), law.at(0.5 + d)];
+                let [a, b] = [law.eval(0.5 - d), law.eval(0.5 + d)];
                 assert!((a[0] + b[0] - 2.0 * -0.3 - 1.7).abs() < 2e-15);
                 // The next derivative, up to 1e2 and 1e3, times a few roundings of the time.
                 assert!((a[1] - b[1]).abs() < 1e-13 && (a[2] + b[2]).abs() < 1e-12);
@@ -246,15 +252,15 @@ mod tests {
     #[test]
     fn ramps_may_fill_the_duration() {
         let law = profile(Shape::Trapezoidal { ramp: 0.25 });
-        assert_eq!(law.at(0.5)[1], 2.0 * 1.7 / 0.5);
+        assert_eq!(law.eval(0.5)[1], 2.0 * 1.7 / 0.5);
     }
 
     #[test]
     fn errors_say_which_number() {
-        let new = |shape, change: fn(&mut Travel)| {
-            let mut travel = TRAVEL;
-            change(&mut travel);
-            Profile::new(shape, travel).map_err(|error| error.to_string())
+        let new = |shape, change: fn(&mut Rise)| {
+            let mut rise = RISE;
+            change(&mut rise);
+            Profile::new(shape, rise).map_err(|error| error.to_string())
         };
         let plain = Shape::Cycloidal;
         for (result, message) in [

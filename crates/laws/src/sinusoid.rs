@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::error::{LawError, finite, positive};
+use crate::error::{LawError, require_finite, require_positive};
 
 /// offset + amplitude · sin(angular frequency · x + phase).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,18 +29,18 @@ impl Sinusoid {
         period: f64,
         phase: f64,
     ) -> Result<Self, LawError> {
-        let phase = finite("phase", phase)?;
-        let amplitude = finite("amplitude", amplitude)?;
+        let phase = require_finite("phase", phase)?;
+        let amplitude = require_finite("amplitude", amplitude)?;
         Ok(Self {
-            offset: finite("start", start)? - amplitude * phase.sin(),
+            offset: require_finite("start", start)? - amplitude * phase.sin(),
             amplitude,
-            angular_frequency: TAU / positive("period", period)?,
+            angular_frequency: TAU / require_positive("period", period)?,
             phase,
         })
     }
 
     /// The value and its first three derivatives at `x`.
-    pub fn at(&self, x: f64) -> [f64; 4] {
+    pub fn eval(&self, x: f64) -> [f64; 4] {
         let w = self.angular_frequency;
         let (sin, cos) = (w * x + self.phase).sin_cos();
         let speed = self.amplitude * w;
@@ -61,8 +61,8 @@ mod tests {
     #[test]
     fn crest_and_crossing() {
         let law = Sinusoid::starting_at(2.0, 3.0, TAU / 2.0, 0.0).expect("a sinusoid");
-        assert_eq!(law.at(0.0), [2.0, 6.0, 0.0, -24.0]);
-        let [value, speed, acceleration, _] = law.at(TAU / 8.0);
+        assert_eq!(law.eval(0.0), [2.0, 6.0, 0.0, -24.0]);
+        let [value, speed, acceleration, _] = law.eval(TAU / 8.0);
         assert_eq!([value, acceleration], [5.0, -12.0]);
         // The cosine of π/2, rounded, is 6e-17.
         assert!(speed.abs() < 1e-15);
@@ -72,7 +72,7 @@ mod tests {
     fn it_starts_where_it_was_told_to() {
         let law = Sinusoid::starting_at(0.1, 0.3, 2.0, 1.0).expect("a sinusoid");
         // One rounding each in offset and sum, of numbers below 0.5.
-        assert!((law.at(0.0)[0] - 0.1).abs() < 1e-16);
+        assert!((law.eval(0.0)[0] - 0.1).abs() < 1e-16);
     }
 
     #[test]

@@ -38,10 +38,10 @@ impl Spline {
         if let Some(before) = (0..steps.len()).find(|&i| !(steps[i] + slopes[i]).is_finite()) {
             return Err(LawError::TooSteep { index: before + 1 });
         }
-        let bends = bends(&steps, &slopes);
+        let second_derivatives = second_derivatives(&steps, &slopes);
         let mut pieces = Vec::with_capacity(points.len());
         for (i, (&h, &slope)) in steps.iter().zip(&slopes).enumerate() {
-            let [m, n] = [bends[i], bends[i + 1]];
+            let [m, n] = [second_derivatives[i], second_derivatives[i + 1]];
             let piece = [
                 points[i][1],
                 slope - h * (2.0 * m + n) / 6.0,
@@ -55,7 +55,7 @@ impl Spline {
         }
         let last = pieces.len();
         let (h, slope) = (steps[last - 1], slopes[last - 1]);
-        let end = slope + h * (bends[last - 1] + 2.0 * bends[last]) / 6.0;
+        let end = slope + h * (second_derivatives[last - 1] + 2.0 * second_derivatives[last]) / 6.0;
         pieces.push([points[last][1], end, 0.0, 0.0]);
         Ok(Self {
             knots: points.iter().map(|p| p[0]).collect(),
@@ -70,14 +70,14 @@ impl Spline {
 
     /// The value and its first three derivatives at `x`; the third at a point of the table is that
     /// of the piece after it. At the ends of the range they are those of the end pieces.
-    pub fn at(&self, x: f64) -> [f64; 4] {
+    pub fn eval(&self, x: f64) -> [f64; 4] {
         if x.is_nan() {
             return [f64::NAN; 4];
         }
         let [first, last] = self.range();
         // A time summed up from steps may pass the end by a few roundings, and is still the end's.
-        let slack = 4.0 * f64::EPSILON * first.abs().max(last.abs());
-        let i = if x > last + slack {
+        let tolerance = 4.0 * f64::EPSILON * first.abs().max(last.abs());
+        let i = if x > last + tolerance {
             self.pieces.len() - 1
         } else {
             let inner = &self.knots[1..self.knots.len() - 1];
@@ -85,7 +85,7 @@ impl Spline {
         };
         let [value, b, c, d] = self.pieces[i];
         let u = x - self.knots[i];
-        if x < first - slack {
+        if x < first - tolerance {
             return [value + u * b, b, 0.0, 0.0];
         }
         [
@@ -116,14 +116,14 @@ fn check(points: &[[f64; 2]]) -> Result<(), LawError> {
 /// h₋ M₋ + 2 (h₋ + h₊) M + h₊ M₊ = 6 (slope₊ − slope₋), and at each end the third derivatives of
 /// the two pieces agree. With the end's M eliminated the rows are still dominated by their
 /// diagonals, so that no pivoting is needed.
-fn bends(steps: &[f64], slopes: &[f64]) -> Vec<f64> {
+fn second_derivatives(steps: &[f64], slopes: &[f64]) -> Vec<f64> {
     let last = steps.len();
     match last {
         1 => return vec![0.0; 2],
         2 => return vec![2.0 * (slopes[1] - slopes[0]) / (steps[0] + steps[1]); 3],
         _ => {}
     }
-    let mut bends = vec![0.0; last + 1];
+    let mut second = vec![0.0; last + 1];
     // What is left of each row's right neighbour, once its left one has been eliminated.
     let mut right = vec![0.0; last + 1];
     for i in 1..last {
@@ -143,15 +143,15 @@ fn bends(steps: &[f64], slopes: &[f64]) -> Vec<f64> {
         }
         let pivot = diagonal - left * right[i - 1];
         right[i] = next / pivot;
-        bends[i] = (6.0 * (slopes[i] - slopes[i - 1]) - left * bends[i - 1]) / pivot;
+        second[i] = (6.0 * (slopes[i] - slopes[i - 1]) - left * second[i - 1]) / pivot;
     }
     for i in (1..last - 1).rev() {
-        bends[i] -= right[i] * bends[i + 1];
+        second[i] -= right[i] * second[i + 1];
     }
-    bends[0] = bends[1] + (bends[1] - bends[2]) * steps[0] / steps[1];
-    bends[last] =
-        bends[last - 1] + (bends[last - 1] - bends[last - 2]) * steps[last - 1] / steps[last - 2];
-    bends
+    second[0] = second[1] + (second[1] - second[2]) * steps[0] / steps[1];
+    second[last] = second[last - 1]
+        + (second[last - 1] - second[last - 2]) * steps[last - 1] / steps[last - 2];
+    second
 }
 
 #[cfg(test)]
@@ -176,11 +176,11 @@ mod tests {
         for n in 2..=6 {
             let mut law = law.clone();
             law.coefficients.truncate(n);
-            let spline = table(|x| law.at(x)[0], &UNEVEN[..n]);
+            let spline = table(|x| law.eval(x)[0], &UNEVEN[..n]);
             for i in 0..=50 {
                 let x = -1.0 + (UNEVEN[n - 1] + 1.0) * f64::from(i) / 50.0;
-                let exact: [f64; 4] = law.derivatives(x);
-                for (a, b) in spline.at(x).into_iter().zip(exact) {
+                let exact = law.eval(x);
+                for (a, b) in spline.eval(x).into_iter().zip(exact) {
                     assert!((a - b).abs() < 1e-11, "{n} points, at {x}: {a} {b}");
                 }
             }
@@ -194,21 +194,21 @@ mod tests {
         let spline = table(|x| (7.0 * x).sin(), &UNEVEN);
         for &x in &UNEVEN {
             // The last point is the sum of its piece: a few roundings of numbers up to 10.
-            assert!((spline.at(x)[0] - (7.0 * x).sin()).abs() < 1e-14);
+            assert!((spline.eval(x)[0] - (7.0 * x).sin()).abs() < 1e-14);
         }
         let h = 1e-12;
         for &x in &UNEVEN[1..5] {
-            let [before, after] = [spline.at(x - h), spline.at(x)];
-            for (k, most) in [2e-11, 1e-10, 1e-9].into_iter().enumerate() {
-                assert!((before[k] - after[k]).abs() < most, "{k} at {x}");
+            let [before, after] = [spline.eval(x - h), spline.eval(x)];
+            for (k, limit) in [2e-11, 1e-10, 1e-9].into_iter().enumerate() {
+                assert!((before[k] - after[k]).abs() < limit, "{k} at {x}");
             }
         }
         // The knots that are none: one cubic on both sides of the second and the last but one.
         for x in [UNEVEN[1], UNEVEN[4]] {
-            let [before, after] = [spline.at(x - 1e-6)[3], spline.at(x + 1e-6)[3]];
+            let [before, after] = [spline.eval(x - 1e-6)[3], spline.eval(x + 1e-6)[3]];
             assert!((before / after - 1.0).abs() < 1e-10, "{before} {after}");
         }
-        assert!((spline.at(0.39)[3] / spline.at(0.41)[3] - 1.0).abs() > 0.1);
+        assert!((spline.eval(0.39)[3] / spline.eval(0.41)[3] - 1.0).abs() > 0.1);
     }
 
     /// Fourth order everywhere, ends included: half the step, a sixteenth of the error. (A natural
@@ -220,7 +220,7 @@ mod tests {
             let spline = table(|x| (2.0 * x).exp(), &xs);
             (0..=1000)
                 .map(|i| f64::from(i) / 1000.0)
-                .map(|x| (spline.at(x)[0] - (2.0 * x).exp()).abs())
+                .map(|x| (spline.eval(x)[0] - (2.0 * x).exp()).abs())
                 .fold(0.0, f64::max)
         };
         let ratio = worst(40) / worst(80);
@@ -231,8 +231,8 @@ mod tests {
     fn outside_along_the_tangents() {
         let spline = table(|x| x * x * x, &UNEVEN);
         for (x, end) in [(-3.0, -1.0), (4.0, 2.2_f64)] {
-            let [value, slope, ..] = spline.at(end);
-            let outside = spline.at(x);
+            let [value, slope, ..] = spline.eval(end);
+            let outside = spline.eval(x);
             // A few roundings of 40.
             assert!((outside[0] - (value + slope * (x - end))).abs() < 1e-13);
             assert!((outside[1] - slope).abs() < 1e-13);
@@ -242,7 +242,7 @@ mod tests {
         // The ends themselves, and a rounding beyond them, still have the curvature of the pieces.
         for x in [2.2, 2.2_f64.next_up(), -1.0, (-1.0_f64).next_down()] {
             // Roundings of values of 10 over the smallest step, 0.1, squared.
-            assert!((spline.at(x)[2] - 6.0 * x).abs() < 2e-13, "{x}");
+            assert!((spline.eval(x)[2] - 6.0 * x).abs() < 2e-13, "{x}");
         }
     }
 

@@ -1,11 +1,11 @@
 //! Drawings one after another as an animated GIF.
 
-use crate::canvas::{Align, Canvas, Type};
-use crate::drawing::{self, Stage};
+use crate::canvas::{Align, Canvas, TextStyle};
+use crate::drawing::{self, DrawingLayout};
 use crate::error::ReportError;
 use crate::fonts;
 use crate::palette::Palette;
-use crate::raster::Vector;
+use crate::raster::SvgPicture;
 use crate::rect::Rect;
 use crate::shape::Drawing;
 use crate::theme::{CAPTION_GREY, Rgb, WHITE};
@@ -13,19 +13,20 @@ use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-/// Width of the page that is drawn, whatever the picture's: letters keep their share of it, a thirtieth.
-const WIDTH: f64 = 800.0;
+/// Width of the page that is drawn. It does not depend on the size of the picture, so that the height of letters is
+/// always the same share of it, a thirtieth.
+const PAGE_WIDTH: f64 = 800.0;
 /// Around the drawing.
 const MARGIN: f64 = 18.0;
 /// Size of the letters at the foot, and the distance of their baselines in sizes.
-const FOOT: f64 = 15.0;
+const FOOTER_SIZE: f64 = 15.0;
 const LEADING: f64 = 1.3;
 /// Pixels of all frames together: they are held at once, at three bytes each.
-const MOST: u64 = 1 << 27;
+const MAX_PIXELS: u64 = 1 << 27;
 /// Colours beside the one that means "as before".
-const COLORS: usize = 255;
+const MAX_COLORS: usize = 255;
 /// Least delay in hundredths of a second: browsers show anything shorter at a tenth.
-const LEAST_DELAY: u32 = 2;
+const MIN_DELAY: u32 = 2;
 
 /// Drawings of the same things at successive times, such as a mechanism over a turn.
 ///
@@ -47,11 +48,11 @@ pub struct Animation {
 }
 
 impl Animation {
-    /// Draws the frames and returns them as a GIF: one palette of at most 255 colours, of each frame only what is new.
+    /// Draws the frames and returns them as a GIF: one palette of at most 255 colours, and of each frame only the pixels that change.
     ///
     /// # Errors
     ///
-    /// [`ReportError::NoFrames`]; [`ReportError::Film`] if the frames have no area, a side of more than 65 535 pixels or
+    /// [`ReportError::NoFrames`]; [`ReportError::AnimationSize`] if the frames have no area, a side of more than 65 535 pixels or
     /// more than 134 million pixels together; [`ReportError::Draw`], [`ReportError::Font`] and [`ReportError::Encode`] if
     /// a library refuses, which no data should bring about.
     pub fn gif(&self) -> Result<Vec<u8>, ReportError> {
@@ -63,7 +64,7 @@ impl Animation {
                 *counts.entry(run[0]).or_default() += run.len() as u64;
             }
         }
-        let palette = Palette::of(&counts, COLORS);
+        let palette = Palette::of(&counts, MAX_COLORS);
         encoded(&pictures, &palette, self.delay()).map_err(|e| ReportError::Encode {
             figure: self.name.clone(),
             reason: e.to_string(),
@@ -73,7 +74,7 @@ impl Animation {
     /// Hundredths of a second.
     fn delay(&self) -> u16 {
         let hundredths = self.delay_ms.saturating_add(5) / 10;
-        u16::try_from(hundredths.max(LEAST_DELAY)).unwrap_or(u16::MAX)
+        u16::try_from(hundredths.max(MIN_DELAY)).unwrap_or(u16::MAX)
     }
 
     fn pictures(&self) -> Result<Pictures, ReportError> {
@@ -82,24 +83,23 @@ impl Animation {
                 animation: self.name.clone(),
             });
         }
-        fonts::ready()?;
-        let (cell, stage) = self.stage();
-        let foot = fonts::wrapped(&self.provenance, FOOT, false, cell.width());
-        let lowest = cell.y1 + LEADING * FOOT * foot.len() as f64;
-        let page = [WIDTH, (lowest + MARGIN).ceil()].map(|side| side as u32);
+        let (cell, layout) = self.layout();
+        let footer = fonts::wrapped(&self.provenance, FOOTER_SIZE, false, cell.width());
+        let lowest = cell.y1 + LEADING * FOOTER_SIZE * footer.len() as f64;
+        let page = [PAGE_WIDTH, (lowest + MARGIN).ceil()].map(|side| side as u32);
         let size = self.size(page)?;
         let picture = |drawing: &Drawing| {
-            let vector = Vector::drawn(&self.name, page, |canvas: &mut Canvas<'_>| {
+            let svg = SvgPicture::new(page, |canvas: &mut Canvas<'_>| {
                 let [width, height] = page.map(f64::from);
-                canvas.rect(&Rect::sized(0.0, 0.0, width, height), WHITE)?;
-                stage.draw(canvas, drawing, &cell)?;
-                let look = Type::new(FOOT, CAPTION_GREY, Align::Start);
-                foot.iter().enumerate().try_for_each(|(i, line)| {
-                    let baseline = cell.y1 + LEADING * FOOT * (i as f64 + 1.0);
-                    canvas.text(line, [cell.x0, baseline], look)
-                })
-            })?;
-            let pixels = vector.pixels(&self.name, size.map(u32::from))?;
+                canvas.rect(&Rect::sized(0.0, 0.0, width, height), WHITE);
+                layout.draw(canvas, drawing, &cell);
+                let style = TextStyle::new(FOOTER_SIZE, CAPTION_GREY, Align::Start);
+                for (i, line) in footer.iter().enumerate() {
+                    let baseline = cell.y1 + LEADING * FOOTER_SIZE * (i as f64 + 1.0);
+                    canvas.text(line, [cell.x0, baseline], style);
+                }
+            });
+            let pixels = svg.rasterize(&self.name, size.map(u32::from))?;
             // The page is opaque.
             let colors = pixels.data().chunks_exact(4).map(|p| [p[0], p[1], p[2]]);
             Ok(colors.collect())
@@ -113,18 +113,18 @@ impl Animation {
     }
 
     /// The cell of all frames, and what they share.
-    fn stage(&self) -> (Rect, Stage) {
-        let inner = WIDTH - 2.0 * MARGIN;
+    fn layout(&self) -> (Rect, DrawingLayout) {
+        let inner = PAGE_WIDTH - 2.0 * MARGIN;
         let in_cell = |height: f64| {
             let cell = Rect::sized(MARGIN, MARGIN, inner, height);
             let insets = drawing::insets(&self.frames, &cell);
-            (cell, Stage::new(&self.frames, &cell, insets))
+            (cell, DrawingLayout::new(&self.frames, &cell, insets))
         };
         let height = drawing::height(&self.frames, inner);
-        let (cell, stage) = in_cell(height);
+        let (cell, layout) = in_cell(height);
         // Only here does the page grow with its legend: there are no neighbours to line up with.
-        match stage.legend_above() {
-            0.0 => (cell, stage),
+        match layout.legend_above() {
+            0.0 => (cell, layout),
             more => in_cell(height + more),
         }
     }
@@ -139,8 +139,8 @@ impl Animation {
             .ok()
             .zip(u16::try_from(high).ok());
         match sides {
-            Some((wide, high)) if wide > 0 && high > 0 && all <= MOST => Ok([wide, high]),
-            _ => Err(ReportError::Film {
+            Some((wide, high)) if wide > 0 && high > 0 && all <= MAX_PIXELS => Ok([wide, high]),
+            _ => Err(ReportError::AnimationSize {
                 animation: self.name.clone(),
                 frames: self.frames.len(),
                 width: self.width_px.into(),
@@ -158,31 +158,31 @@ struct Pictures {
 
 fn encoded(pictures: &Pictures, palette: &Palette, delay: u16) -> Result<Vec<u8>, EncodingError> {
     let [width, height] = pictures.size;
-    // The place behind the last colour is never shown: it stands for a pixel that stays.
-    let stays = palette.colors.len() as u8;
+    // The index behind the last colour marks a pixel that does not change.
+    let unchanged = palette.colors.len() as u8;
     let mut table = palette.colors.concat();
     table.extend(WHITE);
     let mut encoder = Encoder::new(Vec::new(), width, height, &table)?;
     encoder.set_repeat(Repeat::Infinite)?;
-    let mut shown: Option<Vec<u8>> = None;
+    let mut previous: Option<Vec<u8>> = None;
     for picture in &pictures.frames {
-        let mut places = Vec::with_capacity(picture.len());
+        let mut indices = Vec::with_capacity(picture.len());
         for run in picture.chunk_by(|a, b| a == b) {
-            places.resize(places.len() + run.len(), palette.place(run[0]));
+            indices.resize(indices.len() + run.len(), palette.index_of(run[0]));
         }
-        let patch = Patch::of(shown.as_deref(), &places, usize::from(width), stays);
+        let patch = Patch::of(previous.as_deref(), &indices, usize::from(width), unchanged);
         encoder.write_frame(&Frame {
             delay,
             dispose: DisposalMethod::Keep,
-            transparent: shown.is_some().then_some(stays),
+            transparent: previous.is_some().then_some(unchanged),
             left: patch.left as u16,
             top: patch.top as u16,
             width: patch.width as u16,
-            height: (patch.places.len() / patch.width) as u16,
-            buffer: Cow::Owned(patch.places),
+            height: (patch.indices.len() / patch.width) as u16,
+            buffer: Cow::Owned(patch.indices),
             ..Frame::default()
         })?;
-        shown = Some(places);
+        previous = Some(indices);
     }
     encoder.into_inner()
 }
@@ -192,20 +192,20 @@ struct Patch {
     left: usize,
     top: usize,
     width: usize,
-    places: Vec<u8>,
+    indices: Vec<u8>,
 }
 
 impl Patch {
-    fn of(before: Option<&[u8]>, now: &[u8], width: usize, stays: u8) -> Self {
+    fn of(before: Option<&[u8]>, now: &[u8], width: usize, unchanged: u8) -> Self {
         let Some(before) = before else {
             return Self {
                 left: 0,
                 top: 0,
                 width,
-                places: now.to_vec(),
+                indices: now.to_vec(),
             };
         };
-        // Columns and rows of the new pixels; a frame without any still takes its time, as one pixel.
+        // Columns and rows of the new pixels; a frame without any is still shown for its time, as one pixel.
         let new = || (0..now.len()).filter(|&i| now[i] != before[i]);
         let (left, right) =
             new().fold((width, 0), |(l, r), i| (l.min(i % width), r.max(i % width)));
@@ -213,14 +213,19 @@ impl Patch {
         let top = new().next().unwrap_or(0) / width;
         let bottom = new().next_back().unwrap_or(0) / width;
         let row = |y: usize| {
-            (y * width + left..=y * width + right)
-                .map(|i| if now[i] == before[i] { stays } else { now[i] })
+            (y * width + left..=y * width + right).map(|i| {
+                if now[i] == before[i] {
+                    unchanged
+                } else {
+                    now[i]
+                }
+            })
         };
         Self {
             left,
             top,
             width: right - left + 1,
-            places: (top..=bottom).flat_map(row).collect(),
+            indices: (top..=bottom).flat_map(row).collect(),
         }
     }
 }
@@ -228,7 +233,7 @@ impl Patch {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Axis, Paint};
+    use crate::axis::{Axis, Paint};
     use crate::shape::{Pen, Shape};
     use gif::{ColorOutput, DecodeOptions};
     use std::f64::consts::TAU;
@@ -258,12 +263,12 @@ mod tests {
     }
 
     /// A frame as it is stored, and the picture a reader then shows.
-    struct Shown {
+    struct DecodedFrame {
         frame: Frame<'static>,
         picture: Vec<Rgb>,
     }
 
-    fn decoded(bytes: &[u8]) -> ([u16; 2], Repeat, Vec<Shown>) {
+    fn decoded(bytes: &[u8]) -> ([u16; 2], Repeat, Vec<DecodedFrame>) {
         let mut options = DecodeOptions::new();
         options.set_color_output(ColorOutput::Indexed);
         options.check_frame_consistency(true);
@@ -274,14 +279,14 @@ mod tests {
         let mut all = Vec::new();
         while let Some(frame) = decoder.read_next_frame().unwrap() {
             let wide = usize::from(frame.width);
-            for (i, place) in frame.buffer.iter().enumerate() {
+            for (i, index) in frame.buffer.iter().enumerate() {
                 let x = usize::from(frame.left) + i % wide;
                 let y = usize::from(frame.top) + i / wide;
-                if frame.transparent != Some(*place) {
-                    picture[y * usize::from(size[0]) + x] = table[usize::from(*place)];
+                if frame.transparent != Some(*index) {
+                    picture[y * usize::from(size[0]) + x] = table[usize::from(*index)];
                 }
             }
-            all.push(Shown {
+            all.push(DecodedFrame {
                 frame: frame.clone(),
                 picture: picture.clone(),
             });
@@ -291,17 +296,22 @@ mod tests {
 
     #[test]
     fn a_reader_gets_every_frame_for_ever_at_its_pace() {
-        let film = crank(12);
-        let drawn = film.pictures().unwrap();
-        let (size, repeat, shown) = decoded(&film.gif().unwrap());
+        let animation = crank(12);
+        let drawn = animation.pictures().unwrap();
+        let (size, repeat, decoded_frames) = decoded(&animation.gif().unwrap());
         assert_eq!((size, size[0], repeat), (drawn.size, 240, Repeat::Infinite));
-        assert_eq!(shown.len(), 12);
-        assert!(shown.iter().all(|s| s.frame.delay == 4));
-        assert!(shown[0].picture != shown[6].picture);
-        for (shown, drawn) in shown.iter().zip(&drawn.frames) {
+        assert_eq!(decoded_frames.len(), 12);
+        assert!(decoded_frames.iter().all(|s| s.frame.delay == 4));
+        assert!(decoded_frames[0].picture != decoded_frames[6].picture);
+        for (decoded_frames, drawn) in decoded_frames.iter().zip(&drawn.frames) {
             let differ =
                 |(a, b): (&Rgb, &Rgb)| (0..3).map(|i| a[i].abs_diff(b[i])).fold(0, u8::max);
-            let worst = shown.picture.iter().zip(drawn).map(differ).fold(0, u8::max);
+            let worst = decoded_frames
+                .picture
+                .iter()
+                .zip(drawn)
+                .map(differ)
+                .fold(0, u8::max);
             // One level was measured; two cannot be seen.
             assert!(worst <= 2, "a colour is off by {worst}");
         }
@@ -309,41 +319,41 @@ mod tests {
 
     #[test]
     fn nothing_moves_but_the_shapes() {
-        let film = crank(12);
-        let (_, stage) = film.stage();
-        let (size, _, shown) = decoded(&film.gif().unwrap());
-        let scale = f64::from(size[0]) / WIDTH;
-        let plot = stage.plot();
-        for Shown { frame, .. } in &shown[1..] {
+        let animation = crank(12);
+        let (_, layout) = animation.layout();
+        let (size, _, decoded_frames) = decoded(&animation.gif().unwrap());
+        let scale = f64::from(size[0]) / PAGE_WIDTH;
+        let plot = layout.plot();
+        for DecodedFrame { frame, .. } in &decoded_frames[1..] {
             let [x0, y0] = [frame.left, frame.top].map(|v| f64::from(v) / scale);
             let [x1, y1] =
                 [frame.left + frame.width, frame.top + frame.height].map(|v| f64::from(v) / scale);
-            assert!(plot.grown(-20.0).holds(&Rect { x0, y0, x1, y1 }));
+            assert!(plot.grown(-20.0).contains_rect(&Rect { x0, y0, x1, y1 }));
         }
     }
 
     #[test]
     fn a_film_that_stands_still_keeps_its_frames() {
-        let mut film = crank(1);
-        film.frames = vec![film.frames[0].clone(); 3];
-        film.delay_ms = 0;
-        let (_, _, shown) = decoded(&film.gif().unwrap());
-        assert_eq!(shown.len(), 3);
+        let mut animation = crank(1);
+        animation.frames = vec![animation.frames[0].clone(); 3];
+        animation.delay_ms = 0;
+        let (_, _, decoded_frames) = decoded(&animation.gif().unwrap());
+        assert_eq!(decoded_frames.len(), 3);
         assert!(
-            shown
+            decoded_frames
                 .iter()
-                .all(|s| s.picture == shown[0].picture && s.frame.delay == 2)
+                .all(|s| s.picture == decoded_frames[0].picture && s.frame.delay == 2)
         );
     }
 
     #[test]
     fn drawings_without_shapes_are_frames_too() {
-        let film = Animation {
+        let animation = Animation {
             frames: vec![Drawing::default()],
             width_px: 100,
             ..Animation::default()
         };
-        assert_eq!(decoded(&film.gif().unwrap()).2.len(), 1);
+        assert_eq!(decoded(&animation.gif().unwrap()).2.len(), 1);
     }
 
     #[test]
@@ -351,28 +361,28 @@ mod tests {
         let none = Animation::default().gif();
         assert!(matches!(none, Err(ReportError::NoFrames { .. })));
         for width_px in [0, 70_000, u32::MAX] {
-            let film = Animation {
+            let animation = Animation {
                 width_px,
                 ..crank(2)
             };
             assert!(matches!(
-                film.gif(),
-                Err(ReportError::Film { frames: 2, .. })
+                animation.gif(),
+                Err(ReportError::AnimationSize { frames: 2, .. })
             ));
         }
         // Few large frames are fine, many are not.
-        let film = Animation {
+        let animation = Animation {
             width_px: 60_000,
             ..crank(1)
         };
         assert!(matches!(
-            film.size([800, 600]),
-            Err(ReportError::Film { .. })
+            animation.size([800, 600]),
+            Err(ReportError::AnimationSize { .. })
         ));
-        let film = Animation {
+        let animation = Animation {
             width_px: 480,
             ..crank(60)
         };
-        assert_eq!(film.size([800, 600]).unwrap(), [480, 360]);
+        assert_eq!(animation.size([800, 600]).unwrap(), [480, 360]);
     }
 }

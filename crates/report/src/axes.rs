@@ -1,13 +1,16 @@
 //! The frame of a plot: values to pixels, grid, spines, ticks and their words.
 
-use crate::canvas::{Align, Canvas, Drawn, Line, Type};
-use crate::figure::{Axis, Scale};
+use crate::axis::{Axis, Scale};
+use crate::axis_range::AxisRange;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::fonts::width;
+use crate::linear_ticks::Ticks;
 use crate::rect::Rect;
-use crate::span::Span;
-use crate::theme::{GRID, GRID_WIDTH, INK, MINOR_GRID, PANEL_TITLE, Rgb, SPINE, TICK, TICK_LENGTH};
-use crate::ticks::{Ticks, fit};
-use crate::words::{self, Words};
+use crate::theme::{
+    GRID, GRID_WIDTH, INK, MINOR_GRID, PANEL_TITLE_SIZE, Rgb, SPINE_WIDTH, TICK_LENGTH, TICK_SIZE,
+};
+use crate::ticks::fit;
+use crate::wrapped_text::{self, WrappedText};
 
 /// Between a tick and its label.
 const TICK_GAP: f64 = 8.0;
@@ -18,82 +21,93 @@ const LEADING: f64 = 1.25;
 
 /// A plot in the page and the spans of its axes.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Frame {
+pub(crate) struct PlotFrame {
     pub(crate) plot: Rect,
-    pub(crate) x: Span,
-    pub(crate) y: Span,
-    pub(crate) y2: Option<Span>,
+    pub(crate) x: AxisRange,
+    pub(crate) y: AxisRange,
+    pub(crate) y2: Option<AxisRange>,
 }
 
-impl Frame {
-    /// Pixel of a value on the horizontal axis; none if it has no place there.
-    pub(crate) fn across(&self, x: f64) -> Option<f64> {
+impl PlotFrame {
+    /// Pixel of a value on the horizontal axis; none if the scale cannot show it.
+    pub(crate) fn x_to_px(&self, x: f64) -> Option<f64> {
         self.x
-            .place(x)
+            .fraction(x)
             .map(|u| self.plot.x0 + u * self.plot.width())
     }
 
-    /// Pixel of a value on the left or right axis; none if it has no place there.
-    pub(crate) fn up(&self, y: f64, right: bool) -> Option<f64> {
-        let span = if right {
+    /// Pixel of a value on the left or right axis; none if the scale cannot show it.
+    pub(crate) fn y_to_px(&self, y: f64, right: bool) -> Option<f64> {
+        let range = if right {
             self.y2.as_ref().unwrap_or(&self.y)
         } else {
             &self.y
         };
-        span.place(y).map(|v| self.plot.y1 - v * self.plot.height())
+        range
+            .fraction(y)
+            .map(|v| self.plot.y1 - v * self.plot.height())
     }
 
-    /// Pixel of a point; none if it has no place.
-    pub(crate) fn point(&self, [x, y]: [f64; 2], right: bool) -> Option<[f64; 2]> {
-        Some([self.across(x)?, self.up(y, right)?])
+    /// Pixel of a point; none if a scale cannot show it.
+    pub(crate) fn point_to_px(&self, [x, y]: [f64; 2], right: bool) -> Option<[f64; 2]> {
+        Some([self.x_to_px(x)?, self.y_to_px(y, right)?])
     }
 }
 
 /// Ticks along a horizontal length, as many as fit without their labels touching.
-pub(crate) fn ticks_across(span: &Span, length: f64) -> Ticks {
-    let most = if span.scale == Scale::Log { 13 } else { 9 };
-    fit(span, most, |ticks| {
+pub(crate) fn horizontal_ticks(range: &AxisRange, length: f64) -> Ticks {
+    let max_count = if range.scale == Scale::Log { 13 } else { 9 };
+    fit(range, max_count, |ticks| {
         let ends = |(v, label): (&f64, &String)| {
             let (at, half) = (
-                span.place(*v).unwrap_or(0.0) * length,
-                0.5 * width(label, TICK, false),
+                range.fraction(*v).unwrap_or(0.0) * length,
+                0.5 * width(label, TICK_SIZE, false),
             );
             (at - half, at + half)
         };
         let extents: Vec<(f64, f64)> = ticks.major.iter().zip(&ticks.labels).map(ends).collect();
-        extents.windows(2).any(|pair| pair[0].1 + TICK > pair[1].0)
+        extents
+            .windows(2)
+            .any(|pair| pair[0].1 + TICK_SIZE > pair[1].0)
     })
 }
 
 /// Ticks along a vertical length.
-pub(crate) fn ticks_up(span: &Span, length: f64) -> Ticks {
-    let room = if span.scale == Scale::Log { 44.0 } else { 62.0 };
-    let most = (length / room).clamp(2.0, 11.0) as usize;
+pub(crate) fn vertical_ticks(range: &AxisRange, length: f64) -> Ticks {
+    let room = if range.scale == Scale::Log {
+        44.0
+    } else {
+        62.0
+    };
+    let max_count = (length / room).clamp(2.0, 11.0) as usize;
     let crowded = |ticks: &Ticks| {
         let at: Vec<f64> = ticks
             .major
             .iter()
-            .map(|v| span.place(*v).unwrap_or(0.0) * length)
+            .map(|v| range.fraction(*v).unwrap_or(0.0) * length)
             .collect();
         at.windows(2)
-            .any(|pair| (pair[1] - pair[0]).abs() < LEADING * TICK)
+            .any(|pair| (pair[1] - pair[0]).abs() < LEADING * TICK_SIZE)
     };
-    let ticks = fit(span, most, crowded);
+    let ticks = fit(range, max_count, crowded);
     if ticks.major.len() > 1 {
         return ticks;
     }
     // One value is no scale: closer together, then.
-    fit(span, (length / (LEADING * TICK)) as usize, crowded)
+    fit(range, (length / (LEADING * TICK_SIZE)) as usize, crowded)
 }
 
 /// Room a vertical axis needs beside a plot of this height.
 pub(crate) fn side_room(axis: &Axis, ticks: &Ticks, height: f64) -> f64 {
-    ticks_room(ticks) + label_room(&words::label_within(axis, ticks, height))
+    ticks_room(ticks) + label_room(&wrapped_text::fitted_label(axis, ticks, height))
 }
 
 /// Room the ticks of a vertical axis need beside the plot.
 fn ticks_room(ticks: &Ticks) -> f64 {
-    let wide = ticks.labels.iter().map(|label| width(label, TICK, false));
+    let wide = ticks
+        .labels
+        .iter()
+        .map(|label| width(label, TICK_SIZE, false));
     TICK_LENGTH + TICK_GAP + wide.fold(0.0, f64::max)
 }
 
@@ -101,39 +115,42 @@ fn ticks_room(ticks: &Ticks) -> f64 {
 /// vertical axis.
 pub(crate) fn bottom_room(axis: Option<&Axis>, ticks: &Ticks, cell: &Rect) -> f64 {
     let Some(axis) = axis else {
-        return TICK_LENGTH.max(0.6 * TICK);
+        return TICK_LENGTH.max(0.6 * TICK_SIZE);
     };
-    TICK_LENGTH + TICK_GAP + TICK + label_room(&words::across(axis, ticks, cell))
+    TICK_LENGTH
+        + TICK_GAP
+        + TICK_SIZE
+        + label_room(&wrapped_text::horizontal_label(axis, ticks, cell))
 }
 
-fn label_room(words: &Words) -> f64 {
-    if words.lines.is_empty() {
+fn label_room(wrapped: &WrappedText) -> f64 {
+    if wrapped.lines.is_empty() {
         0.0
     } else {
-        LABEL_GAP + words.height()
+        LABEL_GAP + wrapped.height()
     }
 }
 
 /// Room above the plot.
 pub(crate) fn top_room(title: &str, cell: &Rect) -> f64 {
-    let words = words::title(title, cell);
-    if words.lines.is_empty() {
-        0.7 * TICK
+    let wrapped = wrapped_text::title(title, cell);
+    if wrapped.lines.is_empty() {
+        0.7 * TICK_SIZE
     } else {
-        words.height() + 0.5 * PANEL_TITLE
+        wrapped.height() + 0.5 * PANEL_TITLE_SIZE
     }
 }
 
 /// Room on the right that half a tick label at the very end needs.
 pub(crate) fn right_room() -> f64 {
-    1.3 * TICK
+    1.3 * TICK_SIZE
 }
 
 /// Draws the light lines.
-pub(crate) fn grid(canvas: &mut Canvas<'_>, frame: &Frame, x: &Ticks, y: &Ticks) -> Drawn {
+pub(crate) fn grid_lines(canvas: &mut Canvas<'_>, frame: &PlotFrame, x: &Ticks, y: &Ticks) {
     let Rect { x0, y0, x1, y1 } = frame.plot;
     for (minor, color) in [(true, MINOR_GRID), (false, GRID)] {
-        let line = Line::solid(color, GRID_WIDTH);
+        let line = LineStyle::solid(color, GRID_WIDTH);
         let values = |ticks: &Ticks| {
             if minor {
                 ticks.minor.clone()
@@ -141,102 +158,110 @@ pub(crate) fn grid(canvas: &mut Canvas<'_>, frame: &Frame, x: &Ticks, y: &Ticks)
                 ticks.major.clone()
             }
         };
-        for at in values(x).into_iter().filter_map(|v| frame.across(v)) {
-            canvas.line(&[[at, y0], [at, y1]], line)?;
+        for at in values(x).into_iter().filter_map(|v| frame.x_to_px(v)) {
+            canvas.line(&[[at, y0], [at, y1]], line);
         }
-        for at in values(y).into_iter().filter_map(|v| frame.up(v, false)) {
-            canvas.line(&[[x0, at], [x1, at]], line)?;
+        for at in values(y)
+            .into_iter()
+            .filter_map(|v| frame.y_to_px(v, false))
+        {
+            canvas.line(&[[x0, at], [x1, at]], line);
         }
     }
-    Ok(())
 }
 
 /// Draws the horizontal axis: spine, ticks, and words if there are any.
-pub(crate) fn bottom(
+pub(crate) fn horizontal_axis(
     canvas: &mut Canvas<'_>,
-    frame: &Frame,
+    frame: &PlotFrame,
     cell: &Rect,
     axis: Option<&Axis>,
     ticks: &Ticks,
-) -> Drawn {
+) {
     let plot = &frame.plot;
-    let spine = Line::solid(INK, SPINE);
-    canvas.line(&[[plot.x0, plot.y1], [plot.x1, plot.y1]], spine)?;
-    let baseline = plot.y1 + TICK_LENGTH + TICK_GAP + 0.76 * TICK;
+    let spine = LineStyle::solid(INK, SPINE_WIDTH);
+    canvas.line(&[[plot.x0, plot.y1], [plot.x1, plot.y1]], spine);
+    let baseline = plot.y1 + TICK_LENGTH + TICK_GAP + 0.76 * TICK_SIZE;
     for (value, label) in ticks.major.iter().zip(&ticks.labels) {
-        if let Some(x) = frame.across(*value) {
-            canvas.line(&[[x, plot.y1], [x, plot.y1 + TICK_LENGTH]], spine)?;
+        if let Some(x) = frame.x_to_px(*value) {
+            canvas.line(&[[x, plot.y1], [x, plot.y1 + TICK_LENGTH]], spine);
             if axis.is_some() {
-                canvas.text(label, [x, baseline], Type::new(TICK, INK, Align::Middle))?;
+                canvas.text(
+                    label,
+                    [x, baseline],
+                    TextStyle::new(TICK_SIZE, INK, Align::Middle),
+                );
             }
         }
     }
-    let Some(axis) = axis else { return Ok(()) };
-    let top = plot.y1 + TICK_LENGTH + TICK_GAP + TICK + LABEL_GAP;
-    let words = words::across(axis, ticks, cell);
-    for (line, baseline) in words.baselines() {
-        let look = Type::new(words.size, INK, Align::Middle);
+    let Some(axis) = axis else { return };
+    let top = plot.y1 + TICK_LENGTH + TICK_GAP + TICK_SIZE + LABEL_GAP;
+    let wrapped = wrapped_text::horizontal_label(axis, ticks, cell);
+    for (line, baseline) in wrapped.baselines() {
+        let style = TextStyle::new(wrapped.size, INK, Align::Middle);
         // Between unlike sides the plot is not in the middle of its cell, and another may be beside it.
-        let half = 0.5 * width(line, words.size, false);
+        let half = 0.5 * width(line, wrapped.size, false);
         let middle = plot.centre()[0].min(cell.x1 - half).max(cell.x0 + half);
-        canvas.text(line, [middle, top + baseline], look)?;
+        canvas.text(line, [middle, top + baseline], style);
     }
-    Ok(())
 }
 
 /// Draws a vertical axis, with its words at the edge of the cell.
-pub(crate) fn side(
+pub(crate) fn vertical_axis(
     canvas: &mut Canvas<'_>,
-    frame: &Frame,
+    frame: &PlotFrame,
     cell: &Rect,
     axis: &Axis,
-    look: &Side<'_>,
-) -> Drawn {
+    style: &VerticalAxisStyle<'_>,
+) {
     let plot = &frame.plot;
-    let (at, out, align) = if look.right {
+    let (at, out, align) = if style.right {
         (plot.x1, 1.0, Align::Start)
     } else {
         (plot.x0, -1.0, Align::End)
     };
-    let spine = Line::solid(look.color, SPINE);
-    canvas.line(&[[at, plot.y0], [at, plot.y1]], spine)?;
-    for (value, label) in look.ticks.major.iter().zip(&look.ticks.labels) {
-        if let Some(y) = frame.up(*value, look.right) {
-            canvas.line(&[[at, y], [at + out * TICK_LENGTH, y]], spine)?;
-            let place = [at + out * (TICK_LENGTH + TICK_GAP), y];
-            canvas.text_beside(label, place, Type::new(TICK, look.color, align))?;
+    let spine = LineStyle::solid(style.color, SPINE_WIDTH);
+    canvas.line(&[[at, plot.y0], [at, plot.y1]], spine);
+    for (value, label) in style.ticks.major.iter().zip(&style.ticks.labels) {
+        if let Some(y) = frame.y_to_px(*value, style.right) {
+            canvas.line(&[[at, y], [at + out * TICK_LENGTH, y]], spine);
+            let position = [at + out * (TICK_LENGTH + TICK_GAP), y];
+            canvas.text_centred(
+                label,
+                position,
+                TextStyle::new(TICK_SIZE, style.color, align),
+            );
         }
     }
     // The words keep to the heights of the plot, as it was before it gave way to a legend: what is above and below them is a
     // title, the words of the horizontal axis, or the next chart of a stack.
-    let (top, bottom) = look.heights;
-    let beside = if look.right {
+    let (top, bottom) = style.heights;
+    let strip = if style.right {
         cell.x1 - plot.x1
     } else {
         plot.x0 - cell.x0
     };
-    let words = words::label_within(axis, look.ticks, bottom - top).within(
+    let wrapped = wrapped_text::fitted_label(axis, style.ticks, bottom - top).shrunk_to_fit(
         bottom - top,
-        beside - ticks_room(look.ticks) - 0.5 * LABEL_GAP,
+        strip - ticks_room(style.ticks) - 0.5 * LABEL_GAP,
         false,
     );
     // Lines that read upwards follow each other to the right.
-    let left = if look.right {
-        cell.x1 - words.height()
+    let left = if style.right {
+        cell.x1 - wrapped.height()
     } else {
         cell.x0
     };
-    for (line, baseline) in words.baselines() {
-        let text = Type::new(words.size, look.color, Align::Middle);
-        let half = 0.5 * width(line, words.size, false);
+    for (line, baseline) in wrapped.baselines() {
+        let text_style = TextStyle::new(wrapped.size, style.color, Align::Middle);
+        let half = 0.5 * width(line, wrapped.size, false);
         let middle = plot.centre()[1].min(bottom - half).max(top + half);
-        canvas.text_upwards(line, [left + baseline, middle], text)?;
+        canvas.text_upwards(line, [left + baseline, middle], text_style);
     }
-    Ok(())
 }
 
 /// How a vertical axis is drawn.
-pub(crate) struct Side<'a> {
+pub(crate) struct VerticalAxisStyle<'a> {
     pub(crate) ticks: &'a Ticks,
     pub(crate) color: Rgb,
     pub(crate) right: bool,
@@ -245,36 +270,37 @@ pub(crate) struct Side<'a> {
 }
 
 /// Draws the title of a panel.
-pub(crate) fn title(canvas: &mut Canvas<'_>, title: &str, plot: &Rect, cell: &Rect) -> Drawn {
-    let words = words::title(title, cell);
-    for (line, baseline) in words.baselines() {
-        let look = Type::new(words.size, INK, Align::Start).bold();
+pub(crate) fn title(canvas: &mut Canvas<'_>, title: &str, plot: &Rect, cell: &Rect) {
+    let wrapped = wrapped_text::title(title, cell);
+    for (line, baseline) in wrapped.baselines() {
+        let style = TextStyle::new(wrapped.size, INK, Align::Start).bold();
         // Beside a vertical axis with many words a long title has to begin before the plot.
-        let x = plot.x0.min(cell.x1 - width(line, words.size, true));
-        canvas.text(line, [x, cell.y0 + baseline], look)?;
+        let x = plot.x0.min(cell.x1 - width(line, wrapped.size, true));
+        canvas.text(line, [x, cell.y0 + baseline], style);
     }
-    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fonts;
 
     #[test]
     fn neighbouring_labels_keep_apart() {
-        fonts::ready().unwrap();
         for (scale, low, high) in [
             (Scale::Linear, 0.0, 12_345.0),
             (Scale::Log, 1e-16, 1.0),
             (Scale::Degrees, -720.0, 720.0),
         ] {
             for length in [200.0, 500.0, 800.0] {
-                let span = Span { scale, low, high };
-                let ticks = ticks_across(&span, length);
-                let place = |i: usize| span.place(ticks.major[i]).unwrap() * length;
+                let range = AxisRange {
+                    scale,
+                    min: low,
+                    max: high,
+                };
+                let ticks = horizontal_ticks(&range, length);
+                let place = |i: usize| range.fraction(ticks.major[i]).unwrap() * length;
                 for i in 1..ticks.major.len() {
-                    let half = |i: usize| 0.5 * width(&ticks.labels[i], TICK, false);
+                    let half = |i: usize| 0.5 * width(&ticks.labels[i], TICK_SIZE, false);
                     let free = place(i) - half(i) - place(i - 1) - half(i - 1);
                     assert!(
                         free > 0.0 || ticks.major.len() <= 2,
@@ -288,13 +314,12 @@ mod tests {
 
     #[test]
     fn a_low_plot_has_more_than_one_value_on_its_axis() {
-        fonts::ready().unwrap();
         // Three ticks at the most would leave but the zero.
-        let span = Span {
+        let range = AxisRange {
             scale: Scale::Linear,
-            low: -4900.0,
-            high: 4400.0,
+            min: -4900.0,
+            max: 4400.0,
         };
-        assert!(ticks_up(&span, 240.0).major.len() > 1);
+        assert!(vertical_ticks(&range, 240.0).major.len() > 1);
     }
 }

@@ -1,32 +1,35 @@
 //! Drawing in page pixels on plotters' SVG backend.
 
-use crate::fonts::{self, SIZE_PER_EM};
+use crate::fonts::FAMILY;
 use crate::rect::Rect;
 use crate::theme::{Rgb, WHITE};
 use plotters::backend::{DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, FontTransform, RGBColor, ShapeStyle};
-use std::fmt::Display;
+use plotters::style::{
+    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle,
+};
 
-/// Backend units in a page pixel: the backend rounds to whole units, which at 1 shows as staircases.
-pub(crate) const FACTOR: f64 = 8.0;
+/// Backend units in a page pixel: the backend rounds to whole units, which at 1 would show as staircases.
+pub(crate) const UNITS_PER_PIXEL: f64 = 8.0;
+/// The backend writes `font-size = size / 1.24`.
+const SIZE_PER_EM: f64 = 1.24;
 /// The backend writes `dy="0.76em"` for text hung from its top: subtracting it leaves the baseline.
 const TOP_SHIFT: f64 = 0.76;
 /// Half the height of a digit, which is what looks centred beside a tick.
-const HALF_CAP: f64 = 0.365;
+const HALF_DIGIT_HEIGHT: f64 = 0.365;
 
 /// Width of the white rim around letters that stand on lines.
-const RIM: f64 = 2.4;
+const HALO_WIDTH: f64 = 2.4;
 
 /// What a line looks like.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Line {
+pub(crate) struct LineStyle {
     pub(crate) color: Rgb,
     pub(crate) width: f64,
     pub(crate) dashed: bool,
 }
 
-impl Line {
+impl LineStyle {
     pub(crate) fn solid(color: Rgb, width: f64) -> Self {
         Self {
             color,
@@ -36,7 +39,7 @@ impl Line {
     }
 }
 
-/// Which end of the text its place is.
+/// Which end of the text is at its position.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Align {
     Start,
@@ -46,14 +49,14 @@ pub(crate) enum Align {
 
 /// What a text looks like.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Type {
+pub(crate) struct TextStyle {
     pub(crate) size: f64,
     pub(crate) bold: bool,
     pub(crate) color: Rgb,
     pub(crate) align: Align,
 }
 
-impl Type {
+impl TextStyle {
     pub(crate) fn new(size: f64, color: Rgb, align: Align) -> Self {
         Self {
             size,
@@ -68,30 +71,22 @@ impl Type {
     }
 }
 
-/// Result of drawing: the message of the backend if it failed.
-pub(crate) type Drawn = Result<(), String>;
-
-/// A page being drawn.
+/// A page being drawn. The backend writes into a string, which cannot fail, so its results are dropped.
 pub(crate) struct Canvas<'a> {
     backend: SVGBackend<'a>,
 }
 
-fn said(error: impl Display) -> String {
-    error.to_string()
+fn to_units(v: f64) -> i32 {
+    // Saturates, and takes NaN to 0: callers skip what is not finite, this only limits the effect of a mistake.
+    (v * UNITS_PER_PIXEL).round() as i32
 }
 
-fn unit(v: f64) -> i32 {
-    // Saturates, and takes NaN to 0: callers skip what is not finite, this only keeps a slip from spreading.
-    (v * FACTOR).round() as i32
+fn point_to_units([x, y]: [f64; 2]) -> (i32, i32) {
+    (to_units(x), to_units(y))
 }
 
-fn units([x, y]: [f64; 2]) -> (i32, i32) {
-    (unit(x), unit(y))
-}
-
-fn style(color: Rgb, width: f64, opacity: f64) -> ShapeStyle {
-    let [r, g, b] = color;
-    let stroke_width = (width * FACTOR).round().max(1.0) as u32;
+fn shape_style([r, g, b]: Rgb, width: f64, opacity: f64) -> ShapeStyle {
+    let stroke_width = (width * UNITS_PER_PIXEL).round().max(1.0) as u32;
     ShapeStyle {
         color: RGBColor(r, g, b).mix(opacity),
         filled: false,
@@ -102,134 +97,133 @@ fn style(color: Rgb, width: f64, opacity: f64) -> ShapeStyle {
 impl<'a> Canvas<'a> {
     /// A page of the given size in pixels, written into `svg`.
     pub(crate) fn new(svg: &'a mut String, width: u32, height: u32) -> Self {
-        let size = (
-            width.saturating_mul(FACTOR as u32),
-            height.saturating_mul(FACTOR as u32),
-        );
+        let size = [width, height].map(|side| side.saturating_mul(UNITS_PER_PIXEL as u32));
         Self {
-            backend: SVGBackend::with_string(svg, size),
+            backend: SVGBackend::with_string(svg, size.into()),
         }
     }
 
     /// Ends the document.
-    pub(crate) fn finish(mut self) -> Drawn {
-        self.backend.present().map_err(said)
+    pub(crate) fn finish(mut self) {
+        let _ = self.backend.present();
     }
 
     /// A line through the points.
-    pub(crate) fn line(&mut self, points: &[[f64; 2]], line: Line) -> Drawn {
+    pub(crate) fn line(&mut self, points: &[[f64; 2]], line: LineStyle) {
         if points.len() < 2 {
-            return Ok(());
+            return;
         }
         if line.dashed {
             for dash in crate::curve::dashes(points, 4.0 * line.width + 2.0, 2.6 * line.width + 2.0)
             {
                 self.line(
                     &dash,
-                    Line {
+                    LineStyle {
                         dashed: false,
                         ..line
                     },
-                )?;
+                );
             }
-            return Ok(());
+            return;
         }
-        let path = points.iter().copied().map(units);
-        self.backend
-            .draw_path(path, &style(line.color, line.width, 1.0))
-            .map_err(said)
+        let path = points.iter().copied().map(point_to_units);
+        let style = shape_style(line.color, line.width, 1.0);
+        let _ = self.backend.draw_path(path, &style);
     }
 
     /// A filled polygon.
-    pub(crate) fn polygon(&mut self, points: &[[f64; 2]], color: Rgb, opacity: f64) -> Drawn {
-        let path = points.iter().copied().map(units);
-        self.backend
-            .fill_polygon(path, &style(color, 1.0, opacity))
-            .map_err(said)
+    pub(crate) fn polygon(&mut self, points: &[[f64; 2]], color: Rgb, opacity: f64) {
+        let path = points.iter().copied().map(point_to_units);
+        let style = shape_style(color, 1.0, opacity);
+        let _ = self.backend.fill_polygon(path, &style);
     }
 
     /// A filled rectangle.
-    pub(crate) fn rect(&mut self, rect: &Rect, color: Rgb) -> Drawn {
-        let (from, to) = (units([rect.x0, rect.y0]), units([rect.x1, rect.y1]));
-        self.backend
-            .draw_rect(from, to, &style(color, 1.0, 1.0), true)
-            .map_err(said)
+    pub(crate) fn rect(&mut self, rect: &Rect, color: Rgb) {
+        let [from, to] = [[rect.x0, rect.y0], [rect.x1, rect.y1]].map(point_to_units);
+        let style = shape_style(color, 1.0, 1.0);
+        let _ = self.backend.draw_rect(from, to, &style, true);
     }
 
     /// The edge of a rectangle.
-    pub(crate) fn frame(&mut self, rect: &Rect, line: Line) -> Drawn {
+    pub(crate) fn rect_outline(&mut self, rect: &Rect, line: LineStyle) {
         let Rect { x0, y0, x1, y1 } = *rect;
-        self.line(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]], line)
+        self.line(&[[x0, y0], [x1, y0], [x1, y1], [x0, y1], [x0, y0]], line);
     }
 
     /// A filled disc.
-    pub(crate) fn disc(&mut self, centre: [f64; 2], radius: f64, color: Rgb) -> Drawn {
-        let radius = (radius * FACTOR).round().max(0.0) as u32;
-        self.backend
-            .draw_circle(units(centre), radius, &style(color, 1.0, 1.0), true)
-            .map_err(said)
+    pub(crate) fn disc(&mut self, centre: [f64; 2], radius: f64, color: Rgb) {
+        let radius = (radius * UNITS_PER_PIXEL).round().max(0.0) as u32;
+        let style = shape_style(color, 1.0, 1.0);
+        let _ = self
+            .backend
+            .draw_circle(point_to_units(centre), radius, &style, true);
     }
 
     /// Text with its baseline at `y`.
-    pub(crate) fn text(&mut self, text: &str, [x, y]: [f64; 2], look: Type) -> Drawn {
+    pub(crate) fn text(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
         self.put(
             text,
-            [x, y - TOP_SHIFT * look.size],
-            look,
+            [x, y - TOP_SHIFT * style.size],
+            style,
             FontTransform::None,
-        )
+        );
     }
 
     /// Text whose digits are centred on `y`.
-    pub(crate) fn text_beside(&mut self, text: &str, [x, y]: [f64; 2], look: Type) -> Drawn {
-        self.text(text, [x, y + HALF_CAP * look.size], look)
+    pub(crate) fn text_centred(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
+        self.text(text, [x, y + HALF_DIGIT_HEIGHT * style.size], style);
     }
 
     /// The same with a white rim, which keeps it legible on lines.
-    pub(crate) fn text_with_rim(&mut self, text: &str, [x, y]: [f64; 2], look: Type) -> Drawn {
-        for [dx, dy] in [[-RIM, -RIM], [RIM, -RIM], [-RIM, RIM], [RIM, RIM]] {
-            self.text_beside(
+    pub(crate) fn text_with_halo(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
+        for [dx, dy] in [
+            [-HALO_WIDTH, -HALO_WIDTH],
+            [HALO_WIDTH, -HALO_WIDTH],
+            [-HALO_WIDTH, HALO_WIDTH],
+            [HALO_WIDTH, HALO_WIDTH],
+        ] {
+            self.text_centred(
                 text,
                 [x + dx, y + dy],
-                Type {
+                TextStyle {
                     color: WHITE,
-                    ..look
+                    ..style
                 },
-            )?;
+            );
         }
-        self.text_beside(text, [x, y], look)
+        self.text_centred(text, [x, y], style);
     }
 
     /// Text that reads upwards, with its baseline at `x`.
-    pub(crate) fn text_upwards(&mut self, text: &str, [x, y]: [f64; 2], look: Type) -> Drawn {
-        self.put(
-            text,
-            [x - TOP_SHIFT * look.size, y],
-            look,
-            FontTransform::Rotate270,
-        )
+    pub(crate) fn text_upwards(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
+        let at = [x - TOP_SHIFT * style.size, y];
+        self.put(text, at, style, FontTransform::Rotate270);
     }
 
-    fn put(&mut self, text: &str, at: [f64; 2], look: Type, turn: FontTransform) -> Drawn {
+    fn put(&mut self, text: &str, at: [f64; 2], style: TextStyle, rotation: FontTransform) {
         // XML has no control characters; one in a name must not cost the whole page.
-        let text: String = text
-            .chars()
-            .map(|c| if c.is_control() { ' ' } else { c })
-            .collect();
+        let text = text.replace(char::is_control, " ");
         if text.trim().is_empty() {
-            return Ok(());
+            return;
         }
-        let h_pos = match look.align {
+        let h_pos = match style.align {
             Align::Start => HPos::Left,
             Align::Middle => HPos::Center,
             Align::End => HPos::Right,
         };
-        let [r, g, b] = look.color;
-        let font = fonts::font(look.size * SIZE_PER_EM * FACTOR, look.bold).transform(turn);
-        let mut style = font.color(&RGBColor(r, g, b));
-        style.pos = Pos::new(h_pos, VPos::Top);
-        self.backend
-            .draw_text(&text, &style, units(at))
-            .map_err(said)
+        let weight = if style.bold {
+            FontStyle::Bold
+        } else {
+            FontStyle::Normal
+        };
+        let [r, g, b] = style.color;
+        let size = style.size * SIZE_PER_EM * UNITS_PER_PIXEL;
+        let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight).transform(rotation);
+        let mut text_style = font.color(&RGBColor(r, g, b));
+        text_style.pos = Pos::new(h_pos, VPos::Top);
+        let _ = self
+            .backend
+            .draw_text(&text, &text_style, point_to_units(at));
     }
 }

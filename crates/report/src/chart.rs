@@ -1,55 +1,30 @@
 //! A chart in a cell of the page.
 
-use crate::axes::{self, Frame, Side};
-use crate::canvas::{Align, Canvas, Drawn, Line, Type};
+use crate::axes::{self, PlotFrame, VerticalAxisStyle};
+use crate::axis::Axis;
+use crate::axis_range::AxisRange;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::curve::{clipped, clipped_area};
-use crate::extent::{Extent, marked};
-use crate::figure::{Axis, Chart, Paint, Series, Stroke};
-use crate::labels::{self, EndLabel};
-use crate::legend::{self, Entry, Sample};
+use crate::end_labels::{self, EndLabel};
+use crate::extent::{Extent, has_markers};
+use crate::figure::{Chart, Series, Stroke};
+use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
+use crate::linear_ticks::Ticks;
 use crate::marks;
 use crate::occupancy::Occupancy;
 use crate::rect::{Insets, Rect};
-use crate::span::Span;
-use crate::theme::{CURVE, GREY, INK, LABEL, Rgb, SPINE, automatic, lightened, rgb};
-use crate::ticks::Ticks;
+use crate::series_style::{SeriesStyle, series_style};
+use crate::theme::{CURVE_WIDTH, GREY, INK, LABEL_SIZE, Rgb, SPINE_WIDTH, lightened};
 
 /// Height of a chart's cell as a share of its width.
 pub(crate) const HEIGHT: f64 = 0.68;
 /// Markers of a line closer together than this say nothing more.
 const MARKER_STEP: f64 = 15.0;
 /// Opacity of an area.
-const FILL: f64 = 0.22;
-
-/// How a series looks.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Look {
-    pub(crate) line: Line,
-    marker: marks::Marker,
-}
-
-fn look(series: &Series, index: usize) -> Look {
-    let paint = series.color.unwrap_or(automatic(index));
-    let shape = match paint {
-        _ if series.stroke == Stroke::Crosses => marks::CROSS,
-        Paint::Palette(i) => i,
-        Paint::Ink => marks::CROSS,
-        Paint::Grey => index,
-    };
-    let hollow = series.stroke == Stroke::Hollow;
-    let marker = marks::Marker { shape, hollow };
-    Look {
-        line: Line {
-            color: rgb(paint),
-            width: CURVE,
-            dashed: series.stroke == Stroke::Dashed,
-        },
-        marker,
-    }
-}
+const FILL_OPACITY: f64 = 0.22;
 
 /// Whether the points of a series are shown alone.
-fn unjoined(series: &Series) -> bool {
+fn has_markers_only(series: &Series) -> bool {
     matches!(
         series.stroke,
         Stroke::Points | Stroke::Hollow | Stroke::Crosses
@@ -57,31 +32,31 @@ fn unjoined(series: &Series) -> bool {
 }
 
 /// A chart with its spans found.
-pub(crate) struct Sheet<'a> {
+pub(crate) struct PreparedChart<'a> {
     chart: &'a Chart,
-    looks: Vec<Look>,
-    x: Span,
-    y: Span,
-    y2: Option<Span>,
+    styles: Vec<SeriesStyle>,
+    x: AxisRange,
+    y: AxisRange,
+    y2: Option<AxisRange>,
     /// The horizontal axis in words; a chart in a stack leaves them to the lowest.
     x_axis: Option<&'a Axis>,
 }
 
 /// Where things go in the cell.
 struct Layout {
-    frame: Frame,
-    ends: Option<Vec<EndLabel>>,
-    legend: Option<(legend::Legend, Rect, bool)>,
-    taken: Occupancy,
+    frame: PlotFrame,
+    end_labels: Option<Vec<EndLabel>>,
+    legend: Option<PlacedLegend>,
+    occupied: Occupancy,
 }
 
 /// Room for the words "no data".
-fn no_data(frame: &Frame) -> Rect {
+fn no_data_area(frame: &PlotFrame) -> Rect {
     let [x, y] = frame.plot.centre();
-    Rect::sized(x, y, 0.0, 0.0).grown(2.5 * LABEL)
+    Rect::sized(x, y, 0.0, 0.0).grown(2.5 * LABEL_SIZE)
 }
 
-impl<'a> Sheet<'a> {
+impl<'a> PreparedChart<'a> {
     pub(crate) fn new(chart: &'a Chart) -> Self {
         Self::with(chart, Extent::of(chart), Some(&chart.x))
     }
@@ -91,20 +66,20 @@ impl<'a> Sheet<'a> {
         let Some(first) = charts.first() else {
             return Vec::new();
         };
-        let x = Extent::across(&first.x, charts);
+        let x = Extent::horizontal(&first.x, charts);
         let lowest = charts.len() - 1;
-        let sheet = |(place, chart)| {
+        let prepared = |(place, chart)| {
             let axis = (place == lowest).then_some(&first.x);
-            Self::with(chart, Extent::over(x, chart), axis)
+            Self::with(chart, Extent::with_horizontal(x, chart), axis)
         };
-        charts.iter().enumerate().map(sheet).collect()
+        charts.iter().enumerate().map(prepared).collect()
     }
 
     fn with(chart: &'a Chart, Extent { x, y, y2 }: Extent, x_axis: Option<&'a Axis>) -> Self {
         let looks = chart.series.iter().enumerate();
         Self {
             chart,
-            looks: looks.map(|(i, series)| look(series, i)).collect(),
+            styles: looks.map(|(i, series)| series_style(series, i)).collect(),
             x,
             y,
             y2,
@@ -112,14 +87,14 @@ impl<'a> Sheet<'a> {
         }
     }
 
-    /// Whether a place is within the horizontal span.
+    /// Whether a value is within the horizontal range.
     #[cfg(test)]
-    pub(crate) fn shows(&self, x: f64) -> bool {
-        (self.x.low..=self.x.high).contains(&x)
+    pub(crate) fn covers(&self, x: f64) -> bool {
+        (self.x.min..=self.x.max).contains(&x)
     }
 
-    fn frame(&self, plot: Rect) -> Frame {
-        Frame {
+    fn frame(&self, plot: Rect) -> PlotFrame {
+        PlotFrame {
             plot,
             x: self.x,
             y: self.y,
@@ -132,79 +107,82 @@ impl<'a> Sheet<'a> {
         let chart = self.chart;
         // A first guess at the sides: ticks depend on the plot, and the plot on their labels.
         let sides = 0.13 * cell.width();
-        let x_ticks = axes::ticks_across(&self.x, cell.width() - sides);
+        let x_ticks = axes::horizontal_ticks(&self.x, cell.width() - sides);
         let mut insets = Insets {
             left: sides,
             top: axes::top_room(&chart.title, cell),
             right: axes::right_room(),
             bottom: axes::bottom_room(self.x_axis, &x_ticks, cell),
         };
-        let height = cell.inside(insets).height();
-        let side = |axis, span| axes::side_room(axis, &axes::ticks_up(span, height), height);
+        let height = cell.inset(insets).height();
+        let side =
+            |axis, range| axes::side_room(axis, &axes::vertical_ticks(range, height), height);
         insets.left = side(&chart.y, &self.y);
-        if let (Some(axis), Some(span)) = (&chart.y2, &self.y2) {
-            insets.right = side(axis, span);
+        if let (Some(axis), Some(range)) = (&chart.y2, &self.y2) {
+            insets.right = side(axis, range);
         }
-        if let Some(ends) = labels::at_ends(chart, &self.looks, &self.frame(cell.inside(insets))) {
-            insets.right = insets.right.max(labels::room(&ends));
+        if let Some(end_labels) =
+            end_labels::at_ends(chart, &self.styles, &self.frame(cell.inset(insets)))
+        {
+            insets.right = insets.right.max(end_labels::room(&end_labels));
         }
         insets
     }
 
     /// Draws the chart.
-    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, cell: &Rect, insets: Insets) -> Drawn {
+    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, cell: &Rect, insets: Insets) {
         let chart = self.chart;
         let Layout {
             frame,
-            ends,
+            end_labels,
             legend,
-            taken,
+            occupied,
         } = self.layout(cell, insets);
-        let x_ticks = axes::ticks_across(&self.x, frame.plot.width());
-        let y_ticks = axes::ticks_up(&self.y, frame.plot.height());
-        marks::bands(canvas, &frame, &chart.marks)?;
-        axes::grid(canvas, &frame, &x_ticks, &y_ticks)?;
-        marks::lines(canvas, &frame, &chart.marks)?;
+        let x_ticks = axes::horizontal_ticks(&self.x, frame.plot.width());
+        let y_ticks = axes::vertical_ticks(&self.y, frame.plot.height());
+        marks::bands(canvas, &frame, &chart.marks);
+        axes::grid_lines(canvas, &frame, &x_ticks, &y_ticks);
+        marks::lines(canvas, &frame, &chart.marks);
         // Under the curves: a marker at the very edge is a datum, the spine is not.
-        axes::bottom(canvas, &frame, cell, self.x_axis, &x_ticks)?;
-        let Rect { y0, y1, .. } = cell.inside(insets);
-        self.sides(canvas, &frame, cell, (y0, y1), &y_ticks)?;
-        for (series, look) in chart.series.iter().zip(&self.looks) {
-            self.area(canvas, &frame, series, look)?;
+        axes::horizontal_axis(canvas, &frame, cell, self.x_axis, &x_ticks);
+        let Rect { y0, y1, .. } = cell.inset(insets);
+        self.vertical_axes(canvas, &frame, cell, (y0, y1), &y_ticks);
+        for (series, style) in chart.series.iter().zip(&self.styles) {
+            self.area(canvas, &frame, series, style);
         }
-        for (series, look) in chart.series.iter().zip(&self.looks) {
-            self.series(canvas, &frame, series, look)?;
+        for (series, style) in chart.series.iter().zip(&self.styles) {
+            self.series(canvas, &frame, series, style);
         }
-        marks::rings(canvas, &frame, &chart.marks)?;
-        axes::title(canvas, &chart.title, &frame.plot, cell)?;
-        if let Some(ends) = &ends {
-            labels::draw(canvas, ends, &frame.plot)?;
+        marks::rings(canvas, &frame, &chart.marks);
+        axes::title(canvas, &chart.title, &frame.plot, cell);
+        if let Some(end_labels) = &end_labels {
+            end_labels::draw(canvas, end_labels, &frame.plot);
         }
-        if let Some((legend, place, inside)) = &legend {
-            legend.draw(canvas, place, *inside)?;
+        if let Some(legend) = &legend {
+            legend.draw(canvas);
         }
-        let mut written: Vec<Rect> = legend.map(|(_, place, _)| place).into_iter().collect();
+        let mut written: Vec<Rect> = legend.map(|legend| legend.area).into_iter().collect();
         if !self.has_data(&frame) {
             let [x, y] = frame.plot.centre();
-            let look = Type::new(LABEL, GREY, Align::Middle);
-            canvas.text_beside("no data", [x, y], look)?;
-            written.push(no_data(&frame));
+            let style = TextStyle::new(LABEL_SIZE, GREY, Align::Middle);
+            canvas.text_centred("no data", [x, y], style);
+            written.push(no_data_area(&frame));
         }
-        marks::words(canvas, &frame, &chart.marks, &taken, written)
+        marks::draw_labels(canvas, &frame, &chart.marks, &occupied, written);
     }
 
-    fn sides(
+    fn vertical_axes(
         &self,
         canvas: &mut Canvas<'_>,
-        frame: &Frame,
+        frame: &PlotFrame,
         cell: &Rect,
         heights: (f64, f64),
         ticks: &Ticks,
-    ) -> Drawn {
+    ) {
         let chart = self.chart;
         let second = chart.y2.as_ref().zip(self.y2.as_ref());
         // With two axes, colour says which curve belongs to which.
-        let side = |ticks, right| Side {
+        let side = |ticks, right| VerticalAxisStyle {
             ticks,
             color: self
                 .axis_color(right)
@@ -213,12 +191,12 @@ impl<'a> Sheet<'a> {
             right,
             heights,
         };
-        axes::side(canvas, frame, cell, &chart.y, &side(ticks, false))?;
-        let Some((axis, span)) = second else {
-            return Ok(());
+        axes::vertical_axis(canvas, frame, cell, &chart.y, &side(ticks, false));
+        let Some((axis, range)) = second else {
+            return;
         };
-        let ticks = &axes::ticks_up(span, frame.plot.height());
-        axes::side(canvas, frame, cell, axis, &side(ticks, true))
+        let ticks = &axes::vertical_ticks(range, frame.plot.height());
+        axes::vertical_axis(canvas, frame, cell, axis, &side(ticks, true));
     }
 
     /// The one colour of all the series on a side.
@@ -227,7 +205,7 @@ impl<'a> Sheet<'a> {
             .chart
             .series
             .iter()
-            .zip(&self.looks)
+            .zip(&self.styles)
             .filter(|(s, _)| s.right_axis == right)
             .map(|(_, l)| l.line.color);
         let first = colors.next()?;
@@ -235,69 +213,75 @@ impl<'a> Sheet<'a> {
     }
 
     fn layout(&self, cell: &Rect, insets: Insets) -> Layout {
-        let mut frame = self.frame(cell.inside(insets));
-        let mut taken = self.taken(&frame);
-        let ends = labels::at_ends(self.chart, &self.looks, &frame)
-            .filter(|ends| labels::room(ends) <= insets.right + 0.5);
+        let mut frame = self.frame(cell.inset(insets));
+        let mut occupied = self.occupied(&frame);
+        let end_labels = end_labels::at_ends(self.chart, &self.styles, &frame)
+            .filter(|end_labels| end_labels::room(end_labels) <= insets.right + 0.5);
         let entries = self.entries(&frame);
-        if ends.is_some() || entries.is_empty() {
+        if end_labels.is_some() || entries.is_empty() {
             return Layout {
                 frame,
-                ends,
+                end_labels,
                 legend: None,
-                taken,
+                occupied,
             };
         }
-        if let Some((legend, place)) = legend::inside(&entries, &frame.plot, &taken) {
+        if let Some(legend) = legend::place_inside(&entries, &frame.plot, &occupied) {
             return Layout {
                 frame,
-                ends,
-                legend: Some((legend, place, true)),
-                taken,
+                end_labels,
+                legend: Some(legend),
+                occupied,
             };
         }
-        // No free place among the data: above them, then, and the plot gives way.
-        let (legend, place) = legend::above(&entries, &mut frame.plot);
-        taken = self.taken(&frame);
+        // No free area among the data: the legend goes above the plot, which becomes smaller.
+        let legend = legend::place_above(&entries, &mut frame.plot);
+        occupied = self.occupied(&frame);
         Layout {
             frame,
-            ends,
-            legend: Some((legend, place, false)),
-            taken,
+            end_labels,
+            legend: Some(legend),
+            occupied,
         }
     }
 
-    fn runs(&self, frame: &Frame, series: &Series) -> Vec<Vec<[f64; 2]>> {
+    fn polylines(&self, frame: &PlotFrame, series: &Series) -> Vec<Vec<[f64; 2]>> {
         // Half a line beyond the frame, so that a curve along the edge keeps its width.
-        let room = frame.plot.grown(0.5 * CURVE);
+        let room = frame.plot.grown(0.5 * CURVE_WIDTH);
         clipped(
             series
                 .points
                 .iter()
-                .map(|p| frame.point(*p, series.right_axis)),
+                .map(|p| frame.point_to_px(*p, series.right_axis)),
             &room,
         )
     }
 
-    fn visible(&self, frame: &Frame, series: &Series) -> Vec<[f64; 2]> {
-        let place = |p: &[f64; 2]| {
+    fn visible_points(&self, frame: &PlotFrame, series: &Series) -> Vec<[f64; 2]> {
+        let to_px = |p: &[f64; 2]| {
             frame
-                .point(*p, series.right_axis)
+                .point_to_px(*p, series.right_axis)
                 .filter(|p| frame.plot.grown(1.0).contains(*p))
         };
-        series.points.iter().filter_map(place).collect()
+        series.points.iter().filter_map(to_px).collect()
     }
 
     /// Fills the area between a series and zero, and draws the line of zero.
-    fn area(&self, canvas: &mut Canvas<'_>, frame: &Frame, series: &Series, look: &Look) -> Drawn {
-        let zero = frame.up(0.0, series.right_axis);
+    fn area(
+        &self,
+        canvas: &mut Canvas<'_>,
+        frame: &PlotFrame,
+        series: &Series,
+        style: &SeriesStyle,
+    ) {
+        let zero = frame.y_to_px(0.0, series.right_axis);
         let Some(zero) = zero.filter(|_| series.stroke == Stroke::Filled) else {
-            return Ok(());
+            return;
         };
         let places: Vec<Option<[f64; 2]>> = series
             .points
             .iter()
-            .map(|p| frame.point(*p, series.right_axis))
+            .map(|p| frame.point_to_px(*p, series.right_axis))
             .collect();
         for run in places.split(Option::is_none) {
             let mut area: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
@@ -308,68 +292,68 @@ impl<'a> Sheet<'a> {
             area.extend(base);
             let area = clipped_area(&area, &frame.plot);
             if area.len() > 2 {
-                canvas.polygon(&area, look.line.color, FILL)?;
+                canvas.polygon(&area, style.line.color, FILL_OPACITY);
             }
             for line in clipped(base.map(Some), &frame.plot) {
-                canvas.line(&line, Line::solid(INK, SPINE))?;
+                canvas.line(&line, LineStyle::solid(INK, SPINE_WIDTH));
             }
         }
-        Ok(())
     }
 
-    fn has_data(&self, frame: &Frame) -> bool {
-        self.chart
-            .series
-            .iter()
-            .any(|s| !self.visible(frame, s).is_empty() || !self.runs(frame, s).is_empty())
+    fn has_data(&self, frame: &PlotFrame) -> bool {
+        self.chart.series.iter().any(|s| {
+            !self.visible_points(frame, s).is_empty() || !self.polylines(frame, s).is_empty()
+        })
     }
 
     /// What the data and the reference lines cover.
-    fn taken(&self, frame: &Frame) -> Occupancy {
-        let mut taken = Occupancy::new(frame.plot);
+    fn occupied(&self, frame: &PlotFrame) -> Occupancy {
+        let mut occupied = Occupancy::new(frame.plot);
         for series in &self.chart.series {
-            if !unjoined(series) {
-                self.runs(frame, series)
+            if !has_markers_only(series) {
+                self.polylines(frame, series)
                     .iter()
-                    .for_each(|run| taken.line(run));
+                    .for_each(|run| occupied.line(run));
             }
-            self.visible(frame, series)
+            self.visible_points(frame, series)
                 .into_iter()
-                .for_each(|p| taken.point(p));
+                .for_each(|p| occupied.point(p));
         }
-        marks::note(frame, &self.chart.marks, &mut taken);
+        marks::mark_occupied(frame, &self.chart.marks, &mut occupied);
         if !self.has_data(frame) {
-            taken.block(&no_data(frame));
+            occupied.block(&no_data_area(frame));
         }
-        taken
+        occupied
     }
 
-    fn entries(&self, frame: &Frame) -> Vec<Entry> {
+    fn entries(&self, frame: &PlotFrame) -> Vec<LegendEntry> {
         let ambiguous = self.y2.is_some()
             && (self.axis_color(false).is_none() || self.axis_color(true).is_none());
         let named = self
             .chart
             .series
             .iter()
-            .zip(&self.looks)
+            .zip(&self.styles)
             .filter(|(s, _)| !s.name.trim().is_empty());
-        let entry = |(series, look): (&Series, &Look)| {
+        let entry = |(series, style): (&Series, &SeriesStyle)| {
             let mut name = series.name.trim().to_owned();
             if ambiguous {
                 name.push_str(if series.right_axis { " →" } else { " ←" });
             }
-            if self.visible(frame, series).is_empty() && self.runs(frame, series).is_empty() {
+            if self.visible_points(frame, series).is_empty()
+                && self.polylines(frame, series).is_empty()
+            {
                 name.push_str(" (no points)");
             }
-            let line = (!unjoined(series)).then_some(look.line);
-            let marker = marked(series.stroke).then_some((look.marker, look.line.color));
-            Entry {
+            let line = (!has_markers_only(series)).then_some(style.line);
+            let marker = has_markers(series.stroke).then_some((style.marker, style.line.color));
+            LegendEntry {
                 name,
-                sample: Sample {
+                handle: LegendHandle {
                     line,
                     marker,
                     patch: (series.stroke == Stroke::Filled)
-                        .then(|| lightened(look.line.color, 1.0 - FILL)),
+                        .then(|| lightened(style.line.color, 1.0 - FILL_OPACITY)),
                 },
             }
         };
@@ -379,27 +363,26 @@ impl<'a> Sheet<'a> {
     fn series(
         &self,
         canvas: &mut Canvas<'_>,
-        frame: &Frame,
+        frame: &PlotFrame,
         series: &Series,
-        look: &Look,
-    ) -> Drawn {
-        if !unjoined(series) {
-            for run in self.runs(frame, series) {
-                canvas.line(&run, look.line)?;
+        style: &SeriesStyle,
+    ) {
+        if !has_markers_only(series) {
+            for run in self.polylines(frame, series) {
+                canvas.line(&run, style.line);
             }
         }
         let step = match series.stroke {
             Stroke::Points | Stroke::Hollow | Stroke::Crosses => 2.0,
             Stroke::LineAndPoints => MARKER_STEP,
-            Stroke::Solid | Stroke::Dashed | Stroke::Filled => return Ok(()),
+            Stroke::Solid | Stroke::Dashed | Stroke::Filled => return,
         };
         let mut last: Option<[f64; 2]> = None;
-        for p in self.visible(frame, series) {
+        for p in self.visible_points(frame, series) {
             if last.is_none_or(|l| (p[0] - l[0]).hypot(p[1] - l[1]) >= step) {
-                marks::marker(canvas, look.marker, p, look.line.color)?;
+                marks::draw_marker(canvas, style.marker, p, style.line.color);
                 last = Some(p);
             }
         }
-        Ok(())
     }
 }

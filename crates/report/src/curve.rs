@@ -2,7 +2,7 @@
 
 use crate::rect::Rect;
 
-/// Width of the strips within which neighbouring points cannot be told apart.
+/// Width of the strips within which neighbouring points cannot be distinguished.
 const STRIP: f64 = 0.5;
 
 /// The parts of the line through `points` that lie in `rect`; a missing point breaks the line.
@@ -131,14 +131,14 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
 pub(crate) fn dashes(points: &[[f64; 2]], dash: f64, gap: f64) -> Vec<Vec<[f64; 2]>> {
     let mut all = Vec::new();
     let mut current: Vec<[f64; 2]> = points.first().copied().into_iter().collect();
-    let (mut drawing, mut left) = (true, dash.max(1.0));
+    let (mut drawing, mut remaining) = (true, dash.max(1.0));
     for pair in points.windows(2) {
         let [mut a, b] = [pair[0], pair[1]];
         let mut length = (b[0] - a[0]).hypot(b[1] - a[1]);
-        while length > left {
-            let t = left / length;
+        while length > remaining {
+            let t = remaining / length;
             a = [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])];
-            length -= left;
+            length -= remaining;
             if drawing {
                 current.push(a);
                 all.push(std::mem::take(&mut current));
@@ -146,9 +146,9 @@ pub(crate) fn dashes(points: &[[f64; 2]], dash: f64, gap: f64) -> Vec<Vec<[f64; 
                 current = vec![a];
             }
             drawing = !drawing;
-            left = if drawing { dash.max(1.0) } else { gap.max(1.0) };
+            remaining = if drawing { dash.max(1.0) } else { gap.max(1.0) };
         }
-        left -= length;
+        remaining -= length;
         if drawing {
             current.push(b);
         }

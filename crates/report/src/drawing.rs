@@ -1,28 +1,28 @@
 //! A scaled drawing in a cell of the page: fitted, with equal axes.
 
-use crate::axes::{self, Frame};
-use crate::canvas::{Canvas, Drawn, Line};
-use crate::figure::{Axis, Scale};
-use crate::legend::{self, Entry, Legend, Sample};
+use crate::axes::{self, PlotFrame};
+use crate::axis::{Axis, Scale};
+use crate::axis_range::AxisRange;
+use crate::canvas::{Canvas, LineStyle};
+use crate::legend::{self, LegendEntry, LegendHandle, PlacedLegend};
 use crate::marks::Marker;
 use crate::occupancy::Occupancy;
 use crate::rect::{Insets, Rect};
 use crate::shape::{Drawing, Shape};
-use crate::sketch;
-use crate::span::Span;
+use crate::shape_drawing;
 use crate::theme::{INK, lightened, rgb};
 
 /// Pixels between the shapes and the frame: the room a bearing and its hatching take.
 const PAD: f64 = 54.0;
 /// Least and largest height of a plot as a share of its width.
 const ASPECT: (f64, f64) = (0.42, 0.95);
-/// What labels take from the width, before they are known.
+/// First estimate of the width that labels need.
 const SIDES: f64 = 170.0;
 
-/// Drawings that take turns in one cell, or one alone: laid out so that nothing moves but the shapes.
-pub(crate) struct Stage {
-    frame: Frame,
-    legend: Option<(Legend, Rect, bool)>,
+/// The layout of one drawing, or of several that are shown one after another in one cell: only the shapes move.
+pub(crate) struct DrawingLayout {
+    frame: PlotFrame,
+    legend: Option<PlacedLegend>,
     /// Between which heights the plot was before the legend.
     heights: (f64, f64),
 }
@@ -47,25 +47,25 @@ pub(crate) fn insets(drawings: &[Drawing], cell: &Rect) -> Insets {
         right: axes::right_room(),
         bottom: 0.6 * SIDES,
     };
-    let frame = fitted(bounds(drawings), cell.inside(guess));
-    let x_ticks = axes::ticks_across(&frame.x, frame.plot.width());
-    let y_ticks = axes::ticks_up(&frame.y, frame.plot.height());
-    let own = |drawing: &Drawing| Insets {
+    let frame = fitted(bounds(drawings), cell.inset(guess));
+    let x_ticks = axes::horizontal_ticks(&frame.x, frame.plot.width());
+    let y_ticks = axes::vertical_ticks(&frame.y, frame.plot.height());
+    let needed = |drawing: &Drawing| Insets {
         left: axes::side_room(&drawing.y, &y_ticks, frame.plot.height()),
         bottom: axes::bottom_room(Some(&drawing.x), &x_ticks, cell),
         ..guess
     };
-    let all = drawings.iter().map(own).reduce(Insets::max);
+    let all = drawings.iter().map(needed).reduce(Insets::max);
     all.unwrap_or(guess)
 }
 
-impl Stage {
+impl DrawingLayout {
     /// One frame and one legend for all.
     pub(crate) fn new(drawings: &[Drawing], cell: &Rect, insets: Insets) -> Self {
-        let mut frame = fitted(bounds(drawings), cell.inside(insets));
+        let mut frame = fitted(bounds(drawings), cell.inset(insets));
         let heights = (frame.plot.y0, frame.plot.y1);
         let entries = entries(drawings);
-        let legend = (!entries.is_empty()).then(|| place(drawings, &entries, &mut frame));
+        let legend = (!entries.is_empty()).then(|| arrange_legend(drawings, &entries, &mut frame));
         Self {
             frame,
             legend,
@@ -75,10 +75,7 @@ impl Stage {
 
     /// Height that the legend took from the plot.
     pub(crate) fn legend_above(&self) -> f64 {
-        match &self.legend {
-            Some((legend, _, false)) => legend.height(),
-            _ => 0.0,
-        }
+        self.legend.as_ref().map_or(0.0, PlacedLegend::height_above)
     }
 
     /// Where the shapes are.
@@ -88,45 +85,48 @@ impl Stage {
     }
 
     /// Draws one of the drawings.
-    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, drawing: &Drawing, cell: &Rect) -> Drawn {
+    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, drawing: &Drawing, cell: &Rect) {
         let frame = &self.frame;
         let (x, y) = (
-            axes::ticks_across(&frame.x, frame.plot.width()),
-            axes::ticks_up(&frame.y, frame.plot.height()),
+            axes::horizontal_ticks(&frame.x, frame.plot.width()),
+            axes::vertical_ticks(&frame.y, frame.plot.height()),
         );
-        axes::grid(canvas, frame, &x, &y)?;
+        axes::grid_lines(canvas, frame, &x, &y);
         for shape in &drawing.shapes {
-            sketch::draw(canvas, frame, shape)?;
+            shape_drawing::draw(canvas, frame, shape);
         }
-        axes::bottom(canvas, frame, cell, Some(&drawing.x), &x)?;
-        let look = axes::Side {
+        axes::horizontal_axis(canvas, frame, cell, Some(&drawing.x), &x);
+        let style = axes::VerticalAxisStyle {
             ticks: &y,
             color: INK,
             right: false,
             heights: self.heights,
         };
-        axes::side(canvas, frame, cell, &drawing.y, &look)?;
-        axes::title(canvas, &drawing.title, &frame.plot, cell)?;
-        match &self.legend {
-            Some((legend, place, inside)) => legend.draw(canvas, place, *inside),
-            None => Ok(()),
+        axes::vertical_axis(canvas, frame, cell, &drawing.y, &style);
+        axes::title(canvas, &drawing.title, &frame.plot, cell);
+        if let Some(legend) = &self.legend {
+            legend.draw(canvas);
         }
     }
 }
 
-/// The legend and its place; the plot gives way if no place in it is free.
-fn place(drawings: &[Drawing], entries: &[Entry], frame: &mut Frame) -> (Legend, Rect, bool) {
-    let mut taken = Occupancy::new(frame.plot);
+/// The legend and its area; the plot becomes smaller if no area in it is free.
+fn arrange_legend(
+    drawings: &[Drawing],
+    entries: &[LegendEntry],
+    frame: &mut PlotFrame,
+) -> PlacedLegend {
+    let mut occupied = Occupancy::new(frame.plot);
     for shape in drawings.iter().flat_map(|d| &d.shapes) {
-        sketch::note(frame, shape, &mut taken);
+        shape_drawing::mark_occupied(frame, shape, &mut occupied);
     }
-    if let Some((legend, place)) = legend::inside(entries, &frame.plot, &taken) {
-        return (legend, place, true);
+    if let Some(legend) = legend::place_inside(entries, &frame.plot, &occupied) {
+        return legend;
     }
     let mut plot = frame.plot;
-    let (legend, place) = legend::above(entries, &mut plot);
+    let legend = legend::place_above(entries, &mut plot);
     *frame = fitted(bounds(drawings), plot);
-    (legend, place, false)
+    legend
 }
 
 /// Extent of the shapes and of the axes' own ranges: never empty.
@@ -135,11 +135,11 @@ fn bounds(drawings: &[Drawing]) -> [[f64; 2]; 2] {
         drawings
             .iter()
             .flat_map(|d| &d.shapes)
-            .flat_map(sketch::points)
+            .flat_map(shape_drawing::points)
             .filter(|p| p.iter().all(|v| v.is_finite()))
     };
     let side = |axis: fn(&Drawing) -> &Axis, i: usize| {
-        let own = drawings.iter().filter_map(|d| axis(d).range).flatten();
+        let given = drawings.iter().filter_map(|d| axis(d).range).flatten();
         let linear = Axis {
             scale: Scale::Linear,
             range: None,
@@ -147,39 +147,39 @@ fn bounds(drawings: &[Drawing]) -> [[f64; 2]; 2] {
         };
         let all = points()
             .map(|p| p[i])
-            .chain(own)
+            .chain(given)
             .filter(|v| v.abs() < 1e150);
-        (all.clone().count() > 0).then(|| Span::of(&linear, all, 0.0))
+        (all.clone().count() > 0).then(|| AxisRange::of(&linear, all, 0.0))
     };
     let (x, y) = (side(|d| &d.x, 0), side(|d| &d.y, 1));
-    let ends = |span: Option<Span>| span.map_or([0.0, 1.0], |s| [s.low, s.high]);
+    let ends = |range: Option<AxisRange>| range.map_or([0.0, 1.0], |s| [s.min, s.max]);
     [ends(x), ends(y)]
 }
 
 /// The frame in which the shapes keep their proportions and fill the plot.
-fn fitted([[x0, x1], [y0, y1]]: [[f64; 2]; 2], plot: Rect) -> Frame {
+fn fitted([[x0, x1], [y0, y1]]: [[f64; 2]; 2], plot: Rect) -> PlotFrame {
     let pad = PAD.min(0.2 * plot.width()).min(0.2 * plot.height());
     // Units in a pixel: the larger of the two fits both ways.
     let unit =
         ((x1 - x0) / (plot.width() - 2.0 * pad)).max((y1 - y0) / (plot.height() - 2.0 * pad));
-    let span = |low: f64, high: f64, pixels: f64| {
+    let range = |low: f64, high: f64, pixels: f64| {
         let (middle, half) = (0.5 * (low + high), 0.5 * pixels * unit);
-        Span {
+        AxisRange {
             scale: Scale::Linear,
-            low: middle - half,
-            high: middle + half,
+            min: middle - half,
+            max: middle + half,
         }
     };
-    Frame {
+    PlotFrame {
         plot,
-        x: span(x0, x1, plot.width()),
-        y: span(y0, y1, plot.height()),
+        x: range(x0, x1, plot.width()),
+        y: range(y0, y1, plot.height()),
         y2: None,
     }
 }
 
-fn entries(drawings: &[Drawing]) -> Vec<Entry> {
-    let mut entries: Vec<Entry> = Vec::new();
+fn entries(drawings: &[Drawing]) -> Vec<LegendEntry> {
+    let mut entries: Vec<LegendEntry> = Vec::new();
     for shape in drawings.iter().flat_map(|d| &d.shapes) {
         let (Shape::Polyline {
             pen,
@@ -203,34 +203,34 @@ fn entries(drawings: &[Drawing]) -> Vec<Entry> {
             continue;
         }
         let color = lightened(rgb(pen.color), pen.lightness);
-        let line = Line {
+        let line = LineStyle {
             color,
             width: pen.width.clamp(1.0, 12.0),
             dashed: pen.dashed,
         };
-        let sample = match shape {
-            Shape::Disc { .. } => Sample {
+        let handle = match shape {
+            Shape::Disc { .. } => LegendHandle {
                 line: None,
-                marker: Some((Marker::full(0), color)),
+                marker: Some((Marker::filled(0), color)),
                 patch: None,
             },
             Shape::Polyline {
                 fill: Some(opacity),
                 ..
-            } => Sample {
+            } => LegendHandle {
                 line: Some(line),
                 marker: None,
                 patch: Some(lightened(color, 1.0 - opacity)),
             },
-            _ => Sample {
+            _ => LegendHandle {
                 line: Some(line),
                 marker: None,
                 patch: None,
             },
         };
-        entries.push(Entry {
+        entries.push(LegendEntry {
             name: name.clone(),
-            sample,
+            handle,
         });
     }
     entries
@@ -239,7 +239,7 @@ fn entries(drawings: &[Drawing]) -> Vec<Entry> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::Paint;
+    use crate::axis::Paint;
     use crate::shape::Pen;
 
     fn square(side: f64) -> Drawing {
@@ -265,8 +265,8 @@ mod tests {
             for side in [1e-6, 0.3, 1e6] {
                 let frame = fitted(bounds(&[square(side)]), plot);
                 let [a, b] = [
-                    frame.point([0.0, 0.0], false).unwrap(),
-                    frame.point([side, side], false).unwrap(),
+                    frame.point_to_px([0.0, 0.0], false).unwrap(),
+                    frame.point_to_px([side, side], false).unwrap(),
                 ];
                 assert!(((b[0] - a[0]) / (a[1] - b[1]) - 1.0).abs() < 1e-9);
                 assert!(plot.contains(a) && plot.contains(b));
@@ -285,7 +285,7 @@ mod tests {
                 bounds(std::slice::from_ref(&drawing)),
                 Rect::sized(0.0, 0.0, 500.0, 300.0),
             );
-            assert!(frame.x.low < frame.x.high && frame.y.low < frame.y.high);
+            assert!(frame.x.min < frame.x.max && frame.y.min < frame.y.max);
             assert!(height(&[drawing], 900.0) > 100.0);
         }
     }

@@ -1,17 +1,12 @@
 //! What can go wrong while a report is made.
 
+use dwell_findings::Table;
 use std::path::PathBuf;
 
 /// Why a figure, a table or a file could not be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ReportError {
-    /// The embedded fonts could not be read.
-    #[error("the embedded font `{face}` cannot be read")]
-    Font {
-        /// Name of the face.
-        face: &'static str,
-    },
     /// The drawing backend refused an element.
     #[error("figure `{figure}` cannot be drawn: {reason}")]
     Draw {
@@ -42,7 +37,7 @@ pub enum ReportError {
     #[error(
         "animation `{animation}` cannot have {frames} frames of {width} by {height} pixels: draw fewer or smaller ones"
     )]
-    Film {
+    AnimationSize {
         /// File stem of the animation.
         animation: String,
         /// Number of frames.
@@ -87,4 +82,17 @@ pub enum ReportError {
         /// What the operating system said.
         source: std::io::Error,
     },
+}
+
+/// Whether every row is as long as the header.
+pub(crate) fn check_rows(table: &Table) -> Result<(), ReportError> {
+    let expected = table.columns.len();
+    let wrong = table.rows.iter().position(|row| row.len() != expected);
+    wrong.map_or(Ok(()), |row| {
+        Err(ReportError::Row {
+            row,
+            found: table.rows[row].len(),
+            expected,
+        })
+    })
 }

@@ -1,5 +1,6 @@
 //! A figure as plain data: panels on one page, each a chart, a drawing or a matrix of cells.
 
+use crate::axis::{Axis, Paint};
 use crate::grid::Grid;
 use crate::shape::Drawing;
 
@@ -79,67 +80,6 @@ pub struct Chart {
     pub marks: Vec<Mark>,
 }
 
-/// How an axis is labelled and scaled.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Axis {
-    /// What is measured, such as `crank angle φ`.
-    pub label: String,
-    /// Its unit, such as `kg m²`; empty if there is none.
-    pub unit: String,
-    /// How values become places.
-    pub scale: Scale,
-    /// Smallest and largest value shown; found from the data if absent (or unusable on this scale).
-    pub range: Option<[f64; 2]>,
-}
-
-impl Axis {
-    /// A linear axis.
-    pub fn new(label: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            label: label.into(),
-            unit: unit.into(),
-            scale: Scale::Linear,
-            range: None,
-        }
-    }
-
-    /// A logarithmic axis.
-    pub fn log(label: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            scale: Scale::Log,
-            ..Self::new(label, unit)
-        }
-    }
-
-    /// An axis of angles; the data are in degrees.
-    pub fn degrees(label: impl Into<String>) -> Self {
-        Self {
-            scale: Scale::Degrees,
-            ..Self::new(label, "°")
-        }
-    }
-
-    /// The same axis from `low` to `high`.
-    pub fn within(self, low: f64, high: f64) -> Self {
-        Self {
-            range: Some([low, high]),
-            ..self
-        }
-    }
-}
-
-/// How values become places on an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scale {
-    /// In proportion.
-    #[default]
-    Linear,
-    /// By the logarithm; values must be positive.
-    Log,
-    /// In proportion, with ticks at 30, 45, 90, 180 … degrees.
-    Degrees,
-}
-
 /// One curve.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Series {
@@ -151,7 +91,7 @@ pub struct Series {
     pub stroke: Stroke,
     /// Whether the right axis holds.
     pub right_axis: bool,
-    /// Colour; if absent, the palette by the place of the series, then ink and grey.
+    /// Colour; if absent, the palette by the index of the series, then ink and grey.
     pub color: Option<Paint>,
 }
 
@@ -203,20 +143,9 @@ pub enum Stroke {
     Crosses,
     /// A line with markers.
     LineAndPoints,
-    /// A line, with the area between it and zero lightly filled; zero is always shown. Two points of one place are a
+    /// A line, with the area between it and zero lightly filled; zero is always shown. Two points of one abscissa are a
     /// jump. Between logarithmic heights, which have no zero, a line alone.
     Filled,
-}
-
-/// A colour by its role.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Paint {
-    /// Colour of the palette, counted from 0 and taken round: blue, vermilion, green, purple, orange, sky blue.
-    Palette(usize),
-    /// Near black; its markers are crosses, which stand apart from all others.
-    Ink,
-    /// Middle grey.
-    Grey,
 }
 
 /// A reference in a chart; it is never a datum.
@@ -224,14 +153,14 @@ pub enum Paint {
 pub enum Mark {
     /// A vertical line.
     Vertical {
-        /// Its place on the horizontal axis.
+        /// Its position on the horizontal axis.
         at: f64,
         /// Words beside it, or nothing.
         label: String,
     },
     /// A horizontal line.
     Horizontal {
-        /// Its place on the left axis.
+        /// Its position on the left axis.
         at: f64,
         /// Words beside it, or nothing.
         label: String,
@@ -254,7 +183,7 @@ pub enum Mark {
         /// Words beside it, or nothing.
         label: String,
     },
-    /// A ringed point, such as the worst place or a published value, on the left axis.
+    /// A ringed point, such as the largest difference or a published value, on the left axis.
     Point {
         /// The point.
         at: [f64; 2],
@@ -262,7 +191,7 @@ pub enum Mark {
         label: String,
     },
     /// Words beside a point that a series draws, on the left axis.
-    Words {
+    Text {
         /// The point.
         at: [f64; 2],
         /// The words.

@@ -1,6 +1,8 @@
 //! Files of a report: gathered in memory, written at the end, each whole or not at all.
 
 use crate::error::ReportError;
+use crate::table::TableExport as _;
+use crate::table::{Table, TableFormat};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Write as _};
@@ -21,6 +23,27 @@ impl Files {
     /// Adds a file; one of the same path is replaced.
     pub fn add(&mut self, path: impl Into<PathBuf>, bytes: impl Into<Vec<u8>>) {
         self.files.insert(path.into(), bytes.into());
+    }
+
+    /// Adds a table in some formats: `stem.csv`, `stem.npz`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Table::csv`] and [`Table::npz`].
+    pub fn add_table(
+        &mut self,
+        stem: &str,
+        table: &Table,
+        formats: &[TableFormat],
+    ) -> Result<(), ReportError> {
+        for format in formats {
+            let bytes = match format {
+                TableFormat::Csv => table.csv()?.into_bytes(),
+                TableFormat::Npz => table.npz()?,
+            };
+            self.add(format!("{stem}.{}", format.extension()), bytes);
+        }
+        Ok(())
     }
 
     /// Takes over the files of another set, under a folder of their own (or none, if it is empty).
@@ -74,7 +97,7 @@ struct Staged {
     folders: Vec<PathBuf>,
 }
 
-fn failed(path: &Path) -> impl FnOnce(io::Error) -> ReportError {
+fn file_error(path: &Path) -> impl FnOnce(io::Error) -> ReportError {
     let path = path.to_owned();
     move |source| ReportError::File { path, source }
 }
@@ -83,28 +106,28 @@ impl Staged {
     fn stage(&mut self, target: &Path, bytes: &[u8]) -> Result<(), ReportError> {
         // Renaming onto a folder would fail too, but only after others have been renamed.
         if target.is_dir() {
-            return Err(failed(target)(io::ErrorKind::IsADirectory.into()));
+            return Err(file_error(target)(io::ErrorKind::IsADirectory.into()));
         }
         let (Some(parent), Some(name)) = (target.parent(), target.file_name()) else {
-            return Err(failed(target)(io::ErrorKind::InvalidFilename.into()));
+            return Err(file_error(target)(io::ErrorKind::InvalidFilename.into()));
         };
-        self.make(parent)?;
+        self.create_folder(parent)?;
         let mut hidden = std::ffi::OsString::from(".");
         hidden.push(name);
         hidden.push(format!(".{}-{}.tmp", std::process::id(), self.files.len()));
         let temporary = target.with_file_name(hidden);
-        // Noted before it exists, so that a write that fails half way is cleared too.
+        // Recorded before it exists, so that a file of which only a part could be written is removed too.
         self.files.push((temporary.clone(), target.to_owned()));
         let write = || {
             let mut file = fs::File::create(&temporary)?;
             file.write_all(bytes)?;
             file.flush()
         };
-        write().map_err(failed(target))
+        write().map_err(file_error(target))
     }
 
     /// Makes a folder and those above it, remembering which are new.
-    fn make(&mut self, folder: &Path) -> Result<(), ReportError> {
+    fn create_folder(&mut self, folder: &Path) -> Result<(), ReportError> {
         let missing: Vec<&Path> = folder
             .ancestors()
             .take_while(|f| !f.as_os_str().is_empty() && !f.exists())
@@ -114,7 +137,7 @@ impl Staged {
                 Ok(()) => self.folders.push(folder.to_owned()),
                 // Another writer was faster.
                 Err(e) if e.kind() == io::ErrorKind::AlreadyExists && folder.is_dir() => {}
-                Err(e) => return Err(failed(folder)(e)),
+                Err(e) => return Err(file_error(folder)(e)),
             }
         }
         Ok(())
@@ -123,7 +146,7 @@ impl Staged {
     fn commit(mut self) -> Result<Vec<PathBuf>, ReportError> {
         let mut written = Vec::with_capacity(self.files.len());
         for (temporary, target) in &self.files {
-            fs::rename(temporary, target).map_err(failed(target))?;
+            fs::rename(temporary, target).map_err(file_error(target))?;
             written.push(target.clone());
         }
         self.files.clear();
@@ -150,9 +173,9 @@ mod tests {
     use std::sync::atomic::{AtomicU32, Ordering};
 
     /// A folder of its own for each test, removed at the end.
-    struct Scratch(PathBuf);
+    struct TestFolder(PathBuf);
 
-    impl Scratch {
+    impl TestFolder {
         fn new() -> Self {
             static COUNT: AtomicU32 = AtomicU32::new(0);
             let number = COUNT.fetch_add(1, Ordering::Relaxed);
@@ -180,7 +203,7 @@ mod tests {
         }
     }
 
-    impl Drop for Scratch {
+    impl Drop for TestFolder {
         fn drop(&mut self) {
             let _ = fs::remove_dir_all(&self.0);
         }
@@ -188,65 +211,65 @@ mod tests {
 
     #[test]
     fn files_arrive_whole_and_alone() {
-        let scratch = Scratch::new();
-        fs::write(scratch.0.join("a.txt"), "old").unwrap();
+        let folder = TestFolder::new();
+        fs::write(folder.0.join("a.txt"), "old").unwrap();
         let mut files = Files::new();
         files.add("a.txt", "new");
         let mut others = Files::new();
         others.add("m.csv", vec![0_u8; 100_000]);
         files.extend("tables/deep", others);
-        assert_eq!(files.write(&scratch.0).unwrap().len(), 2);
-        assert_eq!(fs::read(scratch.0.join("a.txt")).unwrap(), b"new");
+        assert_eq!(files.write(&folder.0).unwrap().len(), 2);
+        assert_eq!(fs::read(folder.0.join("a.txt")).unwrap(), b"new");
         assert_eq!(
-            fs::read(scratch.0.join("tables/deep/m.csv")).unwrap().len(),
+            fs::read(folder.0.join("tables/deep/m.csv")).unwrap().len(),
             100_000
         );
         let expected = ["a.txt", "tables", "tables/deep", "tables/deep/m.csv"];
-        assert_eq!(scratch.contents(), expected.map(PathBuf::from));
+        assert_eq!(folder.contents(), expected.map(PathBuf::from));
     }
 
     #[test]
     fn a_target_that_is_a_folder_leaves_everything_as_it_was() {
-        let scratch = Scratch::new();
-        fs::write(scratch.0.join("a.txt"), "old").unwrap();
-        fs::create_dir(scratch.0.join("z.png")).unwrap();
-        let before = scratch.contents();
+        let folder = TestFolder::new();
+        fs::write(folder.0.join("a.txt"), "old").unwrap();
+        fs::create_dir(folder.0.join("z.png")).unwrap();
+        let before = folder.contents();
         let mut files = Files::new();
         files.add("a.txt", "new");
         files.add("fresh/b.txt", "new");
         files.add("z.png", "new");
-        let error = files.write(&scratch.0).unwrap_err();
+        let error = files.write(&folder.0).unwrap_err();
         assert!(matches!(&error, ReportError::File { path, .. } if path.ends_with("z.png")));
         assert!(
             error.to_string().contains("z.png") && error.to_string().contains("directory"),
             "{error}"
         );
-        assert_eq!(scratch.contents(), before);
-        assert_eq!(fs::read(scratch.0.join("a.txt")).unwrap(), b"old");
+        assert_eq!(folder.contents(), before);
+        assert_eq!(fs::read(folder.0.join("a.txt")).unwrap(), b"old");
     }
 
     #[test]
     fn a_file_where_a_folder_is_needed_is_named() {
-        let scratch = Scratch::new();
-        fs::write(scratch.0.join("tables"), "in the way").unwrap();
+        let folder = TestFolder::new();
+        fs::write(folder.0.join("tables"), "in the way").unwrap();
         let mut files = Files::new();
         files.add("a.txt", "new");
         files.add("tables/m.csv", "new");
-        let error = files.write(&scratch.0).unwrap_err();
+        let error = files.write(&folder.0).unwrap_err();
         assert!(
-            matches!(&error, ReportError::File { path, .. } if path.starts_with(scratch.0.join("tables")))
+            matches!(&error, ReportError::File { path, .. } if path.starts_with(folder.0.join("tables")))
         );
-        assert_eq!(scratch.contents(), [PathBuf::from("tables")]);
+        assert_eq!(folder.contents(), [PathBuf::from("tables")]);
     }
 
     #[test]
     fn a_rename_that_fails_late_still_clears_up() {
-        let scratch = Scratch::new();
-        let target = scratch.0.join("late.txt");
+        let folder = TestFolder::new();
+        let target = folder.0.join("late.txt");
         let mut staged = Staged::default();
         staged.stage(&target, b"new").unwrap();
         fs::create_dir(&target).unwrap();
         assert!(staged.commit().is_err());
-        assert_eq!(scratch.contents(), [PathBuf::from("late.txt")]);
+        assert_eq!(folder.contents(), [PathBuf::from("late.txt")]);
     }
 }

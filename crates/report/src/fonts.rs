@@ -1,27 +1,18 @@
-//! The embedded fonts: one pair of files for measuring (plotters) and for drawing (resvg).
+//! The embedded fonts, for measuring (ttf-parser) and for drawing (resvg).
 
-use crate::error::ReportError;
-use plotters::style::{FontDesc, FontFamily, FontStyle, register_font};
 use resvg::usvg::{Options, fontdb::Database};
 use std::sync::{Arc, LazyLock};
+use ttf_parser::{Face, GlyphId};
 
-/// The family both sides know the fonts by.
+/// The family in the SVG and in the database.
 pub(crate) const FAMILY: &str = "DejaVu Sans";
 
 static REGULAR: &[u8] = include_bytes!("../assets/DejaVuSans.ttf");
 static BOLD: &[u8] = include_bytes!("../assets/DejaVuSans-Bold.ttf");
 
-/// plotters writes `font-size = size / 1.24` into SVG …
-pub(crate) const SIZE_PER_EM: f64 = 1.24;
-/// … but measures advances at `size / (ascent − descent)`, which is 2384/2048 of an em in DejaVu Sans.
-const HEIGHT_PER_EM: f64 = 2384.0 / 2048.0;
-/// Text is measured large because plotters rounds the width to whole pixels.
-const MEASURING: f64 = 1000.0;
-
-static REGISTERED: LazyLock<bool> = LazyLock::new(|| {
-    register_font(FAMILY, FontStyle::Normal, REGULAR).is_ok()
-        && register_font(FAMILY, FontStyle::Bold, BOLD).is_ok()
-});
+/// Regular and bold, for measuring.
+static FACES: LazyLock<[Option<Face<'static>>; 2]> =
+    LazyLock::new(|| [REGULAR, BOLD].map(|font| Face::parse(font, 0).ok()));
 
 static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
     let mut database = Database::new();
@@ -29,15 +20,6 @@ static DATABASE: LazyLock<Arc<Database>> = LazyLock::new(|| {
     database.load_font_data(BOLD.to_vec());
     Arc::new(database)
 });
-
-/// Makes the fonts known to plotters, once.
-pub(crate) fn ready() -> Result<(), ReportError> {
-    if *REGISTERED {
-        Ok(())
-    } else {
-        Err(ReportError::Font { face: FAMILY })
-    }
-}
 
 /// What resvg needs to read a page.
 pub(crate) fn options() -> Options<'static> {
@@ -48,23 +30,45 @@ pub(crate) fn options() -> Options<'static> {
     }
 }
 
-/// Regular or bold face at a size in pixels per em.
-pub(crate) fn font(size: f64, bold: bool) -> FontDesc<'static> {
-    let style = if bold {
-        FontStyle::Bold
-    } else {
-        FontStyle::Normal
+/// Width of the text in pixels, at a size in pixels per em: the advances of its glyphs and the kerning between them.
+pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
+    // The embedded fonts can be read: a test measures with both.
+    let Some(face) = &FACES[usize::from(bold)] else {
+        return 0.0;
     };
-    FontDesc::new(FontFamily::Name(FAMILY), size, style)
+    let mut units = 0_i64;
+    let mut previous = None;
+    for c in text.chars() {
+        let glyph = face.glyph_index(c).unwrap_or_default();
+        units += i64::from(face.glyph_hor_advance(glyph).unwrap_or_default());
+        units += previous.map_or(0, |previous| i64::from(kerning(face, previous, glyph)));
+        previous = Some(glyph);
+    }
+    units as f64 * size / f64::from(face.units_per_em())
 }
 
-/// Width of the text in pixels, at a size in pixels per em.
-pub(crate) fn width(text: &str, size: f64, bold: bool) -> f64 {
-    // The error is a font that is not registered: the caller has been told by `ready`.
-    let (wide, _) = font(MEASURING * HEIGHT_PER_EM, bold)
-        .box_size(text)
-        .unwrap_or_default();
-    f64::from(wide) * size / MEASURING
+/// Width of the widest text in pixels; 0 if there is none.
+pub(crate) fn widest(
+    texts: impl IntoIterator<Item = impl AsRef<str>>,
+    size: f64,
+    bold: bool,
+) -> f64 {
+    let widths = texts
+        .into_iter()
+        .map(|text| width(text.as_ref(), size, bold));
+    widths.fold(0.0, f64::max)
+}
+
+/// Font units by which two neighbouring glyphs move apart.
+fn kerning(face: &Face<'_>, left: GlyphId, right: GlyphId) -> i16 {
+    let tables = face
+        .tables()
+        .kern
+        .into_iter()
+        .flat_map(|kern| kern.subtables);
+    let mut horizontal = tables.filter(|table| table.horizontal && !table.variable);
+    let found = horizontal.find_map(|table| table.glyphs_kerning(left, right));
+    found.unwrap_or_default()
 }
 
 /// The text broken at plain blanks into lines no wider than `room`; `\n` always breaks, a no-break space never.
@@ -92,7 +96,7 @@ pub(crate) fn wrapped(text: &str, size: f64, bold: bool, room: f64) -> Vec<Strin
 }
 
 /// The same, but a word that is too wide is broken too: after a mark such as a hyphen if there is one, else anywhere.
-pub(crate) fn broken(text: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
+pub(crate) fn wrapped_anywhere(text: &str, size: f64, bold: bool, room: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for line in wrapped(text, size, bold, room) {
         let mut rest = line.as_str();
@@ -100,10 +104,10 @@ pub(crate) fn broken(text: &str, size: f64, bold: bool, room: f64) -> Vec<String
             let ends = rest.char_indices().map(|(at, c)| (at + c.len_utf8(), c));
             let fits = |end: &(usize, char)| width(&rest[..end.0], size, bold) <= room;
             let fitting: Vec<(usize, char)> = ends.take_while(fits).collect();
-            let marked = fitting.iter().rfind(|(_, c)| "-_/.,:=·".contains(*c));
+            let after_mark = fitting.iter().rfind(|(_, c)| "-_/.,:=·".contains(*c));
             // A room too narrow for a letter still gets one.
             let first = rest.chars().next().map_or(rest.len(), char::len_utf8);
-            let end = marked.or(fitting.last()).map_or(first, |(end, _)| *end);
+            let end = after_mark.or(fitting.last()).map_or(first, |(end, _)| *end);
             if end >= rest.len() {
                 break;
             }
@@ -122,7 +126,6 @@ mod tests {
 
     #[test]
     fn text_measures_as_it_is_drawn() {
-        ready().unwrap();
         for (text, bold) in [
             ("crank angle φ\u{2002}(°)", false),
             ("10⁻¹² kg·m²", false),
@@ -145,7 +148,6 @@ mod tests {
 
     #[test]
     fn wrapped_lines_fit_and_lose_no_word() {
-        ready().unwrap();
         let text = "One line of words that is certainly longer than the room it has been given\nand a second paragraph";
         let lines = wrapped(text, 27.0, false, 400.0);
         assert!(lines.len() > 2);
@@ -155,12 +157,11 @@ mod tests {
 
     #[test]
     fn long_words_are_broken_after_a_mark_and_lose_no_letter() {
-        ready().unwrap();
         let text = "reaction-of-the-second-joint φφφφφφφφφφφφφφφφφφφφφφ";
-        let lines = broken(text, 27.0, false, 200.0);
+        let lines = wrapped_anywhere(text, 27.0, false, 200.0);
         assert!(lines.iter().all(|line| width(line, 27.0, false) <= 200.0));
         assert!(lines[0].ends_with('-'), "{lines:?}");
         assert_eq!(lines.concat(), text.replace(' ', ""));
-        assert_eq!(broken("abc", 27.0, false, 1.0), ["a", "b", "c"]);
+        assert_eq!(wrapped_anywhere("abc", 27.0, false, 1.0), ["a", "b", "c"]);
     }
 }

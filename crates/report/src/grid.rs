@@ -1,11 +1,11 @@
 //! A matrix of judged or measured cells as plain data.
 
-use crate::figure::Axis;
+use crate::axis::Axis;
 
 /// Rows and columns of cells, coloured by their values: which fault each check sees, how many digits each case keeps.
 ///
-/// The panel is as wide as its place on the page and grows with its rows: about 40 pixels each. Give it a page of one column, and
-/// no more than about 24 columns. The colours go from nearly white to dark blue, so that they can be told apart in
+/// The panel is as wide as its cell on the page and grows with its rows: about 40 pixels each. Give it a page of one column, and
+/// no more than about 24 columns. The colours go from nearly white to dark blue, so that they can be distinguished in
 /// grey and by colour-blind readers; a bar above the cells states them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Grid {
@@ -42,7 +42,7 @@ pub struct Row {
 /// One cell of a [`Grid`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cell {
-    /// What decides about the colour, in the unit of [`Grid::values`]; white if there is none, or if the scale has no place for
+    /// The value that the colour shows, in the unit of [`Grid::values`]; white if there is none, or if the scale cannot show
     /// it.
     pub value: Option<f64>,
     /// A few letters drawn in the cell, or nothing.
@@ -66,12 +66,12 @@ impl Cell {
     pub fn new(value: f64, text: impl Into<String>) -> Self {
         Self {
             value: Some(value),
-            ..Self::words(text)
+            ..Self::text_only(text)
         }
     }
 
     /// A white cell with a few letters.
-    pub fn words(text: impl Into<String>) -> Self {
+    pub fn text_only(text: impl Into<String>) -> Self {
         Self {
             text: text.into(),
             ..Self::default()

@@ -1,90 +1,82 @@
 //! The names of a grid's columns, across or turned.
 
-use crate::canvas::{Align, Canvas, Drawn, Type};
-use crate::fonts::{broken, width};
+use crate::canvas::{Align, Canvas, TextStyle};
+use crate::fonts::{widest, width, wrapped_anywhere};
+use crate::number::one_line;
 use crate::theme::INK;
 
 /// Type of names and cells.
-pub(crate) const SIZE: f64 = 25.0;
+pub(crate) const TEXT_SIZE: f64 = 25.0;
 /// Distance of baselines, in font sizes.
 pub(crate) const LEADING: f64 = 1.2;
 /// Between names and cells, and between names.
 const PAD: f64 = 7.0;
 /// Names of columns that need more lines across are turned.
-const ACROSS: usize = 3;
+const MAX_LINES: usize = 3;
 /// Least height of turned names that are broken into lines.
-const TURNED: f64 = 160.0;
+const MIN_ROTATED_HEIGHT: f64 = 160.0;
 
 /// Names of columns, broken into lines.
 pub(crate) struct Header {
     pub(crate) names: Vec<Vec<String>>,
-    turned: bool,
+    rotated: bool,
     pub(crate) height: f64,
 }
 
 /// Lines of text below `top`.
-pub(crate) fn stacked(
+pub(crate) fn draw_lines(
     canvas: &mut Canvas<'_>,
     lines: &[String],
     [x, top]: [f64; 2],
-    look: Type,
-) -> Drawn {
+    style: TextStyle,
+) {
     for (i, line) in lines.iter().enumerate() {
-        let middle = top + (i as f64 + 0.5) * LEADING * look.size;
-        canvas.text_beside(line, [x, middle], look)?;
+        let middle = top + (i as f64 + 0.5) * LEADING * style.size;
+        canvas.text_centred(line, [x, middle], style);
     }
-    Ok(())
-}
-
-/// Turned names have no room for lines of their own choice.
-fn one_line(name: &str) -> String {
-    name.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 impl Header {
     pub(crate) fn new(columns: &[String], column: f64) -> Self {
+        // Names that read upwards have no room for line breaks.
         let columns: Vec<String> = columns.iter().map(|name| one_line(name)).collect();
         let room = column - PAD;
-        let across: Vec<Vec<String>> = columns
+        let horizontal: Vec<Vec<String>> = columns
             .iter()
-            .map(|name| broken(name, SIZE, false, room))
+            .map(|name| wrapped_anywhere(name, TEXT_SIZE, false, room))
             .collect();
-        let kept = columns.iter().zip(&across).all(|(name, lines)| {
-            lines.len() <= ACROSS
+        let fits = columns.iter().zip(&horizontal).all(|(name, lines)| {
+            lines.len() <= MAX_LINES
                 && name
                     .split_ascii_whitespace()
-                    .all(|word| width(word, SIZE, false) <= room)
+                    .all(|word| width(word, TEXT_SIZE, false) <= room)
         });
-        if kept {
-            let most = across.iter().map(Vec::len).max().unwrap_or(0);
+        if fits {
+            let max_lines = horizontal.iter().map(Vec::len).max().unwrap_or(0);
             return Self {
-                height: most as f64 * LEADING * SIZE + 2.0 * PAD,
-                names: across,
-                turned: false,
+                height: max_lines as f64 * LEADING * TEXT_SIZE + 2.0 * PAD,
+                names: horizontal,
+                rotated: false,
             };
         }
         // As high as it takes for the lines of each name to lie side by side over its column.
-        let most = ((column / (LEADING * SIZE)) as usize).max(1);
-        let mut room = TURNED;
+        let max_lines = ((column / (LEADING * TEXT_SIZE)) as usize).max(1);
+        let mut room = MIN_ROTATED_HEIGHT;
         let names = loop {
             let names: Vec<Vec<String>> = columns
                 .iter()
-                .map(|name| broken(name, SIZE, false, room))
+                .map(|name| wrapped_anywhere(name, TEXT_SIZE, false, room))
                 .collect();
-            if names.iter().all(|lines| lines.len() <= most) {
+            if names.iter().all(|lines| lines.len() <= max_lines) {
                 break names;
             }
             room *= 1.1;
         };
-        let longest = names
-            .iter()
-            .flatten()
-            .map(|line| width(line, SIZE, false))
-            .fold(0.0, f64::max);
+        let max_width = widest(names.iter().flatten(), TEXT_SIZE, false);
         Self {
             names,
-            turned: true,
-            height: longest + 2.0 * PAD,
+            rotated: true,
+            height: max_width + 2.0 * PAD,
         }
     }
 
@@ -95,22 +87,22 @@ impl Header {
         [left, top]: [f64; 2],
         column: f64,
         below: bool,
-    ) -> Drawn {
+    ) {
         for (i, lines) in self.names.iter().enumerate() {
             let middle = left + (i as f64 + 0.5) * column;
-            let high = LEADING * SIZE * lines.len() as f64;
-            if !self.turned {
+            let high = LEADING * TEXT_SIZE * lines.len() as f64;
+            if !self.rotated {
                 let y = if below {
                     top + PAD
                 } else {
                     top + self.height - PAD - high
                 };
-                stacked(
+                draw_lines(
                     canvas,
                     lines,
                     [middle, y],
-                    Type::new(SIZE, INK, Align::Middle),
-                )?;
+                    TextStyle::new(TEXT_SIZE, INK, Align::Middle),
+                );
                 continue;
             }
             let (y, align) = if below {
@@ -119,28 +111,26 @@ impl Header {
                 (top + self.height - PAD, Align::Start)
             };
             for (k, line) in lines.iter().enumerate() {
-                let baseline = middle - 0.5 * high + ((k as f64 + 0.5) * LEADING + 0.365) * SIZE;
-                canvas.text_upwards(line, [baseline, y], Type::new(SIZE, INK, align))?;
+                let baseline =
+                    middle - 0.5 * high + ((k as f64 + 0.5) * LEADING + 0.365) * TEXT_SIZE;
+                canvas.text_upwards(line, [baseline, y], TextStyle::new(TEXT_SIZE, INK, align));
             }
         }
-        Ok(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fonts;
 
     #[test]
     fn names_that_do_not_fit_across_are_turned_and_lie_side_by_side() {
-        fonts::ready().unwrap();
         let short = Header::new(&["tape".to_owned(), "dense rows".to_owned()], 500.0);
-        assert!(!short.turned);
+        assert!(!short.rotated);
         let long = Header::new(&["a quadrature of the energy over a turn".to_owned()], 70.0);
-        assert!(long.turned);
+        assert!(long.rotated);
         for lines in &long.names {
-            assert!(lines.len() as f64 * LEADING * SIZE <= 70.0);
+            assert!(lines.len() as f64 * LEADING * TEXT_SIZE <= 70.0);
         }
     }
 }

@@ -1,14 +1,14 @@
-//! The legend: its entries, its shape, and a place where it hides nothing.
+//! The legend: its entries, its shape, and an area where it hides nothing.
 
-use crate::canvas::{Align, Canvas, Drawn, Line, Type};
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::fonts;
-use crate::marks::{Marker, marker};
+use crate::marks::{Marker, draw_marker};
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;
-use crate::theme::{EDGE, INK, Rgb, TICK, WHITE};
+use crate::theme::{EDGE, INK, Rgb, TICK_SIZE, WHITE};
 
 /// Length of a sample line.
-const SAMPLE: f64 = 46.0;
+const HANDLE_WIDTH: f64 = 46.0;
 /// Between sample and name.
 const GAP: f64 = 12.0;
 /// Between columns.
@@ -16,15 +16,15 @@ const COLUMN_GAP: f64 = 34.0;
 /// Between the edge and the entries.
 const PAD: f64 = 12.0;
 /// Height of an entry.
-pub(crate) const ROW: f64 = 37.0;
+pub(crate) const ROW_HEIGHT: f64 = 37.0;
 /// Distance kept from the data and from the frame.
-const CLEAR: f64 = 9.0;
+const CLEARANCE: f64 = 9.0;
 
 /// What stands before a name.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Sample {
+pub(crate) struct LegendHandle {
     /// The line, if there is one.
-    pub(crate) line: Option<Line>,
+    pub(crate) line: Option<LineStyle>,
     /// Shape and colour of the marker, if there is one.
     pub(crate) marker: Option<(Marker, Rgb)>,
     /// Colour of a filled patch behind the line, if there is one.
@@ -33,15 +33,15 @@ pub(crate) struct Sample {
 
 /// A line of the legend.
 #[derive(Debug, Clone)]
-pub(crate) struct Entry {
+pub(crate) struct LegendEntry {
     pub(crate) name: String,
-    pub(crate) sample: Sample,
+    pub(crate) handle: LegendHandle,
 }
 
 /// A legend set in a number of columns.
 #[derive(Debug, Clone)]
 pub(crate) struct Legend {
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
     widths: Vec<f64>,
     rows: usize,
     size: f64,
@@ -49,13 +49,13 @@ pub(crate) struct Legend {
 
 impl Legend {
     /// The entries in so many columns, in smaller type if it would be wider than `room`.
-    pub(crate) fn new(entries: &[Entry], columns: usize, room: f64) -> Self {
+    pub(crate) fn new(entries: &[LegendEntry], columns: usize, room: f64) -> Self {
         let rows = entries.len().div_ceil(columns.max(1)).max(1);
         let mut legend = Self {
             entries: entries.to_vec(),
             widths: Vec::new(),
             rows,
-            size: TICK,
+            size: TICK_SIZE,
         };
         legend.measure();
         let fixed = legend.width() - legend.widths.iter().sum::<f64>();
@@ -68,82 +68,113 @@ impl Legend {
     }
 
     fn measure(&mut self) {
-        let widest = |c: &[Entry]| {
-            c.iter()
-                .map(|e| fonts::width(&e.name, self.size, false))
-                .fold(0.0, f64::max)
-        };
+        let widest = |c: &[LegendEntry]| fonts::widest(c.iter().map(|e| &e.name), self.size, false);
         self.widths = self.entries.chunks(self.rows).map(widest).collect();
     }
 
     pub(crate) fn width(&self) -> f64 {
         let columns = self.widths.len() as f64;
         2.0 * PAD
-            + self.widths.iter().map(|w| w + SAMPLE + GAP).sum::<f64>()
+            + self
+                .widths
+                .iter()
+                .map(|w| w + HANDLE_WIDTH + GAP)
+                .sum::<f64>()
             + (columns - 1.0).max(0.0) * COLUMN_GAP
     }
 
     pub(crate) fn height(&self) -> f64 {
-        PAD + ROW * self.rows as f64
+        PAD + ROW_HEIGHT * self.rows as f64
     }
 
-    /// Draws it with its upper left corner at the place.
-    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, place: &Rect, boxed: bool) -> Drawn {
+    /// Draws it in an area of its size.
+    fn draw(&self, canvas: &mut Canvas<'_>, area: &Rect, boxed: bool) {
         if boxed {
-            canvas.rect(place, WHITE)?;
-            canvas.frame(place, Line::solid(EDGE, 1.5))?;
+            canvas.rect(area, WHITE);
+            canvas.rect_outline(area, LineStyle::solid(EDGE, 1.5));
         }
-        let mut x = place.x0 + PAD;
+        let mut x = area.x0 + PAD;
         for (column, width) in self.entries.chunks(self.rows).zip(&self.widths) {
-            let mut y = place.y0 + 0.5 * (PAD + ROW);
+            let mut y = area.y0 + 0.5 * (PAD + ROW_HEIGHT);
             for entry in column {
-                let Sample {
+                let LegendHandle {
                     line,
                     marker: shape,
                     patch,
-                } = entry.sample;
+                } = entry.handle;
                 if let Some(color) = patch {
-                    canvas.rect(&Rect::sized(x, y - 9.0, SAMPLE, 18.0), color)?;
+                    canvas.rect(&Rect::sized(x, y - 9.0, HANDLE_WIDTH, 18.0), color);
                 }
                 if let Some(line) = line {
-                    canvas.line(&[[x, y], [x + SAMPLE, y]], line)?;
+                    canvas.line(&[[x, y], [x + HANDLE_WIDTH, y]], line);
                 }
                 if let Some((shape, color)) = shape {
-                    marker(canvas, shape, [x + 0.5 * SAMPLE, y], color)?;
+                    draw_marker(canvas, shape, [x + 0.5 * HANDLE_WIDTH, y], color);
                 }
-                canvas.text_beside(
+                canvas.text_centred(
                     &entry.name,
-                    [x + SAMPLE + GAP, y],
-                    Type::new(self.size, INK, Align::Start),
-                )?;
-                y += ROW;
+                    [x + HANDLE_WIDTH + GAP, y],
+                    TextStyle::new(self.size, INK, Align::Start),
+                );
+                y += ROW_HEIGHT;
             }
-            x += SAMPLE + GAP + width + COLUMN_GAP;
+            x += HANDLE_WIDTH + GAP + width + COLUMN_GAP;
         }
-        Ok(())
     }
 }
 
-/// A free place for the legend in the plot, and the shape that fits it: the corners first, then the edges, then
-/// anywhere. None if every place would hide something.
-pub(crate) fn inside(entries: &[Entry], plot: &Rect, taken: &Occupancy) -> Option<(Legend, Rect)> {
-    let most = entries.len();
-    let mut shapes = vec![1, 2, most];
-    shapes.retain(|&columns| columns <= most);
-    shapes.dedup();
-    for columns in shapes {
+/// A legend and where it stands.
+pub(crate) struct PlacedLegend {
+    legend: Legend,
+    pub(crate) area: Rect,
+    /// Within the plot, in a box; else above it.
+    is_inside: bool,
+}
+
+impl PlacedLegend {
+    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
+        self.legend.draw(canvas, &self.area, self.is_inside);
+    }
+
+    /// Height that it takes from the plot.
+    pub(crate) fn height_above(&self) -> f64 {
+        if self.is_inside {
+            0.0
+        } else {
+            self.legend.height()
+        }
+    }
+}
+
+/// A free area for the legend in the plot, and the shape that fits it: the corners first, then the edges, then
+/// anywhere. None if every area would hide something.
+pub(crate) fn place_inside(
+    entries: &[LegendEntry],
+    plot: &Rect,
+    occupied: &Occupancy,
+) -> Option<PlacedLegend> {
+    let max_columns = entries.len();
+    let mut column_counts = vec![1, 2, max_columns];
+    column_counts.retain(|&columns| columns <= max_columns);
+    column_counts.dedup();
+    for columns in column_counts {
         let legend = Legend::new(entries, columns, f64::INFINITY);
-        if let Some(place) = free_place(legend.width(), legend.height(), plot, taken) {
-            return Some((legend, place));
+        if let Some(area) = free_area(legend.width(), legend.height(), plot, occupied) {
+            let is_inside = true;
+            return Some(PlacedLegend {
+                legend,
+                area,
+                is_inside,
+            });
         }
     }
     None
 }
 
-fn free_place(width: f64, height: f64, plot: &Rect, taken: &Occupancy) -> Option<Rect> {
+fn free_area(width: f64, height: f64, plot: &Rect, occupied: &Occupancy) -> Option<Rect> {
     let (rx, ry) = (
-        plot.width() - width - 2.0 * CLEAR,
-        plot.height() - height - 2.0 * CLEAR,
+        plot.width() - width - 2.0 * CLEARANCE,
+        plot.height() - height - 2.0 * CLEARANCE,
     );
     // Wider than this it would cut the plot in two even where it hides nothing.
     if rx < 0.25 * plot.width() || ry < 0.2 * plot.height() {
@@ -151,8 +182,8 @@ fn free_place(width: f64, height: f64, plot: &Rect, taken: &Occupancy) -> Option
     }
     let at = |u: f64, v: f64| {
         Rect::sized(
-            plot.x0 + CLEAR + u * rx,
-            plot.y0 + CLEAR + v * ry,
+            plot.x0 + CLEARANCE + u * rx,
+            plot.y0 + CLEARANCE + v * ry,
             width,
             height,
         )
@@ -161,29 +192,33 @@ fn free_place(width: f64, height: f64, plot: &Rect, taken: &Occupancy) -> Option
     let steps = || (0..=12).map(|i| f64::from(i) / 12.0);
     let edges = steps().flat_map(|t| [(t, 0.0), (1.0, t), (0.0, t), (t, 1.0)]);
     let middle = steps().flat_map(|u| steps().map(move |v| (u, v)));
-    let mut places = corners
+    let mut areas = corners
         .into_iter()
         .chain(edges)
         .chain(middle)
         .map(|(u, v)| at(u, v));
-    places.find(|place| taken.count(&place.grown(CLEAR)) == 0)
+    areas.find(|area| occupied.count(&area.grown(CLEARANCE)) == 0)
 }
 
-/// The legend above the plot, in rows as wide as the plot, which gives way to it.
-pub(crate) fn above(entries: &[Entry], plot: &mut Rect) -> (Legend, Rect) {
+/// The legend above the plot, in rows as wide as the plot, which becomes smaller.
+pub(crate) fn place_above(entries: &[LegendEntry], plot: &mut Rect) -> PlacedLegend {
     let room = plot.width() + PAD;
     let fits = |columns: &usize| Legend::new(entries, *columns, f64::INFINITY).width() <= room;
     let columns = (1..=entries.len()).rev().find(fits).unwrap_or(1);
     let legend = Legend::new(entries, columns, room);
     // Samples begin at the frame, as the title does.
-    let place = Rect::sized(
+    let area = Rect::sized(
         plot.x0 - PAD,
         plot.y0 - 6.0,
         legend.width(),
         legend.height(),
     );
     plot.y0 = (plot.y0 + legend.height()).min(plot.y1 - 60.0);
-    (legend, place)
+    PlacedLegend {
+        legend,
+        area,
+        is_inside: false,
+    }
 }
 
 #[cfg(test)]
@@ -197,56 +232,53 @@ mod tests {
         y1: 550.0,
     };
 
-    fn entries(n: usize) -> Vec<Entry> {
-        let sample = Sample {
-            line: Some(Line::solid(INK, 4.0)),
+    fn entries(n: usize) -> Vec<LegendEntry> {
+        let handle = LegendHandle {
+            line: Some(LineStyle::solid(INK, 4.0)),
             marker: None,
             patch: None,
         };
         (0..n)
-            .map(|i| Entry {
+            .map(|i| LegendEntry {
                 name: format!("series {i}"),
-                sample,
+                handle,
             })
             .collect()
     }
 
     #[test]
     fn the_legend_goes_to_a_corner_without_data() {
-        fonts::ready().unwrap();
-        let mut taken = Occupancy::new(PLOT);
+        let mut occupied = Occupancy::new(PLOT);
         // Rising steeply, then along the top: only the lower right is free.
-        taken.line(&[[100.0, 550.0], [300.0, 60.0], [900.0, 60.0]]);
-        taken.line(&[[100.0, 60.0], [300.0, 60.0]]);
-        let (_, place) = inside(&entries(3), &PLOT, &taken).unwrap();
-        assert_eq!(taken.count(&place), 0);
+        occupied.line(&[[100.0, 550.0], [300.0, 60.0], [900.0, 60.0]]);
+        occupied.line(&[[100.0, 60.0], [300.0, 60.0]]);
+        let area = place_inside(&entries(3), &PLOT, &occupied).unwrap().area;
+        assert_eq!(occupied.count(&area), 0);
         assert!(
-            place.centre()[0] > 500.0 && place.centre()[1] > 300.0,
-            "{place:?}"
+            area.centre()[0] > 500.0 && area.centre()[1] > 300.0,
+            "{area:?}"
         );
-        assert!(PLOT.holds(&place));
+        assert!(PLOT.contains_rect(&area));
     }
 
     #[test]
     fn no_legend_is_put_on_data() {
-        fonts::ready().unwrap();
-        let mut taken = Occupancy::new(PLOT);
+        let mut occupied = Occupancy::new(PLOT);
         let wave = |i: i32| {
             [
                 100.0 + f64::from(i),
                 300.0 + 249.0 * (f64::from(i) * 0.05).sin(),
             ]
         };
-        taken.line(&(0..800).map(wave).collect::<Vec<_>>());
-        assert!(inside(&entries(4), &PLOT, &taken).is_none());
+        occupied.line(&(0..800).map(wave).collect::<Vec<_>>());
+        assert!(place_inside(&entries(4), &PLOT, &occupied).is_none());
     }
 
     #[test]
     fn above_the_plot_it_keeps_to_the_width_and_the_plot_gives_way() {
-        fonts::ready().unwrap();
         let mut plot = Rect { x1: 600.0, ..PLOT };
-        let (legend, place) = above(&entries(7), &mut plot);
-        assert!(place.x1 <= plot.x1 && place.y1 <= plot.y0);
+        let PlacedLegend { legend, area, .. } = place_above(&entries(7), &mut plot);
+        assert!(area.x1 <= plot.x1 && area.y1 <= plot.y0);
         assert!(legend.rows > 1 && legend.rows < 7);
     }
 }

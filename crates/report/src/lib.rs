@@ -1,42 +1,59 @@
-//! Findings, tables and figures as PNG, GIF, Markdown, JSON, CSV and NumPy archives.
+//! Figures, tables, documents and findings as plain data, each with a writer: PNG, GIF, Markdown, JSON, CSV and NumPy
+//! archives. The crate knows neither a solver nor a mechanism.
 //!
-//! Everything here is plain data with public fields and a writer for it:
+//! ```
+//! use dwell_report::{Column, Files, Table, TableExport as _, TableFormat};
+//!
+//! let table = Table {
+//!     columns: vec![Column::new("phi", "rad"), Column::new("m", "kg m2")],
+//!     rows: vec![vec![0.0, 0.5], vec![0.1, 0.75]],
+//! };
+//! assert_eq!(table.csv()?, "phi [rad],m [kg m2]\n0.0,0.5\n0.1,0.75\n");
+//! let mut files = Files::new();
+//! files.add_table("reduced", &table, &TableFormat::ALL)?;
+//! assert_eq!(files.len(), 2);
+//! # Ok::<(), dwell_report::ReportError>(())
+//! ```
 //!
 //! - [`Figure`] (charts, stacks of charts, drawings and grids on one page) → [`png()`]
 //! - [`Animation`] (drawings one after another) → [`Animation::gif`]
-//! - [`Table`] → [`Table::csv`] to read, [`Table::npz`] to compute with: both give back every bit
+//! - [`Table`] → [`TableExport::csv`] to read, [`TableExport::npz`] to compute with: both give back every bit
 //! - named matrices → [`npz()`]
 //! - [`Document`] (a study in words, tables, figures and findings) → [`Document::markdown`]
-//! - anything serialisable → [`json()`], which never turns a NaN into `null`
-//! - findings → [`stable`], the text that every machine reproduces
+//! - anything serialisable → [`json()`], with [`Number`] for numbers that may not be finite
+//! - findings → [`reproducible_text`], the text that every machine reproduces
 //! - [`Files`]: all of these by relative path, written at the end, each file whole or not at all
 //!
-//! Which picture for what:
+//! How to choose a picture:
 //!
-//! | to show | take |
+//! | to show | use |
 //! |---|---|
 //! | curves over an angle or a time | [`Chart`]; named curves get their names at their ends, or else a legend |
 //! | a position, its speed and its acceleration | [`Panel::Stack`]: charts over one horizontal axis |
-//! | axial force, shear and moment along a link | the same with [`Stroke::Filled`], two points of one place at a jump |
+//! | axial force, shear and moment along a link | the same with [`Stroke::Filled`], two points of one abscissa at a jump |
 //! | cost over size, error over step | [`Axis::log`] both ways, [`Stroke::LineAndPoints`] and a [`Mark::Slope`] |
 //! | a path, a mechanism in one or more positions | [`Drawing`], whose axes have equal scales |
 //! | a mechanism that moves | [`Animation`] |
 //! | many cases under many checks | [`Grid`], cells coloured by a value, with a few letters each |
 //!
 //! The example `gallery` draws one of each. Six colours, ink and grey tell eight curves apart, also for colour-blind
-//! readers; from the seventh on take [`Stroke::Dashed`] too.
+//! readers; from the seventh curve on use [`Stroke::Dashed`] too.
 //!
-//! The crate knows plotters and resvg, and neither a solver nor a mechanism. Of plotters it uses the SVG backend and
-//! the text measure; ticks, margins and the places of labels are decided here, from measured text and
-//! from where the data lie, because a picture that hides the datum it reports is no evidence.
+//! Pages are written as SVG, which resvg turns into pixels. Ticks, margins and the positions of labels are decided here, from
+//! measured text and from where the data lie, because a picture that hides the datum it reports is no evidence.
 
 mod animation;
 mod axes;
+mod axis;
+mod axis_range;
 mod canvas;
+mod cell_marks;
 mod chart;
 mod color_bar;
+mod colormap;
 mod curve;
 mod drawing;
+mod end_labels;
 mod error;
 mod extent;
 mod figure;
@@ -44,11 +61,10 @@ mod files;
 mod fonts;
 mod grid;
 mod header;
-mod heat;
+mod heat_map;
 mod json;
-mod labels;
-mod lattice;
 mod legend;
+mod linear_ticks;
 mod log_ticks;
 mod markdown;
 mod marks;
@@ -60,23 +76,24 @@ mod palette;
 mod png;
 mod raster;
 mod rect;
+mod series_style;
 mod shape;
-mod sketch;
-mod span;
+mod shape_drawing;
 mod stack;
 mod table;
 mod theme;
 mod ticks;
-mod words;
+mod wrapped_text;
 
 pub use animation::Animation;
+pub use axis::{Axis, Paint, Scale};
 pub use error::ReportError;
-pub use figure::{Axis, Chart, Figure, Mark, Paint, Panel, Scale, Series, Stroke};
+pub use figure::{Chart, Figure, Mark, Panel, Series, Stroke};
 pub use files::Files;
 pub use grid::{Cell, Grid, Group, Row};
-pub use json::json;
-pub use markdown::{Block, Document, stable};
+pub use json::{FindingRecord, Number, json};
+pub use markdown::{Block, Document, reproducible_text};
 pub use npz::{Array, npz};
 pub use png::png;
-pub use shape::{Drawing, Pen, Shape, Side};
-pub use table::{Column, Table};
+pub use shape::{Drawing, Pen, Shape, TextPlacement};
+pub use table::{Column, Table, TableExport, TableFormat};

@@ -1,25 +1,25 @@
 //! Ticks of a logarithmic axis.
 
+use crate::linear_ticks::{ROUNDING_TOLERANCE, Ticks, linear, multiples};
 use crate::number::{fixed, power_of_ten};
-use crate::ticks::{SLACK, Ticks, linear, multiples};
 
 /// Ticks at powers of ten, or within them if the axis is short.
-pub(crate) fn log(low: f64, high: f64, most: usize) -> Ticks {
+pub(crate) fn log(low: f64, high: f64, max_count: usize) -> Ticks {
     let (bottom, top) = (low.log10(), high.log10());
     let decades: Vec<i32> = multiples(bottom, top, 1.0).map(|e| e as i32).collect();
     if decades.len() < 3 {
-        return short_log(low, high, most);
+        return short_log(low, high, max_count);
     }
-    let fits = |step: &i32| decades.iter().filter(|e| *e % step == 0).count() <= most;
+    let fits = |step: &i32| decades.iter().filter(|e| *e % step == 0).count() <= max_count;
     let step = [1, 2, 3, 4, 5, 10, 20, 50, 100, 200]
         .into_iter()
         .find(fits)
         .unwrap_or(500);
     let chosen = || decades.iter().copied().filter(|e| e % step == 0);
     // A few small powers read better written out.
-    let plain = chosen().all(|e| (-2..=3).contains(&e));
+    let written_out = chosen().all(|e| (-2..=3).contains(&e));
     let label = |e: i32| {
-        if plain {
+        if written_out {
             decimal(1.0, e)
         } else {
             power_of_ten(e)
@@ -46,14 +46,15 @@ pub(crate) fn log(low: f64, high: f64, most: usize) -> Ticks {
 }
 
 /// Less than about two decades: multiples within a decade are labelled too.
-fn short_log(low: f64, high: f64, most: usize) -> Ticks {
+fn short_log(low: f64, high: f64, max_count: usize) -> Ticks {
     let from = low.log10().floor() as i32;
     let to = high.log10().floor() as i32;
     let all = |digits: &[i32]| -> Vec<(f64, i32)> {
         let pairs = (from..=to).flat_map(|e| digits.iter().map(move |&n| (f64::from(n), e)));
         pairs
             .filter(|(n, e)| {
-                (low * (1.0 - SLACK)..=high * (1.0 + SLACK)).contains(&(n * 10f64.powi(*e)))
+                (low * (1.0 - ROUNDING_TOLERANCE)..=high * (1.0 + ROUNDING_TOLERANCE))
+                    .contains(&(n * 10f64.powi(*e)))
             })
             .collect()
     };
@@ -66,7 +67,8 @@ fn short_log(low: f64, high: f64, most: usize) -> Ticks {
         &[1],
     ] {
         let chosen = all(digits);
-        if (3..=most.max(3)).contains(&chosen.len()) || digits.len() == 1 && chosen.len() == 2 {
+        if (3..=max_count.max(3)).contains(&chosen.len()) || digits.len() == 1 && chosen.len() == 2
+        {
             let value = |(n, e): &(f64, i32)| n * 10f64.powi(*e);
             return Ticks {
                 major: chosen.iter().map(value).collect(),
@@ -80,7 +82,7 @@ fn short_log(low: f64, high: f64, most: usize) -> Ticks {
             };
         }
     }
-    linear(low, high, most)
+    linear(low, high, max_count)
 }
 
 /// A digit times a power of ten: written out if short, or else `2·10⁻⁷`.
@@ -99,8 +101,8 @@ fn decimal(digit: f64, e: i32) -> String {
 mod tests {
     use super::*;
 
-    fn labels(low: f64, high: f64, most: usize) -> Vec<String> {
-        log(low, high, most).labels
+    fn labels(low: f64, high: f64, max_count: usize) -> Vec<String> {
+        log(low, high, max_count).labels
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! A study as Markdown, and findings as text for snapshots.
 
-use crate::number::short;
+use crate::number::one_line;
+use crate::number::scientific;
 use dwell_findings::Finding;
 use std::fmt::Write as _;
 
@@ -43,15 +44,15 @@ pub enum Block {
 impl Document {
     /// The document as Markdown.
     pub fn markdown(&self) -> String {
-        let mut text = format!("# {}\n", line(&self.title));
+        let mut text = format!("# {}\n", one_line(&self.title));
         for block in &self.blocks {
             text.push('\n');
             match block {
-                Block::Heading(heading) => text.push_str(&format!("## {}\n", line(heading))),
-                Block::Text(words) => text.push_str(&format!("{}\n", words.trim_end())),
+                Block::Heading(heading) => text.push_str(&format!("## {}\n", one_line(heading))),
+                Block::Text(paragraph) => text.push_str(&format!("{}\n", paragraph.trim_end())),
                 Block::Table { header, rows } => text.push_str(&table(header, rows)),
-                Block::Figure { file, alt, caption } => text.push_str(&picture(file, alt, caption)),
-                Block::Findings(findings) => text.push_str(&judged(findings)),
+                Block::Figure { file, alt, caption } => text.push_str(&image(file, alt, caption)),
+                Block::Findings(findings) => text.push_str(&findings_table(findings)),
             }
         }
         text
@@ -59,61 +60,64 @@ impl Document {
 }
 
 /// What every machine reproduces of the findings: key, truth, what is compared, tolerance and verdict.
-pub fn stable(findings: &[Finding]) -> String {
+pub fn reproducible_text(findings: &[Finding]) -> String {
     let mut text = String::new();
     for f in findings {
-        let (truth, compared, tolerance) =
-            (line(&f.truth), line(&f.compared), short(f.tolerance, 3));
+        let (check, comparison, tolerance) = (
+            &f.check,
+            one_line(&f.comparison),
+            scientific(f.tolerance, 3),
+        );
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{}  {}  [{truth}]  {compared}  <= {tolerance}",
-            verdict(f),
-            line(&f.key)
+            "{}  {}  [{check}]  {comparison}  <= {tolerance}",
+            pass_or_fail(f),
+            one_line(&f.key)
         );
     }
     text
 }
 
-fn verdict(finding: &Finding) -> &'static str {
+fn pass_or_fail(finding: &Finding) -> &'static str {
     if finding.pass { "pass" } else { "FAIL" }
 }
 
-fn judged(findings: &[Finding]) -> String {
+fn findings_table(findings: &[Finding]) -> String {
     const HEADER: [&str; 9] = [
-        "Verdict",
-        "Truth",
-        "Compared",
-        "Over",
+        "Result",
+        "Check",
+        "Comparison",
+        "Domain",
         "Difference",
         "Relative",
         "Tolerance",
-        "Why this tolerance",
-        "Worst place",
+        "Reason for the tolerance",
+        "Worst at",
     ];
     let row = |f: &Finding| {
-        let of = |number: String, words: &str, between: &str| {
-            if words.trim().is_empty() {
+        let with_text = |number: String, text: &str, separator: &str| {
+            if text.trim().is_empty() {
                 number
             } else {
-                format!("{number}{between}{}", words.trim())
+                format!("{number}{separator}{}", text.trim())
             }
         };
-        let verdict = if f.pass {
-            verdict(f).to_owned()
+        let result = if f.pass {
+            pass_or_fail(f).to_owned()
         } else {
-            format!("**{}**", verdict(f))
+            format!("**{}**", pass_or_fail(f))
         };
         vec![
-            verdict,
-            f.truth.clone(),
-            f.compared.clone(),
-            f.over.clone(),
-            of(short(f.absolute, 3), &f.unit, " "),
-            of(short(f.relative, 3), &f.scale, " of "),
-            short(f.tolerance, 3),
-            f.why.clone(),
-            f.worst.clone(),
+            result,
+            f.check.to_string(),
+            f.comparison.clone(),
+            f.domain.clone(),
+            with_text(scientific(f.absolute_difference, 3), &f.unit, " "),
+            with_text(scientific(f.relative_difference, 3), &f.scale, " of "),
+            scientific(f.tolerance, 3),
+            f.tolerance_reason.clone(),
+            f.worst_at.clone(),
         ]
     };
     table(
@@ -136,16 +140,16 @@ fn table(header: &[String], rows: &[Vec<String>]) -> String {
     text
 }
 
-fn picture(file: &str, alt: &str, caption: &str) -> String {
-    let alt = line(alt).replace('[', "\\[").replace(']', "\\]");
+fn image(file: &str, alt: &str, caption: &str) -> String {
+    let alt = one_line(alt).replace('[', "\\[").replace(']', "\\]");
     // In angle brackets a path may hold blanks and brackets.
-    let file = line(file).replace('<', "%3C").replace('>', "%3E");
+    let file = one_line(file).replace('<', "%3C").replace('>', "%3E");
     let target = if file.contains([' ', '(', ')']) {
         format!("<{file}>")
     } else {
         file
     };
-    let caption = line(caption);
+    let caption = one_line(caption);
     if caption.is_empty() {
         format!("![{alt}]({target})\n")
     } else {
@@ -153,33 +157,29 @@ fn picture(file: &str, alt: &str, caption: &str) -> String {
     }
 }
 
-/// Everything on one line.
-fn line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
-}
-
 /// Text that cannot end its cell.
 fn cell(text: &str) -> String {
-    line(text).replace('|', "\\|")
+    one_line(text).replace('|', "\\|")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use dwell_findings::Check;
 
-    fn finding(pass: bool, absolute: f64) -> Finding {
+    fn finding(pass: bool, absolute_difference: f64) -> Finding {
         Finding {
             key: "m-energy".to_owned(),
-            truth: "1 kinetic energy".to_owned(),
-            compared: "m with 2E_c at |φ̇| = 1".to_owned(),
-            over: "360 positions".to_owned(),
-            absolute,
+            check: Check::KineticEnergy,
+            comparison: "m with 2E_c at |φ̇| = 1".to_owned(),
+            domain: "360 positions".to_owned(),
+            absolute_difference,
             unit: "kg m²".to_owned(),
-            relative: 3.456e-16,
+            relative_difference: 3.456e-16,
             scale: "the largest m".to_owned(),
-            worst: "phi = 1.3 rad".to_owned(),
+            worst_at: "phi = 1.3 rad".to_owned(),
             tolerance: 1e-12,
-            why: "rounding of\na sum".to_owned(),
+            tolerance_reason: "rounding of\na sum".to_owned(),
             pass,
             ..Finding::default()
         }
@@ -213,11 +213,11 @@ mod tests {
     #[test]
     fn the_stable_form_holds_no_measured_number() {
         assert_eq!(
-            stable(&[finding(true, 1e-15)]),
-            stable(&[finding(true, 7e-15)])
+            reproducible_text(&[finding(true, 1e-15)]),
+            reproducible_text(&[finding(true, 7e-15)])
         );
         assert_eq!(
-            stable(&[finding(false, 1.0)]),
+            reproducible_text(&[finding(false, 1.0)]),
             "FAIL  m-energy  [1 kinetic energy]  m with 2E_c at |φ̇| = 1  <= 1e-12\n"
         );
     }
@@ -245,9 +245,9 @@ mod tests {
 
     #[test]
     fn pictures_survive_brackets_and_blanks() {
-        assert_eq!(picture("a b.png", "x [m]", ""), "![x \\[m\\]](<a b.png>)\n");
+        assert_eq!(image("a b.png", "x [m]", ""), "![x \\[m\\]](<a b.png>)\n");
         assert_eq!(
-            picture("a.png", "path", "The path."),
+            image("a.png", "path", "The path."),
             "![path](a.png)\n\n*The path.*\n"
         );
     }

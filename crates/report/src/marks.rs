@@ -1,13 +1,13 @@
 //! Markers, and the reference lines, bands and points of a chart with their words.
 
-use crate::axes::Frame;
-use crate::canvas::{Align, Canvas, Drawn, Line, Type};
+use crate::axes::PlotFrame;
+use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::curve::clipped;
 use crate::figure::Mark;
 use crate::fonts;
 use crate::occupancy::Occupancy;
 use crate::rect::Rect;
-use crate::theme::{BAND, GREY, INK, MARK, MARKER, Rgb, TICK, WHITE};
+use crate::theme::{BAND, GREY, INK, MARK_WIDTH, MARKER_RADIUS, Rgb, TICK_SIZE, WHITE};
 
 /// The marker of what is drawn in ink: it stands apart from all curves.
 pub(crate) const CROSS: usize = usize::MAX;
@@ -21,33 +21,32 @@ pub(crate) struct Marker {
 
 impl Marker {
     /// A full one.
-    pub(crate) fn full(shape: usize) -> Self {
+    pub(crate) fn filled(shape: usize) -> Self {
         let hollow = false;
         Self { shape, hollow }
     }
 }
 
 /// The white inside of a hollow marker, as a part of its size.
-const INSIDE: f64 = 0.55;
+const HOLLOW_SHARE: f64 = 0.55;
 
 /// Draws the marker of a series; series differ in shape as well as in colour.
-pub(crate) fn marker(
+pub(crate) fn draw_marker(
     canvas: &mut Canvas<'_>,
     Marker { shape, hollow }: Marker,
     at: [f64; 2],
     color: Rgb,
-) -> Drawn {
-    full(canvas, shape, at, MARKER, color)?;
+) {
+    filled_marker(canvas, shape, at, MARKER_RADIUS, color);
     if hollow && shape != CROSS {
-        full(canvas, shape, at, INSIDE * MARKER, WHITE)?;
+        filled_marker(canvas, shape, at, HOLLOW_SHARE * MARKER_RADIUS, WHITE);
     }
-    Ok(())
 }
 
-fn full(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], r: f64, color: Rgb) -> Drawn {
+fn filled_marker(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], r: f64, color: Rgb) {
     if shape == CROSS {
-        let pen = Line::solid(color, 0.7 * r);
-        canvas.line(&[[x - r, y - r], [x + r, y + r]], pen)?;
+        let pen = LineStyle::solid(color, 0.7 * r);
+        canvas.line(&[[x - r, y - r], [x + r, y + r]], pen);
         return canvas.line(&[[x - r, y + r], [x + r, y - r]], pen);
     }
     match shape % 4 {
@@ -77,25 +76,24 @@ fn full(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], r: f64, color: 
                 &[[x, y - d], [x + d, y], [x, y + d], [x - d, y]],
                 color,
                 1.0,
-            )
+            );
         }
     }
 }
 
 /// Fills the bands, which lie under the grid.
-pub(crate) fn bands(canvas: &mut Canvas<'_>, frame: &Frame, marks: &[Mark]) -> Drawn {
+pub(crate) fn bands(canvas: &mut Canvas<'_>, frame: &PlotFrame, marks: &[Mark]) {
     for mark in marks {
         if let Mark::Band { from, to, .. } = mark
             && let Some(band) = band(frame, *from, *to)
         {
-            canvas.rect(&band, BAND)?;
+            canvas.rect(&band, BAND);
         }
     }
-    Ok(())
 }
 
-fn band(frame: &Frame, from: f64, to: f64) -> Option<Rect> {
-    let (a, b) = (frame.across(from.min(to))?, frame.across(from.max(to))?);
+fn band(frame: &PlotFrame, from: f64, to: f64) -> Option<Rect> {
+    let (a, b) = (frame.x_to_px(from.min(to))?, frame.x_to_px(from.max(to))?);
     let band = Rect {
         x0: a.max(frame.plot.x0),
         x1: b.min(frame.plot.x1),
@@ -105,141 +103,140 @@ fn band(frame: &Frame, from: f64, to: f64) -> Option<Rect> {
 }
 
 /// Notes what the lines and rings of the marks will cover.
-pub(crate) fn note(frame: &Frame, marks: &[Mark], taken: &mut Occupancy) {
+pub(crate) fn mark_occupied(frame: &PlotFrame, marks: &[Mark], occupied: &mut Occupancy) {
     for mark in marks {
-        path(frame, mark).iter().for_each(|run| taken.line(run));
+        path(frame, mark).iter().for_each(|run| occupied.line(run));
         if let Some([x, y]) = ring(frame, mark) {
-            taken.block(&Rect::sized(x, y, 0.0, 0.0).grown(MARKER + 4.0));
+            occupied.block(&Rect::sized(x, y, 0.0, 0.0).grown(MARKER_RADIUS + 4.0));
         }
     }
 }
 
 /// Draws the lines of the marks, which lie under the curves.
-pub(crate) fn lines(canvas: &mut Canvas<'_>, frame: &Frame, marks: &[Mark]) -> Drawn {
-    let line = Line {
+pub(crate) fn lines(canvas: &mut Canvas<'_>, frame: &PlotFrame, marks: &[Mark]) {
+    let line = LineStyle {
         color: GREY,
-        width: MARK,
+        width: MARK_WIDTH,
         dashed: true,
     };
     for run in marks.iter().flat_map(|mark| path(frame, mark)) {
-        canvas.line(&run, line)?;
+        canvas.line(&run, line);
     }
-    Ok(())
 }
 
-fn ring(frame: &Frame, mark: &Mark) -> Option<[f64; 2]> {
+fn ring(frame: &PlotFrame, mark: &Mark) -> Option<[f64; 2]> {
     let Mark::Point { at, .. } = mark else {
         return None;
     };
-    frame.point(*at, false).filter(|p| frame.plot.contains(*p))
+    frame
+        .point_to_px(*at, false)
+        .filter(|p| frame.plot.contains(*p))
 }
 
 /// Draws the ringed points, which lie over the curves.
-pub(crate) fn rings(canvas: &mut Canvas<'_>, frame: &Frame, marks: &[Mark]) -> Drawn {
+pub(crate) fn rings(canvas: &mut Canvas<'_>, frame: &PlotFrame, marks: &[Mark]) {
     for mark in marks {
-        if let Some(place) = ring(frame, mark) {
-            canvas.disc(place, MARKER + 3.5, INK)?;
-            canvas.disc(place, MARKER, WHITE)?;
+        if let Some(centre) = ring(frame, mark) {
+            canvas.disc(centre, MARKER_RADIUS + 3.5, INK);
+            canvas.disc(centre, MARKER_RADIUS, WHITE);
         }
     }
-    Ok(())
 }
 
 /// The line of a mark inside the plot.
-fn path(frame: &Frame, mark: &Mark) -> Vec<Vec<[f64; 2]>> {
+fn path(frame: &PlotFrame, mark: &Mark) -> Vec<Vec<[f64; 2]>> {
     let Rect { x0, y0, x1, y1 } = frame.plot;
     let line = match mark {
         Mark::Vertical { at, .. } => frame
-            .across(*at)
+            .x_to_px(*at)
             .map(|x| vec![Some([x, y0]), Some([x, y1])]),
         Mark::Horizontal { at, .. } => frame
-            .up(*at, false)
+            .y_to_px(*at, false)
             .map(|y| vec![Some([x0, y]), Some([x1, y])]),
         Mark::Slope { order, through, .. } => {
             // Between other axes than logarithmic ones a power law is a curve, so it is followed in steps.
             let at = |i: i32| {
                 let x = frame.x.value(f64::from(i) / 200.0);
-                frame.point([x, through[1] * (x / through[0]).powf(*order)], false)
+                frame.point_to_px([x, through[1] * (x / through[0]).powf(*order)], false)
             };
             Some((0..=200).map(at).collect())
         }
-        Mark::Band { .. } | Mark::Point { .. } | Mark::Words { .. } => None,
+        Mark::Band { .. } | Mark::Point { .. } | Mark::Text { .. } => None,
     };
     clipped(line.unwrap_or_default(), &frame.plot)
 }
 
 /// Writes the words of the marks where they hide least of the data, and never on what has been written
-/// before or on each other: words that have no such place are left out.
-pub(crate) fn words(
+/// before or on each other: words that have no such position are left out.
+pub(crate) fn draw_labels(
     canvas: &mut Canvas<'_>,
-    frame: &Frame,
+    frame: &PlotFrame,
     marks: &[Mark],
-    taken: &Occupancy,
+    occupied: &Occupancy,
     mut written: Vec<Rect>,
-) -> Drawn {
+) {
     for mark in marks {
         let (Mark::Vertical { label, .. }
         | Mark::Horizontal { label, .. }
         | Mark::Band { label, .. }
         | Mark::Slope { label, .. }
         | Mark::Point { label, .. }
-        | Mark::Words { label, .. }) = mark;
+        | Mark::Text { label, .. }) = mark;
         let label = label.trim();
         if label.is_empty() {
             continue;
         }
-        let size = [fonts::width(label, TICK, false), TICK];
-        let free = |place: &Rect| {
-            let place = place.grown(5.0);
-            frame.plot.holds(&place) && !written.iter().any(|other| other.touches(&place))
+        let size = [fonts::width(label, TICK_SIZE, false), TICK_SIZE];
+        let free = |area: &Rect| {
+            let area = area.grown(5.0);
+            frame.plot.contains_rect(&area) && !written.iter().any(|other| other.intersects(&area))
         };
-        // The first of the best, as the places are given in the order of preference.
-        let hidden = |place: &Rect| taken.count(&place.grown(3.0));
-        let Some(place) = places(frame, mark, size)
+        // The first of the best: the positions are given in the order of preference.
+        let hidden = |area: &Rect| occupied.count(&area.grown(3.0));
+        let Some(area) = label_candidates(frame, mark, size)
             .into_iter()
             .filter(free)
             .min_by_key(hidden)
         else {
             continue;
         };
-        let middle = [place.x0, place.centre()[1]];
-        let look = Type::new(TICK, GREY, Align::Start);
+        let middle = [area.x0, area.centre()[1]];
+        let style = TextStyle::new(TICK_SIZE, GREY, Align::Start);
         // On a band a rim would show, so it has to be needed.
-        if matches!(mark, Mark::Band { .. }) && hidden(&place) == 0 {
-            canvas.text_beside(label, middle, look)?;
+        if matches!(mark, Mark::Band { .. }) && hidden(&area) == 0 {
+            canvas.text_centred(label, middle, style);
         } else {
-            canvas.text_with_rim(label, middle, look)?;
+            canvas.text_with_halo(label, middle, style);
         }
-        written.push(place);
+        written.push(area);
     }
-    Ok(())
 }
 
 /// Places for the words of a mark, the best first.
-fn places(frame: &Frame, mark: &Mark, [width, height]: [f64; 2]) -> Vec<Rect> {
+fn label_candidates(frame: &PlotFrame, mark: &Mark, [width, height]: [f64; 2]) -> Vec<Rect> {
     const GAP: f64 = 12.0;
     let plot = frame.plot;
     let parts = || (0..=10).map(|i| f64::from(i) / 10.0);
-    let down = |t: f64| plot.y0 + GAP + t * (plot.height() - height - 2.0 * GAP);
-    let along = |t: f64| plot.x1 - GAP - width - t * (plot.width() - width - 2.0 * GAP);
+    let y_at = |t: f64| plot.y0 + GAP + t * (plot.height() - height - 2.0 * GAP);
+    let x_at = |t: f64| plot.x1 - GAP - width - t * (plot.width() - width - 2.0 * GAP);
     match mark {
         Mark::Vertical { at, .. } => {
-            let Some(x) = frame.across(*at) else {
+            let Some(x) = frame.x_to_px(*at) else {
                 return Vec::new();
             };
             parts()
                 .flat_map(|t| {
-                    [x + GAP, x - GAP - width].map(|x| Rect::sized(x, down(t), width, height))
+                    [x + GAP, x - GAP - width].map(|x| Rect::sized(x, y_at(t), width, height))
                 })
                 .collect()
         }
         Mark::Horizontal { at, .. } => {
-            let Some(y) = frame.up(*at, false) else {
+            let Some(y) = frame.y_to_px(*at, false) else {
                 return Vec::new();
             };
             parts()
                 .flat_map(|t| {
-                    [y - GAP - height, y + GAP].map(|y| Rect::sized(along(t), y, width, height))
+                    [y - GAP - height, y + GAP].map(|y| Rect::sized(x_at(t), y, width, height))
                 })
                 .collect()
         }
@@ -250,16 +247,16 @@ fn places(frame: &Frame, mark: &Mark, [width, height]: [f64; 2]) -> Vec<Rect> {
             let x = (band.centre()[0] - 0.5 * width)
                 .clamp(plot.x0 + GAP, (plot.x1 - GAP - width).max(plot.x0 + GAP));
             parts()
-                .map(|t| Rect::sized(x, down(t), width, height))
+                .map(|t| Rect::sized(x, y_at(t), width, height))
                 .collect()
         }
-        Mark::Point { at, .. } | Mark::Words { at, .. } => {
-            let Some([x, y]) = frame.point(*at, false) else {
+        Mark::Point { at, .. } | Mark::Text { at, .. } => {
+            let Some([x, y]) = frame.point_to_px(*at, false) else {
                 return Vec::new();
             };
             let mut all = Vec::new();
-            for far in [1.0, 2.0, 3.5] {
-                let d = (MARKER + GAP) * far;
+            for factor in [1.0, 2.0, 3.5] {
+                let d = (MARKER_RADIUS + GAP) * factor;
                 all.push(Rect::sized(x + d, y - 0.5 * height, width, height));
                 all.push(Rect::sized(x - d - width, y - 0.5 * height, width, height));
                 all.push(Rect::sized(x - 0.5 * width, y - d - height, width, height));

@@ -1,7 +1,7 @@
 //! Tables of numbers as NumPy archives.
 
-use crate::error::ReportError;
-use crate::table::Table;
+use crate::error::{ReportError, check_rows};
+use dwell_findings::Table;
 use std::collections::BTreeSet;
 use std::io::{Cursor, Write as _};
 use zip::write::SimpleFileOptions;
@@ -24,7 +24,7 @@ pub enum Array {
         rows: Vec<Vec<f64>>,
     },
     /// Words, one behind another.
-    Words(Vec<String>),
+    Strings(Vec<String>),
 }
 
 /// Named arrays as a NumPy archive (`.npz`): matrices are `<f8` of shape (rows, columns), words `<U`. Names become
@@ -37,7 +37,7 @@ pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, array) in arrays {
         let bytes = match array {
-            Array::Words(list) => words(list),
+            Array::Strings(list) => string_array(list),
             Array::Matrix { columns, rows } => {
                 if let Some(row) = rows.iter().position(|row| row.len() != *columns) {
                     return Err(ReportError::Row {
@@ -52,12 +52,12 @@ pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
                 array
             }
         };
-        store(&mut archive, &file_name(name), &bytes)?;
+        store_array(&mut archive, &file_name(name), &bytes)?;
     }
     Ok(archive.finish()?.into_inner())
 }
 
-fn store(
+fn store_array(
     archive: &mut ZipWriter<Cursor<Vec<u8>>>,
     key: &str,
     array: &[u8],
@@ -69,49 +69,36 @@ fn store(
     Ok(())
 }
 
-impl Table {
-    /// The table as a NumPy archive (`.npz`, arrays of format 1.0): what `numpy.load` gives back bit for bit.
-    ///
-    /// Every column is an array of its own, `<f8` of shape (rows,), under its name. The array `columns` holds these
-    /// keys in the order of the table, and `units` their units: `dict(zip(z["columns"], z["units"]))`.
-    ///
-    /// A key is also a file name within the archive: characters that some system refuses in one (`/ \ : * ? " < > |`
-    /// and controls) become `_`, and a name that is taken already gets `_2`, `_3` … behind it. The same table makes
-    /// the same bytes on every machine.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Npz`] if the archive refuses, as for a
-    /// name of more than 65 000 bytes.
-    pub fn npz(&self) -> Result<Vec<u8>, ReportError> {
-        self.check_rows()?;
-        let keys = self.keys();
-        let units: Vec<&str> = self.columns.iter().map(|c| c.unit.as_str()).collect();
-        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-        let mut add = |key: &str, array: Vec<u8>| store(&mut archive, key, &array);
-        for (place, key) in keys.iter().enumerate() {
-            add(key, numbers(self.rows.iter().map(|row| row[place])))?;
-        }
-        add(COLUMNS, words(&keys))?;
-        add(UNITS, words(&units))?;
-        Ok(archive.finish()?.into_inner())
+/// See [`TableExport::npz`](crate::TableExport::npz).
+pub(crate) fn table_npz(table: &Table) -> Result<Vec<u8>, ReportError> {
+    check_rows(table)?;
+    let keys = array_keys(table);
+    let units: Vec<&str> = table.columns.iter().map(|c| c.unit.as_str()).collect();
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let mut add = |key: &str, array: Vec<u8>| store_array(&mut archive, key, &array);
+    for (column, key) in keys.iter().enumerate() {
+        add(key, number_array(table.rows.iter().map(|row| row[column])))?;
     }
+    add(COLUMNS, string_array(&keys))?;
+    add(UNITS, string_array(&units))?;
+    Ok(archive.finish()?.into_inner())
+}
 
-    /// The columns' names as keys: file names, and each but once.
-    fn keys(&self) -> Vec<String> {
-        let mut taken: BTreeSet<String> = [COLUMNS, UNITS].map(str::to_owned).into();
-        let mut free = |name: &str| {
-            let numbered = (2_usize..).map(|n| format!("{name}_{n}"));
-            let mut all = std::iter::once(name.to_owned()).chain(numbered);
-            let key = all.find(|key| !taken.contains(key)).unwrap_or_default();
-            taken.insert(key.clone());
-            key
-        };
-        self.columns
-            .iter()
-            .map(|c| free(&file_name(&c.name)))
-            .collect()
-    }
+/// The columns' names as keys: file names, and each but once.
+fn array_keys(table: &Table) -> Vec<String> {
+    let mut used: BTreeSet<String> = [COLUMNS, UNITS].map(str::to_owned).into();
+    let mut unused = |name: &str| {
+        let numbered = (2_usize..).map(|n| format!("{name}_{n}"));
+        let mut all = std::iter::once(name.to_owned()).chain(numbered);
+        let key = all.find(|key| !used.contains(key)).unwrap_or_default();
+        used.insert(key.clone());
+        key
+    };
+    table
+        .columns
+        .iter()
+        .map(|c| unused(&file_name(&c.name)))
+        .collect()
 }
 
 /// The name with `_` for what a file name cannot hold.
@@ -140,7 +127,7 @@ fn options() -> SimpleFileOptions {
         .unix_permissions(0o644)
 }
 
-fn numbers(values: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
+fn number_array(values: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
     let mut array = header("<f8", &format!("({},)", values.len()));
     array.reserve_exact(8 * values.len());
     values.for_each(|v| array.extend(v.to_le_bytes()));
@@ -148,7 +135,7 @@ fn numbers(values: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
 }
 
 /// Words as four bytes a character, padded with zeros to the longest.
-fn words(words: &[impl AsRef<str>]) -> Vec<u8> {
+fn string_array(words: &[impl AsRef<str>]) -> Vec<u8> {
     let width = words.iter().map(|w| w.as_ref().chars().count()).max();
     let width = width.unwrap_or(0).max(1);
     let mut array = header(&format!("<U{width}"), &format!("({},)", words.len()));
@@ -165,25 +152,25 @@ fn words(words: &[impl AsRef<str>]) -> Vec<u8> {
 /// What stands before the data of an array, padded with blanks.
 ///
 /// Source: NumPy Enhancement Proposal 1, "A simple file format for NumPy arrays", format version 1.0.
-fn header(kind: &str, shape: &str) -> Vec<u8> {
-    let mut words = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}");
+fn header(dtype: &str, shape: &str) -> Vec<u8> {
+    let mut text = format!("{{'descr': '{dtype}', 'fortran_order': False, 'shape': {shape}, }}");
     let before = b"\x93NUMPY\x01\x00".len() + 2;
-    let whole = (before + words.len() + 1).next_multiple_of(ALIGNMENT);
-    while before + words.len() + 1 < whole {
-        words.push(' ');
+    let whole = (before + text.len() + 1).next_multiple_of(ALIGNMENT);
+    while before + text.len() + 1 < whole {
+        text.push(' ');
     }
-    words.push('\n');
+    text.push('\n');
     let mut header = b"\x93NUMPY\x01\x00".to_vec();
     // At most two numbers of twenty digits stand in it.
-    header.extend((words.len() as u16).to_le_bytes());
-    header.extend(words.as_bytes());
+    header.extend((text.len() as u16).to_le_bytes());
+    header.extend(text.as_bytes());
     header
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::Column;
+    use crate::table::{Column, TableExport as _};
     use std::io::Read as _;
     use zip::ZipArchive;
 
@@ -192,7 +179,7 @@ mod tests {
         let rows = vec![vec![1.0, 2.0, 3.0], vec![4.0, 5.0, -0.0]];
         let matrix = |columns, rows| super::Array::Matrix { columns, rows };
         let none = matrix(0, vec![Vec::new(); 2]);
-        let states = super::Array::Words(vec!["phi".to_owned()]);
+        let states = super::Array::Strings(vec!["phi".to_owned()]);
         let bytes = npz(&[
             ("A", matrix(3, rows.clone())),
             ("B", none),

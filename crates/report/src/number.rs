@@ -2,10 +2,10 @@
 
 /// `10` to a power, with a raised exponent: `10⁻¹²`.
 pub(crate) fn power_of_ten(exponent: i32) -> String {
-    format!("10{}", raised(exponent))
+    format!("10{}", superscript(exponent))
 }
 
-fn raised(exponent: i32) -> String {
+fn superscript(exponent: i32) -> String {
     let digit = |c: char| match c {
         '-' => '⁻',
         '0' => '⁰',
@@ -33,7 +33,7 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
 }
 
 /// In e-notation to `digits` significant digits, trailing zeros dropped: `3.5e-16`, `1e-12`, `0`.
-pub(crate) fn short(value: f64, digits: usize) -> String {
+pub(crate) fn scientific(value: f64, digits: usize) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
@@ -71,6 +71,11 @@ pub(crate) fn exponent(value: f64) -> i32 {
         .unwrap_or(0)
 }
 
+/// Everything on one line.
+pub(crate) fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -84,12 +89,12 @@ mod tests {
 
     #[test]
     fn short_numbers_are_short() {
-        assert_eq!(short(3.5e-16, 3), "3.5e-16");
-        assert_eq!(short(1e-12, 3), "1e-12");
-        assert_eq!(short(-123_456.0, 3), "-1.23e5");
-        assert_eq!(short(0.0, 3), "0");
-        assert_eq!(short(f64::NAN, 3), "NaN");
-        assert_eq!(short(f64::NEG_INFINITY, 3), "-inf");
+        assert_eq!(scientific(3.5e-16, 3), "3.5e-16");
+        assert_eq!(scientific(1e-12, 3), "1e-12");
+        assert_eq!(scientific(-123_456.0, 3), "-1.23e5");
+        assert_eq!(scientific(0.0, 3), "0");
+        assert_eq!(scientific(f64::NAN, 3), "NaN");
+        assert_eq!(scientific(f64::NEG_INFINITY, 3), "-inf");
     }
 
     #[test]

@@ -11,7 +11,7 @@ pub(crate) struct Occupancy {
     area: Rect,
     columns: usize,
     rows: usize,
-    taken: Vec<bool>,
+    occupied: Vec<bool>,
 }
 
 impl Occupancy {
@@ -23,7 +23,7 @@ impl Occupancy {
             area,
             columns,
             rows,
-            taken: vec![false; columns * rows],
+            occupied: vec![false; columns * rows],
         }
     }
 
@@ -45,7 +45,7 @@ impl Occupancy {
     pub(crate) fn point(&mut self, at: [f64; 2]) {
         if self.area.contains(at) {
             let (column, row) = self.cell(at);
-            self.taken[row * self.columns + column] = true;
+            self.occupied[row * self.columns + column] = true;
         }
     }
 
@@ -54,7 +54,7 @@ impl Occupancy {
         for row in self.row_range(block) {
             let start = row * self.columns;
             let range = self.column_range(block);
-            self.taken[start + range.start..start + range.end].fill(true);
+            self.occupied[start + range.start..start + range.end].fill(true);
         }
     }
 
@@ -62,10 +62,10 @@ impl Occupancy {
     pub(crate) fn count(&self, block: &Rect) -> usize {
         let columns = self.column_range(block);
         let cells = |row: usize| {
-            &self.taken[row * self.columns + columns.start..row * self.columns + columns.end]
+            &self.occupied[row * self.columns + columns.start..row * self.columns + columns.end]
         };
         self.row_range(block)
-            .map(|row| cells(row).iter().filter(|&&taken| taken).count())
+            .map(|row| cells(row).iter().filter(|&&occupied| occupied).count())
             .sum()
     }
 

@@ -1,15 +1,15 @@
 //! The page: title, cells in rows, caption.
 
-use crate::canvas::{Align, Canvas, Drawn, Type};
-use crate::chart::{self, Sheet};
-use crate::drawing::{self, Stage};
+use crate::canvas::{Align, Canvas, TextStyle};
+use crate::chart::{self, PreparedChart};
+use crate::drawing::{self, DrawingLayout};
 use crate::figure::{Figure, Panel};
 use crate::fonts::wrapped;
-use crate::lattice::Lattice;
+use crate::heat_map::HeatMap;
 use crate::rect::{Insets, Rect};
 use crate::shape::Drawing;
 use crate::stack::Stack;
-use crate::theme::{CAPTION, CAPTION_GREY, INK, PROVENANCE, TITLE, WHITE};
+use crate::theme::{CAPTION_GREY, CAPTION_SIZE, INK, PROVENANCE_SIZE, TITLE_SIZE, WHITE};
 use std::slice::from_ref;
 
 /// Around the page.
@@ -28,20 +28,20 @@ const STRETCHED_HEIGHT: f64 = 0.36;
 const TITLE_LEADING: f64 = 1.25;
 const CAPTION_LEADING: f64 = 1.4;
 /// Between the caption and the line that says where the figure comes from.
-const FOOT_GAP: f64 = 10.0;
+const FOOTER_GAP: f64 = 10.0;
 
 /// A panel whose labels have been measured.
-enum Ready<'a> {
-    Chart(Sheet<'a>),
+enum PreparedPanel<'a> {
+    Chart(PreparedChart<'a>),
     Drawing(&'a Drawing),
     Stack(Stack<'a>),
-    Grid(Box<Lattice<'a>>),
+    Grid(Box<HeatMap<'a>>),
 }
 
-impl Ready<'_> {
+impl PreparedPanel<'_> {
     fn insets(&self, cell: &Rect) -> Insets {
         match self {
-            Self::Chart(sheet) => sheet.insets(cell),
+            Self::Chart(chart) => chart.insets(cell),
             Self::Drawing(drawing) => drawing::insets(from_ref(drawing), cell),
             Self::Stack(stack) => stack.insets(cell),
             // Its cells line up with nothing on the page.
@@ -49,21 +49,21 @@ impl Ready<'_> {
         }
     }
 
-    fn draw(&self, canvas: &mut Canvas<'_>, cell: &Rect, insets: Insets) -> Drawn {
+    fn draw(&self, canvas: &mut Canvas<'_>, cell: &Rect, insets: Insets) {
         match self {
-            Self::Chart(sheet) => sheet.draw(canvas, cell, insets),
+            Self::Chart(chart) => chart.draw(canvas, cell, insets),
             Self::Drawing(drawing) => {
-                Stage::new(from_ref(drawing), cell, insets).draw(canvas, drawing, cell)
+                DrawingLayout::new(from_ref(drawing), cell, insets).draw(canvas, drawing, cell);
             }
             Self::Stack(stack) => stack.draw(canvas, cell, insets),
-            Self::Grid(lattice) => lattice.draw(canvas, cell),
+            Self::Grid(heat_map) => heat_map.draw(canvas, cell),
         }
     }
 }
 
 /// A panel in its cell.
-struct Placed<'a> {
-    panel: Ready<'a>,
+struct PlacedPanel<'a> {
+    panel: PreparedPanel<'a>,
     row: usize,
     /// None in a row that is stretched, whose cells lie under no column.
     column: Option<usize>,
@@ -76,12 +76,12 @@ pub(crate) struct Page<'a> {
     pub(crate) height: f64,
     title: Vec<String>,
     /// Lines at the foot, with size and baseline.
-    foot: Vec<(String, f64, f64)>,
-    panels: Vec<Placed<'a>>,
+    footer: Vec<(String, f64, f64)>,
+    panels: Vec<PlacedPanel<'a>>,
 }
 
 impl<'a> Page<'a> {
-    /// Finds a place for everything.
+    /// Lays everything out.
     pub(crate) fn new(figure: &'a Figure) -> Self {
         let columns = figure.columns.clamp(1, figure.panels.len().max(1));
         let gaps = COLUMN_GAP * (columns as f64 - 1.0);
@@ -90,10 +90,10 @@ impl<'a> Page<'a> {
         } else {
             CELL * columns as f64 + gaps
         };
-        let title = wrapped(&figure.title, TITLE, true, inner);
+        let title = wrapped(&figure.title, TITLE_SIZE, true, inner);
         let mut y = MARGIN;
         if !title.is_empty() {
-            y += title.len() as f64 * TITLE_LEADING * TITLE + 0.55 * TITLE;
+            y += title.len() as f64 * TITLE_LEADING * TITLE_SIZE + 0.55 * TITLE_SIZE;
         }
         let mut panels = Vec::new();
         for (row, chunk) in figure.panels.chunks(columns).enumerate() {
@@ -102,7 +102,7 @@ impl<'a> Page<'a> {
             let stretched = chunk.len() < columns;
             let height = chunk
                 .iter()
-                .map(|panel| wanted_height(panel, width, columns == 1, stretched))
+                .map(|panel| preferred_height(panel, width, columns == 1, stretched))
                 .fold(0.0, f64::max);
             for (column, panel) in chunk.iter().enumerate() {
                 let cell = Rect::sized(
@@ -112,12 +112,12 @@ impl<'a> Page<'a> {
                     height,
                 );
                 let panel = match panel {
-                    Panel::Chart(chart) => Ready::Chart(Sheet::new(chart)),
-                    Panel::Drawing(drawing) => Ready::Drawing(drawing),
-                    Panel::Stack(charts) => Ready::Stack(Stack::new(charts)),
-                    Panel::Grid(grid) => Ready::Grid(Box::new(Lattice::new(grid, width))),
+                    Panel::Chart(chart) => PreparedPanel::Chart(PreparedChart::new(chart)),
+                    Panel::Drawing(drawing) => PreparedPanel::Drawing(drawing),
+                    Panel::Stack(charts) => PreparedPanel::Stack(Stack::new(charts)),
+                    Panel::Grid(grid) => PreparedPanel::Grid(Box::new(HeatMap::new(grid, width))),
                 };
-                panels.push(Placed {
+                panels.push(PlacedPanel {
                     panel,
                     row,
                     column: (!stretched).then_some(column),
@@ -126,94 +126,96 @@ impl<'a> Page<'a> {
             }
             y += height + ROW_GAP;
         }
-        let mut foot = Vec::new();
-        for (words, size) in [(&figure.caption, CAPTION), (&figure.provenance, PROVENANCE)] {
-            for (k, line) in wrapped(words, size, false, inner).into_iter().enumerate() {
-                if k == 0 && !foot.is_empty() {
-                    y += FOOT_GAP;
+        let mut footer = Vec::new();
+        for (text, size) in [
+            (&figure.caption, CAPTION_SIZE),
+            (&figure.provenance, PROVENANCE_SIZE),
+        ] {
+            for (k, line) in wrapped(text, size, false, inner).into_iter().enumerate() {
+                if k == 0 && !footer.is_empty() {
+                    y += FOOTER_GAP;
                 }
-                foot.push((line, size, y + 0.8 * size));
+                footer.push((line, size, y + 0.8 * size));
                 y += CAPTION_LEADING * size;
             }
         }
-        if foot.is_empty() {
+        if footer.is_empty() {
             y -= ROW_GAP;
         }
         Self {
             width: inner + 2.0 * MARGIN,
             height: (y + 0.75 * MARGIN).ceil(),
             title,
-            foot,
+            footer,
             panels,
         }
     }
 
     /// Draws it.
-    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) -> Drawn {
-        canvas.rect(&Rect::sized(0.0, 0.0, self.width, self.height), WHITE)?;
-        let mut baseline = MARGIN + 0.8 * TITLE;
+    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
+        canvas.rect(&Rect::sized(0.0, 0.0, self.width, self.height), WHITE);
+        let mut baseline = MARGIN + 0.8 * TITLE_SIZE;
         for line in &self.title {
             canvas.text(
                 line,
                 [MARGIN, baseline],
-                Type::new(TITLE, INK, Align::Start).bold(),
-            )?;
-            baseline += TITLE_LEADING * TITLE;
+                TextStyle::new(TITLE_SIZE, INK, Align::Start).bold(),
+            );
+            baseline += TITLE_LEADING * TITLE_SIZE;
         }
         for (placed, insets) in self.panels.iter().zip(self.aligned()) {
-            placed.panel.draw(canvas, &placed.cell, insets)?;
+            placed.panel.draw(canvas, &placed.cell, insets);
         }
-        for (line, size, baseline) in &self.foot {
-            let look = Type::new(*size, CAPTION_GREY, Align::Start);
-            canvas.text(line, [MARGIN, *baseline], look)?;
+        for (line, size, baseline) in &self.footer {
+            let style = TextStyle::new(*size, CAPTION_GREY, Align::Start);
+            canvas.text(line, [MARGIN, *baseline], style);
         }
-        Ok(())
     }
 
     /// Insets such that plots of a column line up at the sides, and those of a row above and below.
     fn aligned(&self) -> Vec<Insets> {
-        let own: Vec<Insets> = self
+        let insets: Vec<Insets> = self
             .panels
             .iter()
             .map(|p| p.panel.insets(&p.cell))
             .collect();
-        let most = |keep: &dyn Fn(&Placed<'_>) -> bool| {
+        let max_insets = |keep: &dyn Fn(&PlacedPanel<'_>) -> bool| {
             let of_group = self
                 .panels
                 .iter()
-                .zip(&own)
+                .zip(&insets)
                 .filter(|(p, _)| keep(p))
                 .map(|(_, i)| *i);
             of_group.fold(Insets::default(), Insets::max)
         };
-        let of = |p: &Placed<'_>, own: &Insets| {
-            let beside = if p.column.is_some() {
-                most(&|other| other.column == p.column)
+        let of = |p: &PlacedPanel<'_>, insets: &Insets| {
+            let of_column = if p.column.is_some() {
+                max_insets(&|other| other.column == p.column)
             } else {
-                *own
+                *insets
             };
-            let row = most(&|other| other.row == p.row);
+            let row = max_insets(&|other| other.row == p.row);
             Insets {
-                left: beside.left,
-                right: beside.right,
+                left: of_column.left,
+                right: of_column.right,
                 ..row
             }
         };
         self.panels
             .iter()
-            .zip(&own)
-            .map(|(p, own)| of(p, own))
+            .zip(&insets)
+            .map(|(p, insets)| of(p, insets))
             .collect()
     }
 }
 
-fn wanted_height(panel: &Panel, width: f64, lone: bool, stretched: bool) -> f64 {
+fn preferred_height(panel: &Panel, width: f64, lone: bool, stretched: bool) -> f64 {
     match panel {
         Panel::Chart(_) if stretched => STRETCHED_HEIGHT * width,
         Panel::Chart(_) if lone => LONE_HEIGHT * width,
         Panel::Chart(_) => chart::HEIGHT * width,
         Panel::Drawing(drawing) => drawing::height(from_ref(drawing), width).min(1000.0),
         Panel::Stack(charts) => Stack::new(charts).height(width),
-        Panel::Grid(grid) => Lattice::new(grid, width).height(),
+        Panel::Grid(grid) => HeatMap::new(grid, width).height(),
     }
 }

@@ -3,10 +3,10 @@
 use crate::theme::Rgb;
 use std::collections::HashMap;
 
-/// Colours of an animation and the place of each; what has no place of its own goes to the nearest.
+/// Colours of an animation and the index of each; a colour that is not among them gets the index of the nearest.
 pub(crate) struct Palette {
     pub(crate) colors: Vec<Rgb>,
-    places: HashMap<Rgb, u8>,
+    indices: HashMap<Rgb, u8>,
 }
 
 impl Palette {
@@ -16,36 +16,36 @@ impl Palette {
     /// many and rare. So the colours come in the order of their counts, and one is left out if it differs from one
     /// that is kept by no more than a distance, which grows from 0 until the rest fits. (Methods that average
     /// colours, made for photographs, would shift the flat ones too.)
-    pub(crate) fn of(counts: &HashMap<Rgb, u64>, most: usize) -> Self {
+    pub(crate) fn of(counts: &HashMap<Rgb, u64>, max_colors: usize) -> Self {
         let mut ordered: Vec<(Rgb, u64)> = counts.iter().map(|(color, n)| (*color, *n)).collect();
         // The order of a hash map is none: ties are broken by the colour.
         ordered.sort_by_key(|&(color, n)| (std::cmp::Reverse(n), color));
-        let most = most.clamp(1, 256);
-        let kept = (0..=u8::MAX).find_map(|error| covering(&ordered, error, most));
+        let max_colors = max_colors.clamp(1, 256);
+        let kept = (0..=u8::MAX).find_map(|error| covering(&ordered, error, max_colors));
         // A distance of 255 covers every colour by one.
         let colors = kept.unwrap_or_default();
-        let place = |color: Rgb| {
+        let index = |color: Rgb| {
             let nearest = (0..colors.len()).min_by_key(|&i| distance(colors[i], color));
             nearest.unwrap_or(0) as u8
         };
-        let places = ordered.iter().map(|&(c, _)| (c, place(c))).collect();
-        Self { colors, places }
+        let indices = ordered.iter().map(|&(c, _)| (c, index(c))).collect();
+        Self { colors, indices }
     }
 
-    /// The place of a colour that has been counted.
-    pub(crate) fn place(&self, color: Rgb) -> u8 {
-        self.places.get(&color).copied().unwrap_or(0)
+    /// The index of a colour that has been counted.
+    pub(crate) fn index_of(&self, color: Rgb) -> u8 {
+        self.indices.get(&color).copied().unwrap_or(0)
     }
 }
 
 /// Colours that leave none farther away than `error`; none if there would be more than `most`.
-fn covering(ordered: &[(Rgb, u64)], error: u8, most: usize) -> Option<Vec<Rgb>> {
+fn covering(ordered: &[(Rgb, u64)], error: u8, max_colors: usize) -> Option<Vec<Rgb>> {
     let mut kept: Vec<Rgb> = Vec::new();
     for &(color, _) in ordered {
         if kept.iter().any(|k| distance(*k, color) <= error) {
             continue;
         }
-        if kept.len() == most {
+        if kept.len() == max_colors {
             return None;
         }
         kept.push(color);
@@ -64,7 +64,7 @@ mod tests {
 
     /// The largest difference between a colour and what is shown in its stead.
     fn error(palette: &Palette, counts: &HashMap<Rgb, u64>) -> u8 {
-        let shown = |color: &Rgb| palette.colors[usize::from(palette.place(*color))];
+        let shown = |color: &Rgb| palette.colors[usize::from(palette.index_of(*color))];
         let errors = counts.keys().map(|color| distance(shown(color), *color));
         errors.fold(0, u8::max)
     }
@@ -94,7 +94,7 @@ mod tests {
         let palette = Palette::of(&counts, 255);
         assert!(palette.colors.len() <= 255 && palette.colors.len() > 100);
         for color in flat {
-            assert_eq!(palette.colors[usize::from(palette.place(color))], color);
+            assert_eq!(palette.colors[usize::from(palette.index_of(color))], color);
         }
         // Three lines of about 240 tints under 255 colours: each stands for itself and one on either side.
         assert!(error(&palette, &counts) <= 2);
@@ -105,7 +105,7 @@ mod tests {
         let cube = (0..32_768_u32).map(|i| [i & 31, (i >> 5) & 31, i >> 10]);
         let counts: HashMap<Rgb, u64> = cube.map(|c| (c.map(|c| (c * 8) as u8), 1)).collect();
         let palette = Palette::of(&counts, 255);
-        // 255 cubes of side 40 fill the space of 248; they overlap, as no place is chosen for them.
+        // 255 cubes of side 40 fill the space of 248; they overlap, since their positions are random.
         assert!(palette.colors.len() <= 255 && error(&palette, &counts) < 64);
         assert_eq!(Palette::of(&HashMap::new(), 255).colors.len(), 0);
     }

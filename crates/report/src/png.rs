@@ -2,14 +2,13 @@
 
 use crate::error::ReportError;
 use crate::figure::Figure;
-use crate::fonts;
 use crate::page::Page;
-use crate::raster::Vector;
+use crate::raster::SvgPicture;
 use ::png::{BitDepth, ColorType, DeflateCompression, Encoder, EncodingError, Filter};
 use resvg::tiny_skia::Pixmap;
 
 /// No side of a page is longer, in pixels.
-const LONGEST: u32 = 16_384;
+const MAX_SIDE: u32 = 16_384;
 
 /// Draws the figure and returns it as a PNG.
 ///
@@ -18,11 +17,11 @@ const LONGEST: u32 = 16_384;
 ///
 /// # Errors
 ///
-/// [`ReportError::Size`] if the page is too large; [`ReportError::Draw`], [`ReportError::Font`] and [`ReportError::Encode`] if a
-/// library refuses, which no data should bring about.
+/// [`ReportError::Size`] if the page is too large; [`ReportError::Draw`] and [`ReportError::Encode`] if a library refuses,
+/// which no data should cause.
 pub fn png(figure: &Figure) -> Result<Vec<u8>, ReportError> {
-    let vector = vector(figure)?;
-    let pixels = vector.pixels(&figure.name, [vector.width, vector.height])?;
+    let svg = svg_picture(figure)?;
+    let pixels = svg.rasterize(&figure.name, [svg.width, svg.height])?;
     encoded(&pixels).map_err(|e| ReportError::Encode {
         figure: figure.name.clone(),
         reason: e.to_string(),
@@ -49,29 +48,30 @@ fn encoded(pixels: &Pixmap) -> Result<Vec<u8>, EncodingError> {
     Ok(bytes)
 }
 
-fn vector(figure: &Figure) -> Result<Vector, ReportError> {
-    fonts::ready()?;
+fn svg_picture(figure: &Figure) -> Result<SvgPicture, ReportError> {
     let page = Page::new(figure);
     let (width, height) = (page.width as u32, page.height as u32);
-    if width.max(height) > LONGEST {
+    if width.max(height) > MAX_SIDE {
         return Err(ReportError::Size {
             figure: figure.name.clone(),
             width,
             height,
         });
     }
-    Vector::drawn(&figure.name, [width, height], |canvas| page.draw(canvas))
+    Ok(SvgPicture::new([width, height], |canvas| page.draw(canvas)))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::canvas::FACTOR;
-    use crate::figure::Paint;
-    use crate::figure::{Axis, Chart, Mark, Panel, Scale, Series, Stroke};
+    use crate::axis::Paint;
+    use crate::axis::{Axis, Scale};
+    use crate::canvas::UNITS_PER_PIXEL;
+    use crate::figure::{Chart, Mark, Panel, Series, Stroke};
+    use crate::fonts;
     use crate::grid::{Cell, Grid, Group, Row};
     use crate::rect::Rect;
-    use crate::shape::{Drawing, Pen, Shape, Side};
+    use crate::shape::{Drawing, Pen, Shape, TextPlacement};
     use proptest::prelude::*;
     use resvg::usvg::{self, Node, Tree};
 
@@ -85,16 +85,16 @@ mod tests {
                         let words: String = text.chunks().iter().map(|c| c.text().trim()).collect();
                         let letters = text.flattened().abs_bounding_box();
                         let [x0, y0] =
-                            [letters.left(), letters.top()].map(|v| f64::from(v) / FACTOR);
-                        let [x1, y1] =
-                            [letters.right(), letters.bottom()].map(|v| f64::from(v) / FACTOR);
+                            [letters.left(), letters.top()].map(|v| f64::from(v) / UNITS_PER_PIXEL);
+                        let [x1, y1] = [letters.right(), letters.bottom()]
+                            .map(|v| f64::from(v) / UNITS_PER_PIXEL);
                         found.push((words, Rect { x0, y0, x1, y1 }));
                     }
                     Node::Path(_) | Node::Image(_) => {}
                 }
             }
         }
-        let Vector { svg, width, height } = vector(figure).unwrap();
+        let SvgPicture { svg, width, height } = svg_picture(figure).unwrap();
         let tree = Tree::from_str(&svg, &fonts::options()).unwrap();
         let mut found = Vec::new();
         collect(tree.root(), &mut found);
@@ -104,16 +104,16 @@ mod tests {
     fn legible(figure: &Figure) -> Result<(), String> {
         let (page, texts) = texts(figure);
         for (i, (text, place)) in texts.iter().enumerate() {
-            if !page.holds(&place.grown(4.0)) {
+            if !page.contains_rect(&place.grown(4.0)) {
                 return Err(format!("`{text}` is cut off: {place:?} on {page:?}"));
             }
             // The copies that make a rim are the same words.
             for (other, there) in texts[..i].iter().filter(|(other, _)| other != text) {
-                let apart = place.x1 < there.x0
+                let separate = place.x1 < there.x0
                     || there.x1 < place.x0
                     || place.y1 < there.y0
                     || there.y1 < place.y0;
-                if !apart {
+                if !separate {
                     return Err(format!("`{text}` {place:?} lies on `{other}` {there:?}"));
                 }
             }
@@ -182,12 +182,12 @@ mod tests {
                 through: [u.abs(), v.abs()],
                 label,
             },
-            4 => Mark::Words { at: [u, v], label },
+            4 => Mark::Text { at: [u, v], label },
             _ => Mark::Point { at: [u, v], label },
         })
     }
 
-    fn chart(most: usize) -> impl Strategy<Value = Chart> {
+    fn chart(max_series: usize) -> impl Strategy<Value = Chart> {
         let title = prop_oneof![Just(String::new()), "[A-Z][a-z]{1,9}( [a-z]{1,9}){0,12}"];
         let marks = prop::collection::vec(mark(), 0..4);
         (
@@ -195,7 +195,7 @@ mod tests {
             axis(),
             axis(),
             prop::option::of(axis()),
-            prop::collection::vec(series(), 0..=most),
+            prop::collection::vec(series(), 0..=max_series),
             marks,
         )
             .prop_map(|(title, x, y, y2, series, marks)| Chart {
@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn long_labels_of_low_stacked_charts_keep_to_their_plots() {
         // The last word, the power of ten and the unit are not parted from each other.
-        let axis = || Axis::new("words for displacements", "kg m²/rad").within(0.0, 3e-12);
+        let axis = || Axis::new("words for displacements", "kg m²/rad").with_range(0.0, 3e-12);
         let chart = |title: &str| Chart {
             title: title.to_owned(),
             y: axis(),
@@ -304,7 +304,7 @@ mod tests {
 
     #[test]
     fn the_judge_of_overlaps_sees_them() {
-        let words = |text: &str| Shape::text([0.0, 0.0], text, Side::Left);
+        let words = |text: &str| Shape::text([0.0, 0.0], text, TextPlacement::Left);
         let drawing = |shapes| Drawing {
             shapes,
             ..Drawing::default()
@@ -334,6 +334,6 @@ mod tests {
             panels,
             ..Figure::default()
         };
-        assert!(matches!(png(&long), Err(ReportError::Size { height, .. }) if height > LONGEST));
+        assert!(matches!(png(&long), Err(ReportError::Size { height, .. }) if height > MAX_SIDE));
     }
 }

@@ -1,43 +1,33 @@
 //! From what is drawn on a canvas to pixels.
 
-use crate::canvas::{Canvas, Drawn, FACTOR};
+use crate::canvas::{Canvas, UNITS_PER_PIXEL};
 use crate::error::ReportError;
 use crate::fonts;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Tree;
 
 /// A page as SVG in fractions of a pixel, and its size in page pixels.
-pub(crate) struct Vector {
+pub(crate) struct SvgPicture {
     pub(crate) svg: String,
     pub(crate) width: u32,
     pub(crate) height: u32,
 }
 
-impl Vector {
-    /// A page of the given width and height, drawn by `draw`. The fonts must be ready.
-    pub(crate) fn drawn(
-        name: &str,
-        [width, height]: [u32; 2],
-        draw: impl FnOnce(&mut Canvas<'_>) -> Drawn,
-    ) -> Result<Self, ReportError> {
+impl SvgPicture {
+    /// A page of the given width and height in pixels, drawn by `draw`.
+    pub(crate) fn new([width, height]: [u32; 2], draw: impl FnOnce(&mut Canvas<'_>)) -> Self {
         let mut svg = String::new();
         let mut canvas = Canvas::new(&mut svg, width, height);
-        let drawn = draw(&mut canvas).and_then(|()| canvas.finish());
-        drawn.map_err(|reason| ReportError::Draw {
-            figure: name.to_owned(),
-            reason,
-        })?;
+        draw(&mut canvas);
+        canvas.finish();
         // The backend sets neither, and mitred joins make spikes of sharp turns.
-        let svg = svg.replacen(
-            "<svg ",
-            "<svg stroke-linejoin=\"round\" stroke-linecap=\"round\" ",
-            1,
-        );
-        Ok(Self { svg, width, height })
+        let round = "<svg stroke-linejoin=\"round\" stroke-linecap=\"round\" ";
+        let svg = svg.replacen("<svg ", round, 1);
+        Self { svg, width, height }
     }
 
     /// The page stretched over a picture of the given width and height.
-    pub(crate) fn pixels(
+    pub(crate) fn rasterize(
         &self,
         name: &str,
         [width, height]: [u32; 2],
@@ -51,7 +41,7 @@ impl Vector {
             width,
             height,
         })?;
-        let scale = |to: u32, from: u32| (f64::from(to) / f64::from(from) / FACTOR) as f32;
+        let scale = |to: u32, from: u32| (f64::from(to) / f64::from(from) / UNITS_PER_PIXEL) as f32;
         let stretch = Transform::from_scale(scale(width, self.width), scale(height, self.height));
         resvg::render(&tree, stretch, &mut pixels.as_mut());
         Ok(pixels)

@@ -54,17 +54,17 @@ impl Rect {
     }
 
     /// Grown by `by` on every side.
-    pub(crate) fn grown(&self, by: f64) -> Self {
+    pub(crate) fn grown(&self, margin: f64) -> Self {
         Self {
-            x0: self.x0 - by,
-            y0: self.y0 - by,
-            x1: self.x1 + by,
-            y1: self.y1 + by,
+            x0: self.x0 - margin,
+            y0: self.y0 - margin,
+            x1: self.x1 + margin,
+            y1: self.y1 + margin,
         }
     }
 
     /// What the insets leave; never less than a small plot, so that crowded labels do not turn it inside out.
-    pub(crate) fn inside(&self, insets: Insets) -> Self {
+    pub(crate) fn inset(&self, insets: Insets) -> Self {
         let x0 = self.x0 + insets.left;
         let y0 = self.y0 + insets.top;
         Self {
@@ -80,12 +80,12 @@ impl Rect {
     }
 
     /// Whether the two have a point in common.
-    pub(crate) fn touches(&self, other: &Self) -> bool {
+    pub(crate) fn intersects(&self, other: &Self) -> bool {
         self.x0 <= other.x1 && other.x0 <= self.x1 && self.y0 <= other.y1 && other.y0 <= self.y1
     }
 
     /// Whether `other` lies within.
-    pub(crate) fn holds(&self, other: &Self) -> bool {
+    pub(crate) fn contains_rect(&self, other: &Self) -> bool {
         other.x0 >= self.x0 && other.x1 <= self.x1 && other.y0 >= self.y0 && other.y1 <= self.y1
     }
 }

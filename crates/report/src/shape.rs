@@ -1,6 +1,6 @@
 //! A scaled drawing as plain data: enough for a planar linkage in several positions.
 
-use crate::figure::{Axis, Paint};
+use crate::axis::{Axis, Paint};
 
 /// Shapes in a plane with equal axes, fitted to the panel.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -88,7 +88,7 @@ pub enum Shape {
         /// Centre of the pin.
         at: [f64; 2],
     },
-    /// A fixed surface, such as a guide, hatched on the right of the way from `from` to `to`.
+    /// A fixed surface, such as a guide, hatched on the right of the line from `from` to `to`.
     GroundLine {
         /// Where it begins.
         from: [f64; 2],
@@ -108,14 +108,12 @@ pub enum Shape {
     },
     /// Words.
     Text {
-        /// The place they belong to.
+        /// The point they belong to.
         at: [f64; 2],
         /// The words.
         text: String,
-        /// Font size in pixels; 0 means that of tick labels.
-        size_px: f64,
         /// Where they stand, seen from `at`.
-        side: Side,
+        placement: TextPlacement,
         /// Colour.
         color: Paint,
     },
@@ -156,12 +154,11 @@ impl Shape {
     }
 
     /// Words of the usual size.
-    pub fn text(at: [f64; 2], text: impl Into<String>, side: Side) -> Self {
+    pub fn text(at: [f64; 2], text: impl Into<String>, placement: TextPlacement) -> Self {
         Self::Text {
             at,
             text: text.into(),
-            size_px: 0.0,
-            side,
+            placement,
             color: Paint::Ink,
         }
     }
@@ -178,9 +175,9 @@ impl Shape {
     }
 }
 
-/// Where words stand, seen from the place they belong to.
+/// Where words stand, seen from the point they belong to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Side {
+pub enum TextPlacement {
     /// On it.
     #[default]
     Centre,

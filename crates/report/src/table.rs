@@ -1,45 +1,62 @@
 //! Tables of numbers as CSV.
 
-use crate::error::ReportError;
+use crate::error::{ReportError, check_rows};
+use crate::npz::table_npz;
+pub use dwell_findings::{Column, Table};
 use std::fmt::Write as _;
 
-/// A column of a table.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Column {
-    /// What it holds.
-    pub name: String,
-    /// Its unit; empty if there is none.
-    pub unit: String,
+/// A file format of tables. What writes a table takes a list of them, so that a new format is added here and in
+/// [`Files::add_table`](crate::Files::add_table).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TableFormat {
+    /// Text, by [`TableExport::csv`].
+    Csv,
+    /// A NumPy archive, by [`TableExport::npz`].
+    Npz,
 }
 
-impl Column {
-    /// A column of the given name and unit.
-    pub fn new(name: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            unit: unit.into(),
+impl TableFormat {
+    /// Every format.
+    pub const ALL: [Self; 2] = [Self::Csv, Self::Npz];
+
+    /// The extension of its files, without a dot.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Npz => "npz",
         }
     }
 }
 
-/// Numbers in columns.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Table {
-    /// The columns.
-    pub columns: Vec<Column>,
-    /// The rows, each as long as `columns`; NaN where there is no value.
-    pub rows: Vec<Vec<f64>>,
-}
-
-impl Table {
+/// The file formats of a [`Table`].
+pub trait TableExport {
     /// The table as CSV text: a header `name [unit]`, then the rows with the fewest digits that give back every bit.
     /// A NaN is an empty field; what is infinite is written `inf` or `-inf`.
     ///
     /// # Errors
     ///
     /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Csv`] if the writer refuses.
-    pub fn csv(&self) -> Result<String, ReportError> {
-        self.check_rows()?;
+    fn csv(&self) -> Result<String, ReportError>;
+
+    /// The table as a NumPy archive (`.npz`, arrays of format 1.0): what `numpy.load` gives back bit for bit.
+    ///
+    /// Every column is an array of its own, `<f8` of shape (rows,), under its name. The array `columns` holds these
+    /// keys in the order of the table, and `units` their units: `dict(zip(z["columns"], z["units"]))`.
+    ///
+    /// A key is also a file name within the archive: characters that some system refuses in one (`/ \ : * ? " < > |`
+    /// and controls) become `_`, and a name that is taken already gets `_2`, `_3` … behind it. The same table makes
+    /// the same bytes on every machine.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Row`] if a row is not as long as the header; [`ReportError::Npz`] if the archive refuses, as for a
+    /// name of more than 65 000 bytes.
+    fn npz(&self) -> Result<Vec<u8>, ReportError>;
+}
+
+impl TableExport for Table {
+    fn csv(&self) -> Result<String, ReportError> {
+        check_rows(self)?;
         let mut writer = csv::Writer::from_writer(Vec::new());
         let header = |c: &Column| {
             if c.unit.is_empty() {
@@ -70,17 +87,8 @@ impl Table {
         Ok(String::from_utf8_lossy(&bytes).into_owned())
     }
 
-    /// Whether every row is as long as the header.
-    pub(crate) fn check_rows(&self) -> Result<(), ReportError> {
-        let expected = self.columns.len();
-        let wrong = self.rows.iter().position(|row| row.len() != expected);
-        wrong.map_or(Ok(()), |row| {
-            Err(ReportError::Row {
-                row,
-                found: self.rows[row].len(),
-                expected,
-            })
-        })
+    fn npz(&self) -> Result<Vec<u8>, ReportError> {
+        table_npz(self)
     }
 }
 

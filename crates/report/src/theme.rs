@@ -1,11 +1,11 @@
 //! Colours and sizes: one look for every figure.
 
-use crate::figure::Paint;
+use crate::axis::Paint;
 
 /// Red, green and blue.
 pub(crate) type Rgb = [u8; 3];
 
-/// Okabe and Ito's palette (2008), told apart by colour-blind readers; without its yellow, which vanishes on white,
+/// Okabe and Ito's palette (2008), distinguishable for colour-blind readers; without its yellow, which vanishes on white,
 /// and its black, which is [`Paint::Ink`].
 const PALETTE: [Rgb; 6] = [
     [0, 114, 178],
@@ -26,22 +26,22 @@ pub(crate) const BAND: Rgb = [236, 240, 247];
 pub(crate) const EDGE: Rgb = [205, 206, 210];
 
 /// Font sizes, in pixels of the final picture. The tick size keeps figures legible at half their size.
-pub(crate) const TICK: f64 = 27.0;
-pub(crate) const LABEL: f64 = 30.0;
-pub(crate) const PANEL_TITLE: f64 = 31.0;
-pub(crate) const TITLE: f64 = 42.0;
-pub(crate) const CAPTION: f64 = 27.0;
-pub(crate) const PROVENANCE: f64 = 22.0;
+pub(crate) const TICK_SIZE: f64 = 27.0;
+pub(crate) const LABEL_SIZE: f64 = 30.0;
+pub(crate) const PANEL_TITLE_SIZE: f64 = 31.0;
+pub(crate) const TITLE_SIZE: f64 = 42.0;
+pub(crate) const CAPTION_SIZE: f64 = 27.0;
+pub(crate) const PROVENANCE_SIZE: f64 = 22.0;
 
-pub(crate) const CURVE: f64 = 4.2;
-pub(crate) const MARK: f64 = 2.6;
-pub(crate) const SPINE: f64 = 2.2;
+pub(crate) const CURVE_WIDTH: f64 = 4.2;
+pub(crate) const MARK_WIDTH: f64 = 2.6;
+pub(crate) const SPINE_WIDTH: f64 = 2.2;
 pub(crate) const GRID_WIDTH: f64 = 1.6;
-pub(crate) const MARKER: f64 = 8.0;
+pub(crate) const MARKER_RADIUS: f64 = 8.0;
 pub(crate) const TICK_LENGTH: f64 = 9.0;
 
 /// The colour of a series that names none: the palette, then the two greys, then round again.
-pub(crate) fn automatic(index: usize) -> Paint {
+pub(crate) fn default_paint(index: usize) -> Paint {
     match index % (PALETTE.len() + 2) {
         6 => Paint::Ink,
         7 => Paint::Grey,
@@ -60,14 +60,14 @@ pub(crate) fn rgb(paint: Paint) -> Rgb {
 
 /// The colour moved towards white: 0 keeps it, 1 is white.
 pub(crate) fn lightened(color: Rgb, lightness: f64) -> Rgb {
-    let part = if lightness.is_finite() {
+    let fraction = if lightness.is_finite() {
         lightness.clamp(0.0, 1.0)
     } else {
         0.0
     };
     color.map(|c| {
         let c = f64::from(c);
-        (c + (255.0 - c) * part).round() as u8
+        (c + (255.0 - c) * fraction).round() as u8
     })
 }
 

@@ -169,7 +169,7 @@ fn a_filled_series_covers_the_area_down_to_zero() {
     // A jump half way, to the other sign: two of four quarters are filled.
     let points = vec![[0.0, 0.6], [0.5, 0.6], [0.5, -0.6], [1.0, -0.6]];
     let chart = Chart {
-        y: Axis::default().within(-1.0, 1.0),
+        y: Axis::default().with_range(-1.0, 1.0),
         series: vec![Series::line("", points).stroke(Stroke::Filled)],
         ..Chart::default()
     };
@@ -197,8 +197,8 @@ fn a_stack_is_one_panel_and_shows_every_chart() {
         panels: vec![three.clone().into()],
         ..page(1, vec![])
     };
-    let (stacked, apart) = (Picture::of(&stack), Picture::of(&page(1, three)));
-    assert!(2 * stacked.height < apart.height);
+    let (stacked, separate) = (Picture::of(&stack), Picture::of(&page(1, three)));
+    assert!(2 * stacked.height < separate.height);
     // Three curves as long as the plot is wide, each four pixels thick.
     assert!(stacked.count(BLUE) > 3 * 4 * 1000);
     let none = Figure {
@@ -215,7 +215,7 @@ fn grid(cells: Vec<Option<Cell>>) -> Picture {
             rows: vec![Row::new("row", cells)],
             ..Group::default()
         }],
-        values: Axis::new("digits", "").within(0.0, 16.0),
+        values: Axis::new("digits", "").with_range(0.0, 16.0),
         ..Grid::default()
     };
     Picture::of(&Figure {
@@ -244,7 +244,7 @@ fn a_cell_has_the_colour_of_its_value_and_a_failed_one_a_vermilion_border() {
 fn what_does_not_apply_is_not_the_lowest_value_nor_a_cell_without_one() {
     let absent = grid(vec![None; 4]);
     assert!(absent.pixels == grid(vec![]).pixels);
-    let nothing = grid(vec![Some(Cell::words("")); 4]);
+    let nothing = grid(vec![Some(Cell::text_only("")); 4]);
     let nowhere = grid(vec![Some(Cell::new(f64::NAN, "")); 4]);
     assert!(nothing.pixels == nowhere.pixels);
     // The dash is the only grey ink of that kind; its edges are tints.

@@ -1,16 +1,17 @@
 //! The one error type: a message, where in the file, and what to try.
 
 use miette::{Diagnostic, LabeledSpan, NamedSource};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Longest line that is shown, bytes. A longer one is no help to a reader, and the drawing of
 /// columns beyond 65 535 panics.
-const LONGEST_LINE: usize = 2000;
+const MAX_LINE_BYTES: usize = 2000;
 
 /// Name and text of a scene, shared by the scene and its errors.
 pub(crate) type Source = Arc<NamedSource<String>>;
 
-/// What is wrong with a scene, where in its text, and what to try.
+/// What is wrong with a scene, where in its text, and how to mend it.
 ///
 /// Several errors of one file are one `SceneError` whose [`errors`](Self::errors) are the single
 /// ones.
@@ -19,7 +20,7 @@ pub(crate) type Source = Arc<NamedSource<String>>;
 pub struct SceneError {
     /// What is wrong, naming the body, joint or key.
     pub message: String,
-    /// What to try.
+    /// How to mend it.
     #[help]
     pub help: Option<String>,
     /// Byte ranges of the text, each with a remark. Within the text, on character boundaries.
@@ -30,29 +31,63 @@ pub struct SceneError {
     pub text: Option<Arc<NamedSource<String>>>,
     /// The single errors, if there are several.
     #[related]
-    pub others: Vec<SceneError>,
+    pub related: Vec<SceneError>,
+}
+
+/// What a scene should change, though it is read: it uses a former name. Plain data; nobody prints it.
+#[derive(Debug, Clone, thiserror::Error, Diagnostic)]
+#[error("{message}")]
+#[diagnostic(severity(Warning))]
+pub struct SceneWarning {
+    /// What is written, and what to write instead.
+    pub message: String,
+    /// The byte range of the text where the former name first stands.
+    #[label(collection)]
+    pub labels: Vec<LabeledSpan>,
+    /// The text the label points into; none where the line is too long to be shown.
+    #[source_code]
+    pub text: Option<Arc<NamedSource<String>>>,
+}
+
+impl SceneWarning {
+    /// `former` stands at `span` of the text and is now called `current`.
+    pub(crate) fn renamed(
+        source: &Source,
+        former: &str,
+        current: &str,
+        span: Range<usize>,
+    ) -> Self {
+        let message = format!("`{former}` is now called `{current}`");
+        let label = (span, "former name".to_owned());
+        let located = SceneError::with_labels(source, message, None, [label]);
+        Self {
+            message: located.message,
+            labels: located.labels,
+            text: located.text,
+        }
+    }
 }
 
 impl SceneError {
     /// An error without a place: there is no text.
-    pub(crate) fn bare(message: String, help: Option<String>) -> Self {
+    pub(crate) fn without_labels(message: String, help: Option<String>) -> Self {
         Self {
             message,
             help,
             labels: Vec::new(),
             text: None,
-            others: Vec::new(),
+            related: Vec::new(),
         }
     }
 
     /// An error at ranges of the text. The ranges are cut to the text and to character boundaries,
     /// since a label outside would keep the whole message from being drawn. Where a line to be
     /// shown is too long for that, the message says line and column instead.
-    pub(crate) fn at(
+    pub(crate) fn with_labels(
         source: &Source,
         message: String,
         help: Option<String>,
-        labels: impl IntoIterator<Item = (std::ops::Range<usize>, String)>,
+        labels: impl IntoIterator<Item = (Range<usize>, String)>,
     ) -> Self {
         let text = source.inner();
         // Nothing is drawn behind the last character: what is missing there is shown at it.
@@ -75,24 +110,24 @@ impl SceneError {
             let line = before.matches('\n').count() + 1;
             let column = before.rsplit('\n').next().unwrap_or_default();
             let column = column.chars().count() + 1;
-            let place = format!("{}, line {line}, column {column}", source.name());
-            return Self::bare(format!("{message} ({place})"), help);
+            let position = format!("{}, line {line}, column {column}", source.name());
+            return Self::without_labels(format!("{message} ({position})"), help);
         }
         Self {
             message,
             help,
             labels,
             text: Some(Arc::clone(source)),
-            others: Vec::new(),
+            related: Vec::new(),
         }
     }
 
     /// The single errors: itself, or those it gathers.
     pub fn errors(&self) -> &[Self] {
-        if self.others.is_empty() {
+        if self.related.is_empty() {
             std::slice::from_ref(self)
         } else {
-            &self.others
+            &self.related
         }
     }
 
@@ -116,6 +151,6 @@ fn has_long_lines(text: &str, label: &LabeledSpan) -> bool {
     let to = after.match_indices('\n').nth(1);
     let from = from.map_or(0, |(at, _)| at + 1);
     let to = to.map_or(text.len(), |(at, _)| end + at);
-    let shown = text.get(from..to).unwrap_or_default();
-    shown.lines().any(|line| line.len() > LONGEST_LINE)
+    let excerpt = text.get(from..to).unwrap_or_default();
+    excerpt.lines().any(|line| line.len() > MAX_LINE_BYTES)
 }

@@ -1,7 +1,7 @@
 //! Expressions in strings: their errors point at the characters of the file.
 
-use crate::fields::{Value, string};
-use crate::problem::{Problem, Problems};
+use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::table_reader::{Value, string};
 use dwell_laws::Expression;
 
 /// The expression of a string, in which the names of `variables` may occur.
@@ -9,15 +9,15 @@ pub(crate) fn expression(
     value: &Value<'_>,
     variables: &[&str],
     what: &str,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<Expression> {
-    let text = string(value, format_args!("{what}"), problems)?;
+    let text = string(value, format_args!("{what}"), diagnostics)?;
     let error = match Expression::parse(text, variables) {
         Ok(expression) => return Some(expression),
         Err(error) => error,
     };
-    let at = problems.within(&value.span(), text, error.span);
-    let mut problem = Problem::new(format!("{what}: {}", error.message)).at(at, "here");
+    let at = diagnostics.part_span(&value.span(), text, error.span);
+    let mut diagnostic = Diagnostic::new(format!("{what}: {}", error.message)).label(at, "here");
     // With one variable, a name of the scene is a likelier slip than a misspelt constant.
     let help = match variables {
         [only] if error.message.starts_with("unknown name") => Some(format!(
@@ -26,8 +26,8 @@ pub(crate) fn expression(
         _ => error.help,
     };
     if let Some(help) = help {
-        problem = problem.help(help);
+        diagnostic = diagnostic.help(help);
     }
-    problems.push(problem);
+    diagnostics.push(diagnostic);
     None
 }

@@ -1,117 +1,150 @@
-//! Friction in joints: loads that the joints' own reactions and speeds make.
+//! Friction in joints: loads that depend on the joints' own reactions and velocities.
 
-use crate::fields::{Entry, Fields, Sign, signed};
-use crate::joints::{Joints, word};
-use crate::keys::{RUBBING_PIN, RUBBING_SLIDE};
-use crate::loads::LoadText;
-use crate::names::shorten;
-use crate::problem::{Problem, Problems, Span};
+use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::joints::{Joints, kind_name};
+use crate::keys::{PRISMATIC_FRICTION, REVOLUTE_FRICTION};
+use crate::loads::ParsedLoad;
+use crate::table_reader::{Entry, SignRule, TableReader, quantity_with_sign};
 use crate::units::{Unit, Units};
+use crate::wording::shorten;
 use dwell_geometry::{Joint, JointId, JointKind};
-use dwell_kinetostatics::{Friction, Load, LoadKind, Magnitude};
+use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude};
 
-/// Speed at which dry friction fades where the scene gives none, rad/s and m/s: small beside the speed
-/// of a machine, and still no stiff equation for an explicit method.
-const FADE: [f64; 2] = [0.01, 0.001];
+/// Regularization speed where the scene gives none, rad/s and m/s: small compared with the speeds of a machine, yet
+/// large enough that the equation of motion is not stiff for an explicit method.
+const DEFAULT_REGULARIZATION_SPEED: [f64; 2] = [0.01, 0.001];
 
 /// The friction of every joint of the section: loads, in the order of the file.
 pub(crate) fn friction(
-    fields: &Fields<'_>,
+    fields: &TableReader<'_>,
     joints: &Joints<'_>,
     units: &Units,
-    problems: &mut Problems,
-) -> Vec<LoadText> {
+    diagnostics: &mut Diagnostics,
+) -> Vec<ParsedLoad> {
     let mut loads = Vec::new();
-    let mut rubbed: Vec<(usize, Span)> = Vec::new();
+    let mut assigned: Vec<(usize, Span)> = Vec::new();
     for entry in &fields.entries {
-        let Some(range) = joints.find(entry.name, &entry.key, problems) else {
+        let Some(range) = joints.find(entry.name, &entry.key, diagnostics) else {
             continue;
         };
-        if let Some((k, other)) = rubbed.iter().find(|(k, _)| range.contains(k)) {
+        if let Some((k, other)) = assigned.iter().find(|(k, _)| range.contains(k)) {
             let name = shorten(&joints.list[*k].name);
-            problems.push(
-                Problem::new(format!("joint `{name}` rubs twice"))
-                    .at(other.clone(), "here")
-                    .at(entry.key.clone(), "and here again")
-                    .help("keep one of them: the name of a pin of several bodies is that of all its joints"),
+            diagnostics.push(
+                Diagnostic::new(format!("joint `{name}` has two friction tables"))
+                    .label(other.clone(), "here")
+                    .label(entry.key.clone(), "and here again")
+                    .help("keep one of them: the name of a pin of several bodies stands for all its joints"),
             );
             continue;
         }
-        rubbed.extend(range.clone().map(|k| (k, entry.key.clone())));
-        // The joints of a pin rub alike: what is wrong is said once, of the first.
+        assigned.extend(range.clone().map(|k| (k, entry.key.clone())));
+        // The joints of a pin have the same friction: an error is reported once, for the first.
         let Some(first) = &joints.list[range.start].joint else {
             continue;
         };
-        let Some(rub) = Rub::read(entry, first.kind, units, problems) else {
+        let Some(parsed) = ParsedFriction::read(entry, first.kind, units, diagnostics) else {
             continue;
         };
         for k in range {
             if let Some(joint) = &joints.list[k].joint {
-                loads.extend(rub.loads(entry, JointId(k), joint, joints));
+                loads.extend(parsed.loads(entry, JointId(k), joint, joints));
             }
         }
     }
     loads
 }
 
-/// How a joint rubs: each with where it is written.
-struct Rub {
-    /// Coefficient, radius or guide, and fading speed.
-    dry: Option<([f64; 3], Span)>,
+/// The friction of a joint, each part with its place in the file.
+struct ParsedFriction {
+    dry: Option<DryFriction>,
     viscous: Option<(f64, Span)>,
 }
 
-impl Rub {
+struct DryFriction {
+    coefficient: f64,
+    contact: FrictionContact,
+    /// rad/s or m/s.
+    regularization_speed: f64,
+    span: Span,
+}
+
+impl ParsedFriction {
     fn read(
         entry: &Entry<'_>,
         kind: JointKind,
         units: &Units,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Option<Self> {
         let name = shorten(entry.name);
-        let fields = Fields::open(entry, format!("friction of `{name}`"), problems)?;
-        let turns = match kind {
+        let fields = TableReader::open(entry, format!("friction of `{name}`"), diagnostics)?;
+        let is_revolute = match kind {
             JointKind::Revolute => true,
             JointKind::Prismatic { .. } | JointKind::Slot { .. } => false,
             _ => {
-                problems.push(
-                    Problem::new(format!("joint `{name}` does not rub"))
-                        .at(entry.key.clone(), format!("its kind is {}", word(kind)))
-                        .help("revolute joints, prismatic joints and slots rub"),
+                diagnostics.push(
+                    Diagnostic::new(format!("joint `{name}` cannot have friction"))
+                        .label(
+                            entry.key.clone(),
+                            format!("its kind is {}", kind_name(kind)),
+                        )
+                        .help("revolute joints, prismatic joints and slots can have friction"),
                 );
                 return None;
             }
         };
-        let before = problems.count();
-        keys_of(&fields, kind, problems);
-        let number = |key: &str, unit: &Unit, sign: Sign, problems: &mut Problems| {
+        let before = diagnostics.count();
+        check_friction_keys(&fields, kind, diagnostics);
+        let number = |key: &str, unit: &Unit, sign: SignRule, diagnostics: &mut Diagnostics| {
             let entry = fields.get(key)?;
             let what = format_args!("{key} of {}", fields.what);
-            let si = signed(entry.value, unit, sign, what, "", problems)?;
+            let si = quantity_with_sign(entry.value, unit, sign, what, "", diagnostics)?;
             Some((si, entry.value.span()))
         };
-        let si = Unit::of_si();
-        let coefficient = number("coefficient", &si, Sign::NotNegative, problems);
-        let radius = number("radius", &units.length, Sign::Positive, problems);
-        let guide = number("guide", &units.length, Sign::NotNegative, problems);
-        let fade = number("fade", units.of(turns), Sign::Positive, problems);
-        let viscous = number("viscous", &si, Sign::NotNegative, problems);
+        let si = Unit::si_unit();
+        let coefficient = number("coefficient", &si, SignRule::NotNegative, diagnostics);
+        let radius = number("radius", &units.length, SignRule::Positive, diagnostics);
+        let guide = number(
+            "guide-length",
+            &units.length,
+            SignRule::NotNegative,
+            diagnostics,
+        );
+        let regularization_speed = number(
+            "regularization-speed",
+            units.coordinate_unit(is_revolute),
+            SignRule::Positive,
+            diagnostics,
+        );
+        let viscous = number("viscous", &si, SignRule::NotNegative, diagnostics);
         // A guide in its place is one slip, not two.
-        if turns && fields.get("coefficient").is_some() && fields.get("guide").is_none() {
-            let help = format!("add `radius`: that of the pin, in {}", units.length.name);
-            fields.need("radius", &entry.key, &help, problems);
+        if is_revolute
+            && fields.get("coefficient").is_some()
+            && fields.get("guide-length").is_none()
+        {
+            let help = format!(
+                "add `radius`, the radius of the pin, in {}",
+                units.length.name
+            );
+            fields.require("radius", &entry.key, &help, diagnostics);
         }
-        if problems.count() != before {
+        if diagnostics.count() != before {
             return None;
         }
-        let [fade_of_pins, fade_of_slides] = FADE;
-        let (size, default) = match turns {
-            true => (radius, fade_of_pins),
-            false => (guide, fade_of_slides),
+        let [default_of_revolute, default_of_prismatic] = DEFAULT_REGULARIZATION_SPEED;
+        let (contact, default) = if is_revolute {
+            let radius = radius.map_or(0.0, |s| s.0);
+            (FrictionContact::Pin { radius }, default_of_revolute)
+        } else {
+            let length = guide.map_or(0.0, |s| s.0);
+            (FrictionContact::Guide { length }, default_of_prismatic)
         };
-        let (size, fade) = (size.map_or(0.0, |s| s.0), fade.map_or(default, |f| f.0));
         Some(Self {
-            dry: coefficient.map(|(coefficient, at)| ([coefficient, size, fade], at)),
+            dry: coefficient.map(|(coefficient, span)| DryFriction {
+                coefficient,
+                contact,
+                regularization_speed: regularization_speed.map_or(default, |f| f.0),
+                span,
+            }),
             viscous,
         })
     }
@@ -122,58 +155,58 @@ impl Rub {
         id: JointId,
         joint: &Joint,
         joints: &Joints<'_>,
-    ) -> Vec<LoadText> {
+    ) -> Vec<ParsedLoad> {
         let bodies = joint.bodies;
         let [force, damper] = match joints.guide(id) {
-            Some(guide) => [LoadKind::Slide(guide), LoadKind::SlideDamper(guide)],
+            Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
             None => [
                 LoadKind::Torque { bodies },
-                LoadKind::TorsionDamper { bodies },
+                LoadKind::RotationalDamper { bodies },
             ],
         };
-        let dry = self.dry.as_ref().map(|([coefficient, size, fade], at)| {
+        let dry = self.dry.as_ref().map(|dry| {
             let friction = Friction {
                 joint: id,
-                coefficient: *coefficient,
-                size: *size,
-                fade: *fade,
+                coefficient: dry.coefficient,
+                contact: dry.contact,
+                regularization_speed: dry.regularization_speed,
             };
-            ("friction", force, Magnitude::Friction(friction), at)
+            ("friction", force, Magnitude::Friction(friction), &dry.span)
         });
         let viscous = self.viscous.as_ref();
         let viscous =
             viscous.map(|(constant, at)| ("viscous", damper, Magnitude::Constant(*constant), at));
         let both = dry.into_iter().chain(viscous);
-        let text = |(word, kind, magnitude, at): (&str, _, _, &Span)| LoadText {
+        let parsed = |(suffix, kind, magnitude, at): (&str, _, _, &Span)| ParsedLoad {
             key: entry.key.clone(),
             magnitude: Some(at.clone()),
             load: Some(Load {
-                name: format!("{}.{word}", joint.name),
+                name: format!("{}.{suffix}", joint.name),
                 kind,
                 magnitude,
             }),
         };
-        both.map(text).collect()
+        both.map(parsed).collect()
     }
 }
 
-/// Says which keys are none of this kind of joint's, and what dry friction lacks.
-fn keys_of(fields: &Fields<'_>, kind: JointKind, problems: &mut Problems) {
+/// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.
+fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, diagnostics: &mut Diagnostics) {
     let table = match kind {
-        JointKind::Revolute => &RUBBING_PIN,
-        _ => &RUBBING_SLIDE,
+        JointKind::Revolute => &REVOLUTE_FRICTION,
+        _ => &PRISMATIC_FRICTION,
     };
     let is_slot = matches!(kind, JointKind::Slot { .. });
     let dry = fields.get("coefficient");
     // What seems to be missing may be a key that is misspelt.
-    let misspelt = fields.has_others_than(table);
+    let misspelt = fields.has_unknown_keys(table);
     if dry.is_none() && fields.get("viscous").is_none() && !misspelt {
-        problems.push(
-            Problem::new(format!(
+        diagnostics.push(
+            Diagnostic::new(format!(
                 "{} has neither `coefficient` nor `viscous`",
                 fields.what
             ))
-            .at(fields.span.clone(), "how does it rub?")
+            .label(fields.span.clone(), "no friction is given")
             .help("add a `coefficient` of dry friction, or `viscous`"),
         );
         return;
@@ -182,23 +215,27 @@ fn keys_of(fields: &Fields<'_>, kind: JointKind, problems: &mut Problems) {
         let (name, what) = (entry.name, &fields.what);
         let other = |help| (format!("{what} has no `{name}`"), help);
         let (message, help) = match name {
-            "radius" if !table.knows(name) => other("`guide` is the length of a slide"),
-            "guide" if !table.knows(name) => other("`radius` is that of a pin"),
-            "guide" if is_slot => other("the pin of a slot presses at one point: leave it out"),
-            "radius" | "guide" | "fade" if dry.is_none() && !misspelt => (
+            "radius" if !table.contains_key(name) => {
+                other("`guide-length` is the length of a slide")
+            }
+            "guide-length" if !table.contains_key(name) => other("`radius` is that of a pin"),
+            "guide-length" if is_slot => {
+                other("the pin of a slot touches it at one point: leave it out")
+            }
+            "radius" | "guide-length" | "regularization-speed" if dry.is_none() && !misspelt => (
                 format!("{what} has a `{name}` but no `coefficient`"),
-                "it is a number of dry friction: add its coefficient, or leave it out",
+                "it belongs to dry friction: add `coefficient`, or leave it out",
             ),
-            _ if table.knows(name) => continue,
+            _ if table.contains_key(name) => continue,
             _ => {
-                fields.unknown(entry, "keys here", table.names(), problems);
+                fields.report_unknown_key(entry, "keys here", table.names(), diagnostics);
                 continue;
             }
         };
-        let label = format!("its kind is {}", word(kind));
-        problems.push(
-            Problem::new(message)
-                .at(entry.key.clone(), label)
+        let label = format!("its kind is {}", kind_name(kind));
+        diagnostics.push(
+            Diagnostic::new(message)
+                .label(entry.key.clone(), label)
                 .help(help),
         );
     }

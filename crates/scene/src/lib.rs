@@ -2,7 +2,7 @@
 //!
 //! [`Scene::read`] turns a file into plain data, in SI. There is no mechanics here: whether the
 //! mechanism closes, moves or balances is for the crates above to find out, and
-//! [`Scene::error`] lets them say so at a [`Place`] of the file.
+//! [`Scene::error`] lets them say so at a [`SceneLocation`] of the file.
 //!
 //! All the errors of a file come in one report, in the order of the file. No input panics.
 //!
@@ -23,28 +23,29 @@
 //!
 //! # The language
 //!
-//! `docs/scene-format.md` tells all of it, table by table. That page, [`schema`] and the lists of
-//! keys in messages are made from one description, `keys`. What is optional, and what stands in
-//! for it when absent:
+//! `docs/scene-format.md` describes all of it, table by table. That page, [`schema`] and the lists of
+//! keys in messages are made from one description, `keys`. What is optional, with its default:
 //!
 //! - `title`: the scene's name. `note`: none.
-//! - `[units]`: SI. A length unit other than m, or a mass unit other than kg, asks for an inertia
-//!   unit too as soon as a body has an inertia. Time is always in s.
+//! - `[units]`: SI. A length unit other than m, or a mass unit other than kg, requires an inertia
+//!   unit as soon as a body has an inertia. Time is always in s.
 //! - a body's `mass` and `inertia`: 0; `center`: needed only by a mass. Those of the ground are
 //!   read and checked, then dropped: the ground does not move, so they have no effect.
 //! - `fixed`: the body named `ground` is the ground. Another can be, with `fixed = true`; a body
 //!   named `ground` then has to say `fixed = false`.
 //! - an actuator's coordinate in `[assembly]`: where the motion starts, or else 0; the distance of
-//!   two points has to be given. A body's rough angle: unknown.
+//!   two points has to be given. A body's initial guess: none.
 //! - `[coordinates]`, `[loads]`: none. `[prescribed]`: none; its `points`: 361.
-//! - `[sweep]`: none, and the range is the study's choice. With one, an actuator that it does not
-//!   name is held as in `[assembly]`; the only one is swept over its range. Its `points`: 361; its
+//! - `[coordinate-sweep]`: none, and the range is the study's choice. With one, an actuator that it does not
+//!   name is fixed as in `[assembly]`; the only one is swept over its range. Its `points`: 361; its
 //!   `speed`: 1 rad/s or 1 m/s.
 //! - `[requests]`, or its `reactions`: every reaction. `reactions = []` asks for none. Its
 //!   `variables`: every column; `sections`: none.
-//! - `[friction]`: none; its `fade`: 0.01 rad/s or 0.001 m/s. `[drives]`: none.
-//! - `[motion]`: none; its `start`: the coordinates at assembly; its `speed`: 0 where loads, drives or
-//!   laws can move the mechanism; its `laws` and `events`: none.
+//! - `[friction]`: none; its `regularization-speed`: 0.01 rad/s or 0.001 m/s. `[drives]`: none.
+//! - `[motion]`: none; its `initial-coordinate`: that at assembly; its `initial-velocity`: 0 where loads,
+//!   drives or motion laws can move the mechanism; its `prescribed` and `events`: none.
+//!
+//! Former names of keys are still read, with a warning in [`Scene::warnings`] that names the current one.
 //!
 //! Names are made of letters and digits of any script, `_`, `-`, primes and inner spaces. They
 //! hold no dot, so that `body.point` and `joint.component` can be read in one way only. Bodies,
@@ -63,40 +64,46 @@ mod assembly;
 mod bodies;
 mod build;
 mod coordinates;
+mod diagnostics;
 mod drives;
-mod elsewhere;
 mod error;
 mod events;
 mod expression;
-mod fields;
+mod former_keys;
 mod friction;
 mod joints;
 mod keys;
 mod kind;
 mod law;
 mod loads;
+mod location;
 mod magnitude;
 mod motion;
 mod names;
-mod place;
+mod number_paths;
+mod numbers;
 mod prescribed;
-mod problem;
 mod read;
 mod requests;
 mod scene;
 mod schema;
+mod section_numbers;
+mod spans;
+mod table_reader;
+mod unit_reader;
 mod units;
-mod value;
+mod wording;
 
 #[cfg(test)]
 mod tests;
 
-pub use error::SceneError;
-pub use fields::LARGEST_ANGLE;
-pub use place::Place;
-pub use problem::choices;
+pub use error::{SceneError, SceneWarning};
 pub use scene::{
-    Assembly, Calibration, DwellRequest, EventTrigger, Length, Motion, NamedCoordinate, NamedEvent,
-    PathPoint, Prescribed, Requests, Scene, Section, Sweep,
+    Assembly, Calibration, CoordinateSweep, DwellRequest, EventTrigger, FreeMotionSpec,
+    MotionDuration, NamedCoordinate, NamedEvent, PathPoint, PrescribedMotion, Requests, Scene,
+    SectionRequest,
 };
 pub use schema::schema;
+pub use spans::SceneLocation;
+pub use table_reader::MAX_ANGLE;
+pub use wording::choices;

@@ -1,30 +1,32 @@
-//! The loads: what acts on the mechanism from outside, where, and how strongly.
+//! The loads on the mechanism: where they act, and their magnitudes.
 
 use crate::bodies::{Bodies, TWO_POINTS};
-use crate::fields::{
-    Entry, Fields, POINT, Sign, angle, pair, quantity, signed, string, unit_vector,
-};
+use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::joints::Joints;
 use crate::keys::LOADS;
 use crate::kind::kind;
-use crate::magnitude::{Magnitudes, Size};
-use crate::names::{check, shorten};
-use crate::problem::{Problem, Problems, Span};
+use crate::magnitude::{MagnitudeRule, Magnitudes};
+use crate::names::check;
+use crate::table_reader::{
+    Entry, POINT, SignRule, TableReader, angle, pair, quantity, quantity_with_sign, string,
+    unit_vector,
+};
 use crate::units::{Unit, Units};
+use crate::wording::shorten;
 use dwell_geometry::{BodyId, Vec2, vec2};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use toml::de::DeValue;
 
 /// A load as read; nothing in it if it was wrong.
 #[derive(Debug)]
-pub(crate) struct LoadText {
+pub(crate) struct ParsedLoad {
     pub(crate) key: Span,
     /// Where its magnitude is, or that of gravity.
     pub(crate) magnitude: Option<Span>,
     pub(crate) load: Option<Load>,
 }
 
-/// What loads are read with.
+/// Reads the loads.
 pub(crate) struct LoadReader<'r> {
     bodies: &'r Bodies<'r>,
     joints: &'r Joints<'r>,
@@ -48,21 +50,25 @@ impl<'r> LoadReader<'r> {
     }
 
     /// Every load of the section.
-    pub(crate) fn read(&self, fields: &Fields<'_>, problems: &mut Problems) -> Vec<LoadText> {
+    pub(crate) fn read(
+        &self,
+        fields: &TableReader<'_>,
+        diagnostics: &mut Diagnostics,
+    ) -> Vec<ParsedLoad> {
         let mut gravity: Option<Span> = None;
         let one = |entry: &Entry<'_>| {
-            check("a load", entry.name, &entry.key, problems);
-            let load = self.load(entry, problems);
+            check("a load", entry.name, &entry.key, diagnostics);
+            let load = self.load(entry, diagnostics);
             if let Some(Load {
                 kind: LoadKind::Gravity { .. },
                 ..
             }) = load.load
                 && let Some(other) = gravity.replace(entry.key.clone())
             {
-                problems.push(
-                    Problem::new("gravity acts twice")
-                        .at(other, "here")
-                        .at(entry.key.clone(), "and here again")
+                diagnostics.push(
+                    Diagnostic::new("gravity is given twice")
+                        .label(other, "here")
+                        .label(entry.key.clone(), "and here again")
                         .help("keep one of them: both would add up"),
                 );
             }
@@ -71,181 +77,201 @@ impl<'r> LoadReader<'r> {
         fields.entries.iter().map(one).collect()
     }
 
-    fn load(&self, entry: &Entry<'_>, problems: &mut Problems) -> LoadText {
-        let mut text = LoadText {
+    fn load(&self, entry: &Entry<'_>, diagnostics: &mut Diagnostics) -> ParsedLoad {
+        let mut parsed = ParsedLoad {
             key: entry.key.clone(),
             magnitude: None,
             load: None,
         };
         let what = format!("load `{}`", shorten(entry.name));
-        let Some(fields) = Fields::open(entry, what, problems) else {
-            return text;
+        let Some(fields) = TableReader::open(entry, what, diagnostics) else {
+            return parsed;
         };
-        let Some((word, held)) = kind(&fields, &entry.key, "load", &LOADS, problems) else {
-            return text;
+        let Some((kind_name, kind_entry)) = kind(&fields, &entry.key, "load", &LOADS, diagnostics)
+        else {
+            return parsed;
         };
-        let (size, unit, sign) = match word {
-            "gravity" => ("gravity", "m/s2", Sign::Any),
-            "force" | "push" | "slide" => ("magnitude", "N", Sign::Any),
-            "torque" => ("magnitude", "N m", Sign::Any),
-            "spring" => ("stiffness", "N/m", Sign::NotNegative),
-            "torsion" => ("stiffness", "N m/rad", Sign::NotNegative),
-            "damper" => ("constant", "N s/m", Sign::NotNegative),
-            _ => ("constant", "N m s/rad", Sign::NotNegative),
+        let (size, unit, sign) = match kind_name {
+            "gravity" => ("gravity", "m/s2", SignRule::Any),
+            "force" | "point-to-point-force" | "slide-force" => ("magnitude", "N", SignRule::Any),
+            "torque" => ("magnitude", "N m", SignRule::Any),
+            "spring" => ("stiffness", "N/m", SignRule::NotNegative),
+            "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative),
+            "damper" => ("damping", "N s/m", SignRule::NotNegative),
+            _ => ("damping", "N m s/rad", SignRule::NotNegative),
         };
-        if word == "gravity" {
-            text.magnitude = Some(held.value.span());
-            let read = gravity(held, &fields, problems);
-            text.load = read.map(|(kind, magnitude)| named(entry, kind, magnitude));
-            return text;
+        if kind_name == "gravity" {
+            parsed.magnitude = Some(kind_entry.value.span());
+            let read = gravity(kind_entry, &fields, diagnostics);
+            parsed.load = read.map(|(kind, magnitude)| named(entry, kind, magnitude));
+            return parsed;
         }
-        let kind = self.shape(word, held, entry, &fields, problems);
+        let kind = self.load_kind(kind_name, kind_entry, entry, &fields, diagnostics);
         let help = format!("add for instance `{size} = 10`, in {unit}");
-        let magnitude = fields.need(size, &entry.key, &help, problems);
-        text.magnitude = magnitude.map(|e| e.value.span());
+        let magnitude = fields.require(size, &entry.key, &help, diagnostics);
+        parsed.magnitude = magnitude.map(|e| e.value.span());
         let magnitude = magnitude.and_then(|e| {
             let why = match size {
-                "stiffness" => "below zero it would push away instead of pulling back",
-                _ => "below zero it would feed the motion instead of resisting it",
+                "stiffness" => "a negative stiffness would push away from the free position",
+                _ => "negative damping would accelerate the motion",
             };
-            let si = Unit::of_si();
-            let size = Size {
+            let si = Unit::si_unit();
+            let size = MagnitudeRule {
                 unit: &si,
                 sign,
                 why,
             };
-            self.magnitudes.read(e, &fields.what, &size, problems)
+            self.magnitudes.read(e, &fields.what, &size, diagnostics)
         });
-        text.load = kind
+        parsed.load = kind
             .zip(magnitude)
             .map(|(kind, magnitude)| named(entry, kind, magnitude));
-        text
+        parsed
     }
 
-    fn shape(
+    fn load_kind(
         &self,
-        word: &str,
-        held: &Entry<'_>,
+        kind_name: &str,
+        kind_entry: &Entry<'_>,
         entry: &Entry<'_>,
-        fields: &Fields<'_>,
-        problems: &mut Problems,
+        fields: &TableReader<'_>,
+        diagnostics: &mut Diagnostics,
     ) -> Option<LoadKind> {
-        match word {
-            "force" => self.force(held, entry, fields, problems),
+        match kind_name {
+            "force" => self.force(kind_entry, entry, fields, diagnostics),
             "torque" => {
-                let bodies = self.torque(held, fields, problems)?;
+                let bodies = self.torque(kind_entry, fields, diagnostics)?;
                 Some(LoadKind::Torque { bodies })
             }
             "spring" => {
-                let ends = self.two_points(held, fields, problems);
+                let both = self.two_points(kind_entry, fields, diagnostics);
                 let unit = &self.units.length;
-                let help = "add `free = 0.1`: its length without force";
+                let help = "add `free-length = 0.1`, its length without force";
                 let free = fields
-                    .need("free", &entry.key, help, problems)
+                    .require("free-length", &entry.key, help, diagnostics)
                     .and_then(|e| {
                         let what = format_args!("the free length of {}", fields.what);
-                        signed(e.value, unit, Sign::NotNegative, what, "", problems)
+                        quantity_with_sign(
+                            e.value,
+                            unit,
+                            SignRule::NotNegative,
+                            what,
+                            "",
+                            diagnostics,
+                        )
                     });
-                let (bodies, points) = ends?;
+                let (bodies, points) = both?;
                 Some(LoadKind::Spring {
                     bodies,
                     points,
-                    free: free?,
+                    free_length: free?,
                 })
             }
             "damper" => {
-                let (bodies, points) = self.two_points(held, fields, problems)?;
+                let (bodies, points) = self.two_points(kind_entry, fields, diagnostics)?;
                 Some(LoadKind::Damper { bodies, points })
             }
-            "push" => {
-                let (bodies, points) = self.two_points(held, fields, problems)?;
-                Some(LoadKind::Push { bodies, points })
+            "point-to-point-force" => {
+                let (bodies, points) = self.two_points(kind_entry, fields, diagnostics)?;
+                Some(LoadKind::PointToPointForce { bodies, points })
             }
-            "slide" => {
+            "slide-force" => {
                 let name = string(
-                    held.value,
-                    format_args!("slide of {}", fields.what),
-                    problems,
+                    kind_entry.value,
+                    format_args!("slide-force of {}", fields.what),
+                    diagnostics,
                 )?;
-                let joint = self.joints.sliding(name, &held.value.span(), problems)?;
-                self.joints.guide(joint).map(LoadKind::Slide)
+                let joint = self
+                    .joints
+                    .sliding(name, &kind_entry.value.span(), diagnostics)?;
+                self.joints.guide(joint).map(LoadKind::SlideForce)
             }
-            "torsion" => {
-                let bodies = self.two_bodies(held, fields, problems);
-                let help = "add `free = 0.0`: the angle at which it is free";
+            "torsion-spring" => {
+                let bodies = self.two_bodies(kind_entry, fields, diagnostics);
+                let help = "add `free-angle = 0.0`, the angle at which its torque is zero";
                 let free = fields
-                    .need("free", &entry.key, help, problems)
+                    .require("free-angle", &entry.key, help, diagnostics)
                     .and_then(|e| {
                         let what = format_args!("the free angle of {}", fields.what);
-                        angle(e.value, &self.units.angle, what, problems)
+                        angle(e.value, &self.units.angle, what, diagnostics)
                     });
                 Some(LoadKind::TorsionSpring {
                     bodies: bodies?,
-                    free: free?,
+                    free_angle: free?,
                 })
             }
             _ => {
-                let bodies = self.two_bodies(held, fields, problems)?;
-                Some(LoadKind::TorsionDamper { bodies })
+                let bodies = self.two_bodies(kind_entry, fields, diagnostics)?;
+                Some(LoadKind::RotationalDamper { bodies })
             }
         }
     }
 
     fn force(
         &self,
-        held: &Entry<'_>,
+        kind_entry: &Entry<'_>,
         entry: &Entry<'_>,
-        fields: &Fields<'_>,
-        problems: &mut Problems,
+        fields: &TableReader<'_>,
+        diagnostics: &mut Diagnostics,
     ) -> Option<LoadKind> {
         let what = &fields.what;
-        let name = string(held.value, format_args!("force of {what}"), problems);
+        let name = string(
+            kind_entry.value,
+            format_args!("force of {what}"),
+            diagnostics,
+        );
         let at = name.and_then(|name| {
-            let span = held.value.span();
-            let (body, k) = self.bodies.find_point(name, &span, problems)?;
-            self.moving(body, &span, what, problems)?;
+            let span = kind_entry.value.span();
+            let (body, k) = self.bodies.find_point(name, &span, diagnostics)?;
+            self.require_moving_body(body, &span, what, diagnostics)?;
             Some((body, self.bodies.at(&(body, k, span))))
         });
         let help = "add `direction = [1, 0]`";
-        let direction = fields.need("direction", &entry.key, help, problems);
+        let direction = fields.require("direction", &entry.key, help, diagnostics);
         let direction = direction
-            .and_then(|e| unit_vector(e.value, &format!("the direction of {what}"), problems));
-        let follows = match fields.get("frame") {
+            .and_then(|e| unit_vector(e.value, &format!("the direction of {what}"), diagnostics));
+        let body_fixed = match fields.get("frame") {
             None => Some(false),
-            Some(e) => frame(e, what, problems),
+            Some(e) => frame(e, what, diagnostics),
         };
         let (body, point) = at?;
         Some(LoadKind::Force {
             body,
             point,
             direction: direction?,
-            follows: follows?,
+            body_fixed: body_fixed?,
         })
     }
 
     fn torque(
         &self,
-        held: &Entry<'_>,
-        fields: &Fields<'_>,
-        problems: &mut Problems,
+        kind_entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+        diagnostics: &mut Diagnostics,
     ) -> Option<[BodyId; 2]> {
-        let DeValue::String(name) = held.value.get_ref() else {
-            return self.two_bodies(held, fields, problems);
+        let DeValue::String(name) = kind_entry.value.get_ref() else {
+            return self.two_bodies(kind_entry, fields, diagnostics);
         };
-        let at = held.value.span();
-        let body = self.bodies.find(name, &at, problems)?;
-        self.moving(body, &at, &fields.what, problems)?;
+        let at = kind_entry.value.span();
+        let body = self.bodies.find(name, &at, diagnostics)?;
+        self.require_moving_body(body, &at, &fields.what, diagnostics)?;
         Some([BodyId(self.bodies.ground?), body])
     }
 
-    /// The ground takes every load without moving: one on it alone is a slip.
-    fn moving(&self, body: BodyId, at: &Span, what: &str, problems: &mut Problems) -> Option<()> {
+    /// A load that acts on the ground alone has no effect, so it is taken for a mistake.
+    fn require_moving_body(
+        &self,
+        body: BodyId,
+        at: &Span,
+        what: &str,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<()> {
         if self.bodies.ground != Some(body.0) {
             return Some(());
         }
-        problems.push(
-            Problem::new(format!("{what} acts on the ground"))
-                .at(at.clone(), "it does not move")
+        diagnostics.push(
+            Diagnostic::new(format!("{what} acts on the ground"))
+                .label(at.clone(), "it does not move")
                 .help("let it act on a moving body, or leave it out"),
         );
         None
@@ -253,48 +279,52 @@ impl<'r> LoadReader<'r> {
 
     fn two_points(
         &self,
-        held: &Entry<'_>,
-        fields: &Fields<'_>,
-        problems: &mut Problems,
+        kind_entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+        diagnostics: &mut Diagnostics,
     ) -> Option<([BodyId; 2], [Vec2; 2])> {
-        let what = format_args!("{} of {}", held.name, fields.what);
+        let what = format_args!("{} of {}", kind_entry.name, fields.what);
         let both = self
             .bodies
-            .find_two_points(held.value, TWO_POINTS, what, problems)?;
-        let points = [&both[0], &both[1]].map(|end| self.bodies.at(end));
-        let bodies = self.different(both.map(|(body, _, at)| (body, at)), fields, problems)?;
+            .find_two_points(kind_entry.value, TWO_POINTS, what, diagnostics)?;
+        let points = [&both[0], &both[1]].map(|point| self.bodies.at(point));
+        let bodies = self.require_different_bodies(
+            both.map(|(body, _, at)| (body, at)),
+            fields,
+            diagnostics,
+        )?;
         Some((bodies, points))
     }
 
     fn two_bodies(
         &self,
-        held: &Entry<'_>,
-        fields: &Fields<'_>,
-        problems: &mut Problems,
+        kind_entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+        diagnostics: &mut Diagnostics,
     ) -> Option<[BodyId; 2]> {
-        let what = format_args!("{} of {}", held.name, fields.what);
-        let both = self.bodies.find_two(held.value, what, problems)?;
-        self.different(both, fields, problems)
+        let what = format_args!("{} of {}", kind_entry.name, fields.what);
+        let both = self.bodies.find_two(kind_entry.value, what, diagnostics)?;
+        self.require_different_bodies(both, fields, diagnostics)
     }
 
-    fn different(
+    fn require_different_bodies(
         &self,
         [(a, at_a), (b, at_b)]: [(BodyId, Span); 2],
-        fields: &Fields<'_>,
-        problems: &mut Problems,
+        fields: &TableReader<'_>,
+        diagnostics: &mut Diagnostics,
     ) -> Option<[BodyId; 2]> {
         if a != b {
             return Some([a, b]);
         }
         let name = &self.bodies.list[a.0].name;
-        problems.push(
-            Problem::new(format!(
+        diagnostics.push(
+            Diagnostic::new(format!(
                 "{} acts between body `{name}` and itself",
                 fields.what
             ))
-            .at(at_a, "this body")
-            .at(at_b, "and the same again")
-            .help("what acts within one rigid body moves nothing"),
+            .label(at_a, "this body")
+            .label(at_b, "and the same again")
+            .help("a load within one rigid body has no effect"),
         );
         None
     }
@@ -310,32 +340,36 @@ fn named(entry: &Entry<'_>, kind: LoadKind, magnitude: Magnitude) -> Load {
 
 /// An acceleration as a direction and a magnitude.
 fn gravity(
-    held: &Entry<'_>,
-    fields: &Fields<'_>,
-    problems: &mut Problems,
+    kind_entry: &Entry<'_>,
+    fields: &TableReader<'_>,
+    diagnostics: &mut Diagnostics,
 ) -> Option<(LoadKind, Magnitude)> {
     let what = format!("gravity of {}", fields.what);
-    let direction = unit_vector(held.value, &what, problems)?;
-    let [x, y] = pair(held.value, POINT, format_args!("{what}"), problems)?;
-    let si = Unit::of_si();
-    let mut one = |value| quantity(value, &si, format_args!("{what}"), problems);
+    let direction = unit_vector(kind_entry.value, &what, diagnostics)?;
+    let [x, y] = pair(kind_entry.value, POINT, format_args!("{what}"), diagnostics)?;
+    let si = Unit::si_unit();
+    let mut one = |value| quantity(value, &si, format_args!("{what}"), diagnostics);
     let (x, y) = (one(x), one(y));
     let acceleration = vec2(x?.1, y?.1);
     let size = acceleration.x.hypot(acceleration.y);
     Some((LoadKind::Gravity { direction }, Magnitude::Constant(size)))
 }
 
-/// Whether the force turns with its body.
-fn frame(entry: &Entry<'_>, what: &str, problems: &mut Problems) -> Option<bool> {
-    let name = string(entry.value, format_args!("the frame of {what}"), problems)?;
+/// Whether the direction of the force rotates with its body.
+fn frame(entry: &Entry<'_>, what: &str, diagnostics: &mut Diagnostics) -> Option<bool> {
+    let name = string(
+        entry.value,
+        format_args!("the frame of {what}"),
+        diagnostics,
+    )?;
     match name {
         "ground" => Some(false),
         "body" => Some(true),
         _ => {
-            problems.push(
-                Problem::new(format!("unknown frame `{}` of {what}", shorten(name)))
-                    .at(entry.value.span(), "unknown frame")
-                    .help("`\"ground\"` keeps the direction, `\"body\"` turns it with the body"),
+            diagnostics.push(
+                Diagnostic::new(format!("unknown frame `{}` of {what}", shorten(name)))
+                    .label(entry.value.span(), "unknown frame")
+                    .help("`\"ground\"` keeps the direction constant, `\"body\"` rotates it with the body"),
             );
             None
         }

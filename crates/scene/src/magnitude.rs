@@ -1,41 +1,53 @@
-//! Magnitudes of loads and what is given to drives: a number, an expression of what moves, a table.
+//! Magnitudes of loads and drives: a number, an expression, or a table.
 
-use crate::coordinates::Measures;
+use crate::coordinates::ParsedCoordinates;
+use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::expression::expression;
-use crate::fields::{Entry, Fields, Sign, mismatch, rows, signed, string};
 use crate::keys;
 use crate::law::spline;
-use crate::names::shorten;
-use crate::problem::{Problem, Problems};
+use crate::table_reader::{
+    Entry, SignRule, TableReader, mismatch, quantity_with_sign, rows, string,
+};
 use crate::units::{Unit, Units};
+use crate::wording::shorten;
 use dwell_geometry::Coordinate;
 use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Expression, Law};
 use toml::de::DeValue;
 
-/// What magnitudes are read with.
+/// Reads magnitudes.
 pub(crate) struct Magnitudes<'r> {
     units: &'r Units,
     /// The signals an expression can name, and their names.
     signals: Vec<(String, Option<Signal>)>,
+    /// Former names of signals, which are still read, and their current names.
+    former_names: Vec<(String, String)>,
 }
 
-/// What a magnitude is measured in, and what it has to be; `why` tells one who gave another sign.
-pub(crate) struct Size<'s> {
+/// Unit and sign of a magnitude; `why` is the reason for the sign, shown where it is violated.
+pub(crate) struct MagnitudeRule<'s> {
     pub(crate) unit: &'s Unit,
-    pub(crate) sign: Sign,
+    pub(crate) sign: SignRule,
     pub(crate) why: &'s str,
 }
 
 impl<'r> Magnitudes<'r> {
-    pub(crate) fn new(measures: &Measures<'_>, units: &'r Units) -> Self {
+    pub(crate) fn new(named_coordinates: &ParsedCoordinates<'_>, units: &'r Units) -> Self {
         let mut signals = vec![("t".to_owned(), Some(Signal::Time))];
-        for m in &measures.list {
+        for m in &named_coordinates.list {
             signals.push((m.name.to_owned(), m.coordinate.map(Signal::Value)));
-            let speed = m.coordinate.map(Signal::Speed);
-            signals.push((format!("{}.speed", m.name), speed));
+            let velocity = m.coordinate.map(Signal::Velocity);
+            signals.push((format!("{}.velocity", m.name), velocity));
         }
-        Self { units, signals }
+        let former_names = named_coordinates.list.iter().map(|m| {
+            let [former, current] = ["speed", "velocity"].map(|s| format!("{}.{s}", m.name));
+            (former, current)
+        });
+        Self {
+            units,
+            signals,
+            former_names: former_names.collect(),
+        }
     }
 
     /// The magnitude that `entry` of `owner` is: a number, an expression, or a table.
@@ -43,21 +55,28 @@ impl<'r> Magnitudes<'r> {
         &self,
         entry: &Entry<'_>,
         owner: &str,
-        size: &Size<'_>,
-        problems: &mut Problems,
+        rule: &MagnitudeRule<'_>,
+        diagnostics: &mut Diagnostics,
     ) -> Option<Magnitude> {
         let what = format!("{} of {owner}", entry.name);
         match entry.value.get_ref() {
-            DeValue::String(_) => self.expression(entry, &what, problems),
-            DeValue::Table(_) => self.table(entry, &what, size, problems),
+            DeValue::String(_) => self.expression(entry, &what, diagnostics),
+            DeValue::Table(_) => self.table(entry, &what, rule, diagnostics),
             DeValue::Integer(_) | DeValue::Float(_) => {
                 let what = format_args!("{what}");
-                let si = signed(entry.value, size.unit, size.sign, what, size.why, problems)?;
+                let si = quantity_with_sign(
+                    entry.value,
+                    rule.unit,
+                    rule.sign,
+                    what,
+                    rule.why,
+                    diagnostics,
+                )?;
                 Some(Magnitude::Constant(si))
             }
             _ => {
                 let expected = "a number, an expression in quotes, or a table";
-                mismatch(entry.value, expected, format_args!("{what}"), problems);
+                mismatch(entry.value, expected, format_args!("{what}"), diagnostics);
                 None
             }
         }
@@ -67,20 +86,38 @@ impl<'r> Magnitudes<'r> {
         &self,
         entry: &Entry<'_>,
         what: &str,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Option<Magnitude> {
+        let text = string(entry.value, format_args!("{what}"), diagnostics)?;
         let names: Vec<_> = self.signals.iter().map(|(name, _)| name.as_str()).collect();
-        let all = expression(entry.value, &names, what, problems)?;
-        let used: Vec<_> = all.variables().iter().map(String::as_str).collect();
-        let signals: Option<Vec<_>> = used.iter().map(|name| self.signal(name)).collect();
-        // Read once more with the names that occur: a value for each is then all it takes.
-        let text = string(entry.value, format_args!("{what}"), problems)?;
-        let expression = Expression::parse(text, &used).ok()?;
-        Some(Magnitude::Expression(expression, signals?))
+        let former = self.former_names.iter().map(|(former, _)| former.as_str());
+        let with_former: Vec<_> = names.iter().copied().chain(former).collect();
+        let parsed = match Expression::parse(text, &with_former) {
+            Ok(parsed) => parsed,
+            // The message lists the current names only.
+            Err(_) => expression(entry.value, &names, what, diagnostics)?,
+        }
+        .retain_used();
+        let used = parsed.variables().iter();
+        let signals = used.map(|name| self.signal(name, entry, diagnostics));
+        // Collected before it is looked at: every former name is to be reported.
+        let signals: Vec<_> = signals.collect();
+        let signals = signals.into_iter().collect::<Option<Vec<_>>>()?;
+        Some(Magnitude::Expression(parsed, signals))
     }
 
-    /// The signal of that name; nothing if its coordinate was wrong, which has been reported.
-    fn signal(&self, name: &str) -> Option<Signal> {
+    /// The signal of that name, which `entry` uses; nothing if its coordinate was wrong, which has been reported.
+    fn signal(
+        &self,
+        name: &str,
+        entry: &Entry<'_>,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Signal> {
+        let renamed = self.former_names.iter().find(|(former, _)| former == name);
+        let name = renamed.map_or(name, |(former, current)| {
+            diagnostics.warn_renamed(former, current, entry.value.span());
+            current
+        });
         self.signals.iter().find(|(n, _)| n == name)?.1
     }
 
@@ -88,51 +125,58 @@ impl<'r> Magnitudes<'r> {
         &self,
         entry: &Entry<'_>,
         what: &str,
-        size: &Size<'_>,
-        problems: &mut Problems,
+        rule: &MagnitudeRule<'_>,
+        diagnostics: &mut Diagnostics,
     ) -> Option<Magnitude> {
-        let fields = Fields::open(entry, what, problems)?;
-        fields.allow(&keys::MAGNITUDE, problems);
+        let fields = TableReader::open(entry, what, diagnostics)?;
+        fields.reject_unknown_keys(&keys::MAGNITUDE, diagnostics);
         let help = "write it as `{ table = [[0, 1], [1, 2]], of = \"phi\" }`";
-        let table = fields.need("table", &fields.span, help, problems);
+        let table = fields.require("table", &fields.span, help, diagnostics);
         let signal = match fields.get("of") {
             None => Some(Signal::Time),
-            Some(e) => self.of(e, what, problems),
+            Some(e) => self.of(e, what, diagnostics),
         };
         let (table, signal) = (table?, signal?);
-        let si = Unit::of_si();
+        let si = Unit::si_unit();
         let unit = match signal {
             Signal::Time => &si,
-            Signal::Value(c) | Signal::Speed(c) => self.units.of(Coordinate::is_angle(c)),
+            Signal::Value(c) | Signal::Velocity(c) => {
+                self.units.coordinate_unit(Coordinate::is_angle(c))
+            }
         };
         let name = format!("the table of {what}");
-        let rows = rows(table.value, [unit, size.unit], &name, problems)?;
-        if size.sign == Sign::NotNegative && rows.iter().any(|[_, y]| *y < 0.0) {
-            problems.push(
-                Problem::new(format!("{name} goes below zero"))
-                    .at(table.value.span(), "negative")
-                    .help(size.why),
+        let rows = rows(table.value, [unit, rule.unit], &name, diagnostics)?;
+        if rule.sign == SignRule::NotNegative && rows.iter().any(|[_, y]| *y < 0.0) {
+            diagnostics.push(
+                Diagnostic::new(format!("{name} goes below zero"))
+                    .label(table.value.span(), "negative")
+                    .help(rule.why),
             );
             return None;
         }
-        let law = spline(table, &name, &rows, problems)?;
+        let law = spline(table, &name, &rows, diagnostics)?;
         Some(Magnitude::Law(signal, Law::Spline(law)))
     }
 
-    fn of(&self, entry: &Entry<'_>, what: &str, problems: &mut Problems) -> Option<Signal> {
-        let name = string(entry.value, format_args!("`of` in {what}"), problems)?;
-        if self.signals.iter().any(|(n, _)| n == name) {
-            return self.signal(name);
+    fn of(&self, entry: &Entry<'_>, what: &str, diagnostics: &mut Diagnostics) -> Option<Signal> {
+        let name = string(entry.value, format_args!("`of` in {what}"), diagnostics)?;
+        let mut known = self.signals.iter().map(|(n, _)| n);
+        let mut former = self.former_names.iter().map(|(n, _)| n);
+        if known.any(|n| n == name) || former.any(|n| n == name) {
+            return self.signal(name, entry, diagnostics);
         }
         let names = self.signals.iter().map(|(n, _)| n.as_str());
-        let help = problems.choices(name, "signals", names);
-        problems.push(
-            Problem::new(format!("`{}` is not what a table can be of", shorten(name)))
-                .at(
-                    entry.value.span(),
-                    "neither the time nor a coordinate or its speed",
-                )
-                .help(help),
+        let help = diagnostics.choices(name, "signals", names);
+        diagnostics.push(
+            Diagnostic::new(format!(
+                "`{}` cannot be the variable of a table",
+                shorten(name)
+            ))
+            .label(
+                entry.value.span(),
+                "neither the time nor a coordinate or its velocity",
+            )
+            .help(help),
         );
         None
     }

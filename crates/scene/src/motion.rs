@@ -1,148 +1,161 @@
-//! The free motion, and the one number fitted to a period.
+//! The free motion, and the calibration of one number to a period.
 
-use crate::coordinates::ActuatorText;
-use crate::fields::{Entry, Fields, Value, number, quantity, string};
+use crate::coordinates::ParsedActuator;
+use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::keys;
-use crate::names::shorten;
 use crate::prescribed::law_of;
-use crate::problem::{Problem, Problems, Span, list};
-use crate::scene::{Calibration, Length, NamedEvent};
+use crate::scene::{Calibration, MotionDuration, NamedEvent};
+use crate::table_reader::{Entry, TableReader, Value, number, quantity, string};
 use crate::units::Units;
+use crate::wording::{list, shorten};
 use dwell_laws::Law;
 use std::fmt::Arguments;
 use toml::de::DeValue;
 
 /// `[motion]` as read: what it says of each actuator, in rad and rad/s or m and m/s.
 #[derive(Debug)]
-pub(crate) struct MotionText<'a> {
-    pub(crate) start: Vec<Option<(f64, Span)>>,
-    pub(crate) speed: Vec<Option<(f64, Span)>>,
-    pub(crate) length: Option<(Length, Span)>,
-    /// What leads each actuator, where it is led.
-    pub(crate) led: Vec<Option<Entry<'a>>>,
-    /// The laws of these: [`Self::lead`] reads them.
+pub(crate) struct ParsedMotion<'a> {
+    pub(crate) initial_coordinates: Vec<Option<(f64, Span)>>,
+    pub(crate) initial_velocities: Vec<Option<(f64, Span)>>,
+    pub(crate) duration: Option<(MotionDuration, Span)>,
+    /// The entry of each prescribed actuator's motion law.
+    pub(crate) prescribed: Vec<Option<Entry<'a>>>,
+    /// The laws of these, which [`Self::read_laws`] reads.
     pub(crate) laws: Vec<Option<Law>>,
     pub(crate) events: Vec<(NamedEvent, Span)>,
 }
 
-impl<'a> MotionText<'a> {
-    /// `moved`: loads or drives move the mechanism, so that it can start from rest.
+impl<'a> ParsedMotion<'a> {
+    /// `can_start_at_rest`: loads or drives can move the mechanism.
     pub(crate) fn read(
-        fields: &Fields<'a>,
-        actuators: &[ActuatorText<'_>],
-        moved: bool,
+        fields: &TableReader<'a>,
+        actuators: &[ParsedActuator<'_>],
+        can_start_at_rest: bool,
         units: &Units,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Self {
-        fields.allow(&keys::MOTION, problems);
-        let mut text = Self {
-            start: vec![None; actuators.len()],
-            speed: vec![None; actuators.len()],
-            length: length(fields, problems),
-            led: vec![None; actuators.len()],
+        fields.reject_unknown_keys(&keys::MOTION, diagnostics);
+        let mut parsed = Self {
+            initial_coordinates: vec![None; actuators.len()],
+            initial_velocities: vec![None; actuators.len()],
+            duration: duration(fields, diagnostics),
+            prescribed: vec![None; actuators.len()],
             laws: vec![None; actuators.len()],
             events: Vec::new(),
         };
         if actuators.is_empty() {
-            problems.push(
-                Problem::new("there is a motion but no actuator")
-                    .at(fields.span.clone(), "of which coordinate?")
-                    .help("declare the coordinate it starts from, as in `[actuators.phi]`"),
+            diagnostics.push(
+                Diagnostic::new("there is a [motion] but no actuator")
+                    .label(fields.span.clone(), "no coordinate can move")
+                    .help("declare an independent coordinate, as in `[actuators.phi]`"),
             );
-            return text;
+            return parsed;
         }
-        let all_known = text.led_by(fields, actuators, problems);
-        let each = |key, problems: &mut Problems| {
+        let all_known = parsed.find_prescribed(fields, actuators, diagnostics);
+        let each = |key, diagnostics: &mut Diagnostics| {
             let entry = fields.get(key);
             let each = PerActuator {
                 key,
                 actuators,
-                led: &text.led,
+                prescribed: &parsed.prescribed,
                 units,
             };
-            each.read(entry, problems)
+            each.read(entry, diagnostics)
         };
-        let (start, speed) = (each("start", problems), each("speed", problems));
-        if let Some(speed) = &speed
+        let (initial_coordinates, initial_velocities) = (
+            each("initial-coordinate", diagnostics),
+            each("initial-velocity", diagnostics),
+        );
+        if let Some(initial_velocities) = &initial_velocities
             && all_known
-            && !moved
-            && text.led.iter().all(Option::is_none)
+            && !can_start_at_rest
+            && parsed.prescribed.iter().all(Option::is_none)
         {
-            no_speed(fields, actuators, speed, units, problems);
+            report_missing_velocities(fields, actuators, initial_velocities, units, diagnostics);
         }
         if all_known {
-            text.count_free(fields, actuators, problems);
+            parsed.count_free(fields, actuators, diagnostics);
         }
-        text.start = start.unwrap_or(text.start);
-        text.speed = speed.unwrap_or(text.speed);
-        text
+        parsed.initial_coordinates = initial_coordinates.unwrap_or(parsed.initial_coordinates);
+        parsed.initial_velocities = initial_velocities.unwrap_or(parsed.initial_velocities);
+        parsed
     }
 
-    /// Finds which actuators are led; false where a name of them is wrong.
-    fn led_by(
+    /// Finds which actuators are prescribed; false where one of the names is unknown.
+    fn find_prescribed(
         &mut self,
-        fields: &Fields<'a>,
-        actuators: &[ActuatorText<'_>],
-        problems: &mut Problems,
+        fields: &TableReader<'a>,
+        actuators: &[ParsedActuator<'_>],
+        diagnostics: &mut Diagnostics,
     ) -> bool {
-        let count = problems.count();
-        let laws = fields.get("laws");
-        let laws = laws.and_then(|e| Fields::open(e, "laws of [motion]", problems));
+        let count = diagnostics.count();
+        let laws = fields.get("prescribed");
+        let laws = laws.and_then(|e| TableReader::open(e, "prescribed of [motion]", diagnostics));
         for entry in laws.iter().flat_map(|f| &f.entries) {
-            if let Some(k) = find(entry, actuators, problems) {
-                self.led[k] = Some(entry.clone());
+            if let Some(k) = find(entry, actuators, diagnostics) {
+                self.prescribed[k] = Some(entry.clone());
             }
         }
-        problems.count() == count
+        diagnostics.count() == count
     }
 
-    /// Something has to be free, and a period is that of one coordinate.
+    /// At least one actuator has to be free, and exactly one where the duration is in periods.
     fn count_free(
         &self,
-        fields: &Fields<'_>,
-        actuators: &[ActuatorText<'_>],
-        problems: &mut Problems,
+        fields: &TableReader<'_>,
+        actuators: &[ParsedActuator<'_>],
+        diagnostics: &mut Diagnostics,
     ) {
-        let free = actuators.iter().zip(&self.led).filter(|(_, l)| l.is_none());
+        let free = actuators
+            .iter()
+            .zip(&self.prescribed)
+            .filter(|(_, l)| l.is_none());
         let free: Vec<_> = free.map(|(a, _)| a.name).collect();
         let names = list(free.iter().copied());
-        if let (None, Some(laws)) = (&names, fields.get("laws")) {
-            problems.push(
-                Problem::new("[motion] leads every actuator: none is free")
-                    .at(laws.key.clone(), "all of them")
-                    .help("a motion by laws alone is a [prescribed] one"),
+        if let (None, Some(laws)) = (&names, fields.get("prescribed")) {
+            diagnostics.push(
+                Diagnostic::new("[motion] prescribes every actuator: none is free")
+                    .label(laws.key.clone(), "all of them")
+                    .help("a motion in which all actuators are prescribed belongs in [prescribed]"),
             );
         }
         if let (Some(names), Some(periods)) = (names, fields.get("periods"))
             && free.len() > 1
         {
-            problems.push(
-                Problem::new(format!("`periods` with {} free actuators", free.len()))
-                    .at(periods.key.clone(), "the period of which of them?")
+            diagnostics.push(
+                Diagnostic::new(format!("`periods` with {} free actuators", free.len()))
+                    .label(periods.key.clone(), "ambiguous: several actuators are free")
                     .help(format!(
-                        "{names} are free: say how long it lasts, as in `duration = 5.0`"
+                        "{names} are free: give the duration in s, as in `duration = 5.0`"
                     )),
             );
         }
     }
 
-    /// The laws of the led actuators, that begin at `start` (SI, by actuator).
-    pub(crate) fn lead(
+    /// Reads the laws of the prescribed actuators, which start at `assembly_coordinates` (SI, by actuator).
+    pub(crate) fn read_laws(
         &mut self,
-        actuators: &[ActuatorText<'_>],
-        start: &[f64],
+        actuators: &[ParsedActuator<'_>],
+        assembly_coordinates: &[f64],
         units: &Units,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) {
-        let end = match self.length {
-            Some((Length::Duration(end), _)) => end,
+        let end = match self.duration {
+            Some((MotionDuration::Seconds(end), _)) => end,
             // How long periods take is not known yet, and no length has been reported.
             _ => 0.0,
         };
         for (k, actuator) in actuators.iter().enumerate() {
-            if let Some(entry) = &self.led[k] {
-                let section = "[motion.laws]";
-                self.laws[k] = law_of(entry, section, actuator, (start[k], end), units, problems);
+            if let Some(entry) = &self.prescribed[k] {
+                let section = "[motion.prescribed]";
+                self.laws[k] = law_of(
+                    entry,
+                    section,
+                    actuator,
+                    (assembly_coordinates[k], end),
+                    units,
+                    diagnostics,
+                );
             }
         }
     }
@@ -151,52 +164,57 @@ impl<'a> MotionText<'a> {
 /// The actuator that an entry is named by.
 fn find(
     entry: &Entry<'_>,
-    actuators: &[ActuatorText<'_>],
-    problems: &mut Problems,
+    actuators: &[ParsedActuator<'_>],
+    diagnostics: &mut Diagnostics,
 ) -> Option<usize> {
     let found = actuators.iter().position(|a| a.name == entry.name);
     if found.is_none() {
         let names = actuators.iter().map(|a| a.name);
-        let help = problems.choices(entry.name, "actuators", names);
-        problems.push(
-            Problem::new(format!("there is no actuator `{}`", shorten(entry.name)))
-                .at(entry.key.clone(), "unknown actuator")
+        let help = diagnostics.choices(entry.name, "actuators", names);
+        diagnostics.push(
+            Diagnostic::new(format!("there is no actuator `{}`", shorten(entry.name)))
+                .label(entry.key.clone(), "unknown actuator")
                 .help(help),
         );
     }
     found
 }
 
-/// Says which speeds are missing of a motion that nothing but its speed starts.
-fn no_speed(
-    fields: &Fields<'_>,
-    actuators: &[ActuatorText<'_>],
-    speed: &[Option<(f64, Span)>],
+/// Reports missing initial velocities of a motion without loads, drives and motion laws.
+fn report_missing_velocities(
+    fields: &TableReader<'_>,
+    actuators: &[ParsedActuator<'_>],
+    initial_velocities: &[Option<(f64, Span)>],
     units: &Units,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) {
-    let missing = actuators.iter().zip(speed).filter(|(_, s)| s.is_none());
+    let missing = actuators
+        .iter()
+        .zip(initial_velocities)
+        .filter(|(_, s)| s.is_none());
     let missing: Vec<_> = missing.map(|(a, _)| a).collect();
     let Some(names) = list(missing.iter().map(|a| a.name)) else {
         return;
     };
-    let at = fields.get("speed").map_or(&fields.span, |e| &e.key);
+    let at = fields
+        .get("initial-velocity")
+        .map_or(&fields.span, |e| &e.key);
     let unit = &missing[0].unit(units).name;
-    problems.push(
-        Problem::new(format!("the speed of {names} at the start is not given"))
-            .at(at.clone(), "how fast?")
+    diagnostics.push(
+        Diagnostic::new(format!("the initial velocity of {names} is not given"))
+            .label(at.clone(), "no initial velocity")
             .help(format!(
-                "in {unit}/s: `speed = {{ {} = 1.0 }}`; without loads and drives nothing else moves it",
+                "in {unit}/s: `initial-velocity = {{ {} = 1.0 }}`; without loads and drives the mechanism would not move",
                 missing[0].name
             )),
     );
 }
 
-/// `start` or `speed` of a motion: one value for each free actuator, or a bare number for the only one.
+/// `initial-coordinate` or `initial-velocity`: one value for each free actuator, or a number for the only one.
 struct PerActuator<'p, 'a> {
     key: &'static str,
-    actuators: &'p [ActuatorText<'p>],
-    led: &'p [Option<Entry<'a>>],
+    actuators: &'p [ParsedActuator<'p>],
+    prescribed: &'p [Option<Entry<'a>>],
     units: &'p Units,
 }
 
@@ -205,7 +223,7 @@ impl PerActuator<'_, '_> {
     fn read(
         &self,
         entry: Option<&Entry<'_>>,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Option<Vec<Option<(f64, Span)>>> {
         let mut values = vec![None; self.actuators.len()];
         let Some(entry) = entry else {
@@ -213,40 +231,47 @@ impl PerActuator<'_, '_> {
         };
         let what = format!("{} of [motion]", self.key);
         if let DeValue::Integer(_) | DeValue::Float(_) = entry.value.get_ref() {
-            let k = self.only(entry, &what, problems)?;
-            let si = self.value(k, entry.value, format_args!("{what}"), problems)?;
+            let k = self.only_free(entry, &what, diagnostics)?;
+            let si = self.value(k, entry.value, format_args!("{what}"), diagnostics)?;
             values[k] = Some((si, entry.value.span()));
             return Some(values);
         }
-        let count = problems.count();
-        let fields = Fields::open(entry, what, problems)?;
+        let count = diagnostics.count();
+        let fields = TableReader::open(entry, what, diagnostics)?;
         for value in &fields.entries {
-            let Some(k) = find(value, self.actuators, problems) else {
+            let Some(k) = find(value, self.actuators, diagnostics) else {
                 continue;
             };
             let (key, name) = (self.key, shorten(value.name));
-            if let Some(law) = &self.led[k] {
-                problems.push(
-                    Problem::new(format!("`{name}` in [motion] has both a law and a {key}"))
-                        .at(law.key.clone(), "led here")
-                        .at(value.key.clone(), format!("and given a {key} here"))
-                        .help("keep one of them: a law says all of its motion"),
+            if let Some(law) = &self.prescribed[k] {
+                diagnostics.push(
+                    Diagnostic::new(format!(
+                        "`{name}` in [motion] has both a motion law and an {key}"
+                    ))
+                    .label(law.key.clone(), "prescribed here")
+                    .label(value.key.clone(), format!("{key} given here"))
+                    .help("keep one of them: the law determines the whole motion of the actuator"),
                 );
                 continue;
             }
             let what = format_args!("{key} of `{name}` in [motion]");
-            let si = self.value(k, value.value, what, problems);
+            let si = self.value(k, value.value, what, diagnostics);
             values[k] = si.map(|si| (si, value.value.span()));
         }
-        (problems.count() == count).then_some(values)
+        (diagnostics.count() == count).then_some(values)
     }
 
     /// The only free actuator.
-    fn only(&self, entry: &Entry<'_>, what: &str, problems: &mut Problems) -> Option<usize> {
-        let free: Vec<_> = (0..self.led.len())
-            .filter(|&k| self.led[k].is_none())
+    fn only_free(
+        &self,
+        entry: &Entry<'_>,
+        what: &str,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<usize> {
+        let free: Vec<_> = (0..self.prescribed.len())
+            .filter(|&k| self.prescribed[k].is_none())
             .collect();
-        // Where none is free, that is said.
+        // Where none is free, that is reported elsewhere.
         if let [] | [_] = free.as_slice() {
             return free.first().copied();
         }
@@ -254,13 +279,13 @@ impl PerActuator<'_, '_> {
             .iter()
             .map(|&k| format!("{} = 0.0", self.actuators[k].name));
         let example = each.collect::<Vec<_>>().join(", ");
-        let kind = match free.len() == self.led.len() {
+        let kind = match free.len() == self.prescribed.len() {
             true => "actuators",
             false => "free actuators",
         };
-        problems.push(
-            Problem::new(format!("{what} is one number for {} {kind}", free.len()))
-                .at(entry.value.span(), "for which of them?")
+        diagnostics.push(
+            Diagnostic::new(format!("{what} is one number for {} {kind}", free.len()))
+                .label(entry.value.span(), "ambiguous")
                 .help(format!(
                     "write `{} = {{ {} }}`",
                     self.key,
@@ -275,82 +300,89 @@ impl PerActuator<'_, '_> {
         k: usize,
         value: &Value<'_>,
         what: Arguments<'_>,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Option<f64> {
         let actuator = &self.actuators[k];
         match self.key {
-            "start" => actuator.position(value, self.units, what, problems),
-            _ => quantity(value, actuator.unit(self.units), what, problems).map(|(_, si)| si),
+            "initial-coordinate" => actuator.coordinate_value(value, self.units, what, diagnostics),
+            _ => quantity(value, actuator.unit(self.units), what, diagnostics).map(|(_, si)| si),
         }
     }
 }
 
-fn length(fields: &Fields<'_>, problems: &mut Problems) -> Option<(Length, Span)> {
+fn duration(
+    fields: &TableReader<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Option<(MotionDuration, Span)> {
     let (periods, duration) = (fields.get("periods"), fields.get("duration"));
     if let (Some(a), Some(b)) = (periods, duration) {
-        problems.push(
-            Problem::new("[motion] has both `periods` and `duration`")
-                .at(a.key.clone(), "so many periods")
-                .at(b.key.clone(), "or so many seconds")
+        diagnostics.push(
+            Diagnostic::new("[motion] has both `periods` and `duration`")
+                .label(a.key.clone(), "duration in periods")
+                .label(b.key.clone(), "duration in seconds")
                 .help("keep one of them"),
         );
         return None;
     }
     let Some(entry) = periods.or(duration) else {
-        problems.push(
-            Problem::new("[motion] does not say how long it lasts")
-                .at(fields.span.clone(), "until when?")
+        diagnostics.push(
+            Diagnostic::new("[motion] has no duration")
+                .label(fields.span.clone(), "no duration")
                 .help("add `periods = 10`, or `duration = 5.0` in s"),
         );
         return None;
     };
-    let value = positive(entry, "[motion]", problems)?;
-    let length = match periods {
-        Some(_) => Length::Periods(value),
-        None => Length::Duration(value),
+    let value = positive(entry, "[motion]", diagnostics)?;
+    let motion_duration = match periods {
+        Some(_) => MotionDuration::Periods(value),
+        None => MotionDuration::Seconds(value),
     };
-    Some((length, entry.key.start..entry.value.span().end))
+    Some((motion_duration, entry.key.start..entry.value.span().end))
 }
 
 /// A number above zero: a time in s, or a count.
-fn positive(entry: &Entry<'_>, section: &str, problems: &mut Problems) -> Option<f64> {
+fn positive(entry: &Entry<'_>, section: &str, diagnostics: &mut Diagnostics) -> Option<f64> {
     let key = entry.name;
-    let value = number(entry.value, format_args!("{key} in {section}"), problems)?;
+    let value = number(entry.value, format_args!("{key} in {section}"), diagnostics)?;
     if value > 0.0 {
         return Some(value);
     }
-    problems.push(
-        Problem::new(format!("{key} in {section} is not above zero"))
-            .at(entry.value.span(), "expected a number above 0"),
+    diagnostics.push(
+        Diagnostic::new(format!("{key} in {section} is not above zero"))
+            .label(entry.value.span(), "expected a number above 0"),
     );
     None
 }
 
 /// `[calibration]`, and where the number it sets is named.
 pub(crate) fn calibration(
-    fields: &Fields<'_>,
-    problems: &mut Problems,
+    fields: &TableReader<'_>,
+    diagnostics: &mut Diagnostics,
 ) -> Option<(Calibration, Span)> {
-    fields.allow(&keys::CALIBRATION, problems);
+    fields.reject_unknown_keys(&keys::CALIBRATION, diagnostics);
     let missing = |key: &str, help: &str| {
-        Problem::new(format!("[calibration] has no `{key}`"))
-            .at(fields.span.clone(), format!("`{key}` is missing"))
+        Diagnostic::new(format!("[calibration] has no `{key}`"))
+            .label(fields.span.clone(), format!("`{key}` is missing"))
             .help(help)
     };
-    let path = match fields.get("set") {
-        Some(e) => string(e.value, format_args!("set in [calibration]"), problems)
-            .map(|path| (path, e.value.span())),
+    let path = match fields.get("parameter") {
+        Some(e) => string(
+            e.value,
+            format_args!("parameter in [calibration]"),
+            diagnostics,
+        )
+        .map(|path| (path, e.value.span())),
         None => {
-            let help = "name the number to be fitted: `set = \"crank.inertia\"`";
-            problems.push(missing("set", help));
+            let help = "name the number to be fitted: `parameter = \"crank.inertia\"`";
+            diagnostics.push(missing("parameter", help));
             None
         }
     };
     let period = match fields.get("period") {
-        Some(e) => positive(e, "[calibration]", problems),
+        Some(e) => positive(e, "[calibration]", diagnostics),
         None => {
             let help = "give the period to be met, in s: `period = 5.42`";
-            problems.push(missing("period", help));
+            diagnostics.push(missing("period", help));
             None
         }
     };

@@ -1,100 +1,108 @@
-//! Prescribed motions and sweeps: where the actuators are, without the mechanics.
+//! Prescribed motions and coordinate sweeps.
 
-use crate::coordinates::ActuatorText;
-use crate::fields::{Entry, Fields, Sign, Value, array, count, signed};
+use crate::coordinates::ParsedActuator;
+use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::keys;
-use crate::law::{Reach, law};
-use crate::names::shorten;
-use crate::problem::{Problem, Problems, Span, list};
-use crate::scene::{Prescribed, Sweep};
+use crate::law::{LawDomain, law};
+use crate::scene::{CoordinateSweep, PrescribedMotion};
+use crate::table_reader::{Entry, SignRule, TableReader, Value, array, count, quantity_with_sign};
 use crate::units::{Unit, Units};
+use crate::wording::{list, shorten};
 use dwell_geometry::ActuatorId;
 use dwell_laws::Law;
 use toml::de::DeValue;
 
 /// Positions or times, where the scene does not say how many.
-const POINTS: usize = 361;
+const DEFAULT_POINTS: usize = 361;
 
 /// `[prescribed]` as read, and where each actuator's law is.
 #[derive(Debug)]
-pub(crate) struct PrescribedText {
-    pub(crate) prescribed: Option<Prescribed>,
+pub(crate) struct ParsedPrescribedMotion {
+    pub(crate) prescribed: Option<PrescribedMotion>,
     pub(crate) laws: Vec<Option<Span>>,
 }
 
-/// `[sweep]` as read, and where it speaks of each actuator.
+/// `[coordinate-sweep]` as read, and the span of each actuator's entry.
 #[derive(Debug)]
-pub(crate) struct SweepText {
-    pub(crate) sweep: Option<Sweep>,
+pub(crate) struct ParsedSweep {
+    pub(crate) sweep: Option<CoordinateSweep>,
     pub(crate) actuators: Vec<Option<Span>>,
 }
 
 /// The entries of a section that are named by actuators, in the order of these; the section's own
 /// keys are no names.
 fn by_actuator<'f, 'a>(
-    fields: &'f Fields<'a>,
-    table: &keys::Table,
-    actuators: &[ActuatorText<'_>],
-    problems: &mut Problems,
+    fields: &'f TableReader<'a>,
+    table: &keys::TableSchema,
+    actuators: &[ParsedActuator<'_>],
+    diagnostics: &mut Diagnostics,
 ) -> Option<Vec<Option<&'f Entry<'a>>>> {
     let section = &fields.what;
     if actuators.is_empty() {
-        problems.push(
-            Problem::new(format!("there is a {section} but no actuator"))
-                .at(fields.span.clone(), "of which coordinate?")
-                .help("declare the coordinate, as in `[actuators.phi]`"),
+        diagnostics.push(
+            Diagnostic::new(format!("there is a {section} but no actuator"))
+                .label(fields.span.clone(), "no coordinate can move")
+                .help("declare an independent coordinate, as in `[actuators.phi]`"),
         );
         return None;
     }
-    if let Some(a) = actuators.iter().find(|a| table.knows(a.name)) {
+    if let Some(a) = actuators.iter().find(|a| table.contains_key(a.name)) {
         let name = shorten(a.name);
-        problems.push(
-            Problem::new(format!(
+        diagnostics.push(
+            Diagnostic::new(format!(
                 "actuator `{name}` has the name of a key of {section}"
             ))
-            .at(a.key.clone(), "this name")
+            .label(a.key.clone(), "this name")
             .help(format!(
-                "rename it: in {section} it could not be told which is meant"
+                "rename it: in {section} the name would be ambiguous"
             )),
         );
         return None;
     }
     let mut entries = vec![None; actuators.len()];
-    for entry in fields.entries.iter().filter(|e| !table.knows(e.name)) {
+    for entry in fields
+        .entries
+        .iter()
+        .filter(|e| !table.contains_key(e.name))
+    {
         if let Some(k) = actuators.iter().position(|a| a.name == entry.name) {
             entries[k] = Some(entry);
             continue;
         }
-        let own = table.keys.iter().map(|k| k.name);
-        let names: Vec<&str> = actuators.iter().map(|a| a.name).chain(own).collect();
+        let section_keys = table.keys.iter().map(|k| k.name);
+        let names: Vec<&str> = actuators
+            .iter()
+            .map(|a| a.name)
+            .chain(section_keys)
+            .collect();
         let kind = format!("keys of {section}");
-        let help = problems.choices(entry.name, &kind, names.into_iter());
-        problems.push(
-            Problem::new(format!(
+        let help = diagnostics.choices(entry.name, &kind, names.into_iter());
+        diagnostics.push(
+            Diagnostic::new(format!(
                 "`{}` in {section} is neither an actuator nor a key of it",
                 shorten(entry.name)
             ))
-            .at(entry.key.clone(), "unknown name")
+            .label(entry.key.clone(), "unknown name")
             .help(help),
         );
     }
     Some(entries)
 }
 
-impl PrescribedText {
+impl ParsedPrescribedMotion {
     /// `start` holds each actuator's coordinate at assembly, SI.
     pub(crate) fn read(
-        fields: &Fields<'_>,
-        actuators: &[ActuatorText<'_>],
+        fields: &TableReader<'_>,
+        actuators: &[ParsedActuator<'_>],
         start: &[f64],
         units: &Units,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Self {
         let help = "add `duration = 2.0`: how long the motion lasts, in s";
-        let duration = fields.need("duration", &fields.span, help, problems);
-        let duration = duration.and_then(|e| positive(e, fields, problems));
-        let points = points(fields, problems);
-        let Some(entries) = by_actuator(fields, &keys::PRESCRIBED, actuators, problems) else {
+        let duration = fields.require("duration", &fields.span, help, diagnostics);
+        let duration = duration.and_then(|e| positive(e, fields, diagnostics));
+        let points = points(fields, diagnostics);
+        let Some(entries) = by_actuator(fields, &keys::PRESCRIBED, actuators, diagnostics) else {
             return Self {
                 prescribed: None,
                 laws: Vec::new(),
@@ -103,11 +111,11 @@ impl PrescribedText {
         let missing = actuators.iter().zip(&entries).filter(|(_, e)| e.is_none());
         let missing: Vec<_> = missing.map(|(a, _)| a.name).collect();
         if let Some(names) = list(missing.iter().copied()) {
-            problems.push(
-                Problem::new(format!("[prescribed] has no law of {names}"))
-                    .at(fields.span.clone(), "how does it move?")
+            diagnostics.push(
+                Diagnostic::new(format!("[prescribed] has no law of {names}"))
+                    .label(fields.span.clone(), "no motion law")
                     .help(format!(
-                        "add for instance `{} = {{ speed = 1.0 }}`; one that stays has speed 0",
+                        "add for instance `{} = {{ speed = 1.0 }}`; a fixed actuator has speed 0",
                         missing[0]
                     )),
             );
@@ -119,7 +127,7 @@ impl PrescribedText {
             .map(|((a, e), &start)| {
                 // A wrong duration is reported once, not again for each table.
                 let end = duration.unwrap_or(0.0);
-                law_of((*e)?, "[prescribed]", a, (start, end), units, problems)
+                law_of((*e)?, "[prescribed]", a, (start, end), units, diagnostics)
             })
             .collect();
         let laws: Option<Vec<Law>> = laws.into_iter().collect();
@@ -127,7 +135,7 @@ impl PrescribedText {
             prescribed: duration
                 .zip(points)
                 .zip(laws)
-                .map(|((duration, points), laws)| Prescribed {
+                .map(|((duration, points), laws)| PrescribedMotion {
                     duration,
                     points,
                     laws,
@@ -137,84 +145,99 @@ impl PrescribedText {
     }
 }
 
-/// The law of an actuator from time 0 to `end` (s), that a speed, a sine or a rise begins at `start`.
+/// The law of an actuator from time 0 to `end` (s); a constant speed, a sinusoid and a rise start from `start` (SI).
 pub(crate) fn law_of(
     entry: &Entry<'_>,
     section: &str,
-    actuator: &ActuatorText<'_>,
+    actuator: &ParsedActuator<'_>,
     (start, end): (f64, f64),
     units: &Units,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<Law> {
     let what = format!("`{}` in {section}", shorten(entry.name));
-    let fields = Fields::open(entry, what, problems)?;
-    fields.allow(&keys::LAW, problems);
-    let Some(chosen) = fields.one_of(|n| keys::LAW.knows(n), problems).ok()? else {
-        if fields.has_others_than(&keys::LAW) {
+    let fields = TableReader::open(entry, what, diagnostics)?;
+    fields.reject_unknown_keys(&keys::LAW, diagnostics);
+    let Some(chosen) = fields
+        .one_of(|n| keys::LAW.contains_key(n), diagnostics)
+        .ok()?
+    else {
+        if fields.has_unknown_keys(&keys::LAW) {
             return None;
         }
         let laws = list(keys::LAW.names()).unwrap_or_default();
-        problems.push(
-            Problem::new(format!("{} has no law", fields.what))
-                .at(entry.value.span(), "how does it move?")
+        diagnostics.push(
+            Diagnostic::new(format!("{} has no law", fields.what))
+                .label(entry.value.span(), "no motion law")
                 .help(format!(
                     "write it as `{{ speed = 1.0 }}`; the laws are {laws}"
                 )),
         );
         return None;
     };
-    let reach = Reach {
+    let domain = LawDomain {
         variable: "t",
-        x: &Unit::of_si(),
-        y: actuator.unit(units),
-        start,
-        end: Some(end),
+        x_unit: &Unit::si_unit(),
+        y_unit: actuator.unit(units),
+        start_value: start,
+        end_time: Some(end),
     };
-    law(chosen, &fields.what, &reach, units, problems)
+    law(chosen, &fields.what, &domain, units, diagnostics)
 }
 
-fn positive(entry: &Entry<'_>, fields: &Fields<'_>, problems: &mut Problems) -> Option<f64> {
+fn positive(
+    entry: &Entry<'_>,
+    fields: &TableReader<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Option<f64> {
     let what = format_args!("{} in {}", entry.name, fields.what);
-    let seconds = Unit::of_si();
-    signed(entry.value, &seconds, Sign::Positive, what, "", problems)
+    let seconds = Unit::si_unit();
+    quantity_with_sign(
+        entry.value,
+        &seconds,
+        SignRule::Positive,
+        what,
+        "",
+        diagnostics,
+    )
 }
 
-fn points(fields: &Fields<'_>, problems: &mut Problems) -> Option<usize> {
+fn points(fields: &TableReader<'_>, diagnostics: &mut Diagnostics) -> Option<usize> {
     let Some(entry) = fields.get("points") else {
-        return Some(POINTS);
+        return Some(DEFAULT_POINTS);
     };
     let what = format_args!("points in {}", fields.what);
-    count(entry.value, what, problems)
+    count(entry.value, what, diagnostics)
 }
 
-impl SweepText {
+impl ParsedSweep {
     pub(crate) fn read(
-        fields: &Fields<'_>,
-        actuators: &[ActuatorText<'_>],
+        fields: &TableReader<'_>,
+        actuators: &[ParsedActuator<'_>],
         start: &[f64],
         units: &Units,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Self {
-        let before = problems.count();
-        let points = points(fields, problems);
-        let Some(entries) = by_actuator(fields, &keys::SWEEP, actuators, problems) else {
+        let before = diagnostics.count();
+        let points = points(fields, diagnostics);
+        let Some(entries) = by_actuator(fields, &keys::COORDINATE_SWEEP, actuators, diagnostics)
+        else {
             return Self {
                 sweep: None,
                 actuators: Vec::new(),
             };
         };
-        let mut held = start.to_vec();
+        let mut fixed_coordinates = start.to_vec();
         let mut range: Option<(usize, [f64; 2], Span)> = None;
         for (k, entry) in entries.iter().enumerate() {
             let Some(entry) = entry else { continue };
-            match position(entry, &actuators[k], units, problems) {
-                Some(Position::Held(at)) => held[k] = at,
-                Some(Position::Swept(ends)) => match &range {
-                    Some((_, _, other)) => problems.push(
-                        Problem::new("[sweep] sweeps two actuators")
-                            .at(other.clone(), "from here to there")
-                            .at(entry.value.span(), "and this one too")
-                            .help("hold all but one of them: a single number"),
+            match sweep_coordinate(entry, &actuators[k], units, diagnostics) {
+                Some(SweepCoordinate::Fixed(at)) => fixed_coordinates[k] = at,
+                Some(SweepCoordinate::Swept(ends)) => match &range {
+                    Some((_, _, other)) => diagnostics.push(
+                        Diagnostic::new("[coordinate-sweep] sweeps two actuators")
+                            .label(other.clone(), "swept here")
+                            .label(entry.value.span(), "and swept here")
+                            .help("fix all but one of them with a single number"),
                     ),
                     None => range = Some((k, ends, entry.value.span())),
                 },
@@ -229,12 +252,12 @@ impl SweepText {
             (None, [only]) => Some(*only),
             (None, _) => None,
         };
-        if swept.is_none() && problems.count() == before {
-            problems.push(
-                Problem::new("[sweep] does not say which actuator is swept")
-                    .at(fields.span.clone(), "which one?")
+        if swept.is_none() && diagnostics.count() == before {
+            diagnostics.push(
+                Diagnostic::new("[coordinate-sweep] does not name the swept actuator")
+                    .label(fields.span.clone(), "several actuators are possible")
                     .help(format!(
-                        "give one of them a range: `{} = [0.0, 1.0]`",
+                        "give one of them an interval: `{} = [0.0, 1.0]`",
                         actuators[0].name
                     )),
             );
@@ -242,10 +265,10 @@ impl SweepText {
         let speed = match (fields.get("speed"), swept) {
             (None, _) => Some(1.0),
             (Some(e), k) => {
-                let unit = units.of(k.is_none_or(|k| actuators[k].is_angle()));
-                let why = "the range says which way: from where to where";
-                let what = format_args!("speed in [sweep]");
-                signed(e.value, unit, Sign::Positive, what, why, problems)
+                let unit = units.coordinate_unit(k.is_none_or(|k| actuators[k].is_angle()));
+                let why = "the order of the interval's ends gives the direction";
+                let what = format_args!("speed in [coordinate-sweep]");
+                quantity_with_sign(e.value, unit, SignRule::Positive, what, why, diagnostics)
             }
         };
         let whole = |e: &Entry<'_>| e.key.start..e.value.span().end;
@@ -257,10 +280,10 @@ impl SweepText {
             };
         };
         Self {
-            sweep: Some(Sweep {
+            sweep: Some(CoordinateSweep {
                 actuator: ActuatorId(k),
                 range: range.map(|(_, ends, _)| ends),
-                held,
+                fixed_coordinates,
                 points,
                 speed,
             }),
@@ -270,44 +293,44 @@ impl SweepText {
 }
 
 /// Where an actuator is during a sweep.
-enum Position {
-    Held(f64),
+enum SweepCoordinate {
+    Fixed(f64),
     Swept([f64; 2]),
 }
 
-fn position(
+fn sweep_coordinate(
     entry: &Entry<'_>,
-    actuator: &ActuatorText<'_>,
+    actuator: &ParsedActuator<'_>,
     units: &Units,
-    problems: &mut Problems,
-) -> Option<Position> {
+    diagnostics: &mut Diagnostics,
+) -> Option<SweepCoordinate> {
     let name = shorten(entry.name);
-    let read = |value: &Value<'_>, problems: &mut Problems| {
-        let what = format_args!("`{name}` in [sweep]");
-        actuator.position(value, units, what, problems)
+    let read = |value: &Value<'_>, diagnostics: &mut Diagnostics| {
+        let what = format_args!("`{name}` in [coordinate-sweep]");
+        actuator.coordinate_value(value, units, what, diagnostics)
     };
     if let DeValue::Integer(_) | DeValue::Float(_) = entry.value.get_ref() {
-        return read(entry.value, problems).map(Position::Held);
+        return read(entry.value, diagnostics).map(SweepCoordinate::Fixed);
     }
-    let expected = "a number, or from where to where [from, to]";
-    let what = format_args!("`{name}` in [sweep]");
-    let values = array(entry.value, expected, what, problems)?;
+    let expected = "a number, or an interval [from, to]";
+    let what = format_args!("`{name}` in [coordinate-sweep]");
+    let values = array(entry.value, expected, what, diagnostics)?;
     let [from, to] = values else {
-        problems.push(
-            Problem::new(format!("{what}: expected {expected}"))
-                .at(entry.value.span(), format!("{} values", values.len())),
+        diagnostics.push(
+            Diagnostic::new(format!("{what}: expected {expected}"))
+                .label(entry.value.span(), format!("{} values", values.len())),
         );
         return None;
     };
-    let (from, to) = (read(from, problems), read(to, problems));
+    let (from, to) = (read(from, diagnostics), read(to, diagnostics));
     let (from, to) = (from?, to?);
     if from == to {
-        problems.push(
-            Problem::new(format!("{what} ends where it begins"))
-                .at(entry.value.span(), "nothing to sweep")
-                .help("a single number holds the actuator there"),
+        diagnostics.push(
+            Diagnostic::new(format!("{what} ends where it begins"))
+                .label(entry.value.span(), "nothing to sweep")
+                .help("a single number fixes the actuator there"),
         );
         return None;
     }
-    Some(Position::Swept([from, to]))
+    Some(SweepCoordinate::Swept([from, to]))
 }

@@ -1,8 +1,8 @@
 //! From a file to the TOML tree: everything that can go wrong before the scene is looked at.
 
 use crate::error::{SceneError, Source};
-use crate::names::shorten;
 use crate::scene::Scene;
+use crate::wording::shorten;
 use miette::NamedSource;
 use std::fs::File;
 use std::io::{ErrorKind, Read as _};
@@ -12,27 +12,34 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 /// Longest scene, bytes: ten thousand loops take five million.
-const LONGEST: u64 = 1 << 26;
+const MAX_SCENE_BYTES: u64 = 1 << 26;
 
 impl Scene {
     /// Reads a scene file.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, SceneError> {
         let path = path.as_ref();
-        let shown = path.display().to_string();
-        let bytes = bytes(path, &shown)?;
+        let display_path = path.display().to_string();
+        let bytes = bytes(path, &display_path)?;
         let text = match String::from_utf8(bytes) {
-            Ok(text) if text.contains('\0') => return Err(not_text(&shown)),
+            Ok(text) if text.contains('\0') => return Err(not_text(&display_path)),
             Ok(text) => text,
-            Err(error) if error.as_bytes().contains(&0) => return Err(not_text(&shown)),
-            Err(error) => return Err(not_utf8(&shown, &error)),
+            Err(error) if error.as_bytes().contains(&0) => return Err(not_text(&display_path)),
+            Err(error) => return Err(not_utf8(&display_path, &error)),
         };
-        let source = Arc::new(NamedSource::new(&shown, text));
+        let source = Arc::new(NamedSource::new(&display_path, text));
         // `scene.toml` given without its folder is still in one.
         let named = match path.parent().map(std::fs::canonicalize) {
             Some(Ok(folder)) => scene_name(&folder.join(path.file_name().unwrap_or_default())),
             _ => scene_name(&std::path::absolute(path).unwrap_or_else(|_| path.to_owned())),
         };
         Self::build(named, &source)
+    }
+
+    /// Reads the text of a scene. `source_name` is the file's name in messages.
+    pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
+        let name = scene_name(Path::new(source_name));
+        let source = NamedSource::new(source_name, text.to_owned());
+        Self::build(name, &Arc::new(source))
     }
 }
 
@@ -47,15 +54,15 @@ pub(crate) fn scene_name(path: &Path) -> String {
     }
 }
 
-fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, SceneError> {
-    let error = |message: String, help: Option<String>| SceneError::bare(message, help);
+fn bytes(path: &Path, display_path: &str) -> Result<Vec<u8>, SceneError> {
+    let error = |message: String, help: Option<String>| SceneError::without_labels(message, help);
     if path.is_dir() {
         let inside = path.join("scene.toml");
         let help = match inside.is_file() {
             true => format!("did you mean `{}`?", inside.display()),
             false => "give the scene file itself".to_owned(),
         };
-        return Err(error(format!("`{shown}` is a folder"), Some(help)));
+        return Err(error(format!("`{display_path}` is a folder"), Some(help)));
     }
     let unreadable = |e: &std::io::Error| match e.kind() {
         ErrorKind::NotFound => {
@@ -65,36 +72,39 @@ fn bytes(path: &Path, shown: &str) -> Result<Vec<u8>, SceneError> {
             } else {
                 None
             };
-            error(format!("there is no file `{shown}`"), help)
+            error(format!("there is no file `{display_path}`"), help)
         }
-        _ => error(format!("`{shown}` cannot be read: {e}"), None),
+        _ => error(format!("`{display_path}` cannot be read: {e}"), None),
     };
     let file = File::open(path).map_err(|e| unreadable(&e))?;
     let mut bytes = Vec::new();
     // One byte more than allowed tells a longer file, even one that never ends.
-    let read = file.take(LONGEST + 1).read_to_end(&mut bytes);
+    let read = file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes);
     let length = read.map_err(|e| unreadable(&e))?;
-    if length as u64 > LONGEST {
-        let message = format!("`{shown}` is longer than {} MiB", LONGEST >> 20);
+    if length as u64 > MAX_SCENE_BYTES {
+        let message = format!(
+            "`{display_path}` is longer than {} MiB",
+            MAX_SCENE_BYTES >> 20
+        );
         return Err(error(message, Some("is it a scene?".to_owned())));
     }
     Ok(bytes)
 }
 
 /// What holds a zero byte is no text: showing a line of it would help nobody.
-fn not_text(shown: &str) -> SceneError {
+fn not_text(display_path: &str) -> SceneError {
     let help = "is it a scene? If it is, save it as UTF-8".to_owned();
-    SceneError::bare(format!("`{shown}` is not a text file"), Some(help))
+    SceneError::without_labels(format!("`{display_path}` is not a text file"), Some(help))
 }
 
-fn not_utf8(shown: &str, error: &std::string::FromUtf8Error) -> SceneError {
+fn not_utf8(display_path: &str, error: &std::string::FromUtf8Error) -> SceneError {
     let at = error.utf8_error().valid_up_to();
     // Everything before the first bad byte is unchanged by the replacement, so `at` still holds.
     let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
-    let source = Arc::new(NamedSource::new(shown, text));
-    SceneError::at(
+    let source = Arc::new(NamedSource::new(display_path, text));
+    SceneError::with_labels(
         &source,
-        format!("`{shown}` is not UTF-8 text"),
+        format!("`{display_path}` is not UTF-8 text"),
         Some("save it as UTF-8".to_owned()),
         [(at..at + 1, "not a character".to_owned())],
     )
@@ -106,31 +116,31 @@ pub(crate) fn syntax(source: &Source) -> Result<Spanned<DeTable<'_>>, SceneError
     DeTable::parse(text).map_err(|e| {
         let source = &printable(source);
         let span = e.span().unwrap_or(0..0);
-        let (message, help) = plainly(
+        let (message, help) = explain(
             e.message(),
             text.get(span.clone()).unwrap_or_default(),
             text.get(span.start..).unwrap_or_default(),
         );
         let message = format!("not valid TOML: {message}");
-        SceneError::at(source, message, help, [(span, "here".to_owned())])
+        SceneError::with_labels(source, message, help, [(span, "here".to_owned())])
     })
 }
 
 /// The text without what a terminal would obey rather than show. Control characters are one byte,
 /// and so is what stands in for them: places stay where they are.
 fn printable(source: &Source) -> Source {
-    let shown = |c: char| match c {
+    let visible = |c: char| match c {
         '\n' | '\r' | '\t' => c,
         c if c.is_ascii_control() => '?',
         c => c,
     };
-    let text = source.inner().chars().map(shown).collect();
+    let text = source.inner().chars().map(visible).collect();
     Arc::new(NamedSource::new(source.name(), text))
 }
 
 /// The parser's message and a help, for the slips a scene invites: the parser speaks to those who
 /// know TOML. `found` is what it points at, `from` the text from there on.
-fn plainly(message: &str, found: &str, from: &str) -> (String, Option<String>) {
+fn explain(message: &str, found: &str, from: &str) -> (String, Option<String>) {
     let quoted = shorten(found);
     let help = |text: &str| Some(text.to_owned());
     if message == "duplicate key" {

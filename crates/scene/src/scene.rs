@@ -1,18 +1,17 @@
 //! The scene as plain data.
 
-use crate::elsewhere::Elsewhere;
-use crate::error::SceneError;
-use crate::place::Places;
+use crate::error::SceneWarning;
+use crate::number_paths::{BodyNumber, SectionNumber};
+use crate::spans::SceneSpans;
 use crate::units::Units;
-use crate::value::Number;
-use dwell_dynamics::Drive;
-use dwell_geometry::{ActuatorId, BodyId, Coordinate, Mechanism, Reaction, Start, Vec2};
-use dwell_kinetostatics::{Load, Mass};
+use dwell_geometry::{
+    ActuatorId, AssemblyConfiguration, BodyId, Coordinate, Mechanism, Reaction, Vec2,
+};
+use dwell_kinetostatics::{Drive, Load, Mass};
 use dwell_laws::Law;
 use miette::NamedSource;
 use sha2::{Digest, Sha256};
 use std::fmt::Write as _;
-use std::path::Path;
 use std::sync::Arc;
 
 /// A scene: a mechanism, its masses, where it starts and what is asked of it. SI throughout; the
@@ -37,9 +36,9 @@ pub struct Scene {
     /// Where and how the mechanism is put together.
     pub assembly: Assembly,
     /// The prescribed motion.
-    pub prescribed: Option<Prescribed>,
+    pub prescribed: Option<PrescribedMotion>,
     /// The positions of kinematics, statics and kinetostatics without a prescribed motion.
-    pub sweep: Option<Sweep>,
+    pub sweep: Option<CoordinateSweep>,
     /// What acts on the mechanism from outside, and the friction in its joints.
     pub loads: Vec<Load>,
     /// What drives it in a free motion.
@@ -47,36 +46,38 @@ pub struct Scene {
     /// What is asked for.
     pub requests: Requests,
     /// The free motion.
-    pub motion: Option<Motion>,
+    pub motion: Option<FreeMotionSpec>,
     /// The one fitted number.
     pub calibration: Option<Calibration>,
     /// Name and text of the file. After [`with_value`](Self::with_value) the changed text.
     pub source: Arc<NamedSource<String>>,
+    /// Former names that the file uses: they are read, and a program should show these to its user.
+    pub warnings: Vec<SceneWarning>,
     pub(crate) units: Units,
-    pub(crate) places: Places,
-    pub(crate) numbers: Vec<Number>,
+    pub(crate) spans: SceneSpans,
+    pub(crate) body_numbers: Vec<BodyNumber>,
     /// Those outside the bodies.
-    pub(crate) elsewhere: Vec<Elsewhere>,
+    pub(crate) section_numbers: Vec<SectionNumber>,
 }
 
 /// Where and how the mechanism is put together at the start; it picks the branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Assembly {
     /// Exact coordinate of each actuator, rad or m.
-    pub start: Vec<f64>,
+    pub coordinates: Vec<f64>,
     /// Rough angle of each body, rad, where the scene gives one.
-    pub rough: Vec<Option<f64>>,
+    pub initial_guess: Vec<Option<f64>>,
     /// Rough travel, m, or direction, rad, of each joint, where the scene gives one.
-    pub joints: Vec<Option<f64>>,
+    pub branch_hints: Vec<Option<f64>>,
 }
 
 impl Assembly {
     /// The same as a plan takes it.
-    pub fn to_start(&self) -> Start {
-        Start {
-            q: self.start.clone(),
-            rough: self.rough.clone(),
-            joints: self.joints.clone(),
+    pub fn to_configuration(&self) -> AssemblyConfiguration {
+        AssemblyConfiguration {
+            q: self.coordinates.clone(),
+            initial_guess: self.initial_guess.clone(),
+            branch_hints: self.branch_hints.clone(),
         }
     }
 }
@@ -91,10 +92,10 @@ pub struct Requests {
     /// A body whose dwell is marked.
     pub dwell: Option<DwellRequest>,
     /// Names of the columns of the tables, each once; none: all of them. Whether they exist is for
-    /// the level above to find out ([`Place::Variable`](crate::Place::Variable)).
+    /// the level above to find out ([`SceneLocation::Variable`](crate::SceneLocation::Variable)).
     pub variables: Option<Vec<String>>,
     /// Links whose inner forces are wanted.
-    pub sections: Vec<Section>,
+    pub sections: Vec<SectionRequest>,
 }
 
 /// A point of a moving body whose path is drawn.
@@ -114,12 +115,12 @@ pub struct DwellRequest {
     /// The body.
     pub body: BodyId,
     /// The fraction of the swing, between 0 and 1.
-    pub band: f64,
+    pub relative_band: f64,
 }
 
 /// A line along a body, whose axial force, shear and bending moment are wanted.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Section {
+pub struct SectionRequest {
     /// The body, not the ground.
     pub body: BodyId,
     /// Names of the points it runs from and to.
@@ -139,7 +140,7 @@ pub struct NamedCoordinate {
 
 /// A prescribed motion from t = 0.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Prescribed {
+pub struct PrescribedMotion {
     /// How long it lasts, s, above zero.
     pub duration: f64,
     /// At how many times it is evaluated, the ends among them: two or more.
@@ -150,13 +151,13 @@ pub struct Prescribed {
 
 /// Positions: one actuator is swept, the others are held.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Sweep {
+pub struct CoordinateSweep {
     /// The actuator that is swept.
     pub actuator: ActuatorId,
     /// From where to where, rad or m; none: over its range, or one turn.
     pub range: Option<[f64; 2]>,
     /// Coordinate of each actuator, rad or m: where it is held, or the swept one's at assembly.
-    pub held: Vec<f64>,
+    pub fixed_coordinates: Vec<f64>,
     /// How many positions, the ends among them: two or more.
     pub points: usize,
     /// Speed of the swept actuator in kinematics and kinetostatics, rad/s or m/s, above zero.
@@ -165,15 +166,15 @@ pub struct Sweep {
 
 /// A free motion.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Motion {
+pub struct FreeMotionSpec {
     /// Coordinate of each actuator at the start, rad or m; of one that is led, its law's.
-    pub start: Vec<f64>,
+    pub initial_coordinates: Vec<f64>,
     /// Speed of each actuator at the start, rad/s or m/s; of one that is led, its law's.
-    pub speed: Vec<f64>,
+    pub initial_velocities: Vec<f64>,
     /// By actuator: the law it follows; none where it is free.
     pub laws: Vec<Option<Law>>,
     /// How long it lasts.
-    pub length: Length,
+    pub duration: MotionDuration,
     /// What is looked for on the way.
     pub events: Vec<NamedEvent>,
 }
@@ -186,7 +187,7 @@ pub struct NamedEvent {
     /// What makes it.
     pub trigger: EventTrigger,
     /// Whether the motion ends with it.
-    pub stop: bool,
+    pub terminal: bool,
 }
 
 /// What makes an event.
@@ -195,20 +196,20 @@ pub enum EventTrigger {
     /// A coordinate passes a value, rad or m.
     Reaches(Coordinate, f64),
     /// The speed of a coordinate changes its sign.
-    Turns(Coordinate),
+    Reversal(Coordinate),
     /// A reaction passes a value, N or N·m.
     Reaction(Reaction, f64),
     /// A coordinate completes a whole turn from where it started.
-    WholeTurn(Coordinate),
+    Revolution(Coordinate),
 }
 
 /// How long a motion lasts. Above zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Length {
+pub enum MotionDuration {
     /// So many periods of the free motion.
     Periods(f64),
     /// So many seconds.
-    Duration(f64),
+    Seconds(f64),
 }
 
 /// A number of the scene fitted so that the free motion has a given period.
@@ -253,12 +254,5 @@ impl Scene {
             let _ = write!(hash, "{byte:02x}");
             hash
         })
-    }
-
-    /// Reads the text of a scene. `source_name` is the file's name in messages.
-    pub fn parse(source_name: &str, text: &str) -> Result<Self, SceneError> {
-        let name = crate::read::scene_name(Path::new(source_name));
-        let source = NamedSource::new(source_name, text.to_owned());
-        Self::build(name, &Arc::new(source))
     }
 }

@@ -1,6 +1,6 @@
 //! The JSON schema of scenes, from which editors complete keys and show what they mean.
 
-use crate::keys::{Key, Need, SCENE, Shape, Table};
+use crate::keys::{KeySchema, Presence, SCENE, TableSchema, ValueShape};
 use serde_json::{Map, Value, json};
 use toml::de::{DeTable, DeValue};
 
@@ -25,7 +25,7 @@ fn set(schema: &mut Value, key: &str, value: impl Into<Value>) {
     }
 }
 
-fn table(table: &Table) -> Value {
+fn table(table: &TableSchema) -> Value {
     let properties: Map<_, _> = table
         .keys
         .iter()
@@ -38,7 +38,10 @@ fn table(table: &Table) -> Value {
         "properties": properties,
         "additionalProperties": table.named.as_ref().map_or(json!(false), key),
     });
-    let required = table.keys.iter().filter(|k| k.need == Need::Required);
+    let required = table
+        .keys
+        .iter()
+        .filter(|k| k.presence == Presence::Required);
     let required: Vec<_> = required.map(|k| k.name).collect();
     if !required.is_empty() {
         set(&mut schema, "required", required);
@@ -52,21 +55,21 @@ fn table(table: &Table) -> Value {
 }
 
 /// The sets of keys of a table of which exactly one is needed; no table has two such groups.
-fn choices(table: &Table) -> Vec<Vec<&'static str>> {
+fn choices(table: &TableSchema) -> Vec<Vec<&'static str>> {
     let single = table.keys.iter();
-    let single = single.filter(|k| matches!(k.need, Need::OneOf(_)));
+    let single = single.filter(|k| matches!(k.presence, Presence::OneOf(_)));
     let mut choices: Vec<_> = single.map(|k| vec![k.name]).collect();
     choices.extend(table.sets());
     choices
 }
 
-fn key(key: &Key) -> Value {
+fn key(key: &KeySchema) -> Value {
     let mut schema = shape(key.shape);
     let mut doc = key.doc.to_owned();
     if !key.unit.is_empty() {
         doc.push_str(&format!(" Unit: {}.", key.unit));
     }
-    if let Need::Default(default) = key.need {
+    if let Presence::Default(default) = key.presence {
         doc.push_str(&format!(" Absent: {default}."));
     }
     set(&mut schema, "description", doc);
@@ -76,32 +79,31 @@ fn key(key: &Key) -> Value {
     schema
 }
 
-fn shape(shape: Shape) -> Value {
+fn shape(shape: ValueShape) -> Value {
     let number = json!({ "type": "number" });
     let string = |what: &str| json!({ "type": "string", "title": what });
-    let list =
-        |item: Value, least: usize| json!({ "type": "array", "items": item, "minItems": least });
+    let list = |item: Value, min_items: usize| json!({ "type": "array", "items": item, "minItems": min_items });
     let two = |item: Value| json!({ "type": "array", "items": item, "minItems": 2, "maxItems": 2 });
     match shape {
-        Shape::Text => string("text"),
-        Shape::Expression => string("expression"),
-        Shape::Name(what) => string(what),
-        Shape::Number => number,
-        Shape::Boolean => json!({ "type": "boolean" }),
-        Shape::Count => json!({ "type": "integer", "minimum": 2, "maximum": 1_000_000 }),
-        Shape::Word(words) => json!({ "enum": words }),
-        Shape::Pair => two(number),
-        Shape::TwoPairs => two(two(number)),
-        Shape::Rows => list(two(number), 2),
-        Shape::TwoNames(what) => two(string(what)),
-        Shape::Names(what, least) => list(string(what), least),
-        Shape::Table(inner) => table(inner),
-        Shape::Tables(inner) => list(table(inner), 0),
-        Shape::Kinds(kinds) => {
+        ValueShape::Text => string("text"),
+        ValueShape::Expression => string("expression"),
+        ValueShape::Name(what) => string(what),
+        ValueShape::Number => number,
+        ValueShape::Boolean => json!({ "type": "boolean" }),
+        ValueShape::Count => json!({ "type": "integer", "minimum": 2, "maximum": 1_000_000 }),
+        ValueShape::Word(words) => json!({ "enum": words }),
+        ValueShape::Pair => two(number),
+        ValueShape::TwoPairs => two(two(number)),
+        ValueShape::Rows => list(two(number), 2),
+        ValueShape::TwoNames(what) => two(string(what)),
+        ValueShape::Names(what, min_items) => list(string(what), min_items),
+        ValueShape::Table(inner) => table(inner),
+        ValueShape::Tables(inner) => list(table(inner), 0),
+        ValueShape::Kinds(kinds) => {
             let kinds: Vec<_> = kinds.iter().map(|t| table(t)).collect();
             json!({ "oneOf": kinds })
         }
-        Shape::Either(shapes) => {
+        ValueShape::Either(shapes) => {
             let shapes: Vec<_> = shapes.iter().map(|s| self::shape(*s)).collect();
             json!({ "anyOf": shapes })
         }

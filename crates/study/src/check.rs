@@ -1,25 +1,40 @@
-//! `dwell check`: what the scene is, before anything moves.
+//! `dwell check`: mobility, range, groups and assembly modes of a scene, before anything moves.
 
-use crate::error::StudyError;
-use crate::outcome::Outcome;
-use crate::words::{count, number};
+use crate::explain::StudyError;
+use crate::number_format::{count, number};
+#[cfg(feature = "output")]
+use crate::output::Outcome;
 use dwell_geometry::mobility::mobility;
-use dwell_geometry::plan::Branches;
-use dwell_geometry::{BodyId, End, Mechanism, Plan, Range, Start, Told};
+use dwell_geometry::plan::GroupModes;
+use dwell_geometry::{
+    AssemblyConfiguration, BodyId, BranchHint, Mechanism, Plan, Range, RangeLimit,
+};
 use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::fmt::Write as _;
 
-/// Describes a scene: degrees of freedom, groups, branches, range, what is modelled and why, and
-/// the requests. It writes no file.
+/// Describes a scene: degrees of freedom, groups, assembly modes, range, pruning and requests. It writes
+/// no file.
 ///
 /// # Errors
-/// [`StudyError::Scene`] when the mechanism cannot be put together, or a requested column does not exist.
+/// [`StudyError::Scene`] when the mechanism cannot be assembled, or a requested column does not exist.
+#[cfg(feature = "output")]
 pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
+    Ok(Outcome {
+        summary: describe_scene(scene)?,
+        ..Outcome::default()
+    })
+}
+
+/// The text of [`check`].
+///
+/// # Errors
+/// [`StudyError::Scene`] when the mechanism cannot be assembled, or a requested column does not exist.
+pub fn describe_scene(scene: &Scene) -> Result<String, StudyError> {
     let mechanism = &scene.mechanism;
-    let start = scene.assembly.to_start();
-    let model = crate::run::model(scene)?;
-    crate::run::check_variables(scene, &model)?;
+    let configuration = scene.assembly.to_configuration();
+    let model = crate::models::loaded_model(scene)?;
+    let notes = crate::trajectory::compute::check_variables(scene, &model)?;
     let plan = model.plan();
     let mut text = format!("{}\n", scene.title);
     // Writing to a string cannot fail.
@@ -31,73 +46,75 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
         count(plan.actuators(), "degree of freedom"),
         list(mechanism.actuators.iter().map(|a| a.name.as_str())),
     );
-    freedom(mechanism, &start, plan, &mut text);
-    range(mechanism, plan, &mut text);
-    groups(mechanism, plan, &mut text);
-    branch(mechanism, plan, &mut text);
-    modelled(scene, &model, &mut text);
-    requests(scene, &mut text);
+    describe_freedom(mechanism, &configuration, plan, &mut text);
+    describe_range(mechanism, plan, &mut text);
+    describe_groups(mechanism, plan, &mut text);
+    describe_branch(mechanism, plan, &mut text);
+    describe_pruning(scene, &model, &mut text);
+    describe_requests(scene, &mut text);
     if let Some(note) = &scene.note {
         let _ = writeln!(text, "  note: {note}");
     }
-    Ok(Outcome {
-        summary: text,
-        ..Outcome::default()
-    })
+    text += &notes;
+    Ok(text)
 }
 
-/// Words in a row.
-fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
-    words.into_iter().collect::<Vec<_>>().join(", ")
+/// Names separated by commas.
+fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    names.into_iter().collect::<Vec<_>>().join(", ")
 }
 
-fn bodies(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
+pub(crate) fn body_names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
     list(bodies.iter().map(|&b| mechanism.body_name(b)))
 }
 
-/// Where counting is not enough: constraints that repeat others.
-fn freedom(mechanism: &Mechanism, start: &Start, plan: &Plan, text: &mut String) {
+/// Redundant constraints, which counting does not show.
+fn describe_freedom(
+    mechanism: &Mechanism,
+    configuration: &AssemblyConfiguration,
+    plan: &Plan,
+    text: &mut String,
+) {
     let reactions = mechanism.reactions();
-    let shared: Vec<String> = (0..reactions.len())
-        .filter(|&k| !plan.is_unique(k))
+    let indeterminate: Vec<String> = (0..reactions.len())
+        .filter(|&k| !plan.is_determinate(k))
         .map(|k| mechanism.reaction_name(reactions[k]))
         .collect();
-    if shared.is_empty() {
+    if indeterminate.is_empty() {
         return;
     }
-    if let Some(found) = mobility(mechanism, start) {
+    if let Some(found) = mobility(mechanism, configuration) {
         let _ = writeln!(
             text,
-            "  by counting {} degrees of freedom, by rank {}: {} others, consistently",
-            found.counted(),
-            found.freedom(),
-            if found.excess == 1 {
-                "one constraint repeats".to_owned()
+            "  {} degrees of freedom by counting (Grübler), {} by rank: {}, consistently",
+            found.grubler_count(),
+            found.degrees_of_freedom(),
+            if found.redundant_count == 1 {
+                "one constraint is redundant".to_owned()
             } else {
-                format!("{} constraints repeat", found.excess)
+                format!("{} constraints are redundant", found.redundant_count)
             },
         );
     }
     let _ = writeln!(
         text,
-        "  not unique, because repeated constraints share them: {}",
-        shared.join(", ")
+        "  statically indeterminate, because redundant constraints share the load: {}",
+        indeterminate.join(", ")
     );
 }
 
-/// How far the actuators go.
-fn range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
+/// The range of the actuator.
+fn describe_range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
     let [actuator] = mechanism.actuators.as_slice() else {
         let _ = writeln!(
             text,
-            "  several actuators: limit positions are found along a motion or a sweep"
+            "  several actuators: limit positions are found along a motion or a sweep only"
         );
         return;
     };
     let name = &actuator.name;
     let angle = plan.is_angle(0);
-    let verb = if angle { "turns" } else { "goes" };
-    let both = |from: f64, to: f64| {
+    let interval_text = |from: f64, to: f64| {
         if angle {
             format!(
                 "from {from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
@@ -109,113 +126,123 @@ fn range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
         }
     };
     let _ = match plan.range() {
-        Range::Full => writeln!(text, "  {name} turns fully"),
-        Range::Turns(turns) => writeln!(
+        Range::Full => writeln!(text, "  {name} rotates fully"),
+        Range::Revolutions(turns) => writeln!(
             text,
-            "  {name} turns fully; the mechanism comes back after {turns} turns"
+            "  {name} rotates fully; the mechanism is periodic after {turns} revolutions"
         ),
-        Range::Endless if angle => writeln!(
+        Range::Unbounded if angle => writeln!(
             text,
-            "  {name} turns on and on; the mechanism does not come back after a few turns"
+            "  {name} is unlimited; the mechanism is not periodic within 8 revolutions"
         ),
-        Range::Endless => writeln!(text, "  no end of {name} was found"),
-        Range::Between(from, to) | Range::Stroke(from, to) | Range::Followed(from, to) => {
-            let open = match plan.ends() {
+        Range::Unbounded => writeln!(text, "  no limit of {name} was found"),
+        Range::Limited(from, to) | Range::Stroke(from, to) | Range::Unresolved(from, to) => {
+            let note = match plan.range_limits() {
                 [Some(_), Some(_)] => "",
-                [Some(_), None] => "; no upper end was met, it is followed no farther",
-                [None, Some(_)] => "; no lower end was met, it is followed no farther",
-                [None, None] => "; no end was met, it is followed no farther",
+                [Some(_), None] => "; no upper limit was found up to there",
+                [None, Some(_)] => "; no lower limit was found down to there",
+                [None, None] => "; no limit was found up to there",
             };
-            writeln!(text, "  {name} {verb} {}{open}", both(from, to))
+            writeln!(text, "  {name} ranges {}{note}", interval_text(from, to))
         }
     };
-    for end in plan.ends().into_iter().flatten() {
-        let _ = writeln!(text, "    {}", why(mechanism, plan, end));
+    for end in plan.range_limits().into_iter().flatten() {
+        let _ = writeln!(text, "    {}", describe_limit(mechanism, plan, end));
     }
 }
 
-/// Why a range ends.
-fn why(mechanism: &Mechanism, plan: &Plan, end: End) -> String {
+/// The cause of a limit.
+fn describe_limit(mechanism: &Mechanism, plan: &Plan, end: RangeLimit) -> String {
     let unit = if plan.is_angle(0) { "rad" } else { "m" };
-    let who = if plan.group_kinds().is_empty() {
+    let bodies_text = if plan.group_methods().is_empty() {
         String::new()
     } else {
-        format!(" of {}", bodies(mechanism, &plan.group_bodies(end.group)))
+        format!(
+            " of {}",
+            body_names(mechanism, &plan.group_bodies(end.group))
+        )
     };
     let what = if end.change_point {
-        "a change point, where another branch begins,"
+        "change point (another assembly mode begins)"
     } else {
-        "a limit position"
+        "limit position"
     };
-    format!("{:.12} {unit}: {what}{who}", end.q)
+    format!("{:.12} {unit}: {what}{bodies_text}", end.q)
 }
 
-fn groups(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
-    let groups = plan.group_kinds();
+fn describe_groups(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
+    let groups = plan.group_methods();
     if !groups.is_empty() {
         let _ = writeln!(text, "  groups, in the order of solution:");
     }
     for (g, (size, kind)) in groups.into_iter().enumerate() {
         let joints = plan.group_joints(g);
         let joints = joints.iter().map(|j| mechanism.joints[j.0].name.as_str());
-        let placed = bodies(mechanism, &plan.group_bodies(g));
-        let placed = if placed.is_empty() {
+        let placed_bodies = body_names(mechanism, &plan.group_bodies(g));
+        let placed_bodies = if placed_bodies.is_empty() {
             "a line".to_owned()
         } else {
-            placed
+            placed_bodies
         };
         let joints = list(joints);
-        let closed = if joints.is_empty() {
+        let closed_by = if joints.is_empty() {
             "its actuator".to_owned()
         } else {
             joints
         };
         let _ = writeln!(
             text,
-            "    {}. {placed} closed by {closed}: {}, {kind}",
+            "    {}. {placed_bodies} closed by {closed_by}: {}, {kind}",
             g + 1,
             count(size, "unknown"),
         );
-        let branches = &plan.branches()[g];
-        if branches.ways.len() > 1 {
-            for (k, way) in branches.ways.iter().enumerate() {
-                let which = if k == 0 {
-                    "on the branch"
+        let branches = &plan.group_modes()[g];
+        if branches.modes.len() > 1 {
+            for (k, mode) in branches.modes.iter().enumerate() {
+                let label = if k == 0 {
+                    "assembly mode in use:"
                 } else {
-                    "it could close at"
+                    "other assembly mode:"
                 };
-                let _ = writeln!(text, "       {which} {}", told(mechanism, branches, way));
+                let _ = writeln!(
+                    text,
+                    "       {label} {}",
+                    describe_mode(mechanism, branches, mode)
+                );
             }
         }
     }
 }
 
-/// What tells a way of a group from the others.
-fn told(mechanism: &Mechanism, branches: &Branches, way: &[f64]) -> String {
-    let angles = branches.bodies.iter().zip(way);
+/// The angles and travels that distinguish an assembly mode of a group.
+fn describe_mode(mechanism: &Mechanism, branches: &GroupModes, mode: &[f64]) -> String {
+    let angles = branches.bodies.iter().zip(mode);
     let angles: Vec<_> = angles
         .map(|(b, angle)| format!("{} = {:.4}", mechanism.body_name(*b), angle + 0.0))
         .collect();
-    let mut told = Vec::new();
+    let mut texts = Vec::new();
     if !angles.is_empty() {
-        told.push(format!("{} rad", angles.join(", ")));
+        texts.push(format!("{} rad", angles.join(", ")));
     }
-    let values = way.iter().skip(branches.bodies.len());
+    let values = mode.iter().skip(branches.bodies.len());
     for (joint, value) in branches.joints.iter().zip(values) {
         let joint = &mechanism.joints[joint.0];
-        let unit = match joint.kind.told() {
-            Some(Told::Direction) => "rad",
+        let unit = match joint.kind.branch_hint() {
+            Some(BranchHint::Direction) => "rad",
             _ => "m",
         };
-        told.push(format!("{} = {:.4} {unit}", joint.name, value + 0.0));
+        texts.push(format!("{} = {:.4} {unit}", joint.name, value + 0.0));
     }
-    told.join(", ")
+    texts.join(", ")
 }
 
 /// The angles of all bodies at the start.
-fn branch(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
+fn describe_branch(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
     let mut pose = plan.pose();
-    if plan.place(plan.start(), &mut pose).is_err() {
+    if plan
+        .positions(plan.assembly_coordinates(), &mut pose)
+        .is_err()
+    {
         return;
     }
     let at: Vec<_> = mechanism
@@ -224,18 +251,22 @@ fn branch(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
         .enumerate()
         .map(|(i, a)| {
             let unit = if plan.is_angle(i) { "rad" } else { "m" };
-            format!("{} = {} {unit}", a.name, number(plan.start()[i]))
+            format!(
+                "{} = {} {unit}",
+                a.name,
+                number(plan.assembly_coordinates()[i])
+            )
         })
         .collect();
-    let _ = writeln!(text, "  branch, as body angles at {}:", at.join(", "));
+    let _ = writeln!(text, "  body angles at {}:", at.join(", "));
     let named = || {
-        let carried = plan.carried().iter().map(|c| c.body);
+        let carried = plan.moving_bodies().iter().map(|c| c.body);
         carried.filter(|&b| b < mechanism.bodies.len()).map(BodyId)
     };
     let widths = named().map(|b| mechanism.body_name(b).chars().count());
     let width = widths.max().unwrap_or(0);
     for body in named() {
-        let angle = plan.body_turn(body, &pose).angle();
+        let angle = plan.body_rotation(body, &pose).angle();
         // Rounded first, so that no zero keeps a minus sign.
         let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
             .map(|(value, parts)| (value * parts).round() / parts + 0.0);
@@ -247,21 +278,21 @@ fn branch(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
     }
 }
 
-/// Which groups the runs along a way model and for what, and which they and the reduced model skip.
-fn modelled(scene: &Scene, model: &Model, text: &mut String) {
+/// The groups that trajectory analyses model, and why; and those that they and the reduced model skip.
+fn describe_pruning(scene: &Scene, model: &Model, text: &mut String) {
     let mechanism = &scene.mechanism;
     let plan = model.plan();
-    let group = |g: usize| match bodies(mechanism, &plan.group_bodies(g)) {
+    let group = |g: usize| match body_names(mechanism, &plan.group_bodies(g)) {
         none if none.is_empty() => format!("{}. a line", g + 1),
         named => format!("{}. {named}", g + 1),
     };
-    let count = plan.group_kinds().len();
-    match crate::run::wanted(scene, model) {
+    let count = plan.group_methods().len();
+    match crate::trajectory::compute::requested_bodies(scene, model) {
         _ if count == 0 => {}
         None => {
             let _ = writeln!(
                 text,
-                "  modelled along a way: every group, since no `variables` are requested"
+                "  modelled along a trajectory: every group, since no `variables` are requested"
             );
         }
         Some(requested) => {
@@ -269,16 +300,19 @@ fn modelled(scene: &Scene, model: &Model, text: &mut String) {
             let massive = massive.filter(|(_, m)| m.mass > 0.0 || m.inertia > 0.0);
             let loaded = scene.loads.iter().flat_map(|load| load.bodies(mechanism));
             let needs = [
-                ("inertia", plan.needed_for(massive.map(|(b, _)| b))),
-                ("loads", plan.needed_for(loaded.map(|b| b.0))),
-                ("requests", plan.needed_for(requested.iter().map(|b| b.0))),
+                ("inertia", plan.groups_needed_by(massive.map(|(b, _)| b))),
+                ("loads", plan.groups_needed_by(loaded.map(|b| b.0))),
+                (
+                    "requests",
+                    plan.groups_needed_by(requested.iter().map(|b| b.0)),
+                ),
             ];
-            let _ = writeln!(text, "  modelled along a way, and for what:");
+            let _ = writeln!(text, "  modelled along a trajectory, because of:");
             for g in 0..count {
                 let needs = needs.iter().filter(|(_, needed)| needed[g]);
                 let needs = list(needs.map(|(what, _)| *what));
                 let why = match needs.is_empty() {
-                    true => "skipped, no inertia, load or request needs it",
+                    true => "skipped, it affects no inertia, load or requested result",
                     false => &needs,
                 };
                 let _ = writeln!(text, "    {}: {why}", group(g));
@@ -286,21 +320,26 @@ fn modelled(scene: &Scene, model: &Model, text: &mut String) {
         }
     }
     if plan.actuators() == 1 {
-        let reacting = crate::prepare::reacting(scene);
-        let bare = Model::clone(model).with_loads(mechanism, Vec::new());
-        let skipped = bare.map(|bare| bare.only_for(mechanism, &reacting).plan().skipped());
-        let skipped = skipped.unwrap_or_default().into_iter().enumerate();
-        let skipped: Vec<String> = skipped.filter(|s| s.1).map(|(g, _)| group(g)).collect();
-        if !skipped.is_empty() {
+        let requested_bodies = crate::models::requested_reaction_bodies(scene);
+        let unloaded = Model::clone(model).with_loads(Vec::new());
+        let pruned = unloaded.map(|unloaded| {
+            unloaded
+                .pruned_for(&requested_bodies)
+                .plan()
+                .pruned_groups()
+        });
+        let pruned = pruned.unwrap_or_default().into_iter().enumerate();
+        let pruned: Vec<String> = pruned.filter(|s| s.1).map(|(g, _)| group(g)).collect();
+        if !pruned.is_empty() {
             let _ = writeln!(
                 text,
-                "  skipped by `reduce` and `simulate`, which no inertia or requested reaction needs: {}",
-                skipped.join("; ")
+                "  skipped by `reduce` and `simulate`, as they affect no inertia or requested reaction: {}",
+                pruned.join("; ")
             );
         }
     }
     let massless: Vec<_> = plan
-        .carried()
+        .moving_bodies()
         .iter()
         .filter_map(|c| scene.masses.get(c.body).map(|mass| (c.body, mass)))
         .filter(|(_, mass)| mass.mass == 0.0 && mass.inertia == 0.0)
@@ -309,16 +348,19 @@ fn modelled(scene: &Scene, model: &Model, text: &mut String) {
     if !massless.is_empty() {
         let _ = writeln!(
             text,
-            "  without inertia, so no force of theirs is computed: {}",
+            "  massless, so without inertia forces: {}",
             massless.join(", ")
         );
     }
 }
 
-fn requests(scene: &Scene, text: &mut String) {
+fn describe_requests(scene: &Scene, text: &mut String) {
     let mechanism = &scene.mechanism;
-    let asked = &scene.requests.reactions;
-    let names: Vec<_> = asked.iter().map(|&r| mechanism.reaction_name(r)).collect();
+    let requested = &scene.requests.reactions;
+    let names: Vec<_> = requested
+        .iter()
+        .map(|&r| mechanism.reaction_name(r))
+        .collect();
     let others = mechanism.reactions().len() - names.len();
     let _ = writeln!(
         text,

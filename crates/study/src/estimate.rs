@@ -1,29 +1,30 @@
-//! The error that is estimated of a result, and reported with it.
+//! Error estimates of results.
 //!
-//! - An evaluation: its difference from the same evaluation in numbers of two words, and the rounding of the
-//!   constants that the model was compiled to.
-//! - A motion: its difference from a second run, at a tenth of the tolerance, times a measured factor.
-//! - A period by quadrature: its change where the start is changed by its rounding, and what the series leaves.
+//! - An evaluation: its difference from the same evaluation in double-double arithmetic, plus the rounding of the
+//!   compiled constants.
+//! - A motion: its difference from a second run at a tenth of the tolerance, times a measured factor.
+//! - A period by quadrature: its change under the rounding of the initial state, plus the tail of the series.
 
 use dwell_dynamics::{DynamicsError, Method, Options, Orbit};
-use dwell_geometry::{PlaceError, Scalar, Wide};
+use dwell_geometry::PositionError;
 use dwell_kinetostatics::{Coefficients, Model};
+use dwell_numerics::{DoubleDouble, Scalar};
 
-/// A run at a tenth of the tolerance has 1/14 (order 5) to a third (order 1 or 2) of the error, so that the
-/// difference of both is at least 0.67 of it; the integrators' own irregularity takes up the rest.
-const SAFETY: f64 = 2.5;
+/// A run at a tenth of the tolerance has 1/14 (order 5) to a third (order 1 or 2) of the error, so the difference of
+/// both is at least 0.67 of it; the rest covers the irregularity of the integrators.
+const SAFETY_FACTOR: f64 = 2.5;
 /// Below this tolerance a second run by the same method would only show the same rounding.
-const FINEST: f64 = 2e-14;
-/// Roundings, in last places, of the products and sums of masses and lengths that a model is compiled to.
-const COMPILED: f64 = 2.0;
+const MIN_TOLERANCE: f64 = 2e-14;
+/// Rounding of the compiled products and sums of masses and lengths, in units in the last place.
+const COMPILED_ROUNDINGS: f64 = 2.0;
 
-/// How a motion is run again to learn its error: at a tenth of the tolerance; where that is out of reach, by
-/// the other kind of method.
-pub fn second(options: &Options) -> Options {
-    if options.absolute.min(options.relative) > FINEST {
+/// Options of the second run that estimates an error: a tenth of the tolerance; if that is out of reach, the other
+/// kind of method.
+pub fn comparison_options(options: &Options) -> Options {
+    if options.atol.min(options.rtol) > MIN_TOLERANCE {
         return Options {
-            relative: 0.1 * options.relative,
-            absolute: 0.1 * options.absolute,
+            rtol: 0.1 * options.rtol,
+            atol: 0.1 * options.atol,
             ..*options
         };
     }
@@ -34,63 +35,74 @@ pub fn second(options: &Options) -> Options {
     Options { method, ..*options }
 }
 
-/// The error of a quantity at the end of a motion, from its values in both runs at the same times: the
-/// largest difference in the last eighth of them, for at one time it may be small by chance. `rounding` is what
-/// no second run can show, in the quantity's unit.
-pub fn of_motion(first: &[f64], again: &[f64], rounding: f64) -> f64 {
+/// The error of a quantity at the end of a motion, from its values in both runs at the same times: the largest
+/// difference in the last eighth of them, since at one time it may be small by chance. `rounding` is the error that a
+/// second run cannot show, in the quantity's unit.
+pub fn of_motion(first: &[f64], second: &[f64], rounding: f64) -> f64 {
     let recent = (first.len() - first.len() / 8).saturating_sub(1);
-    let apart = first
+    let differences = first
         .iter()
-        .zip(again)
+        .zip(second)
         .skip(recent)
         .map(|(a, b)| (a - b).abs());
-    SAFETY * apart.fold(0.0, f64::max) + rounding
+    SAFETY_FACTOR * differences.fold(0.0, f64::max) + rounding
 }
 
-/// The rounding error of a value, by the same in two words; `size` is what its terms are made of.
-pub fn of_value(value: f64, finer: Wide, size: f64) -> f64 {
-    (Wide::lift(value) - finer).hi.abs() + COMPILED * f64::EPSILON * value.abs().max(size)
+/// The rounding error of a value, from the same value in double-double; `size` is the magnitude of its terms.
+pub fn of_value(value: f64, finer: DoubleDouble, size: f64) -> f64 {
+    (DoubleDouble::from_f64(value) - finer).hi.abs()
+        + COMPILED_ROUNDINGS * f64::EPSILON * value.abs().max(size)
 }
 
 /// The reduced coefficients at `q` (rad or m), and the estimated rounding error of each.
 ///
 /// # Errors
-/// [`PlaceError`] when there is no pose at `q`.
-pub fn reduced(model: &Model, q: f64) -> Result<(Coefficients, Coefficients), PlaceError> {
-    let (mut plain, mut finer) = (model.coefficients::<f64>(), model.coefficients::<Wide>());
-    model.reduce(q, &mut model.workspace(), &mut plain)?;
-    model.reduce(Wide::lift(q), &mut model.workspace(), &mut finer)?;
-    let list = |of: &[f64], finer: &[Wide]| {
+/// [`PositionError`] when there is no pose at `q`.
+pub fn coefficients_with_errors(
+    model: &Model,
+    q: f64,
+) -> Result<(Coefficients, Coefficients), PositionError> {
+    let (mut values, mut finer) = (
+        model.coefficient_buffer::<f64>(),
+        model.coefficient_buffer::<DoubleDouble>(),
+    );
+    model.reduce(q, &mut model.workspace(), &mut values)?;
+    model.reduce(
+        DoubleDouble::from_f64(q),
+        &mut model.workspace(),
+        &mut finer,
+    )?;
+    let list = |of: &[f64], finer: &[DoubleDouble]| {
         let size = of.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
         let pairs = of.iter().zip(finer);
         pairs.map(|(&v, &w)| of_value(v, w, size)).collect()
     };
     let errors = Coefficients {
-        m: of_value(plain.m, finer.m, 0.0),
-        half_dm: of_value(plain.half_dm, finer.half_dm, 0.0),
-        a: list(&plain.a, &finer.a),
-        b: list(&plain.b, &finer.b),
+        m: of_value(values.m, finer.m, 0.0),
+        half_dm: of_value(values.half_dm, finer.half_dm, 0.0),
+        a: list(&values.a, &finer.a),
+        b: list(&values.b, &finer.b),
     };
-    Ok((plain, errors))
+    Ok((values, errors))
 }
 
-/// The error of an orbit's period, s: what it changes by where the speed at the start is changed by a few
-/// roundings either way (`at` is the orbit at so many times the speed), and what its series leaves.
+/// The error of an orbit's period, s: its change when the initial speed changes by a few roundings either way (`at`
+/// is the orbit at this multiple of the speed), plus the tail of its series.
 ///
 /// # Errors
-/// Where the changed start has no such orbit: within its rounding it creeps up to a summit.
+/// If the changed initial state has no such orbit: within rounding the motion is asymptotic to an equilibrium.
 pub fn of_period(
     orbit: &Orbit,
     at: impl Fn(f64) -> Result<Orbit, DynamicsError>,
 ) -> Result<f64, DynamicsError> {
     const ROUNDINGS: f64 = 2.0;
-    let mut moved = 0.0_f64;
+    let mut change = 0.0_f64;
     for side in [-1.0, 1.0] {
-        let beside = at(1.0 + side * ROUNDINGS * f64::EPSILON)?;
-        moved = moved.max((beside.period - orbit.period).abs());
+        let perturbed = at(1.0 + side * ROUNDINGS * f64::EPSILON)?;
+        change = change.max((perturbed.period - orbit.period).abs());
     }
-    // Roundings of a sum add up as the root of its terms.
+    // Rounding errors of a sum grow as the square root of the number of terms.
     let summed = ROUNDINGS + 0.5 * (orbit.points as f64).sqrt();
-    let own = (orbit.rounding + summed * f64::EPSILON) * orbit.period;
-    Ok(moved + own)
+    let series_error = (orbit.tail + summed * f64::EPSILON) * orbit.period;
+    Ok(change + series_error)
 }

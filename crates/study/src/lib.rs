@@ -1,76 +1,78 @@
-//! One function per command: from a scene to results, findings and figures.
+//! Analyses of a scene: from a mechanism description to results, and then to tables, figures and text.
 //!
-//! ```text
-//! Scene ── Subject (the exact model, for the checks: every reaction) ─┐
-//!       └─ Prepared (the model of what the scene requests) ───────────┼─ check, reduce, simulate,
-//!                                                                     │  calibrate, validate
-//!                                                                     └→ Outcome: words, files, findings
-//! Scene + values ── Design, Wanted ── points, each compiled once ── Store (SQLite) ── sweep
-//! Scene ── Driven (the machine: loads, drives, what is free) ── cycle, equilibria, linearise
-//! Scene ── Model under its loads ── Way (prescribed, swept or the range) ── Record ── run
+//! Each analysis is a folder. Its `compute` yields plain results and compiles anywhere; its `figures` and `document`
+//! draw and write them, and belong to the feature `output` (on by default).
+//!
 //! ```
+//! use dwell_scene::Scene;
 //!
-//! [`run()`] is all of `kinematics`, `statics` and `kinetostatics`: they follow the same way through a scene
-//! and differ in the columns that they compute.
+//! let text = r#"
+//! title = "Pendulum"
+//! [bodies.ground]
+//! points = { A = [0, 0] }
+//! [bodies.bar]
+//! points = { A = [0, 0] }
+//! mass = 3.0
+//! center = [0.5, 0]
+//! inertia = 0.25
+//! [joints]
+//! A = { revolute = ["ground.A", "bar.A"] }
+//! [actuators]
+//! phi = { angle = ["ground", "bar"] }
+//! "#;
+//! let scene = Scene::parse("pendulum.toml", text)?;
+//! let reduction = dwell_study::compute_reduction(&scene)?;
+//! // m = I + M r² about the pin, at every position.
+//! assert!((reduction.curves.coefficients[0].m - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
-mod ambiguous;
-mod calibrate;
-mod channels;
-mod check;
-mod claims;
-mod cycle;
-mod dossier;
-mod driven;
-mod equilibria;
-mod error;
+pub mod bodies;
 pub mod estimate;
-pub mod extremes;
-mod figures;
-mod freed;
+pub mod explain;
+pub mod former_names;
+pub mod models;
+pub mod number_format;
+#[cfg(feature = "output")]
+pub mod output;
+mod progress;
 
-mod history;
-mod index;
-mod linearise;
-mod motion_error;
-mod multibody;
-mod outcome;
-mod page;
-mod period;
-mod prepare;
-mod provenance;
-mod quantity;
-mod reduce;
-mod reference;
-mod rounding;
-mod run;
-mod simulate;
-mod states;
-mod subject;
-mod sweep;
+mod calibrate;
+mod check;
+pub mod cycle;
+pub mod equilibria;
+pub mod free_motion;
+pub mod linearise;
+pub mod reduce;
+pub mod sweep;
 mod symbolic;
-mod tabulate;
-pub mod tradeoff;
-mod validate;
-mod words;
+pub mod trajectory;
 
-pub use calibrate::{Calibrated, calibrate, find_value};
-pub use check::check;
-pub use cycle::cycle;
+pub use calibrate::{CalibrationResult, find_value};
+pub use check::describe_scene;
+pub use cycle::compute_cycle;
 pub use dwell_symbolic::Language;
-pub use equilibria::equilibria;
-pub use error::StudyError;
-pub use index::{Verdict, index};
-pub use linearise::{About, linearise};
-pub use multibody::{FreeRun, free_run};
-pub use outcome::{Outcome, Progress, Step, silent};
-pub use prepare::Prepared;
-pub use reduce::reduce;
-pub use run::{Command, Followed, run};
-pub use simulate::{Accuracy, PRESETS, simulate, simulate_within};
-pub use states::{Judged, judge_case};
-pub use subject::PlanSubject;
-pub use sweep::{Exported, Shard, Sweep, SweepError, sweep};
-pub use symbolic::{Printed, symbolic, symbolic_findings};
-pub use tabulate::Tabulation;
-pub use tradeoff::tradeoff;
-pub use validate::{Validation, validate};
+pub use equilibria::compute_equilibria;
+pub use explain::{StudyError, SweepError};
+pub use linearise::{OperatingPoint, compute_linearisation};
+pub use models::{PRESETS, PreparedScene, SolverSettings};
+pub use progress::{Progress, Step, no_progress};
+pub use reduce::{TableRequest, compute_reduction};
+pub use sweep::Shard;
+pub use symbolic::{compute_closed_form, symbolic_findings};
+pub use trajectory::Analysis;
+
+#[cfg(feature = "output")]
+pub use {
+    calibrate::calibrate,
+    check::check,
+    cycle::cycle,
+    equilibria::equilibria,
+    free_motion::{simulate, simulate_to_accuracy},
+    linearise::linearise,
+    output::Outcome,
+    reduce::reduce,
+    sweep::{ParameterSweep, sweep},
+    symbolic::{FormulaFormat, symbolic},
+    trajectory::{TrajectoryOutcome, analyse_trajectory},
+};

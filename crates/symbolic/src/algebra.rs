@@ -56,7 +56,7 @@ pub(crate) fn plus(a: &Term, b: &Term) -> Term {
 }
 
 /// A term times ±1 or another number.
-pub(crate) fn scaled(term: &Term, by: f64) -> Term {
+pub(crate) fn scale(term: &Term, by: f64) -> Term {
     if by == 1.0 {
         term.clone()
     } else if by == -1.0 {
@@ -71,7 +71,7 @@ pub(crate) fn is_zero(term: &Term) -> bool {
 }
 
 /// Whether a term is so short that a name for it would only hide it.
-pub(crate) fn is_plain(term: &Term) -> bool {
+pub(crate) fn is_atomic(term: &Term) -> bool {
     match term.as_ref() {
         Node::Sym(_) | Node::Const(_) => true,
         Node::Neg(inner) => matches!(inner.as_ref(), Node::Sym(_) | Node::Const(_)),
@@ -92,11 +92,11 @@ pub(crate) fn quotient(term: &Term) -> Option<(Term, Term)> {
 }
 
 /// A term in which names stand for what they are; squares lose the signs of what they are of.
-pub(crate) fn replaced(term: &Term, by: &BTreeMap<String, Term>) -> Term {
+pub(crate) fn substitute(term: &Term, replacements: &BTreeMap<String, Term>) -> Term {
     let mut value = term.clone();
     for name in names(term) {
-        if let Some(by) = by.get(&name) {
-            value = value.subs(name.as_str(), by);
+        if let Some(replacements) = replacements.get(&name) {
+            value = value.subs(name.as_str(), replacements);
         }
     }
     let squares = value.map_nodes(&mut |node| match node.as_ref() {
@@ -115,10 +115,10 @@ pub(crate) fn names(term: &Term) -> BTreeSet<String> {
 }
 
 /// The derivative of a term by everything in it that has a rate: Σ ∂term/∂x · rate of x.
-pub(crate) fn rate(term: &Term, rates: &BTreeMap<String, Term>) -> Term {
+pub(crate) fn derivative(term: &Term, derivatives: &BTreeMap<String, Term>) -> Term {
     let mut sum = zero();
     for name in names(term) {
-        if let Some(rate) = rates.get(&name) {
+        if let Some(rate) = derivatives.get(&name) {
             let by = term.diff(name.as_str());
             sum = plus(&sum, &times(&by, rate));
         }
@@ -132,6 +132,6 @@ pub(crate) fn value(term: &Term, values: &HashMap<&str, f64>) -> f64 {
 }
 
 /// What several terms share, each part with a new name, and what is left of the terms.
-pub(crate) fn shared(terms: &[Term]) -> (Vec<(String, Term)>, Vec<Term>) {
+pub(crate) fn common_subexpressions(terms: &[Term]) -> (Vec<(String, Term)>, Vec<Term>) {
     arael_sym::cse(terms)
 }

@@ -1,284 +1,204 @@
 //! The closed forms of the groups.
 
 use crate::algebra::{
-    Node, Term, atan2, is_zero, names, number, plus, scaled, sqrt, square, symbol, times, zero,
+    Term, atan2, is_zero, names, number, plus, scale, sqrt, square, symbol, times, zero,
 };
-use crate::chains::bond_name;
 use crate::error::SymbolicError;
-use crate::positions::{Pair, Positions, cross, dot, perp, rotated};
-use crate::sheet::Slopes;
+use crate::loops::pair_name;
+use crate::polar::{Polar, angle_partials, square_of};
+use crate::positions::{PositionFormulas, Vector, cross, dot, perp, rotate};
+use crate::symbol_table::PartialDerivatives;
 use dwell_geometry::Vec2;
 use dwell_geometry::groups::Unknown;
 
-/// A vector that turns with a class: its squared length, and its angle in the class, rad, less that of
-/// `sign` times it.
-struct Polar {
-    square: Term,
-    angle: Term,
-    /// The step of the angle, if it changes.
-    varies: Option<String>,
-    sign: f64,
-}
-
-impl Positions<'_> {
+impl PositionFormulas<'_> {
     /// Writes the steps of one group.
-    pub(crate) fn solve(&mut self, group: usize) -> Result<(), SymbolicError> {
+    pub(crate) fn solve_group(&mut self, group: usize) -> Result<(), SymbolicError> {
         let plan = self.plan;
         let parts = plan.group(group);
         if parts.rows != parts.unknowns.len() {
-            return Err(self.none(group, "constraints repeat each other"));
+            return Err(self.unsupported(group, "constraints repeat each other"));
         }
-        let single = |closure: usize, slide: usize, own: &Self| {
-            let passages = own.chains[closure].passages.iter();
-            passages.filter(|p| p.slide == slide).count() == 1
+        let single = |closure: usize, slide: usize, formulas: &Self| {
+            let slide_terms = formulas.loops[closure].slide_terms.iter();
+            slide_terms.filter(|p| p.slide == slide).count() == 1
         };
         match (
             parts.unknowns.as_slice(),
             parts.loops.as_slice(),
-            parts.relations.as_slice(),
+            parts.couplings.as_slice(),
         ) {
-            (&[unknown], &[], &[relation]) => self.relate(group, unknown, relation),
-            (&[Unknown::Class(one), Unknown::Class(two)], &[c], &[])
-                if self.chains[c].axis.is_none() =>
+            (&[unknown], &[], &[relation]) => self.solve_coupling(group, unknown, relation),
+            (&[Unknown::ClassAngle(one), Unknown::ClassAngle(two)], &[c], &[])
+                if self.loops[c].axis.is_none() =>
             {
                 self.triangle(group, [one, two], c);
                 Ok(())
             }
-            (&[Unknown::Class(class), Unknown::Slide(slide)], &[c], &[])
-                if self.chains[c].axis.is_none() && single(c, slide, self) =>
+            (&[Unknown::ClassAngle(class), Unknown::SlideTravel(slide)], &[c], &[])
+                if self.loops[c].axis.is_none() && single(c, slide, self) =>
             {
-                self.reach(group, class, slide, c);
+                self.line_circle(group, class, slide, c);
                 Ok(())
             }
-            (&[Unknown::Class(class)], &[c], &[]) if self.chains[c].axis.is_some() => {
-                self.guide(group, class, c);
+            (&[Unknown::ClassAngle(class)], &[c], &[]) if self.loops[c].axis.is_some() => {
+                self.point_on_line(group, class, c);
                 Ok(())
             }
-            (&[Unknown::Slide(slide)], &[c], &[]) if self.chains[c].axis.is_some() => {
-                self.travel(group, slide, c);
+            (&[Unknown::SlideTravel(slide)], &[c], &[]) if self.loops[c].axis.is_some() => {
+                self.slide_to_line(group, slide, c);
                 Ok(())
             }
-            (&[Unknown::Slide(one), Unknown::Slide(two)], &[c], &[])
+            (&[Unknown::SlideTravel(one), Unknown::SlideTravel(two)], &[c], &[])
                 if single(c, one, self) && single(c, two, self) =>
             {
-                self.travels(group, [one, two], c);
+                self.two_slides(group, [one, two], c);
                 Ok(())
             }
-            (.., []) => Err(self.none(group, "they are no dyad")),
-            _ => Err(self.none(group, "loops and relations are solved together")),
+            (.., []) => Err(self.unsupported(group, "they are no dyad")),
+            _ => Err(self.unsupported(group, "loops and relations are solved together")),
         }
     }
 
-    fn joint(&self, closure: usize) -> String {
-        bond_name(self.mechanism, self.plan, self.chains[closure].bond)
+    pub(crate) fn loop_joint_name(&self, closure: usize) -> String {
+        pair_name(self.mechanism, self.plan, self.loops[closure].loop_joint)
     }
 
     /// The steps of the part of a loop that is known before its group.
-    fn gap(&mut self, group: usize, closure: usize, but: &[usize]) -> Pair {
-        let known = self.part(
+    fn known_part(&mut self, group: usize, closure: usize, but: &[usize]) -> Vector {
+        let known = self.loop_part(
             closure,
-            |own, f| !own.in_group(group, f),
-            |own, f| own.angle(f),
+            |formulas, f| !formulas.in_group(group, f),
+            |formulas, f| formulas.angle(f),
             but,
         );
-        let joint = self.joint(closure);
-        let codes = ["x", "y"].map(|axis| self.sheet.name("d", &[&joint, axis]));
-        let pair = [0, 1].map(|i| self.sheet.step(&codes[i], &known[i]));
-        self.closed[closure].gap = Some(codes);
+        let joint = self.loop_joint_name(closure);
+        let codes = ["x", "y"].map(|axis| self.symbols.new_name("d", &[&joint, axis]));
+        let pair = [0, 1].map(|i| self.symbols.assign(&codes[i], &known[i]));
+        self.loop_symbols[closure].known_part = Some(codes);
         pair
     }
 
-    fn gap_at_start(&self, group: usize, closure: usize, but: &[usize]) -> Vec2 {
-        self.part_at_start(closure, |own, f| !own.in_group(group, f), but)
+    fn known_part_at_assembly(&self, group: usize, closure: usize, but: &[usize]) -> Vec2 {
+        self.loop_part_at_assembly(closure, |formulas, f| !formulas.in_group(group, f), but)
     }
 
     /// ±√ of a term, the branch of the group as a constant.
-    fn root(&mut self, (letter, below): (&str, &[&str]), radicand: &Term, branch: f64) -> Term {
+    fn signed_root(
+        &mut self,
+        (letter, below): (&str, &[&str]),
+        radicand: &Term,
+        branch: f64,
+    ) -> Term {
         let joint = below.first().copied().unwrap_or_default().to_owned();
-        let sign = self.sheet.constant(
+        let sign = self.symbols.add_constant(
             ("sigma", &[&joint]),
             if branch < 0.0 { -1.0 } else { 1.0 },
             "",
             format!("branch of the dyad that {joint} closes"),
         );
-        let code = self.sheet.name(letter, below);
-        let own = symbol(&code);
+        let code = self.symbols.new_name(letter, below);
+        let root_symbol = symbol(&code);
         let radicand = radicand.simplify();
         // Of h² = R the derivative is R′/2h.
         let half = |name: &String| {
-            let slope = radicand.diff(name.as_str()) / number(2.0);
-            (name.clone(), slope.simplify())
+            let partial = radicand.diff(name.as_str()) / number(2.0);
+            (name.clone(), partial.simplify())
         };
-        let slopes = Slopes {
-            divided: names(&radicand).iter().map(half).collect(),
-            over: own,
-            beside: Vec::new(),
+        let partials = PartialDerivatives {
+            quotient_partials: names(&radicand).iter().map(half).collect(),
+            denominator: root_symbol,
+            extra_partials: Vec::new(),
         };
-        self.sheet
-            .step_with(&code, sign * sqrt(radicand.clone()), slopes)
-    }
-
-    /// What a class has of a loop.
-    fn polar(&mut self, closure: usize, class: usize, but: &[usize]) -> Polar {
-        let root = self.plan.root_of(class);
-        if let Some(local) = self.constant_part(closure, class, but) {
-            let sign = if local.x < 0.0 || (local.x == 0.0 && local.y < 0.0) {
-                -1.0
-            } else {
-                1.0
-            };
-            let pair = self.part(
-                closure,
-                |own, f| own.class(f) == class,
-                |own, f| own.relative(f),
-                but,
-            );
-            let square = plus(&square_of(&pair[0]), &square_of(&pair[1]));
-            let name = self.frame_name(root);
-            let angle = (local * sign).angle();
-            let angle = if angle == 0.0 {
-                zero()
-            } else {
-                let k = self.number();
-                let meaning = format!(
-                    "{name}: direction of its arm at {}, from its x axis",
-                    self.joint(closure)
-                );
-                self.sheet.constant(("alpha", &[&k]), angle, "rad", meaning)
-            };
-            return Polar {
-                square,
-                angle,
-                varies: None,
-                sign,
-            };
-        }
-        let part = self.part(
-            closure,
-            |own, f| own.class(f) == class,
-            |own, f| own.relative(f),
-            but,
-        );
-        self.changing(closure, root, &part)
-    }
-
-    /// A vector that changes in its class.
-    fn changing(&mut self, closure: usize, root: usize, part: &Pair) -> Polar {
-        let (joint, name) = (self.joint(closure), self.frame_name(root));
-        let codes = ["x", "y"].map(|axis| self.sheet.name("w", &[&joint, &name, axis]));
-        let pair = [0, 1].map(|i| self.sheet.step(&codes[i], &part[i]));
-        let code = self.sheet.name("w", &[&joint, &name]);
-        let square = self
-            .sheet
-            .step(&code, &plus(&square(&pair[0]), &square(&pair[1])));
-        let code = self.sheet.name("epsilon", &[&joint, &name]);
-        let slopes = turning(&codes, &pair, &square);
-        let angle = atan2(pair[1].clone(), pair[0].clone());
-        let angle = self.sheet.step_with(&code, angle, slopes);
-        Polar {
-            square,
-            angle,
-            varies: Some(code),
-            sign: 1.0,
-        }
-    }
-
-    /// Turns a class until its vector is the one in the steps `to`.
-    fn turn(&mut self, class: usize, to: &Pair, polar: &Polar) {
-        let root = self.plan.root_of(class);
-        let name = self.frame_name(root);
-        let code = self.sheet.name("theta", &[&name]);
-        let codes = [0, 1].map(|i| to[i].to_string());
-        let mut slopes = turning(&codes, to, &polar.square);
-        if let Some(varies) = &polar.varies {
-            slopes.beside.push((varies.clone(), number(-1.0)));
-        }
-        let [x, y] = [0, 1].map(|i| scaled(&to[i], polar.sign));
-        let mut angle = atan2(y, x);
-        if !is_zero(&polar.angle) {
-            angle = angle - polar.angle.clone();
-        }
-        let angle = self.sheet.step_with(&code, angle, slopes);
-        self.angles[root] = Some(angle);
+        self.symbols
+            .assign_with_partials(&code, sign * sqrt(radicand.clone()), partials)
     }
 
     /// Two classes whose vectors close a triangle with the known part of the loop.
     fn triangle(&mut self, group: usize, classes: [usize; 2], closure: usize) {
-        let joint = self.joint(closure);
-        let d = self.gap(group, closure, &[]);
+        let joint = self.loop_joint_name(closure);
+        let d = self.known_part(group, closure, &[]);
         let [one, two] = classes.map(|class| self.polar(closure, class, &[]));
-        let code = self.sheet.name("D", &[&joint]);
+        let code = self.symbols.new_name("D", &[&joint]);
         let distance = self
-            .sheet
-            .step(&code, &plus(&square(&d[0]), &square(&d[1])));
-        let code = self.sheet.name("f", &[&joint]);
-        let excess = two.square.clone() - one.square.clone();
-        let along = excess / (number(2.0) * distance.clone()) - number(0.5);
-        let along = self.sheet.step(&code, &along);
+            .symbols
+            .assign(&code, &plus(&square(&d[0]), &square(&d[1])));
+        let code = self.symbols.new_name("f", &[&joint]);
+        let square_difference = two.square.clone() - one.square.clone();
+        let along = square_difference / (number(2.0) * distance.clone()) - number(0.5);
+        let along = self.symbols.assign(&code, &along);
         let (first, known) = (
-            self.part_at_start(closure, |own, f| own.class(f) == classes[0], &[]),
-            self.gap_at_start(group, closure, &[]),
+            self.loop_part_at_assembly(
+                closure,
+                |formulas, f| formulas.orientation_class(f) == classes[0],
+                &[],
+            ),
+            self.known_part_at_assembly(group, closure, &[]),
         );
         let radicand = one.square.clone() / distance - square(&along);
-        let across = self.root(("h", &[&joint]), &radicand, known.cross(first));
+        let across = self.signed_root(("h", &[&joint]), &radicand, known.cross(first));
         let r = [
             times(&along, &d[0]) - times(&across, &d[1]),
             times(&along, &d[1]) + times(&across, &d[0]),
         ];
-        let r = self.pair("r", &[&joint, "1"], &r);
-        self.turn(classes[0], &r, &one);
+        let r = self.assign_vector("r", &[&joint, "1"], &r);
+        self.orient_class(classes[0], &r, &one);
         let rest = [0, 1].map(|i| -(d[i].clone()) - r[i].clone());
-        let rest = self.pair("r", &[&joint, "2"], &rest);
-        self.turn(classes[1], &rest, &two);
+        let rest = self.assign_vector("r", &[&joint, "2"], &rest);
+        self.orient_class(classes[1], &rest, &two);
     }
 
     /// Two steps for a vector.
-    fn pair(&mut self, letter: &str, below: &[&str], value: &Pair) -> Pair {
+    fn assign_vector(&mut self, letter: &str, below: &[&str], value: &Vector) -> Vector {
         ["x", "y"].map(|axis| {
             let mut names = below.to_vec();
             names.push(axis);
-            let code = self.sheet.name(letter, &names);
-            self.sheet.step(&code, &value[usize::from(axis == "y")])
+            let code = self.symbols.new_name(letter, &names);
+            self.symbols.assign(&code, &value[usize::from(axis == "y")])
         })
     }
 
     /// A class turns and a slide travels until a loop closes.
-    fn reach(&mut self, group: usize, class: usize, slide: usize, closure: usize) {
-        let joint = self.joint(closure);
+    fn line_circle(&mut self, group: usize, class: usize, slide: usize, closure: usize) {
+        let joint = self.loop_joint_name(closure);
         let but = [slide];
-        let Some(passage) = self.chains[closure]
-            .passages
+        let Some(slide_term) = self.loops[closure]
+            .slide_terms
             .iter()
             .find(|p| p.slide == slide)
             .cloned()
         else {
             return;
         };
-        let d = self.gap(group, closure, &but);
-        let u = self.direction(passage.frame, passage.local, "direction of travel");
-        let along = passage.local.turn(self.turn[passage.frame]);
-        let turns_too = self.class(passage.frame) == class;
-        let at_start = self.slide[slide];
-        let own_at_start = self.part_at_start(closure, |own, f| own.class(f) == class, &but);
-        let known_at_start = self.gap_at_start(group, closure, &but);
-        if turns_too {
-            let w = self.part(
+        let d = self.known_part(group, closure, &but);
+        let u = self.direction(slide_term.frame, slide_term.local, "direction of travel");
+        let along = slide_term.local.rotate(self.rotation[slide_term.frame]);
+        let rotates_with_class = self.orientation_class(slide_term.frame) == class;
+        let at_start = self.slide_travel[slide];
+        let class_part_at_start = self.loop_part_at_assembly(
+            closure,
+            |formulas, f| formulas.orientation_class(f) == class,
+            &but,
+        );
+        let known_at_start = self.known_part_at_assembly(group, closure, &but);
+        if rotates_with_class {
+            let w = self.loop_part(
                 closure,
-                |own, f| own.class(f) == class,
-                |own, f| own.relative(f),
+                |formulas, f| formulas.orientation_class(f) == class,
+                |formulas, f| formulas.relative_angle(f),
                 &but,
             );
-            let u = rotated(&u, &self.relative(passage.frame));
-            let code = self.sheet.name("D", &[&joint]);
+            let u = rotate(&u, &self.relative_angle(slide_term.frame));
+            let code = self.symbols.new_name("D", &[&joint]);
             let distance = self
-                .sheet
-                .step(&code, &plus(&square(&d[0]), &square(&d[1])));
-            let off = cross(&w, &u);
-            let branch = at_start + own_at_start.dot(along);
-            let radicand = plus(&distance, &-square_of(&off));
-            let root = self.root(("g", &[&joint]), &radicand, branch);
+                .symbols
+                .assign(&code, &plus(&square(&d[0]), &square(&d[1])));
+            let offset = cross(&w, &u);
+            let branch = at_start + class_part_at_start.dot(along);
+            let radicand = plus(&distance, &-square_of(&offset));
+            let signed_root = self.signed_root(("g", &[&joint]), &radicand, branch);
             let code = self.travel_name(slide);
-            let travel = self.sheet.step(&code, &(root - dot(&w, &u)));
+            let travel = self.symbols.assign(&code, &(signed_root - dot(&w, &u)));
             self.travels[slide] = Some(travel.clone());
             let reached = [0, 1].map(|i| plus(&w[i], &times(&u[i], &travel)));
             let mut polar = if w.iter().all(is_zero) && is_zero(&u[1]) {
@@ -286,204 +206,196 @@ impl Positions<'_> {
                 Polar {
                     square: distance,
                     angle: zero(),
-                    varies: None,
-                    sign: (passage.local.x * at_start).signum(),
+                    angle_symbol: None,
+                    sign: (slide_term.local.x * at_start).signum(),
                 }
             } else {
-                self.changing(closure, self.plan.root_of(class), &reached)
+                self.varying_polar(closure, self.plan.class_frame(class), &reached)
             };
             // What it reaches is what is known, the other way round.
             polar.sign = -polar.sign;
-            self.turn(class, &d, &polar);
+            self.orient_class(class, &d, &polar);
         } else {
-            let u = rotated(&u, &self.angle(passage.frame));
+            let u = rotate(&u, &self.angle(slide_term.frame));
             let polar = self.polar(closure, class, &but);
-            let off = self.sheet.name("k", &[&joint]);
-            let off = self.sheet.step(&off, &cross(&d, &u));
+            let offset = self.symbols.new_name("k", &[&joint]);
+            let offset = self.symbols.assign(&offset, &cross(&d, &u));
             let branch = at_start + known_at_start.dot(along);
-            let radicand = polar.square.clone() - square(&off);
-            let root = self.root(("g", &[&joint]), &radicand, branch);
+            let radicand = polar.square.clone() - square(&offset);
+            let signed_root = self.signed_root(("g", &[&joint]), &radicand, branch);
             let code = self.travel_name(slide);
-            let travel = self.sheet.step(&code, &(root - dot(&d, &u)));
+            let travel = self.symbols.assign(&code, &(signed_root - dot(&d, &u)));
             self.travels[slide] = Some(travel.clone());
             let r = [0, 1].map(|i| -(d[i].clone()) - times(&u[i], &travel));
-            let r = self.pair("r", &[&joint], &r);
-            self.turn(class, &r, &polar);
+            let r = self.assign_vector("r", &[&joint], &r);
+            self.orient_class(class, &r, &polar);
         }
     }
 
     /// Notes the normal distance and the travel of a loop that closes along its normal only.
-    fn close(&mut self, closure: usize, normal: String, travel: &Term) {
-        let joint = self.joint(closure);
-        let code = self.sheet.name("s", &[&joint]);
-        let travel = self.sheet.step(&code, travel);
-        self.closed[closure].normal = Some((normal, travel));
+    fn close_along_normal(&mut self, closure: usize, normal: String, travel: &Term) {
+        let joint = self.loop_joint_name(closure);
+        let code = self.symbols.new_name("s", &[&joint]);
+        let travel = self.symbols.assign(&code, travel);
+        self.loop_symbols[closure].normal_distance = Some((normal, travel));
     }
 
     /// The axis of a loop that closes along its normal only: its angle's frame and its direction.
-    fn axis(&mut self, closure: usize, angle: impl Fn(&Self, usize) -> Term) -> (Pair, Vec2) {
-        let (_, frame, local) = self.chains[closure].axis.unwrap_or((0, 0, Vec2::IDENTITY));
-        let pair = self.direction(frame, local, "direction of the guide");
-        let pair = rotated(&pair, &angle(self, frame));
-        (pair, local.turn(self.turn[frame]))
+    fn line_direction(
+        &mut self,
+        closure: usize,
+        angle: impl Fn(&Self, usize) -> Term,
+    ) -> (Vector, Vec2) {
+        let (_, frame, local) = self.loops[closure].axis.unwrap_or((0, 0, Vec2::IDENTITY));
+        let vector = self.direction(frame, local, "direction of the guide");
+        let vector = rotate(&vector, &angle(self, frame));
+        (vector, local.rotate(self.rotation[frame]))
     }
 
     /// A class turns until a point of its loop lies on a line.
-    fn guide(&mut self, group: usize, class: usize, closure: usize) {
-        let joint = self.joint(closure);
-        let (_, frame, _) = self.chains[closure].axis.unwrap_or((0, 0, Vec2::IDENTITY));
-        let d = self.gap(group, closure, &[]);
-        if self.class(frame) == class {
-            self.aim(group, class, closure, &d);
+    fn point_on_line(&mut self, group: usize, class: usize, closure: usize) {
+        let joint = self.loop_joint_name(closure);
+        let (_, frame, _) = self.loops[closure].axis.unwrap_or((0, 0, Vec2::IDENTITY));
+        let d = self.known_part(group, closure, &[]);
+        if self.orientation_class(frame) == class {
+            self.guided_point(group, class, closure, &d);
             return;
         }
-        let (axis, at_start) = self.axis(closure, Self::angle);
+        let (axis, at_start) = self.line_direction(closure, Self::angle);
         let normal = perp(&axis);
         let polar = self.polar(closure, class, &[]);
-        let code = self.sheet.name("kappa", &[&joint]);
-        let off = self.sheet.step(&code, &-dot(&normal, &d));
-        let own = self.part_at_start(closure, |own, f| own.class(f) == class, &[]);
-        let radicand = polar.square.clone() - square(&off);
-        let root = self.root(("g", &[&joint]), &radicand, own.dot(at_start));
-        let travel = plus(&dot(&axis, &d), &root);
-        self.close(closure, code, &travel);
+        let code = self.symbols.new_name("kappa", &[&joint]);
+        let offset = self.symbols.assign(&code, &-dot(&normal, &d));
+        let own =
+            self.loop_part_at_assembly(closure, |own, f| own.orientation_class(f) == class, &[]);
+        let radicand = polar.square.clone() - square(&offset);
+        let signed_root = self.signed_root(("g", &[&joint]), &radicand, own.dot(at_start));
+        let travel = plus(&dot(&axis, &d), &signed_root);
+        self.close_along_normal(closure, code, &travel);
         let level = axis == [number(1.0), number(0.0)];
         let r = if level {
-            [root, off]
+            [signed_root, offset]
         } else {
-            let r = [0, 1].map(|i| plus(&times(&axis[i], &root), &times(&normal[i], &off)));
-            self.pair("r", &[&joint], &r)
+            let r =
+                [0, 1].map(|i| plus(&times(&axis[i], &signed_root), &times(&normal[i], &offset)));
+            self.assign_vector("r", &[&joint], &r)
         };
-        self.turn(class, &r, &polar);
+        self.orient_class(class, &r, &polar);
     }
 
     /// A line turns with its class until it passes through a point.
-    fn aim(&mut self, group: usize, class: usize, closure: usize, d: &Pair) {
-        let joint = self.joint(closure);
-        let root_frame = self.plan.root_of(class);
-        let w = self.part(
+    fn guided_point(&mut self, group: usize, class: usize, closure: usize, d: &Vector) {
+        let joint = self.loop_joint_name(closure);
+        let class_root = self.plan.class_frame(class);
+        let w = self.loop_part(
             closure,
-            |own, f| own.class(f) == class,
-            |own, f| own.relative(f),
+            |formulas, f| formulas.orientation_class(f) == class,
+            |formulas, f| formulas.relative_angle(f),
             &[],
         );
-        let (axis, at_start) = self.axis(closure, Self::relative);
+        let (axis, at_start) = self.line_direction(closure, Self::relative_angle);
         let normal = perp(&axis);
-        let kappa = self.sheet.name("kappa", &[&joint]);
-        let off = self.sheet.step(&kappa, &-dot(&normal, &w));
+        let kappa = self.symbols.new_name("kappa", &[&joint]);
+        let offset = self.symbols.assign(&kappa, &-dot(&normal, &w));
         let passes = w.iter().all(is_zero);
-        let branch = self.gap_at_start(group, closure, &[]).dot(at_start);
-        let code = self.sheet.name("D", &[&joint]);
+        let branch = self
+            .known_part_at_assembly(group, closure, &[])
+            .dot(at_start);
+        let code = self.symbols.new_name("D", &[&joint]);
         let distance = self
-            .sheet
-            .step(&code, &plus(&square(&d[0]), &square(&d[1])));
+            .symbols
+            .assign(&code, &plus(&square(&d[0]), &square(&d[1])));
         let radicand = if passes {
             distance.clone()
         } else {
-            distance.clone() - square(&off)
+            distance.clone() - square(&offset)
         };
-        let along = self.root(("g", &[&joint]), &radicand, branch);
+        let along = self.signed_root(("g", &[&joint]), &radicand, branch);
         let travel = plus(&along, &dot(&axis, &w));
-        self.close(closure, kappa.clone(), &travel);
+        self.close_along_normal(closure, kappa.clone(), &travel);
         let codes = [0, 1].map(|i| d[i].to_string());
-        let mut slopes = turning(&codes, d, &distance);
-        let name = self.frame_name(root_frame);
+        let mut partials = angle_partials(&codes, d, &distance);
+        let name = self.frame_name(class_root);
         let mut angle = if passes {
             // ρ is √D here.
-            slopes.divided.push((kappa, -along));
-            let [x, y] = [0, 1].map(|i| scaled(&d[i], if branch < 0.0 { -1.0 } else { 1.0 }));
+            partials.quotient_partials.push((kappa, -along));
+            let [x, y] = [0, 1].map(|i| scale(&d[i], if branch < 0.0 { -1.0 } else { 1.0 }));
             atan2(y, x)
         } else {
-            slopes.divided.push((kappa, -along.clone()));
-            slopes.divided.push((along.to_string(), off.clone()));
-            atan2(d[1].clone(), d[0].clone()) - atan2(off, along)
+            partials.quotient_partials.push((kappa, -along.clone()));
+            partials
+                .quotient_partials
+                .push((along.to_string(), offset.clone()));
+            atan2(d[1].clone(), d[0].clone()) - atan2(offset, along)
         };
-        if let Some(turned) = self.axis_angle(closure) {
-            angle = angle - turned.0;
-            slopes.beside.extend(turned.1);
+        if let Some(line_angle) = self.line_angle(closure) {
+            angle = angle - line_angle.0;
+            partials.extra_partials.extend(line_angle.1);
         }
-        let code = self.sheet.name("theta", &[&name]);
-        let angle = self.sheet.step_with(&code, angle, slopes);
-        self.angles[root_frame] = Some(angle);
+        let code = self.symbols.new_name("theta", &[&name]);
+        let angle = self.symbols.assign_with_partials(&code, angle, partials);
+        self.angles[class_root] = Some(angle);
     }
 
     /// The angle of a line in its class, with its slopes; none where it is the class's x axis.
-    fn axis_angle(&mut self, closure: usize) -> Option<(Term, Vec<(String, Term)>)> {
-        let (_, frame, local) = self.chains[closure].axis?;
-        let turned = self.relative(frame);
-        let slopes = names(&turned)
+    fn line_angle(&mut self, closure: usize) -> Option<(Term, Vec<(String, Term)>)> {
+        let (_, frame, local) = self.loops[closure].axis?;
+        let relative_angle = self.relative_angle(frame);
+        let partials = names(&relative_angle)
             .iter()
-            .map(|name| (name.clone(), -turned.diff(name.as_str())))
+            .map(|name| (name.clone(), -relative_angle.diff(name.as_str())))
             .collect();
-        let own = local.angle();
-        if own == 0.0 {
-            return (!is_zero(&turned)).then_some((turned, slopes));
+        let constant_angle = local.angle();
+        if constant_angle == 0.0 {
+            return (!is_zero(&relative_angle)).then_some((relative_angle, partials));
         }
-        let k = self.number();
+        let k = self.next_number();
         let meaning = format!(
             "{}: direction of the guide, from its x axis",
             self.frame_name(frame)
         );
-        let own = self.sheet.constant(("alpha", &[&k]), own, "rad", meaning);
-        Some((plus(&own, &turned), slopes))
+        let constant_angle =
+            self.symbols
+                .add_constant(("alpha", &[&k]), constant_angle, "rad", meaning);
+        Some((plus(&constant_angle, &relative_angle), partials))
     }
 
     /// A slide travels until a point lies on a line.
-    fn travel(&mut self, group: usize, slide: usize, closure: usize) {
-        let joint = self.joint(closure);
-        let d = self.gap(group, closure, &[slide]);
-        let (axis, _) = self.axis(closure, Self::angle);
+    fn slide_to_line(&mut self, group: usize, slide: usize, closure: usize) {
+        let joint = self.loop_joint_name(closure);
+        let d = self.known_part(group, closure, &[slide]);
+        let (axis, _) = self.line_direction(closure, Self::angle);
         let normal = perp(&axis);
-        let u = self.along(closure, slide);
-        let code = self.sheet.name("kappa", &[&joint]);
-        let off = self.sheet.step(&code, &-dot(&normal, &d));
+        let u = self.slide_direction(closure, slide);
+        let code = self.symbols.new_name("kappa", &[&joint]);
+        let offset = self.symbols.assign(&code, &-dot(&normal, &d));
         let name = self.travel_name(slide);
-        let travel = (off / dot(&normal, &u)).simplify();
-        let travel = self.sheet.step(&name, &travel);
+        let travel = (offset / dot(&normal, &u)).simplify();
+        let travel = self.symbols.assign(&name, &travel);
         self.travels[slide] = Some(travel.clone());
-        let travelled = plus(&dot(&axis, &d), &times(&dot(&axis, &u), &travel));
-        self.close(closure, code, &travelled);
+        let line_travel = plus(&dot(&axis, &d), &times(&dot(&axis, &u), &travel));
+        self.close_along_normal(closure, code, &line_travel);
     }
 
     /// Two slides travel until a loop closes.
-    fn travels(&mut self, group: usize, slides: [usize; 2], closure: usize) {
-        let d = self.gap(group, closure, &slides);
-        let [one, two] = slides.map(|s| self.along(closure, s));
+    fn two_slides(&mut self, group: usize, slides: [usize; 2], closure: usize) {
+        let d = self.known_part(group, closure, &slides);
+        let [one, two] = slides.map(|s| self.slide_direction(closure, s));
         let area = cross(&one, &two);
         let values = [-(cross(&d, &two) / area.clone()), -(cross(&one, &d) / area)];
         for (slide, value) in slides.into_iter().zip(values) {
             let name = self.travel_name(slide);
-            self.travels[slide] = Some(self.sheet.step(&name, &value));
+            self.travels[slide] = Some(self.symbols.assign(&name, &value));
         }
     }
 
     /// The direction in which a loop passes a slide.
-    fn along(&mut self, closure: usize, slide: usize) -> Pair {
-        let passages = self.chains[closure].passages.iter();
-        let Some(passage) = passages.clone().find(|p| p.slide == slide).cloned() else {
+    fn slide_direction(&mut self, closure: usize, slide: usize) -> Vector {
+        let slide_terms = self.loops[closure].slide_terms.iter();
+        let Some(slide_term) = slide_terms.clone().find(|p| p.slide == slide).cloned() else {
             return [zero(), zero()];
         };
-        let u = self.direction(passage.frame, passage.local, "direction of travel");
-        rotated(&u, &self.angle(passage.frame))
-    }
-}
-
-/// The slopes of an angle by the coordinates of what it points along.
-fn turning(codes: &[String; 2], to: &Pair, square: &Term) -> Slopes {
-    Slopes {
-        over: square.clone(),
-        divided: vec![
-            (codes[1].clone(), to[0].clone()),
-            (codes[0].clone(), -to[1].clone()),
-        ],
-        beside: Vec::new(),
-    }
-}
-
-fn square_of(term: &Term) -> Term {
-    match term.as_ref() {
-        _ if is_zero(term) => zero(),
-        Node::Neg(inner) => square(inner).simplify(),
-        _ => square(term).simplify(),
+        let u = self.direction(slide_term.frame, slide_term.local, "direction of travel");
+        rotate(&u, &self.angle(slide_term.frame))
     }
 }

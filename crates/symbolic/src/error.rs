@@ -1,6 +1,6 @@
 //! Why a mechanism has no closed form.
 
-use dwell_geometry::{BodyId, JointId, PlaceError, Reaction};
+use dwell_geometry::{BodyId, JointId, PositionError, Reaction};
 use thiserror::Error;
 
 /// Why there are no closed forms of a mechanism, or of one of its reactions.
@@ -8,7 +8,7 @@ use thiserror::Error;
 pub enum SymbolicError {
     /// Not one coordinate.
     #[error("closed forms are of one coordinate, and the mechanism has {0} actuators")]
-    Actuators(usize),
+    ActuatorCount(usize),
     /// A group that is not a dyad, or another one without a closed form.
     #[error("a group has no closed form: {what}")]
     Group {
@@ -26,5 +26,5 @@ pub enum SymbolicError {
     Reaction(Reaction),
     /// The mechanism cannot be placed at its start.
     #[error(transparent)]
-    Place(#[from] PlaceError),
+    Position(#[from] PositionError),
 }

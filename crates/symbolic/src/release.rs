@@ -4,11 +4,11 @@
 //! which is all that a and b take of it, the known part of each loop is shifted by a sum over its pieces, and
 //! the points of the bodies are shifted by what carries them.
 
-use crate::algebra::{Term, number, scaled, symbol, times, zero};
+use crate::algebra::{Term, number, scale, symbol, times, zero};
 use crate::error::SymbolicError;
-use crate::positions::{Pair, Positions, add, perp, rotated};
-use dwell_geometry::frames::Coupler;
-use dwell_geometry::lower::Tie;
+use crate::positions::{PositionFormulas, Vector, add, perp, rotate};
+use dwell_geometry::frames::AngularConstraintSource;
+use dwell_geometry::lower::PairKind;
 use dwell_geometry::{Component, JointKind, Reaction, Vec2};
 use std::collections::BTreeMap;
 
@@ -16,215 +16,246 @@ use std::collections::BTreeMap;
 #[derive(Debug, Clone)]
 enum Released {
     /// A bond, along a direction in the plane.
-    Bond(usize, Pair),
+    Pair(usize, Vector),
     /// The couple of a bond.
-    Hold(usize),
-    Relation(usize),
+    Moment(usize),
+    Coupling(usize),
 }
 
 /// A released joint: what it adds to each step, and to each body's angle beside its frame's.
 #[derive(Debug, Clone)]
 pub(crate) struct Release {
     pub(crate) shifts: BTreeMap<String, Term>,
-    pub(crate) turned: Vec<f64>,
+    pub(crate) extra_rotation: Vec<f64>,
 }
 
-impl Positions<'_> {
+impl PositionFormulas<'_> {
     /// Releases one component of a joint. Further constants may be named, and no steps.
     pub(crate) fn release(&mut self, reaction: Reaction) -> Result<Release, SymbolicError> {
-        let released = self.released(reaction)?;
-        let turned = self.turned(&released);
+        let released = self.released_constraint(reaction)?;
+        let extra_rotation = self.extra_rotations(&released);
         let mut shifts = BTreeMap::new();
-        for closure in 0..self.chains.len() {
-            self.shift_loop(closure, &released, &turned, &mut shifts);
+        for closure in 0..self.loops.len() {
+            self.shift_loop(closure, &released, &extra_rotation, &mut shifts);
         }
-        self.shift_bodies(&released, &turned, &mut shifts);
-        self.shift_relations(&released, &turned, &mut shifts);
-        Ok(Release { shifts, turned })
+        self.shift_bodies(&released, &extra_rotation, &mut shifts);
+        self.shift_couplings(&released, &extra_rotation, &mut shifts);
+        Ok(Release {
+            shifts,
+            extra_rotation,
+        })
     }
 
-    fn released(&mut self, reaction: Reaction) -> Result<Released, SymbolicError> {
+    fn released_constraint(&mut self, reaction: Reaction) -> Result<Released, SymbolicError> {
         let Reaction { joint, component } = reaction;
-        let refused = SymbolicError::Reaction(reaction);
-        let (bond, relation) = self.plan.parts(joint);
-        let is_relation = matches!(self.mechanism.joints[joint.0].kind, JointKind::Relation(_));
-        match (component, bond, relation) {
-            (Component::Tooth | Component::Tangent | Component::Force, _, Some(relation)) => {
-                return Ok(Released::Relation(relation));
+        let unsupported = SymbolicError::Reaction(reaction);
+        let (pair, coupling) = self.plan.joint_parts(joint);
+        let is_relation = matches!(self.mechanism.joints[joint.0].kind, JointKind::Coupling(_));
+        match (component, pair, coupling) {
+            (Component::Tooth | Component::Tangent | Component::Force, _, Some(coupling)) => {
+                return Ok(Released::Coupling(coupling));
             }
-            (Component::Moment, _, Some(relation)) if is_relation => {
-                return Ok(Released::Relation(relation));
+            (Component::Moment, _, Some(coupling)) if is_relation => {
+                return Ok(Released::Coupling(coupling));
             }
-            (Component::Moment, Some(bond), _) => return Ok(Released::Hold(bond)),
+            (Component::Moment, Some(pair), _) => return Ok(Released::Moment(pair)),
             _ => {}
         }
-        let bond = bond.ok_or(refused)?;
-        let described = self.plan.bonds()[bond];
-        let along = match (component, described.tie) {
+        let pair = pair.ok_or(unsupported)?;
+        let described = self.plan.pairs()[pair];
+        let direction = match (component, described.kind) {
             (Component::Y, _) => [zero(), number(1.0)],
-            (Component::Normal, Tie::Slide { axes, .. }) => {
-                let (frame, axis) = self.in_frame(described.bodies[0], axes[0]);
+            (Component::Normal, PairKind::Prismatic { axes, .. }) => {
+                let (frame, axis) = self.to_frame(described.bodies[0], axes[0]);
                 let axis = self.direction(frame, axis, "direction of the guide");
-                perp(&rotated(&axis, &self.angle(frame)))
+                perp(&rotate(&axis, &self.angle(frame)))
             }
             // The line of a distance is the x axis of its second body.
             (Component::Axial, _) => {
-                let (frame, axis) = self.in_frame(described.bodies[1], Vec2::IDENTITY);
+                let (frame, axis) = self.to_frame(described.bodies[1], Vec2::IDENTITY);
                 let axis = self.direction(frame, axis, "direction of the line");
-                rotated(&axis, &self.angle(frame))
+                rotate(&axis, &self.angle(frame))
             }
             _ => [number(1.0), zero()],
         };
-        Ok(Released::Bond(bond, along))
+        Ok(Released::Pair(pair, direction))
     }
 
     /// By body: how much it turns beside its frame for each unit.
-    fn turned(&self, released: &Released) -> Vec<f64> {
-        let mut turned = vec![0.0; self.plan.frames().attitudes.len()];
-        let Released::Hold(bond) = *released else {
-            return turned;
+    fn extra_rotations(&self, released: &Released) -> Vec<f64> {
+        let mut extra_rotation = vec![0.0; self.plan.frames().orientations.len()];
+        let Released::Moment(pair) = *released else {
+            return extra_rotation;
         };
-        for hold in &self.plan.frames().holds {
-            let own = if hold.by == Coupler::Bond(bond) {
+        for constraint in &self.plan.frames().angular_constraints {
+            let relative = if constraint.source == AngularConstraintSource::Pair(pair) {
                 // Its second body turns from its first.
-                if hold.body_is_first { -1.0 } else { 1.0 }
+                if constraint.body_is_first { -1.0 } else { 1.0 }
             } else {
                 0.0
             };
-            turned[hold.body] = turned[hold.against] + own;
+            extra_rotation[constraint.body] = extra_rotation[constraint.reference_body] + relative;
         }
-        turned
+        extra_rotation
     }
 
     fn shift_loop(
         &mut self,
         closure: usize,
         released: &Released,
-        turned: &[f64],
+        extra_rotation: &[f64],
         shifts: &mut BTreeMap<String, Term>,
     ) {
-        let Some(gap) = self.closed[closure].gap.clone() else {
+        let Some(gap) = self.loop_symbols[closure].known_part.clone() else {
             return;
         };
-        let chain = self.chains[closure].clone();
+        let loop_equation = self.loops[closure].clone();
         let mut sum = [zero(), zero()];
-        for piece in chain.pieces.iter().filter(|p| turned[p.body] != 0.0) {
-            let meaning = self.meaning(piece);
-            let pair = self.local(piece.frame, piece.local, &meaning);
-            let pair = rotated(&pair, &self.angle(piece.frame));
-            sum = add(&sum, &perp(&pair).map(|c| scaled(&c, turned[piece.body])));
+        for link_vector in loop_equation
+            .link_vectors
+            .iter()
+            .filter(|p| extra_rotation[p.body] != 0.0)
+        {
+            let meaning = self.meaning(link_vector);
+            let vector = self.frame_vector(link_vector.frame, link_vector.local, &meaning);
+            let vector = rotate(&vector, &self.angle(link_vector.frame));
+            sum = add(
+                &sum,
+                &perp(&vector).map(|c| scale(&c, extra_rotation[link_vector.body])),
+            );
         }
-        for passage in chain.passages.iter().filter(|p| turned[p.body] != 0.0) {
-            let along = self.direction(passage.frame, passage.local, "direction of travel");
-            let along = rotated(&along, &self.angle(passage.frame));
-            let travel = self.travels[passage.slide].clone().unwrap_or_else(zero);
-            let travel = scaled(&travel, turned[passage.body]);
+        for slide_term in loop_equation
+            .slide_terms
+            .iter()
+            .filter(|p| extra_rotation[p.body] != 0.0)
+        {
+            let along = self.direction(slide_term.frame, slide_term.local, "direction of travel");
+            let along = rotate(&along, &self.angle(slide_term.frame));
+            let travel = self.travels[slide_term.slide].clone().unwrap_or_else(zero);
+            let travel = scale(&travel, extra_rotation[slide_term.body]);
             sum = add(&sum, &perp(&along).map(|c| times(&c, &travel)));
         }
-        if let Released::Bond(bond, along) = released {
-            for &(_, sign) in chain.bonds.iter().filter(|(b, _)| b == bond) {
-                sum = add(&sum, &along.clone().map(|c| scaled(&c, sign)));
+        if let Released::Pair(released_pair, along) = released {
+            for &(_, sign) in loop_equation
+                .tree_pairs
+                .iter()
+                .filter(|(b, _)| b == released_pair)
+            {
+                sum = add(&sum, &along.clone().map(|c| scale(&c, sign)));
             }
-            if chain.bond == *bond {
-                sum = add(&sum, &along.clone().map(|c| scaled(&c, -1.0)));
+            if loop_equation.loop_joint == *released_pair {
+                sum = add(&sum, &along.clone().map(|c| scale(&c, -1.0)));
             }
         }
         for (code, shift) in gap.into_iter().zip(sum) {
             shifts.insert(code, shift.simplify());
         }
-        if let (Some((code, travel)), Some((body, ..))) =
-            (self.closed[closure].normal.clone(), chain.axis)
-            && turned[body] != 0.0
+        if let (Some((code, travel)), Some((body, ..))) = (
+            self.loop_symbols[closure].normal_distance.clone(),
+            loop_equation.axis,
+        ) && extra_rotation[body] != 0.0
         {
-            shifts.insert(code, scaled(&travel, turned[body]));
+            shifts.insert(code, scale(&travel, extra_rotation[body]));
         }
     }
 
     fn shift_bodies(
         &mut self,
         released: &Released,
-        turned: &[f64],
+        extra_rotation: &[f64],
         shifts: &mut BTreeMap<String, Term>,
     ) {
-        for place in 0..self.plan.tree().carries.len() {
-            let carry = self.plan.tree().carries[place];
-            let bond = self.plan.bonds()[carry.bond];
+        for index in 0..self.plan.tree().joints.len() {
+            let tree_joint = self.plan.tree().joints[index];
+            let kinematic_pair = self.plan.pairs()[tree_joint.pair];
             let mut sum = [zero(), zero()];
-            let parent = self.roots[carry.parent].clone();
-            let root = self.roots[carry.body].clone();
-            let (Some(root), by) = (root, turned[carry.parent]) else {
+            let parent = self.joint_origins[tree_joint.parent].clone();
+            let joint_origin = self.joint_origins[tree_joint.body].clone();
+            let (Some(joint_origin), parent_rotation) =
+                (joint_origin, extra_rotation[tree_joint.parent])
+            else {
                 continue;
             };
-            let first = turned[bond.bodies[0]];
-            if by != 0.0 || first != 0.0 {
+            let first = extra_rotation[kinematic_pair.bodies[0]];
+            if parent_rotation != 0.0 || first != 0.0 {
                 // From the parent's root, and the travel along the first body's axis.
-                let mut whole = root.clone().map(|c| symbol(&c));
+                let mut whole = joint_origin.clone().map(|c| symbol(&c));
                 if let Some(parent) = parent {
-                    let parent = parent.map(|c| scaled(&symbol(&c), -1.0));
+                    let parent = parent.map(|c| scale(&symbol(&c), -1.0));
                     whole = add(&whole, &parent);
                 }
                 let mut along = [zero(), zero()];
-                if let Some((slide, away)) = carry.slide {
-                    let own = self.plan.frames().attitudes[carry.body].frame;
-                    let pair = self.direction(own, away, "direction of travel");
-                    let pair = rotated(&pair, &self.angle(own));
+                if let Some((slide, away)) = tree_joint.slide {
+                    let body_frame = self.plan.frames().orientations[tree_joint.body].frame;
+                    let vector = self.direction(body_frame, away, "direction of travel");
+                    let vector = rotate(&vector, &self.angle(body_frame));
                     let travel = self.travels[slide].clone().unwrap_or_else(zero);
-                    along = pair.map(|c| times(&c, &travel));
+                    along = vector.map(|c| times(&c, &travel));
                 }
-                let arm = add(&whole, &along.clone().map(|c| scaled(&c, -1.0)));
-                sum = add(&perp(&arm).map(|c| times(&c, &number(by))), &sum);
+                let arm = add(&whole, &along.clone().map(|c| scale(&c, -1.0)));
+                sum = add(
+                    &perp(&arm).map(|c| times(&c, &number(parent_rotation))),
+                    &sum,
+                );
                 sum = add(&perp(&along).map(|c| times(&c, &number(first))), &sum);
             }
-            if let Released::Bond(released, along) = released
-                && *released == carry.bond
+            if let Released::Pair(released, along) = released
+                && *released == tree_joint.pair
             {
-                let sign = if bond.bodies[1] == carry.body {
+                let sign = if kinematic_pair.bodies[1] == tree_joint.body {
                     1.0
                 } else {
                     -1.0
                 };
-                sum = add(&sum, &along.clone().map(|c| scaled(&c, sign)));
+                sum = add(&sum, &along.clone().map(|c| scale(&c, sign)));
             }
-            for (code, shift) in root.into_iter().zip(sum) {
+            for (code, shift) in joint_origin.into_iter().zip(sum) {
                 shifts.insert(code, shift.simplify());
             }
         }
-        for (body, &by) in turned.iter().enumerate() {
-            let (Some(centre), Some(root)) = (self.centres[body].clone(), self.roots[body].clone())
-            else {
+        for (body, &parent_rotation) in extra_rotation.iter().enumerate() {
+            let (Some(centre), Some(joint_origin)) = (
+                self.mass_centres[body].clone(),
+                self.joint_origins[body].clone(),
+            ) else {
                 continue;
             };
-            if by != 0.0 && centre != root {
-                let arm = [0, 1].map(|i| symbol(&centre[i]) - symbol(&root[i]));
-                let arm = perp(&arm).map(|c| scaled(&c, by).simplify());
+            if parent_rotation != 0.0 && centre != joint_origin {
+                let arm = [0, 1].map(|i| symbol(&centre[i]) - symbol(&joint_origin[i]));
+                let arm = perp(&arm).map(|c| scale(&c, parent_rotation).simplify());
                 shifts.extend(centre.into_iter().zip(arm));
             }
         }
     }
 
-    fn shift_relations(
+    fn shift_couplings(
         &self,
         released: &Released,
-        turned: &[f64],
+        extra_rotation: &[f64],
         shifts: &mut BTreeMap<String, Term>,
     ) {
         let mut pose = self.plan.pose::<f64>();
-        if self.plan.place(self.plan.start(), &mut pose).is_err() {
+        if self
+            .plan
+            .positions(self.plan.assembly_coordinates(), &mut pose)
+            .is_err()
+        {
             return;
         }
-        for relation in 0..self.related.len() {
-            let Some((code, by)) = &self.related[relation] else {
+        for coupling in 0..self.solved_couplings.len() {
+            let Some((code, slope)) = &self.solved_couplings[coupling] else {
                 continue;
             };
             let mut shift = 0.0;
-            self.plan.relation_couples(relation, &pose, |body, factor| {
-                shift += factor * turned[body];
-            });
-            if matches!(released, Released::Relation(r) if *r == relation) {
+            self.plan
+                .coupling_angle_derivatives(coupling, &pose, |body, factor| {
+                    shift += factor * extra_rotation[body];
+                });
+            if matches!(released, Released::Coupling(r) if *r == coupling) {
                 shift -= 1.0;
             }
             if shift != 0.0 {
-                let shift = number(-shift) / by.clone();
+                let shift = number(-shift) / slope.clone();
                 shifts.insert(code.clone(), shift.simplify());
             }
         }

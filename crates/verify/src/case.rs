@@ -1,10 +1,10 @@
-//! What is judged, over which positions.
+//! What is checked, over which positions.
 
 use dwell_geometry::{Mechanism, Range};
 use dwell_kinetostatics::Mass;
 use std::f64::consts::TAU;
 
-/// A mechanism with its masses, and the positions at which a subject is judged.
+/// A mechanism with its masses, and the positions at which a subject is checked.
 #[derive(Debug, Clone)]
 pub struct Case<'a> {
     /// The mechanism; one actuator.
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn positions_fill_the_range() {
-        let mut all = spread(Range::Between(1.0, 3.0), 24);
+        let mut all = spread(Range::Limited(1.0, 3.0), 24);
         all.sort_by(f64::total_cmp);
         assert!(all[0] > 1.0 && all[23] < 3.0);
         // The three gaps of a golden sequence: no gap above twice the mean.

@@ -5,8 +5,8 @@
 //! with a plain central difference is at the tip of the V, and what the reduced model gives
 //! directly is the line far below it.
 
-use crate::bench::{Bench, Site};
-use crate::differences::at_step;
+use crate::context::{CheckContext, CheckedPosition};
+use crate::differences::central_difference;
 
 /// Error against step for one quantity at one position.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,18 +32,18 @@ const PER_DECADE: i32 = 4;
 const DECADES: i32 = 12;
 
 /// The curve for ½ m′ as the slope of E_c, with steps in q. `None` where the subject has no answer.
-pub fn half_dm_curve(bench: &Bench<'_>, site: &Site) -> Option<ErrorCurve> {
-    let reference = bench.subject.coefficients(site.q).ok()?.half_dm;
+pub fn half_dm_curve(context: &CheckContext<'_>, position: &CheckedPosition) -> Option<ErrorCurve> {
+    let reference = context.subject.coefficients(position.q).ok()?.half_dm;
     let curve = |order| {
-        errors(reference, bench.scales.half_dm, |h| {
-            at_step(order, h, |h| energy(bench, site, h))
+        errors(reference, context.scales.half_dm, |h| {
+            central_difference(order, h, |h| energy(context, position, h))
         })
     };
     Some(ErrorCurve {
         quantity: "½m′".to_owned(),
-        q: site.q,
+        q: position.q,
         reference,
-        scale: bench.scales.half_dm,
+        scale: context.scales.half_dm,
         second_order: curve(2),
         fourth_order: curve(4),
         sixth_order: curve(6),
@@ -53,34 +53,53 @@ pub fn half_dm_curve(bench: &Bench<'_>, site: &Site) -> Option<ErrorCurve> {
 /// The curve for b of one reaction as ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂ with the constraint really released.
 /// The step is that of q₁ in rad; the released row opens by as much as turns or moves the
 /// mechanism alike. `None` where the subject has no answer for that reaction.
-pub fn reaction_curve(bench: &Bench<'_>, site: &Site, reaction: usize) -> Option<ErrorCurve> {
-    let (dense, row) = (&bench.dense, bench.dense.actuator_row());
-    let named = *bench.reactions.get(reaction)?;
-    let reference = *bench.subject.coefficients(site.q).ok()?.b.get(reaction)?;
-    let scale = bench.b_scale(reaction);
-    let w = site.unit_speeds.get(reaction)?;
-    let per_step = dense.reach(site.speed()) / dense.reach(w);
+pub fn reaction_curve(
+    context: &CheckContext<'_>,
+    position: &CheckedPosition,
+    reaction: usize,
+) -> Option<ErrorCurve> {
+    let (dense, row) = (&context.dense, context.dense.actuator_row());
+    let named = *context.reactions.get(reaction)?;
+    let reference = *context
+        .subject
+        .coefficients(position.q)
+        .ok()?
+        .b
+        .get(reaction)?;
+    let scale = context.b_scale(reaction);
+    let w = position.unit_velocities.get(reaction)?;
+    let per_step = dense.scaled_norm(position.unit_velocity()) / dense.scaled_norm(w);
     let m12 = |h: f64| {
-        let closed = dense
-            .step(&site.closed, row, site.speed(), site.q + h)
+        let configuration = dense
+            .step_row(
+                &position.configuration,
+                row,
+                position.unit_velocity(),
+                position.q + h,
+            )
             .ok()?;
-        let [u1, u2] = [row, reaction].map(|k| dense.unit_speed(&closed, k));
-        Some(dense.inertia(&closed, &u1, &u2))
+        let [u1, u2] = [row, reaction].map(|k| dense.unit_velocity(&configuration, k));
+        Some(dense.inertia(&configuration, &u1, &u2))
     };
     let m1 = |h: f64| {
-        let opened = dense.step(&site.closed, reaction, w, h).ok()?;
-        let u1 = dense.unit_speed(&opened, row);
+        let opened = dense
+            .step_row(&position.configuration, reaction, w, h)
+            .ok()?;
+        let u1 = dense.unit_velocity(&opened, row);
         Some(dense.inertia(&opened, &u1, &u1))
     };
     let curve = |order| {
         errors(reference, scale, |h| {
-            Some(at_step(order, h, m12)? - 0.5 * at_step(order, h * per_step, m1)?)
+            Some(
+                central_difference(order, h, m12)?
+                    - 0.5 * central_difference(order, h * per_step, m1)?,
+            )
         })
     };
-    let name = bench.case.mechanism.reaction_name(named);
+    let name = context.case.mechanism.reaction_name(named);
     Some(ErrorCurve {
         quantity: format!("{name}, b"),
-        q: site.q,
+        q: position.q,
         reference,
         scale,
         second_order: curve(2),
@@ -89,12 +108,17 @@ pub fn reaction_curve(bench: &Bench<'_>, site: &Site, reaction: usize) -> Option
     })
 }
 
-fn energy(bench: &Bench<'_>, site: &Site, h: f64) -> Option<f64> {
-    let (dense, row) = (&bench.dense, bench.dense.actuator_row());
-    let closed = dense
-        .step(&site.closed, row, site.speed(), site.q + h)
+fn energy(context: &CheckContext<'_>, position: &CheckedPosition, h: f64) -> Option<f64> {
+    let (dense, row) = (&context.dense, context.dense.actuator_row());
+    let configuration = dense
+        .step_row(
+            &position.configuration,
+            row,
+            position.unit_velocity(),
+            position.q + h,
+        )
         .ok()?;
-    Some(dense.kinetic_energy(&closed, &[(row, 1.0)]))
+    Some(dense.kinetic_energy(&configuration, &[(row, 1.0)]))
 }
 
 /// Relative errors at the steps the mechanism can take.

@@ -18,80 +18,85 @@
 
 /// A derivative with the estimate of its error that chose it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Estimate {
+pub(crate) struct Extrapolated {
     pub(crate) value: f64,
     pub(crate) error: f64,
 }
 
 /// No step could be evaluated.
-const NONE: Estimate = Estimate {
+pub(crate) const NO_ESTIMATE: Extrapolated = Extrapolated {
     value: f64::NAN,
     error: f64::NAN,
 };
 
 /// Less than the customary 2: the shortest step, on which rounding weighs most, stays longer for
 /// the same number of steps.
-const RATIO: f64 = 1.6;
+const STEP_RATIO: f64 = 1.6;
 /// Steps taken in any case, and at most; the last is 1/27 or 1/3000 of the first.
-const FEWEST: usize = 8;
-const MOST: usize = 18;
+const MIN_STEPS: usize = 8;
+const MAX_STEPS: usize = 18;
 /// The ladder goes on while one more step shrinks some component's estimated error to this part:
 /// where the first steps were too long for the series to converge, as next to a dead point.
-const WORTH: f64 = 0.5;
+const MIN_IMPROVEMENT: f64 = 0.5;
 
 /// Which derivative.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Order<'a> {
+pub(crate) enum DerivativeOrder<'a> {
     First,
     /// Second, with the values at zero.
     Second(&'a [f64]),
 }
 
 /// Neville's scheme of one component: its last row, and its best entry.
-struct Scheme {
+struct NevilleTable {
     row: Vec<f64>,
-    best: Estimate,
+    best: Extrapolated,
     largest: f64,
 }
 
 /// The derivative at zero of every component of `f`, from the step `first` down. A step at which
 /// `f` has no value on either side, because the mechanism does not reach that far, is left out.
 /// Empty if there is none at all. Values are taken as rounded to `rounding` of themselves.
-pub(crate) fn derivatives<F>(order: Order<'_>, first: f64, rounding: f64, mut f: F) -> Vec<Estimate>
+pub(crate) fn derivatives<F>(
+    order: DerivativeOrder<'_>,
+    first_step: f64,
+    rounding: f64,
+    mut f: F,
+) -> Vec<Extrapolated>
 where
     F: FnMut(f64) -> Option<Vec<f64>>,
 {
-    let mut steps: Vec<f64> = Vec::with_capacity(MOST);
-    let mut schemes: Vec<Scheme> = Vec::new();
-    let mut h = first;
-    let mut idle = 0;
-    for _ in 0..MOST {
+    let mut steps: Vec<f64> = Vec::with_capacity(MAX_STEPS);
+    let mut tables: Vec<NevilleTable> = Vec::new();
+    let mut h = first_step;
+    let mut steps_without_gain = 0;
+    for _ in 0..MAX_STEPS {
         if let (Some(plus), Some(minus)) = (f(h), f(-h)) {
             steps.push(h);
-            if schemes.is_empty() {
-                schemes.extend(plus.iter().map(|_| Scheme::new()));
+            if tables.is_empty() {
+                tables.extend(plus.iter().map(|_| NevilleTable::new()));
             }
-            let mut worth = false;
-            for (c, scheme) in schemes.iter_mut().enumerate() {
-                let before = scheme.best.error;
-                scheme.add(order, &steps, rounding, c, [plus[c], minus[c]]);
-                worth |= scheme.best.error < WORTH * before;
+            let mut improved = false;
+            for (c, table) in tables.iter_mut().enumerate() {
+                let before = table.best.error;
+                table.add(order, &steps, rounding, c, [plus[c], minus[c]]);
+                improved |= table.best.error < MIN_IMPROVEMENT * before;
             }
-            idle = if worth { 0 } else { idle + 1 };
-            if steps.len() >= FEWEST && idle >= 2 {
+            steps_without_gain = if improved { 0 } else { steps_without_gain + 1 };
+            if steps.len() >= MIN_STEPS && steps_without_gain >= 2 {
                 break;
             }
         }
-        h /= RATIO;
+        h /= STEP_RATIO;
     }
-    schemes.into_iter().map(|s| s.best).collect()
+    tables.into_iter().map(|s| s.best).collect()
 }
 
-impl Scheme {
+impl NevilleTable {
     fn new() -> Self {
         Self {
-            row: Vec::with_capacity(MOST),
-            best: NONE,
+            row: Vec::with_capacity(MAX_STEPS),
+            best: NO_ESTIMATE,
             largest: 0.0,
         }
     }
@@ -99,7 +104,7 @@ impl Scheme {
     /// One more row of the scheme, eq. (3), for the last of `steps`.
     fn add(
         &mut self,
-        order: Order<'_>,
+        order: DerivativeOrder<'_>,
         steps: &[f64],
         rounding: f64,
         component: usize,
@@ -108,12 +113,12 @@ impl Scheme {
         let i = steps.len() - 1;
         let h = steps[i];
         self.largest = self.largest.max(plus.abs()).max(minus.abs());
-        let (mut value, noise) = match order {
-            Order::First => ((plus - minus) / (2.0 * h), self.largest / h),
-            Order::Second(middle) => {
+        let (mut value, rounding_gain) = match order {
+            DerivativeOrder::First => ((plus - minus) / (2.0 * h), self.largest / h),
+            DerivativeOrder::Second(middle) => {
                 let middle = middle[component];
-                let bend = (plus - middle) + (minus - middle);
-                (bend / (h * h), 2.0 * self.largest / (h * h))
+                let second_difference = (plus - middle) + (minus - middle);
+                (second_difference / (h * h), 2.0 * self.largest / (h * h))
             }
         };
         // In place: `above` is the entry of the row before that the next one is made from.
@@ -121,9 +126,9 @@ impl Scheme {
             let above = std::mem::replace(&mut self.row[j], value);
             let ratio = steps[i - j - 1] / h;
             let next = value + (value - above) / (ratio * ratio - 1.0);
-            let error = (next - value).abs().max((next - above).abs()) + rounding * noise;
+            let error = (next - value).abs().max((next - above).abs()) + rounding * rounding_gain;
             if self.best.error.is_nan() || error < self.best.error {
-                self.best = Estimate { value: next, error };
+                self.best = Extrapolated { value: next, error };
             }
             value = next;
         }
@@ -133,7 +138,7 @@ impl Scheme {
 
 /// One plain or extrapolated central difference for the curve of error against step: with `order`
 /// 2, 4 or 6 at the step `h`, the higher ones from h, h/2 and h/4 by eq. (3).
-pub(crate) fn at_step<F>(order: u32, h: f64, mut f: F) -> Option<f64>
+pub(crate) fn central_difference<F>(order: u32, h: f64, mut f: F) -> Option<f64>
 where
     F: FnMut(f64) -> Option<f64>,
 {
@@ -156,16 +161,21 @@ where
 mod tests {
     use super::*;
 
-    const FIRST: f64 = 0.4;
+    const FIRST_STEP: f64 = 0.4;
 
     #[test]
     fn a_smooth_function_is_differenced_nearly_to_rounding() {
         let f = |h: f64| Some(vec![(0.3 + h).sin(), 1.0 / (1.5 + h)]);
-        let first = derivatives(Order::First, FIRST, f64::EPSILON, f);
+        let first = derivatives(DerivativeOrder::First, FIRST_STEP, f64::EPSILON, f);
         assert!((first[0].value - 0.3_f64.cos()).abs() < 5e-15);
         assert!((first[1].value + 1.0 / 2.25).abs() < 5e-14);
         let middle = f(0.0).unwrap();
-        let second = derivatives(Order::Second(&middle), FIRST, f64::EPSILON, f);
+        let second = derivatives(
+            DerivativeOrder::Second(&middle),
+            FIRST_STEP,
+            f64::EPSILON,
+            f,
+        );
         assert!((second[0].value + 0.3_f64.sin()).abs() < 1e-13);
         assert!((second[1].value - 2.0 / 3.375).abs() < 1e-12);
     }
@@ -174,7 +184,7 @@ mod tests {
     #[test]
     fn a_step_onto_another_branch_is_not_used() {
         let f = |h: f64| Some(vec![if h.abs() > 0.1 { 7.0 } else { 0.0 } + h.exp()]);
-        let got = derivatives(Order::First, FIRST, f64::EPSILON, f)[0];
+        let got = derivatives(DerivativeOrder::First, FIRST_STEP, f64::EPSILON, f)[0];
         let error = (got.value - 1.0).abs();
         assert!(error < 1e-11 && got.error > error, "{error:e} {got:?}");
     }
@@ -182,20 +192,25 @@ mod tests {
     #[test]
     fn steps_that_cannot_be_taken_are_left_out() {
         let f = |h: f64| (h < 0.2).then(|| vec![h.exp()]);
-        assert!((derivatives(Order::First, FIRST, f64::EPSILON, f)[0].value - 1.0).abs() < 1e-12);
-        assert!(derivatives(Order::First, FIRST, f64::EPSILON, |_| None).is_empty());
+        assert!(
+            (derivatives(DerivativeOrder::First, FIRST_STEP, f64::EPSILON, f)[0].value - 1.0).abs()
+                < 1e-12
+        );
+        assert!(derivatives(DerivativeOrder::First, FIRST_STEP, f64::EPSILON, |_| None).is_empty());
     }
 
     #[test]
     fn a_function_that_is_not_a_number_gives_none() {
-        let got = derivatives(Order::First, FIRST, f64::EPSILON, |_| Some(vec![f64::NAN]))[0];
+        let got = derivatives(DerivativeOrder::First, FIRST_STEP, f64::EPSILON, |_| {
+            Some(vec![f64::NAN])
+        })[0];
         assert!(got.value.is_nan() && got.error.is_nan());
     }
 
     #[test]
     fn orders_fall_as_they_should() {
         let f = |h: f64| Some((1.0 + h).exp());
-        let error = |order, h| (at_step(order, h, f).unwrap() - 1_f64.exp()).abs();
+        let error = |order, h| (central_difference(order, h, f).unwrap() - 1_f64.exp()).abs();
         for (order, at_least) in [(2, 95.0), (4, 9e3), (6, 6e5)] {
             assert!(error(order, 0.5) / error(order, 0.05) > at_least);
         }

@@ -1,33 +1,36 @@
-//! The free motion against what needs no integrator: energy (truth 4), the period and the whole
-//! time history by quadrature (truth 5), and periodicity. Beside the findings it yields the ladder
+//! The free motion against what needs no integrator: energy (check 4), the period and the whole
+//! time history by quadrature (check 5), and periodicity. Beside the findings it yields the ladder
 //! of tolerances from which cost can be read against error.
 
+mod convergence;
+
+use convergence::{check_convergence, check_jacobian, fitted_slope};
 use dwell_dynamics::{
-    DynamicsError, Equation, Method, Options, Orbit, Run, State, Until, simulate,
+    DynamicsError, Event, EventKind, Method, Options, Orbit, ReducedCoordinate, ReducedOde,
+    ReducedOutputs, ReducedState, Solution, solve_reduced,
 };
-use dwell_findings::Finding;
-use dwell_kinetostatics::{Coefficients, Reduced};
+use dwell_findings::{Check, Finding};
+use dwell_kinetostatics::ReducedModel;
 use rayon::prelude::*;
+use std::num::NonZeroUsize;
 use std::time::Instant;
 
-/// Tolerance at which the integrators are judged.
-const JUDGED_AT: f64 = 1e-13;
+/// Tolerance at which the integrators are checked.
+const CHECK_TOLERANCE: f64 = 1e-13;
 /// The finest and the coarsest tolerance of the ladder, as powers of ten.
-const LADDER: std::ops::RangeInclusive<i32> = -13..=-4;
-/// The drift's slope is fitted over tolerances from 1e-13 to this power of ten.
-const FITTED_TO: i32 = -8;
+const TOLERANCE_EXPONENTS: std::ops::RangeInclusive<i32> = -13..=-4;
 /// Runs of which the shortest wall time is taken; other threads run beside them.
-const TIMED: usize = 3;
+const TIMED_RUNS: usize = 3;
 /// States of a run at which its reactions are compared with the exact ones.
-const COMPARED: usize = 400;
+const COMPARED_STATES: usize = 400;
 
-/// A free motion to be judged.
+/// A free motion to be checked.
 #[derive(Debug, Clone)]
 pub struct FreeMotionCase {
     /// The start.
-    pub start: State,
+    pub initial_state: ReducedState,
     /// Whole turns to follow.
-    pub turns: usize,
+    pub revolutions: usize,
     /// By reaction of the model: name and unit.
     pub reactions: Vec<(String, &'static str)>,
     /// A reference value of the period (s), with its source, if there is one.
@@ -36,15 +39,15 @@ pub struct FreeMotionCase {
 
 /// One tolerance of one integrator.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rung {
+pub struct ToleranceRun {
     /// The integrator.
     pub method: Method,
     /// Relative and absolute tolerance.
     pub tolerance: f64,
     /// Steps, rejected steps, evaluations and Jacobians.
-    pub work: dwell_dynamics::Statistics,
+    pub statistics: dwell_dynamics::Statistics,
     /// Least wall time of three runs, s.
-    pub seconds: f64,
+    pub wall_time: f64,
     /// |time of the first whole turn − period| / period.
     pub period_error: f64,
     /// Largest |E / E₀ − 1| at the steps.
@@ -52,81 +55,95 @@ pub struct Rung {
     /// Largest reaction error at the steps, relative to the largest reaction of its unit.
     pub reaction_error: f64,
     /// (time, |E / E₀ − 1|) at the steps.
-    pub drift_in_time: Vec<[f64; 2]>,
+    pub drift_over_time: Vec<[f64; 2]>,
 }
 
 /// What came out.
 #[derive(Debug, Clone)]
-pub struct FreeMotion {
+pub struct CheckedFreeMotion {
     /// The motion by quadrature.
-    pub turn: Orbit,
+    pub orbit: Orbit,
     /// The ladder, by method and then from the coarsest tolerance to the finest.
-    pub rungs: Vec<Rung>,
+    pub tolerance_runs: Vec<ToleranceRun>,
     /// Fitted slope of log drift over log tolerance, BDF.
-    pub slope: f64,
+    pub drift_slope: f64,
     /// The findings.
     pub findings: Vec<Finding>,
 }
 
-/// Judges a free motion.
+/// Checks a free motion.
 ///
 /// # Errors
 /// [`DynamicsError`] when it has no period or an integration fails.
-pub fn free_motion<R: Reduced>(
+pub fn check_free_motion<R: ReducedModel>(
     model: &R,
     case: &FreeMotionCase,
-) -> Result<FreeMotion, DynamicsError> {
-    let turn = Orbit::new(model, case.start)?;
-    let scales = Scales::new(model, case, &turn)?;
+) -> Result<CheckedFreeMotion, DynamicsError> {
+    let orbit = Orbit::new(model, case.initial_state)?;
+    let scales = MotionScales::new(model, case, &orbit)?;
     let tasks: Vec<(Method, i32)> = [Method::Bdf, Method::Tsit45]
         .into_iter()
-        .flat_map(|method| LADDER.rev().map(move |power| (method, power)))
+        .flat_map(|method| {
+            TOLERANCE_EXPONENTS
+                .rev()
+                .map(move |exponent| (method, exponent))
+        })
         .collect();
-    let runs: Vec<(Rung, Run)> = tasks
+    let runs: Vec<(ToleranceRun, Solution)> = tasks
         .par_iter()
-        .map(|&(method, power)| rung(model, case, &turn, &scales, method, power))
+        .map(|&(method, exponent)| tolerance_run(model, case, &orbit, &scales, method, exponent))
         .collect::<Result<_, _>>()?;
-    let slope = fitted_slope(&runs);
-    let mut findings: Vec<Finding> = quadrature(case, &turn).into_iter().collect();
-    for (rung, run) in &runs {
-        if rung.tolerance <= JUDGED_AT * 1.5 {
-            findings.extend(judge(model, case, &turn, &scales, rung, run)?);
+    let drift_slope = fitted_slope(&runs);
+    let mut findings: Vec<Finding> = check_quadrature(case, &orbit).into_iter().collect();
+    for (tolerance_run, solution) in &runs {
+        if tolerance_run.tolerance <= CHECK_TOLERANCE * 1.5 {
+            findings.extend(check_run(
+                model,
+                case,
+                &orbit,
+                &scales,
+                tolerance_run,
+                solution,
+            )?);
         }
     }
     // Where nothing but rounding drifts (a balanced rotor), there is no slope to judge.
     if runs.iter().any(|(r, _)| r.drift > 1e-11) {
-        findings.push(convergence(slope));
+        findings.push(check_convergence(drift_slope));
     }
-    findings.push(jacobian(model, case, &turn)?);
-    Ok(FreeMotion {
-        rungs: runs.into_iter().map(|(rung, _)| rung).collect(),
-        turn,
-        slope,
+    findings.push(check_jacobian(model, case, &orbit)?);
+    Ok(CheckedFreeMotion {
+        tolerance_runs: runs
+            .into_iter()
+            .map(|(tolerance_run, _)| tolerance_run)
+            .collect(),
+        orbit,
+        drift_slope,
         findings,
     })
 }
 
 /// The largest speed, reactions and coefficients over a turn.
-struct Scales {
+struct MotionScales {
     speed: f64,
     /// By reaction: the largest of its unit.
     reactions: Vec<f64>,
 }
 
-impl Scales {
-    fn new<R: Reduced>(
+impl MotionScales {
+    fn new<R: ReducedModel>(
         model: &R,
         case: &FreeMotionCase,
-        turn: &Orbit,
+        orbit: &Orbit,
     ) -> Result<Self, DynamicsError> {
-        let mut eye = Eye::new(model);
+        let mut reaction_evaluator = ReactionEvaluator::new(model);
         let (mut speed, mut largest) = (0.0_f64, vec![0.0_f64; case.reactions.len()]);
-        for i in 0..COMPARED {
-            let t = case.start.t + turn.period * i as f64 / COMPARED as f64;
-            let state = turn.at(t);
+        for i in 0..COMPARED_STATES {
+            let t = case.initial_state.t + orbit.period * i as f64 / COMPARED_STATES as f64;
+            let state = orbit.state_at(t);
             speed = speed.max(state.q_dot.abs());
-            for (most, value) in largest.iter_mut().zip(eye.reactions(state)?) {
-                *most = most.max(value.abs());
+            for (max, value) in largest.iter_mut().zip(reaction_evaluator.reactions(state)?) {
+                *max = max.max(value.abs());
             }
         }
         let of_unit = |unit: &str| {
@@ -140,42 +157,25 @@ impl Scales {
     }
 }
 
-/// Evaluates reactions in a state of the free motion.
-struct Eye<'a, R: Reduced> {
-    model: &'a R,
-    work: R::Work,
-    at: Coefficients,
-}
+/// Evaluates reactions in a state of the free motion, with q̈ from the equation of motion.
+struct ReactionEvaluator<'a, R: ReducedModel>(ReducedOutputs<'a, R>);
 
-impl<'a, R: Reduced> Eye<'a, R> {
+impl<'a, R: ReducedModel> ReactionEvaluator<'a, R> {
     fn new(model: &'a R) -> Self {
-        Self {
-            model,
-            work: model.work(),
-            at: Coefficients {
-                a: vec![0.0; model.reactions()],
-                b: vec![0.0; model.reactions()],
-                ..Coefficients::default()
-            },
-        }
+        Self(ReducedOutputs::new(model))
     }
 
-    /// R = a q̈ + b q̇² with q̈ from the equation of motion.
-    fn reactions(&mut self, state: State) -> Result<Vec<f64>, DynamicsError> {
-        self.model
-            .coefficients(state.q, &mut self.work, &mut self.at)?;
-        let square = state.q_dot * state.q_dot;
-        let q_ddot = -self.at.half_dm * square / self.at.m;
-        let both = self.at.a.iter().zip(&self.at.b);
-        Ok(both.map(|(a, b)| a * q_ddot + b * square).collect())
+    fn reactions(&mut self, state: ReducedState) -> Result<Vec<f64>, DynamicsError> {
+        self.0.evaluate(state.q, state.q_dot)?;
+        Ok(self.0.reactions.clone())
     }
 
     /// Largest difference of the reactions in two states, relative to their scales, and whose it is.
-    fn apart(
+    fn difference(
         &mut self,
-        one: State,
-        other: State,
-        scales: &Scales,
+        one: ReducedState,
+        other: ReducedState,
+        scales: &MotionScales,
     ) -> Result<(f64, f64, usize), DynamicsError> {
         let (r, s) = (self.reactions(one)?, self.reactions(other)?);
         let mut worst = (0.0, 0.0, 0);
@@ -189,90 +189,99 @@ impl<'a, R: Reduced> Eye<'a, R> {
     }
 }
 
-fn rung<R: Reduced>(
+fn tolerance_run<R: ReducedModel>(
     model: &R,
     case: &FreeMotionCase,
-    turn: &Orbit,
-    scales: &Scales,
+    orbit: &Orbit,
+    scales: &MotionScales,
     method: Method,
-    power: i32,
-) -> Result<(Rung, Run), DynamicsError> {
-    let tolerance = 10_f64.powi(power);
+    exponent: i32,
+) -> Result<(ToleranceRun, Solution), DynamicsError> {
+    let tolerance = 10_f64.powi(exponent);
     let options = Options {
         // A slow motion must not hide below the absolute tolerance on its speed.
-        absolute: tolerance * case.start.q_dot.abs().min(1.0),
+        atol: tolerance * case.initial_state.q_dot.abs().min(1.0),
         ..Options::new(method, tolerance)
     };
-    let timed = || -> Result<(f64, Run), DynamicsError> {
-        let began = Instant::now();
-        let run = simulate(model, case.start, Until::Turns(case.turns), &options)?;
-        Ok((began.elapsed().as_secs_f64(), run))
+    let revolutions = Event {
+        kind: EventKind::Revolution(ReducedCoordinate),
+        terminal: NonZeroUsize::new(case.revolutions.max(1)),
     };
-    let (mut seconds, run) = timed()?;
-    for _ in 1..TIMED {
+    let timed = || -> Result<(f64, Solution), DynamicsError> {
+        let began = Instant::now();
+        let solution = solve_reduced(model, case.initial_state, None, &options, &[revolutions])?;
+        Ok((began.elapsed().as_secs_f64(), solution.completed()?))
+    };
+    let (mut seconds, solution) = timed()?;
+    // The last step ends at the last revolution, on the dense output: its error is not that of a step.
+    let steps: Vec<ReducedState> = solution.steps.iter().map(ReducedState::from).collect();
+    let steps = &steps[..steps.len().max(2) - 1];
+    for _ in 1..TIMED_RUNS {
         seconds = seconds.min(timed()?.0);
     }
-    let mut equation = Equation::new(model);
-    let mut drift_in_time = Vec::with_capacity(run.steps.len());
-    for state in &run.steps {
-        let energy = equation.energy(state.q, state.q_dot)?;
-        drift_in_time.push([state.t, (energy / turn.energy - 1.0).abs()]);
+    let mut equation = ReducedOde::new(model);
+    let mut drift_in_time = Vec::with_capacity(steps.len());
+    for state in steps {
+        let energy = equation.kinetic_energy(state.q, state.q_dot)?;
+        drift_in_time.push([state.t, (energy / orbit.energy - 1.0).abs()]);
     }
-    let mut eye = Eye::new(model);
+    let mut reaction_evaluator = ReactionEvaluator::new(model);
     let mut reaction_error = 0.0_f64;
     if model.reactions() > 0 {
-        for state in run.steps.iter().step_by(run.steps.len() / COMPARED + 1) {
-            let exact = turn.at(state.t);
-            reaction_error = reaction_error.max(eye.apart(*state, exact, scales)?.0);
+        for state in steps.iter().step_by(steps.len() / COMPARED_STATES + 1) {
+            let exact = orbit.state_at(state.t);
+            reaction_error =
+                reaction_error.max(reaction_evaluator.difference(*state, exact, scales)?.0);
         }
     }
-    let rung = Rung {
+    let tolerance_run = ToleranceRun {
         method,
         tolerance,
-        work: run.statistics,
-        seconds,
-        period_error: first_turn_error(&run, case, turn) / turn.period,
+        statistics: solution.statistics,
+        wall_time: seconds,
+        period_error: first_revolution_error(&solution, case, orbit) / orbit.period,
         drift: drift_in_time.iter().map(|d| d[1]).fold(0.0, f64::max),
         reaction_error,
-        drift_in_time,
+        drift_over_time: drift_in_time,
     };
-    Ok((rung, run))
+    Ok((tolerance_run, solution))
 }
 
 /// |time of the first whole turn − period|, s.
-fn first_turn_error(run: &Run, case: &FreeMotionCase, turn: &Orbit) -> f64 {
-    run.turns
-        .first()
-        .map_or(f64::NAN, |s| (s.t - case.start.t - turn.period).abs())
+fn first_revolution_error(solution: &Solution, case: &FreeMotionCase, orbit: &Orbit) -> f64 {
+    solution.event_occurrences.first().map_or(f64::NAN, |o| {
+        (o.state.t - case.initial_state.t - orbit.period).abs()
+    })
 }
 
 /// The quadrature against a reference value, where there is one.
-fn quadrature(case: &FreeMotionCase, turn: &Orbit) -> Option<Finding> {
+fn check_quadrature(case: &FreeMotionCase, orbit: &Orbit) -> Option<Finding> {
     let (reference, source) = case.period.as_ref()?;
-    let difference = (turn.period - reference).abs();
-    let relative = difference / turn.period;
+    let difference = (orbit.period - reference).abs();
+    let relative_difference = difference / orbit.period;
     Some(Finding {
         key: "period-quadrature".into(),
-        truth: "5 period by quadrature".into(),
-        compared: format!(
+        check: Check::Period,
+        comparison: format!(
             "T = ∮ √(m / 2E) dq = {:.14} s with {reference:.14} s ({source})",
-            turn.period
+            orbit.period
         ),
-        over: format!("one turn, {} points of the trapezoid rule", turn.points),
-        absolute: difference,
+        domain: format!("one turn, {} points of the trapezoid rule", orbit.points),
+        absolute_difference: difference,
         unit: "s".into(),
-        relative,
+        relative_difference,
         scale: "the period".into(),
-        worst: "the whole turn".into(),
+        worst_at: "the whole turn".into(),
         tolerance: 4e-14,
-        why: "a spectral rule on an exact integrand leaves only the rounding of its sum".into(),
-        pass: relative <= 4e-14,
+        tolerance_reason:
+            "a spectral rule on an exact integrand leaves only the rounding of its sum".into(),
+        pass: relative_difference <= 4e-14,
         ..Finding::default()
     })
 }
 
 /// What a method is held to at the judged tolerance: period, and energy and periodicity.
-fn allowed(method: Method) -> ([f64; 2], &'static str) {
+fn tolerances(method: Method) -> ([f64; 2], &'static str) {
     match method {
         Method::Bdf | Method::Esdirk34 | Method::TrBdf2 => (
             [1e-10, 1e-9],
@@ -288,84 +297,89 @@ fn allowed(method: Method) -> ([f64; 2], &'static str) {
 }
 
 /// Period, energy and periodicity of a run at the finest tolerance.
-fn judge<R: Reduced>(
+fn check_run<R: ReducedModel>(
     model: &R,
     case: &FreeMotionCase,
-    turn: &Orbit,
-    scales: &Scales,
-    rung: &Rung,
-    run: &Run,
+    orbit: &Orbit,
+    scales: &MotionScales,
+    tolerance_run: &ToleranceRun,
+    solution: &Solution,
 ) -> Result<Vec<Finding>, DynamicsError> {
-    let name = rung.method.name();
+    let name = tolerance_run.method.name();
     let lower = name.to_lowercase();
-    let over = format!("{} turns, tolerance {JUDGED_AT:.0e}", case.turns);
-    let ([period, energy], why) = allowed(rung.method);
+    let domain = format!(
+        "{} turns, tolerance {CHECK_TOLERANCE:.0e}",
+        case.revolutions
+    );
+    let ([period, energy], tolerance_reason) = tolerances(tolerance_run.method);
     // Measured over ten turns; the energy error grows in proportion to them.
-    let energy = energy * (case.turns as f64 / 10.0).max(1.0);
-    let difference = first_turn_error(run, case, turn);
-    let relative = difference / turn.period;
+    let energy = energy * (case.revolutions as f64 / 10.0).max(1.0);
+    let difference = first_revolution_error(solution, case, orbit);
+    let relative_difference = difference / orbit.period;
     let mut findings = vec![Finding {
         key: format!("period-{lower}"),
-        truth: "5 period by quadrature".into(),
-        compared: format!(
+        check: Check::Period,
+        comparison: format!(
             "the first whole turn of {name}, located on its dense output, with the quadrature"
         ),
-        over: format!("one turn, tolerance {JUDGED_AT:.0e}"),
-        absolute: difference,
+        domain: format!("one turn, tolerance {CHECK_TOLERANCE:.0e}"),
+        absolute_difference: difference,
         unit: "s".into(),
-        relative,
+        relative_difference,
         scale: "the period".into(),
-        worst: format!("t = {:.6} s", turn.period),
+        worst_at: format!("t = {:.6} s", orbit.period),
         tolerance: period,
-        why: why.into(),
+        tolerance_reason: tolerance_reason.into(),
         integrated: true,
-        pass: relative <= period,
+        pass: relative_difference <= period,
         ..Finding::default()
     }];
-    let worst = rung
-        .drift_in_time
+    let worst = tolerance_run
+        .drift_over_time
         .iter()
         .fold([0.0, 0.0], |w, d| if d[1] > w[1] { *d } else { w });
     findings.push(Finding {
         key: format!("energy-{lower}"),
-        truth: "4 energy".into(),
-        compared: format!("E = ½ m q̇² of {name} with its initial value"),
-        over: over.clone(),
-        absolute: worst[1] * turn.energy,
+        check: Check::Power,
+        comparison: format!("E = ½ m q̇² of {name} with its initial value"),
+        domain: domain.clone(),
+        absolute_difference: worst[1] * orbit.energy,
         unit: "J".into(),
-        relative: worst[1],
+        relative_difference: worst[1],
         scale: "the energy".into(),
-        worst: format!("t = {:.3} s", worst[0]),
+        worst_at: format!("t = {:.3} s", worst[0]),
         tolerance: energy,
-        why: why.into(),
+        tolerance_reason: tolerance_reason.into(),
         integrated: true,
         pass: worst[1] <= energy,
         ..Finding::default()
     });
     let (mut speed, mut reaction) = ((0.0_f64, 0.0), (0.0_f64, 0.0, 0, 0.0));
-    let mut eye = Eye::new(model);
-    for state in &run.turns {
-        let apart = (state.q_dot - case.start.q_dot).abs();
-        if apart > speed.0 {
-            speed = (apart, state.t);
+    let mut reaction_evaluator = ReactionEvaluator::new(model);
+    for occurrence in &solution.event_occurrences {
+        let state = ReducedState::from(&occurrence.state);
+        let speed_change = (state.q_dot - case.initial_state.q_dot).abs();
+        if speed_change > speed.0 {
+            speed = (speed_change, state.t);
         }
-        let (relative, absolute, k) = eye.apart(*state, case.start, scales)?;
+        let (relative, absolute, k) =
+            reaction_evaluator.difference(state, case.initial_state, scales)?;
         if relative > reaction.0 {
             reaction = (relative, absolute, k, state.t);
         }
     }
     findings.push(Finding {
-        key: format!("periodic-speed-{lower}"),
-        truth: "5 periodicity".into(),
-        compared: format!("q̇ at each whole turn of {name} with q̇ at the start"),
-        over: over.clone(),
-        absolute: speed.0,
+        key: format!("periodic-velocity-{lower}"),
+        check: Check::Period,
+        comparison: format!("q̇ at each whole turn of {name} with q̇ at the start"),
+        domain: domain.clone(),
+        absolute_difference: speed.0,
         unit: "rad/s".into(),
-        relative: speed.0 / scales.speed,
+        relative_difference: speed.0 / scales.speed,
         scale: "the largest speed".into(),
-        worst: format!("t = {:.3} s", speed.1),
+        worst_at: format!("t = {:.3} s", speed.1),
         tolerance: energy,
-        why: "the accuracy asked of the energy; the speed errs by half as much".into(),
+        tolerance_reason: "the accuracy asked of the energy; the speed errs by half as much".into(),
         integrated: true,
         pass: speed.0 <= energy * scales.speed,
         ..Finding::default()
@@ -373,125 +387,23 @@ fn judge<R: Reduced>(
     if let Some((name_k, unit)) = case.reactions.get(reaction.2) {
         findings.push(Finding {
             key: format!("periodic-reactions-{lower}"),
-            truth: "5 periodicity".into(),
-            compared: format!(
+            check: Check::Period,
+            comparison: format!(
                 "requested reactions at each whole turn of {name} with those at the start"
             ),
-            over,
-            absolute: reaction.1,
+            domain,
+            absolute_difference: reaction.1,
             unit: (*unit).into(),
-            relative: reaction.0,
+            relative_difference: reaction.0,
             scale: "the largest reaction of the unit".into(),
-            worst: format!("{name_k}, t = {:.3} s", reaction.3),
+            worst_at: format!("{name_k}, t = {:.3} s", reaction.3),
             tolerance: energy,
-            why: "the accuracy asked of the energy, on which a reaction depends linearly".into(),
+            tolerance_reason:
+                "the accuracy asked of the energy, on which a reaction depends linearly".into(),
             integrated: true,
             pass: reaction.0 <= energy,
             ..Finding::default()
         });
     }
     Ok(findings)
-}
-
-/// Slope of a straight line through log drift over log tolerance, BDF at 1e-8 and finer.
-fn fitted_slope(runs: &[(Rung, Run)]) -> f64 {
-    let coarsest = 10_f64.powi(FITTED_TO) * 1.5;
-    let points: Vec<[f64; 2]> = runs
-        .iter()
-        .map(|(rung, _)| rung)
-        .filter(|r| r.method == Method::Bdf && r.tolerance <= coarsest)
-        .map(|r| [r.tolerance.log10(), r.drift.log10()])
-        .collect();
-    let n = points.len() as f64;
-    let [x, y] = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / n);
-    let (above, below) = points.iter().fold((0.0, 0.0), |(a, b), p| {
-        (a + (p[0] - x) * (p[1] - y), b + (p[0] - x).powi(2))
-    });
-    above / below
-}
-
-fn convergence(slope: f64) -> Finding {
-    let short = (0.6 - slope).max(0.0);
-    Finding {
-        key: "convergence-bdf".into(),
-        truth: "4 energy".into(),
-        compared: format!(
-            "the fitted slope of log drift over log tolerance, {slope:.2}, with at least 0.6"
-        ),
-        over: "BDF at tolerances 1e-13 to 1e-8".into(),
-        absolute: short,
-        unit: "(missing slope)".into(),
-        relative: short,
-        scale: "one".into(),
-        worst: "the fit".into(),
-        tolerance: 0.0,
-        why:
-            "an integrator that obeys its tolerance has a slope near 1; its changes of order make \
-              it wander, and below 0.6 it would not be following"
-                .into(),
-        integrated: true,
-        pass: slope >= 0.6,
-        ..Finding::default()
-    }
-}
-
-/// ½m″, on which the Jacobian of the equation of motion rests. BDF only converges more slowly with
-/// a wrong one, so it is checked by itself, against differences of ½m′.
-fn jacobian<R: Reduced>(
-    model: &R,
-    case: &FreeMotionCase,
-    turn: &Orbit,
-) -> Result<Finding, DynamicsError> {
-    let mut work = model.work();
-    let (mut worst, mut largest) = ((0.0_f64, 0.0), 0.0_f64);
-    const POSITIONS: usize = 48;
-    for i in 0..POSITIONS {
-        let t = case.start.t + turn.period * (i as f64 + 0.37) / POSITIONS as f64;
-        let q = turn.at(t).q;
-        let at = model.curvature(q, &mut work)?;
-        let exact = at.half_ddm;
-        let mut slope = |h: f64| -> Result<f64, DynamicsError> {
-            let [(_, ahead), (_, back)] = [
-                model.inertia(q + h, &mut work)?,
-                model.inertia(q - h, &mut work)?,
-            ];
-            Ok((ahead - back) / (2.0 * h))
-        };
-        // Three central differences, extrapolated twice (Richardson), from several steps: the best of
-        // them, since a long one suits a smooth inertia and a short one a sharp one.
-        let mut difference = f64::INFINITY;
-        for h in [8e-3, 2e-3, 5e-4, 1e-4] {
-            let [d1, d2, d3] = [slope(h)?, slope(h / 2.0)?, slope(h / 4.0)?];
-            let (e1, e2) = ((4.0 * d2 - d1) / 3.0, (4.0 * d3 - d2) / 3.0);
-            difference = difference.min(((16.0 * e2 - e1) / 15.0 - exact).abs());
-        }
-        // A balanced rotor's inertia has no curvature at all: rounding is then relative to m.
-        largest = largest.max(exact.abs()).max(1e-2 * at.m);
-        if difference > worst.0 || difference.is_nan() {
-            worst = (difference, q);
-        }
-    }
-    let relative = if worst.0 == 0.0 {
-        0.0
-    } else {
-        worst.0 / largest
-    };
-    Ok(Finding {
-        key: "curvature".into(),
-        truth: "2 finite differences".into(),
-        compared: "½m″ by dual numbers with Richardson differences of ½m′".into(),
-        over: format!("{POSITIONS} positions of the turn"),
-        absolute: worst.0,
-        unit: "kg m²/rad²".into(),
-        relative,
-        scale: "the largest ½m″, or a hundredth of m if that is more".into(),
-        worst: format!("q = {:.4} rad", worst.1),
-        tolerance: 1e-9,
-        why:
-            "the rounding of ½m′ over a step of 1e-3 rad, 1e-12, and the sixth power of 4e-3 times \
-              the eighth derivative of m, which is up to 1e6 times m where the inertia is sharp"
-                .into(),
-        pass: relative <= 1e-9,
-        ..Finding::default()
-    })
 }

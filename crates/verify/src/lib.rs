@@ -1,57 +1,87 @@
-//! Independent truths that a mechanism's results are held against.
+//! Independent checks of a mechanism's results: each compares them with values computed from the dense constraint
+//! equations of the mechanism alone, never from a compiled plan, and as far as possible from positions and velocities only.
 //!
-//! What is judged is a [`Subject`]: anything that answers where the bodies are, what the reduced
-//! coefficients are and what the reactions are. What it is judged by is computed here from the
-//! mechanism's dense constraint rows alone ([`Dense`]), never by the product's own plan, and as
-//! far as possible from positions and velocities only. Each truth is a file of [`truths`] that
-//! tells its equation; each yields plain [`Finding`]s, and a deliberate fault is a wrapper around
-//! a subject, so that production code holds none.
+//! ```
+//! use dwell_geometry::{Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2};
+//!
+//! let pin = |name: &str, bodies: [usize; 2], points: [Vec2; 2]| Joint {
+//!     name: name.into(),
+//!     bodies: bodies.map(BodyId),
+//!     points,
+//!     kind: JointKind::Revolute,
+//! };
+//! let four_bar = Mechanism {
+//!     bodies: ["ground", "crank", "coupler", "rocker"].map(|name| Body { name: name.into() }).into(),
+//!     joints: vec![
+//!         pin("A", [0, 1], [Vec2::ZERO, Vec2::ZERO]),
+//!         pin("B", [1, 2], [vec2(1.0, 0.0), Vec2::ZERO]),
+//!         pin("C", [2, 3], [vec2(2.0, 0.0), vec2(1.0, 0.0)]),
+//!         pin("D", [0, 3], [vec2(2.0, 0.0), Vec2::ZERO]),
+//!     ],
+//!     ..Mechanism::default()
+//! };
+//! // Frames [x, y, angle] of all bodies, m and rad: crank and rocker upright.
+//! let upright = std::f64::consts::FRAC_PI_2;
+//! let poses = [[0.0; 3], [0.0, 0.0, upright], [0.0, 1.0, 0.0], [2.0, 0.0, upright]];
+//! let ranks = dwell_verify::rank(&four_bar, &poses).unwrap();
+//! assert_eq!(ranks.joints.degrees_of_freedom(), 1);
+//! assert_eq!(ranks.joints.redundant_count(), 0);
+//! ```
+//!
+//! A [`Subject`] is whatever answers for the poses, the reduced coefficients and the reactions of a mechanism with one
+//! degree of freedom; [`verify_all`] checks it:
 //!
 //! ```text
 //! Case (mechanism, masses, range, positions)  +  Subject
-//!         └── Bench: the mechanism closed densely at every position, the scales
-//!                └── truths::… → Finding
+//!         └── CheckContext: the mechanism closed densely at every position, the scales
+//!                └── checks::… → Finding
 //! ```
 //!
-//! [`verify_all`] does all of it, for one degree of freedom. [`judge_states`] holds kinetostatic
-//! states of any number of actuators, under loads, against the equations of motion, [`judge_motion`]
-//! a free motion against the full multibody equations ([`Unreduced`]), and [`rank`] says what the
-//! rows of a mechanism leave free and what they say twice.
+//! [`check_states`] and [`check_energies`] check kinetostatic states of any number of actuators under loads,
+//! [`check_motion`] a motion against the multibody equations ([`MultibodySystem`]), [`check_free_motion`] a free motion
+//! against the quadrature of its period, and [`rank()`] finds the degrees of freedom and the redundant constraints.
+//! Tests wrap a subject to introduce an error: production code holds none.
 //!
 //! Source: L. Jordi, E. Zayas, S. Cardona, *Reduced parameters for the dynamic study of a system
 //! of one degree of freedom*, TMT 2008; cited as (Jordi, Zayas & Cardona 2008, eq. n).
 
-mod acts;
 mod all;
-mod bench;
+mod body_motion;
 mod case;
-mod closing;
+pub mod checks;
+mod comparison;
+mod constraint_closing;
+mod context;
 mod curves;
 mod dense;
 mod differences;
+mod error;
 mod free_motion;
-mod judge;
 mod loads;
+mod lu;
 mod motion;
+mod multibody;
 mod rank;
+mod redundant_rows;
 mod rounding;
-mod solve;
 mod state;
 mod subject;
-pub mod truths;
-mod unreduced;
+mod wrenches;
 
 pub use all::verify_all;
-pub use bench::{Bench, Scales, Site};
 pub use case::{Case, spread};
-pub use closing::Closed;
+pub use comparison::FindingSpec;
+pub use constraint_closing::ClosedConfiguration;
+pub use context::{CheckContext, CheckedPosition, Scales};
 pub use curves::{ErrorCurve, half_dm_curve, reaction_curve};
-pub use dense::{Dense, DenseError, condition};
+pub use dense::{DenseMechanism, condition_number};
 pub use dwell_findings::Finding;
 pub use dwell_geometry::Range;
-pub use free_motion::{FreeMotion, FreeMotionCase, Rung, free_motion};
-pub use loads::load_acts;
+pub use error::DenseError;
+pub use free_motion::{CheckedFreeMotion, FreeMotionCase, ToleranceRun, check_free_motion};
+pub use loads::load_wrenches;
+pub use multibody::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 pub use rank::{Rank, Ranks, rank};
-pub use state::{BodyAct, State, judge_energies, judge_states};
-pub use subject::{Actions, Coefficients, Subject, SubjectError};
-pub use unreduced::{MotionSample, Unreduced, UnreducedError, judge_motion};
+pub use state::{ClaimedState, check_energies, check_states};
+pub use subject::{Coefficients, InverseDynamics, Subject, SubjectError};
+pub use wrenches::BodyWrench;

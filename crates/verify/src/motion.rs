@@ -1,4 +1,4 @@
-//! Mechanics of the dense mechanism: speeds and accelerations of the centres of mass, kinetic
+//! Mechanics of the dense mechanism: velocities and accelerations of the centres of mass, kinetic
 //! energy and momentum.
 //!
 //! With u and w two sets of speeds of all coordinates at one configuration,
@@ -9,23 +9,24 @@
 //! 2 E_c  = m₁ q̇₁² + m₂ q̇₂² + 2 m₁₂ q̇₁ q̇₂                    (3)  (Jordi, Zayas & Cardona 2008, eq. 2)
 //! ```
 //!
-//! so m₁ = ⟨u₁, u₁⟩, m₁₂ = ⟨u₁, u₂⟩, with u₁ and u₂ the unit speeds of the two coordinates.
+//! so m₁ = ⟨u₁, u₁⟩, m₁₂ = ⟨u₁, u₂⟩, with u₁ and u₂ the unit velocities of the two coordinates.
 
-use crate::closing::Closed;
-use crate::dense::{Dense, DenseBody};
+use crate::constraint_closing::ClosedConfiguration;
+use crate::dense::{DenseBody, DenseMechanism};
+use crate::differences::{DerivativeOrder, Extrapolated, derivatives};
 use crate::subject::Coefficients;
 use dwell_geometry::{Vec2, vec2};
 
-impl Dense {
+impl DenseMechanism {
     /// ⟨u, w⟩ of the whole mechanism, eq. (1), kg m² for two speeds per rad/s.
-    pub fn inertia(&self, at: &Closed, u: &[f64], w: &[f64]) -> f64 {
+    pub fn inertia(&self, at: &ClosedConfiguration, u: &[f64], w: &[f64]) -> f64 {
         (0..self.bodies.len())
-            .map(|b| self.inertia_of(b, at, u, w))
+            .map(|b| self.body_inertia(b, at, u, w))
             .sum()
     }
 
     /// The share of one body in ⟨u, w⟩.
-    pub fn inertia_of(&self, body: usize, at: &Closed, u: &[f64], w: &[f64]) -> f64 {
+    pub fn body_inertia(&self, body: usize, at: &ClosedConfiguration, u: &[f64], w: &[f64]) -> f64 {
         let of = &self.bodies[body];
         of.column.map_or(0.0, |c| {
             let v = self
@@ -36,10 +37,10 @@ impl Dense {
     }
 
     /// Kinetic energy, J, when each listed row moves at its rate and the others are held: eq. (2).
-    pub fn kinetic_energy(&self, at: &Closed, rates: &[(usize, f64)]) -> f64 {
+    pub fn kinetic_energy(&self, at: &ClosedConfiguration, rates: &[(usize, f64)]) -> f64 {
         let mut x_dot = vec![0.0; self.rows.columns()];
         for &(row, rate) in rates {
-            for (v, u) in x_dot.iter_mut().zip(self.unit_speed(at, row)) {
+            for (v, u) in x_dot.iter_mut().zip(self.unit_velocity(at, row)) {
                 *v += u * rate;
             }
         }
@@ -48,7 +49,7 @@ impl Dense {
 
     /// Linear momentum in x and y, kg m/s, and angular momentum about the ground's moved origin,
     /// kg m²/s.
-    pub fn momentum(&self, at: &Closed, x_dot: &[f64]) -> [f64; 3] {
+    pub fn momentum(&self, at: &ClosedConfiguration, x_dot: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for body in &self.bodies {
             if let Some(c) = body.column {
@@ -63,7 +64,13 @@ impl Dense {
 
     /// Σ m v_G(w)·a_G + I ω(w) α: the power of the inertia forces with the speeds `w`, when the
     /// mechanism moves at `x_dot` with accelerations `x_ddot`.
-    pub fn inertia_power(&self, at: &Closed, w: &[f64], x_dot: &[f64], x_ddot: &[f64]) -> f64 {
+    pub fn inertia_power(
+        &self,
+        at: &ClosedConfiguration,
+        w: &[f64],
+        x_dot: &[f64],
+        x_ddot: &[f64],
+    ) -> f64 {
         let power = |body: &DenseBody| {
             body.column.map_or(0.0, |c| {
                 let a = self.center_acceleration(body, at, x_dot, x_ddot);
@@ -74,30 +81,78 @@ impl Dense {
         self.bodies.iter().map(power).sum()
     }
 
-    /// The reduced coefficients without any step, from the unit speeds of every row: m and a by
+    /// The reduced coefficients without any step, from the unit velocities of every row: m and a by
     /// eq. (1), and ½m′ and b as the power of the inertia forces at q̇ = 1, q̈ = 0 with the speeds
     /// of the actuator and of each released row (principle of virtual power).
-    pub fn coefficients(&self, at: &Closed, unit_speeds: &[Vec<f64>]) -> Coefficients {
-        let (released, driven) = unit_speeds.split_at(self.actuator_row());
-        let u = driven.first().map_or(&[][..], Vec::as_slice);
+    pub fn coefficients(
+        &self,
+        at: &ClosedConfiguration,
+        unit_velocities: &[Vec<f64>],
+    ) -> Coefficients {
+        let (released_velocities, actuator_velocities) =
+            unit_velocities.split_at(self.actuator_row());
+        let u = actuator_velocities.first().map_or(&[][..], Vec::as_slice);
         let x_ddot = self.acceleration(at, u, &vec![0.0; self.rows.len()]);
         let power = |w: &[f64]| self.inertia_power(at, w, u, &x_ddot);
         Coefficients {
             m: self.inertia(at, u, u),
             half_dm: power(u),
-            a: released.iter().map(|w| self.inertia(at, u, w)).collect(),
-            b: released.iter().map(|w| power(w)).collect(),
+            a: released_velocities
+                .iter()
+                .map(|w| self.inertia(at, u, w))
+                .collect(),
+            b: released_velocities.iter().map(|w| power(w)).collect(),
         }
     }
 
-    /// Where a body's centre of mass is, from the ground's moved origin.
-    pub(crate) fn center(&self, body: &DenseBody, at: &Closed) -> Vec2 {
-        self.placed(body, &at.x, body.mass.center)
+    /// Second derivatives in time of the centre of mass and the angle of every moving body, three a body,
+    /// m/s² and rad/s², by differences of positions alone. `actuator_values` writes the coordinates of the
+    /// actuators at a time from the configuration `at`; Newton's method starts from `at` itself, since an
+    /// extrapolation would need velocities.
+    pub(crate) fn second_differences(
+        &self,
+        at: &ClosedConfiguration,
+        first_step: f64,
+        rounding: f64,
+        actuator_values: impl Fn(f64, &mut [f64]),
+    ) -> Vec<Extrapolated> {
+        let positions = |configuration: &ClosedConfiguration| -> Vec<f64> {
+            let moving = self.bodies.iter().filter_map(|b| Some((b, b.column?)));
+            moving
+                .flat_map(|(body, c)| {
+                    let center = self.center(body, configuration);
+                    [center.x, center.y, configuration.x[c + 2]]
+                })
+                .collect()
+        };
+        let middle = positions(at);
+        let actuator_row = self.actuator_row();
+        let mut row_values = at.row_values.clone();
+        derivatives(
+            DerivativeOrder::Second(&middle),
+            first_step,
+            rounding,
+            |t| {
+                actuator_values(t, &mut row_values[actuator_row..]);
+                let configuration = self.close_on_branch(at, &at.x, &row_values).ok()?;
+                Some(positions(&configuration))
+            },
+        )
     }
 
-    pub(crate) fn center_velocity(&self, body: &DenseBody, at: &Closed, u: &[f64]) -> Vec2 {
+    /// Where a body's centre of mass is, from the ground's moved origin.
+    pub(crate) fn center(&self, body: &DenseBody, at: &ClosedConfiguration) -> Vec2 {
+        self.frame_point(body, &at.x, body.mass.center)
+    }
+
+    pub(crate) fn center_velocity(
+        &self,
+        body: &DenseBody,
+        at: &ClosedConfiguration,
+        u: &[f64],
+    ) -> Vec2 {
         body.column.map_or(Vec2::ZERO, |c| {
-            let arm = body.mass.center.turn(Vec2::from_angle(at.x[c + 2]));
+            let arm = body.mass.center.rotate(Vec2::from_angle(at.x[c + 2]));
             vec2(u[c], u[c + 1]) + arm.perp() * u[c + 2]
         })
     }
@@ -105,12 +160,12 @@ impl Dense {
     pub(crate) fn center_acceleration(
         &self,
         body: &DenseBody,
-        at: &Closed,
+        at: &ClosedConfiguration,
         u: &[f64],
         a: &[f64],
     ) -> Vec2 {
         body.column.map_or(Vec2::ZERO, |c| {
-            let arm = body.mass.center.turn(Vec2::from_angle(at.x[c + 2]));
+            let arm = body.mass.center.rotate(Vec2::from_angle(at.x[c + 2]));
             vec2(a[c], a[c + 1]) + arm.perp() * a[c + 2] - arm * (u[c + 2] * u[c + 2])
         })
     }

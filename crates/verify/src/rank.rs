@@ -11,16 +11,17 @@
 //! multiplier. Both are told from the whole null space, so that they do not hang on which vectors
 //! span it.
 
-use crate::dense::{Dense, DenseError};
+use crate::dense::DenseMechanism;
+use crate::error::DenseError;
 use dwell_geometry::{BodyId, Mechanism};
 use dwell_kinetostatics::Mass;
 use faer::MatRef;
 
 /// A singular value this small against the largest is zero. A configuration is given, or closed,
 /// to 1e-13 and better; a small angle of 1e-8 rad is a rank loss to every purpose.
-const ZERO: f64 = 1e-9;
+const ZERO_SINGULAR_VALUE: f64 = 1e-9;
 /// A body or row has a part in a null space of orthonormal vectors from here on.
-const PART: f64 = 1e-6;
+const NULL_SPACE_PART: f64 = 1e-6;
 
 /// What the rows of one kind leave free, and what they say twice.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,19 +35,19 @@ pub struct Rank {
     /// The singular values of the dimensionless rows, falling.
     pub singular_values: Vec<f64>,
     /// Bodies that still move when every row is held.
-    pub free: Vec<BodyId>,
+    pub movable_bodies: Vec<BodyId>,
     /// Rows that depend on others: indices into [`Mechanism::reactions`], followed by the actuators.
-    pub dependent: Vec<usize>,
+    pub dependent_rows: Vec<usize>,
 }
 
 impl Rank {
     /// Independent motions left.
-    pub fn freedom(&self) -> usize {
+    pub fn degrees_of_freedom(&self) -> usize {
         self.columns - self.rank
     }
 
     /// Rows too many.
-    pub fn excess(&self) -> usize {
+    pub fn redundant_count(&self) -> usize {
         self.rows - self.rank
     }
 }
@@ -57,7 +58,7 @@ pub struct Ranks {
     /// The joints.
     pub joints: Rank,
     /// The joints and the actuators.
-    pub driven: Rank,
+    pub with_actuators: Rank,
 }
 
 /// The ranks in the configuration with the frames `poses` of all bodies, in m and rad.
@@ -71,8 +72,8 @@ pub struct Ranks {
 /// not an error.
 pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks, DenseError> {
     let masses = vec![Mass::default(); mechanism.bodies.len()];
-    let dense = Dense::of_any_shape(mechanism, &masses)?;
-    let x = dense.start(poses)?;
+    let dense = DenseMechanism::without_rank_check(mechanism, &masses)?;
+    let x = dense.coordinates(poses)?;
     let all = dense.scaled_jacobian(&x);
     if !all.is_all_finite() {
         // Two points in one place have no direction.
@@ -80,39 +81,51 @@ pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks, DenseErr
     }
     let joints = all.subrows(0, dense.actuator_row());
     Ok(Ranks {
-        joints: of(&dense, joints)?,
-        driven: of(&dense, all.as_ref())?,
+        joints: rank_of(&dense, joints)?,
+        with_actuators: rank_of(&dense, all.as_ref())?,
     })
 }
 
-fn of(dense: &Dense, matrix: MatRef<'_, f64>) -> Result<Rank, DenseError> {
+fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank, DenseError> {
     let (rows, columns) = matrix.shape();
     let svd = matrix
         .svd()
         .map_err(|_| DenseError::Singular { pivot: f64::NAN })?;
     let values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
     let largest = values.first().copied().unwrap_or(0.0);
-    let rank = values.iter().filter(|&&s| s > ZERO * largest).count();
-    let moves = |c: usize| (c..c + 3).map(|c| part(svd.V(), c, rank)).sum::<f64>();
+    let rank = values
+        .iter()
+        .filter(|&&s| s > ZERO_SINGULAR_VALUE * largest)
+        .count();
+    let squared_motion = |c: usize| {
+        (c..c + 3)
+            .map(|c| squared_null_space_part(svd.V(), c, rank))
+            .sum::<f64>()
+    };
     let bodies = dense.bodies.iter().enumerate();
-    let free = bodies
-        .filter(|(_, body)| body.column.is_some_and(|c| moves(c) > PART * PART))
+    let movable_bodies = bodies
+        .filter(|(_, body)| {
+            body.column
+                .is_some_and(|c| squared_motion(c) > NULL_SPACE_PART * NULL_SPACE_PART)
+        })
         .map(|(b, _)| BodyId(b))
         .collect();
     Ok(Rank {
         rows,
         columns,
         rank,
-        free,
-        dependent: (0..rows)
-            .filter(|&k| part(svd.U(), k, rank) > PART * PART)
+        movable_bodies,
+        dependent_rows: (0..rows)
+            .filter(|&k| {
+                squared_null_space_part(svd.U(), k, rank) > NULL_SPACE_PART * NULL_SPACE_PART
+            })
             .collect(),
         singular_values: values,
     })
 }
 
 /// The square of what row `i` has in the columns from `rank` on.
-fn part(vectors: MatRef<'_, f64>, i: usize, rank: usize) -> f64 {
+fn squared_null_space_part(vectors: MatRef<'_, f64>, i: usize, rank: usize) -> f64 {
     (rank..vectors.ncols())
         .map(|j| vectors[(i, j)] * vectors[(i, j)])
         .sum()
@@ -121,7 +134,7 @@ fn part(vectors: MatRef<'_, f64>, i: usize, rank: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use dwell_geometry::{Actuator, Body, Drive, Joint, JointKind, Vec2, vec2};
+    use dwell_geometry::{Actuator, ActuatorKind, Body, Joint, JointKind, Vec2, vec2};
 
     fn pin(bodies: [usize; 2], points: [Vec2; 2]) -> Joint {
         Joint {
@@ -152,10 +165,10 @@ mod tests {
             joints.push(pin([leg, 4], [vec2(0.0, 2.0), vec2(x, 0.0)]));
         }
         joints.push(pin([4, 5], [vec2(0.5, 0.5), vec2(0.1, -0.4)]));
-        let lean: f64 = -0.3;
-        let up = vec2(0.0, 2.0).turn(Vec2::from_angle(lean));
+        let tilt: f64 = -0.3;
+        let up = vec2(0.0, 2.0).rotate(Vec2::from_angle(tilt));
         let mut poses = vec![[0.0; 3]];
-        poses.extend([1.0, 2.0, 3.0].map(|x| [x, 0.0, lean]));
+        poses.extend([1.0, 2.0, 3.0].map(|x| [x, 0.0, tilt]));
         poses.push([up.x, up.y, 0.0]);
         poses.push([up.x + 0.4, up.y + 0.9, 0.0]);
         (bars(5, joints), poses)
@@ -164,13 +177,19 @@ mod tests {
     #[test]
     fn a_third_leg_is_one_row_too_many() {
         let (mechanism, poses) = table();
-        let Ranks { joints, driven } = rank(&mechanism, &poses).unwrap();
-        assert_eq!(joints, driven);
+        let Ranks {
+            joints,
+            with_actuators,
+        } = rank(&mechanism, &poses).unwrap();
+        assert_eq!(joints, with_actuators);
         assert_eq!((joints.rows, joints.columns), (14, 15));
-        assert_eq!((joints.freedom(), joints.excess()), (2, 1));
-        assert_eq!(joints.free, [1, 2, 3, 4, 5].map(BodyId));
+        assert_eq!(
+            (joints.degrees_of_freedom(), joints.redundant_count()),
+            (2, 1)
+        );
+        assert_eq!(joints.movable_bodies, [1, 2, 3, 4, 5].map(BodyId));
         // All forces of the legs are in doubt, those of the hanging body (rows 12 and 13) are not.
-        assert_eq!(joints.dependent, (0..12).collect::<Vec<_>>());
+        assert_eq!(joints.dependent_rows, (0..12).collect::<Vec<_>>());
     }
 
     #[test]
@@ -179,25 +198,40 @@ mod tests {
         mechanism.actuators.push(Actuator {
             name: "lean".into(),
             bodies: [BodyId(0), BodyId(1)],
-            drive: Drive::Angle,
+            kind: ActuatorKind::Angle,
         });
-        let Ranks { joints, driven } = rank(&mechanism, &poses).unwrap();
-        assert_eq!((joints.freedom(), driven.freedom()), (2, 1));
-        assert_eq!(driven.free, [BodyId(5)]);
+        let Ranks {
+            joints,
+            with_actuators,
+        } = rank(&mechanism, &poses).unwrap();
+        assert_eq!(
+            (
+                joints.degrees_of_freedom(),
+                with_actuators.degrees_of_freedom()
+            ),
+            (2, 1)
+        );
+        assert_eq!(with_actuators.movable_bodies, [BodyId(5)]);
         // A drive between parallel legs drives nothing, and says what they say already.
         mechanism.actuators[0].bodies[0] = BodyId(2);
-        let Ranks { driven, .. } = rank(&mechanism, &poses).unwrap();
-        assert_eq!((driven.freedom(), driven.excess()), (2, 2));
-        assert!(driven.dependent.contains(&14));
+        let Ranks {
+            with_actuators: driven,
+            ..
+        } = rank(&mechanism, &poses).unwrap();
+        assert_eq!(
+            (driven.degrees_of_freedom(), driven.redundant_count()),
+            (2, 2)
+        );
+        assert!(driven.dependent_rows.contains(&14));
     }
 
     #[test]
     fn what_has_no_rows_is_free() {
         let Ranks { joints, .. } = rank(&bars(2, vec![]), &[[0.0; 3]; 3]).unwrap();
-        assert_eq!((joints.rank, joints.freedom()), (0, 6));
-        assert_eq!(joints.free, [BodyId(1), BodyId(2)]);
+        assert_eq!((joints.rank, joints.degrees_of_freedom()), (0, 6));
+        assert_eq!(joints.movable_bodies, [BodyId(1), BodyId(2)]);
         let Ranks { joints, .. } = rank(&bars(0, vec![]), &[[0.0; 3]]).unwrap();
-        assert_eq!((joints.rank, joints.freedom()), (0, 0));
+        assert_eq!((joints.rank, joints.degrees_of_freedom()), (0, 0));
         assert!(rank(&bars(1, vec![]), &[[0.0; 3]]).is_err());
     }
 }

@@ -1,39 +1,48 @@
 //! What rounding does to anything that is read off a closed configuration.
 
-use crate::closing::Closed;
-use crate::dense::{Dense, DenseError};
+use crate::constraint_closing::ClosedConfiguration;
+use crate::dense::DenseMechanism;
+use crate::error::DenseError;
 
 /// How far a row is opened to see what rounding does, in sizes.
-const PROBE: f64 = 1e-7;
+const PROBE_STEP: f64 = 1e-7;
 /// The part of the sum of all rows' roundings that is expected: they rarely all add up. Differences
 /// met beside a change point were a fifth of the sum and less.
-const EXPECTED: f64 = 0.2;
+const EXPECTED_SHARE: f64 = 0.2;
 
-impl Dense {
+impl DenseMechanism {
     /// How much rounding may have moved each of the `values` of a configuration, which are `exact`
     /// there, and the pose relative to the mechanism's size.
     ///
     /// A row cannot be closed better than to a unit in the last place of its arms, and next to a
     /// dead point that is magnified without limit. So each row is opened a little by itself, and
     /// the sum of what that moves, scaled down to one rounding, bounds the noise to first order.
-    pub(crate) fn rounding(
+    pub(crate) fn rounding_bounds(
         &self,
-        closed: &Closed,
-        unit_speeds: &[Vec<f64>],
+        configuration: &ClosedConfiguration,
+        unit_velocities: &[Vec<f64>],
         exact: &[f64],
-        values: impl Fn(&Closed) -> Result<Vec<f64>, DenseError>,
+        values: impl Fn(&ClosedConfiguration) -> Result<Vec<f64>, DenseError>,
     ) -> Result<(Vec<f64>, f64), DenseError> {
-        let mut noise = vec![0.0; exact.len()];
-        let mut pose = 0.0;
-        let share = EXPECTED * f64::EPSILON / PROBE;
-        for (row, (direction, scale)) in unit_speeds.iter().zip(&self.row_scale).enumerate() {
-            let opened = PROBE * self.size / scale;
-            let there = self.step(closed, row, direction, closed.imposed[row] + opened)?;
-            for ((noise, there), exact) in noise.iter_mut().zip(values(&there)?).zip(exact) {
-                *noise += share * (there - exact).abs();
+        let mut bounds = vec![0.0; exact.len()];
+        let mut pose_bound = 0.0;
+        let factor = EXPECTED_SHARE * f64::EPSILON / PROBE_STEP;
+        for (row, (direction, scale)) in unit_velocities.iter().zip(&self.row_scale).enumerate() {
+            let opened = PROBE_STEP * self.size / scale;
+            let perturbed = self.step_row(
+                configuration,
+                row,
+                direction,
+                configuration.row_values[row] + opened,
+            )?;
+            for ((bounds, perturbed), exact) in
+                bounds.iter_mut().zip(values(&perturbed)?).zip(exact)
+            {
+                *bounds += factor * (perturbed - exact).abs();
             }
-            pose += EXPECTED * f64::EPSILON * self.reach(direction) * self.size / scale;
+            pose_bound +=
+                EXPECTED_SHARE * f64::EPSILON * self.scaled_norm(direction) * self.size / scale;
         }
-        Ok((noise, pose))
+        Ok((bounds, pose_bound))
     }
 }

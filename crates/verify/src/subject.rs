@@ -1,4 +1,4 @@
-//! What is judged: anything that answers for a mechanism of one degree of freedom.
+//! What is checked: anything that answers for a mechanism of one degree of freedom.
 
 /// Why a subject could not answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -26,14 +26,14 @@ pub struct Coefficients {
 
 /// What the actuator and the joints do in a given state, without loads.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Actions {
+pub struct InverseDynamics {
     /// The actuator's action on its second body, N·m.
     pub tau: f64,
     /// Every reaction, the action of the joint's first body on its second, N or N·m.
     pub reactions: Vec<f64>,
 }
 
-/// A result to be judged. It is asked from several threads at once, and a question must have the
+/// A result to be checked. It is asked from several threads at once, and a question must have the
 /// same answer whatever was asked before.
 pub trait Subject: Sync {
     /// The frame [x, y, θ] of every body, the ground included, in m and rad.
@@ -43,5 +43,10 @@ pub trait Subject: Sync {
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError>;
 
     /// The actions at (`q`, `q_dot`, `q_ddot`) in rad, rad/s, rad/s².
-    fn actions(&self, q: f64, q_dot: f64, q_ddot: f64) -> Result<Actions, SubjectError>;
+    fn inverse_dynamics(
+        &self,
+        q: f64,
+        q_dot: f64,
+        q_ddot: f64,
+    ) -> Result<InverseDynamics, SubjectError>;
 }

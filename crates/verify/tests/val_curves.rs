@@ -4,7 +4,7 @@
 
 mod subjects;
 
-use dwell_verify::{Bench, ErrorCurve, half_dm_curve, reaction_curve};
+use dwell_verify::{CheckContext, ErrorCurve, half_dm_curve, reaction_curve};
 use subjects::mechanisms::{inverted_slider_crank, single_dwell};
 
 fn lowest(curve: &[(f64, f64)]) -> (f64, f64) {
@@ -14,10 +14,10 @@ fn lowest(curve: &[(f64, f64)]) -> (f64, f64) {
 
 /// The error at the step nearest to `h`.
 fn at(curve: &[(f64, f64)], h: f64) -> f64 {
-    let off = |p: &&(f64, f64)| (p.0 / h).ln().abs();
+    let distance = |p: &&(f64, f64)| (p.0 / h).ln().abs();
     curve
         .iter()
-        .min_by(|a, b| off(a).total_cmp(&off(b)))
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))
         .unwrap()
         .1
 }
@@ -48,16 +48,16 @@ fn val_error_against_step() {
     let setup = single_dwell();
     let (mut case, subject) = (setup.case(0), setup.subject());
     case.positions = vec![1.0, 5.8];
-    let bench = Bench::new(&case, &subject).unwrap();
-    assert_v(&half_dm_curve(&bench, &bench.sites[1]).unwrap());
+    let context = CheckContext::new(&case, &subject).unwrap();
+    assert_v(&half_dm_curve(&context, &context.positions[1]).unwrap());
     // slide.normal
-    assert_v(&reaction_curve(&bench, &bench.sites[1], 10).unwrap());
-    assert!(reaction_curve(&bench, &bench.sites[0], 14).is_none());
+    assert_v(&reaction_curve(&context, &context.positions[1], 10).unwrap());
+    assert!(reaction_curve(&context, &context.positions[0], 14).is_none());
 
     let setup = inverted_slider_crank();
     let (mut case, subject) = (setup.case(0), setup.subject());
     case.positions = vec![4.2];
-    let bench = Bench::new(&case, &subject).unwrap();
+    let context = CheckContext::new(&case, &subject).unwrap();
     // slot.moment: the released row is an angle.
-    assert_v(&reaction_curve(&bench, &bench.sites[0], 3).unwrap());
+    assert_v(&reaction_curve(&context, &context.positions[0], 3).unwrap());
 }

@@ -8,10 +8,10 @@
 mod subjects;
 
 use dwell_geometry::{BodyId, vec2};
-use dwell_verify::truths::{Point, Sample, published};
+use dwell_verify::checks::{PublishedPoint, PublishedSample, published};
 use dwell_verify::{Subject, verify_all};
-use subjects::faulty::Faulty;
 use subjects::mechanisms::{Setup, crank_rocker, single_dwell};
+use subjects::mutated::MutatedSubject;
 
 /// Every reaction of the crank-rocker in its order: (q in degrees, m, ½m′, [a, b] of A.x … D.y).
 /// Source: independent 40-digit code, confirmed by a second one.
@@ -122,8 +122,8 @@ const SINGLE_DWELL: [Dwell; 4] = [
     ),
 ];
 
-fn crank_rocker_samples() -> Vec<Sample> {
-    let sample = |&(degrees, m, half_dm, reactions): &Row| Sample {
+fn crank_rocker_samples() -> Vec<PublishedSample> {
+    let sample = |&(degrees, m, half_dm, reactions): &Row| PublishedSample {
         q: f64::to_radians(degrees),
         m: Some(m),
         half_dm: Some(half_dm),
@@ -133,10 +133,10 @@ fn crank_rocker_samples() -> Vec<Sample> {
     CRANK_ROCKER.iter().map(sample).collect()
 }
 
-fn single_dwell_samples() -> Vec<Sample> {
+fn single_dwell_samples() -> Vec<PublishedSample> {
     // Two rows each of A, B, C, O, Q, the slide, P.
     let order = [0, 1, 4, 10, 11];
-    let sample = |&(q, m, half_dm, [x, y], reactions): &Dwell| Sample {
+    let sample = |&(q, m, half_dm, [x, y], reactions): &Dwell| PublishedSample {
         q,
         m: Some(m),
         half_dm: Some(half_dm),
@@ -145,21 +145,24 @@ fn single_dwell_samples() -> Vec<Sample> {
             .zip(reactions)
             .map(|(k, [a, b])| (k, a, b))
             .collect(),
-        points: vec![Point {
+        points: vec![PublishedPoint {
             body: BodyId(2),
             local: vec2(0.5, 0.0),
-            at: vec2(x, y),
+            position: vec2(x, y),
         }],
     };
     SINGLE_DWELL.iter().map(sample).collect()
 }
 
-fn assert_agrees(title: &str, setup: &Setup, samples: &[Sample], kinds: usize) {
+fn assert_agrees(title: &str, setup: &Setup, samples: &[PublishedSample], kinds: usize) {
     let findings = verify_all(&setup.case(3), &setup.subject(), samples);
     let published = findings.iter().filter(|f| f.key.starts_with("published"));
     assert_eq!(published.clone().count(), kinds);
     for f in published {
-        println!("{title:<13} {:<17} {:8.1e} {}", f.key, f.relative, f.worst);
+        println!(
+            "{title:<13} {:<17} {:8.1e} {}",
+            f.key, f.relative_difference, f.worst_at
+        );
         assert!(f.pass && f.tolerance == 1e-12, "{f:#?}");
     }
 }
@@ -170,7 +173,7 @@ fn val_published_values() {
     assert_agrees("single-dwell", &single_dwell(), &single_dwell_samples(), 5);
 }
 
-fn failing(setup: &Setup, subject: &dyn Subject, samples: &[Sample]) -> Vec<String> {
+fn failing(setup: &Setup, subject: &dyn Subject, samples: &[PublishedSample]) -> Vec<String> {
     let findings = published(&setup.case(0), subject, samples);
     findings
         .into_iter()
@@ -185,22 +188,22 @@ fn published_values_are_held_to() {
     const BY: f64 = 1.0 + 1e-9;
     let setup = single_dwell();
     let (subject, samples) = (setup.subject(), single_dwell_samples());
-    let faulty = Faulty::of(&subject).coefficients(|c| {
+    let mutated = MutatedSubject::new(&subject).coefficients(|c| {
         c.m *= BY;
         c.b[10] *= BY;
     });
     assert_eq!(
-        failing(&setup, &faulty, &samples),
+        failing(&setup, &mutated, &samples),
         ["published-m", "published-b"]
     );
-    let faulty = Faulty::of(&subject)
+    let mutated = MutatedSubject::new(&subject)
         .coefficients(|c| {
             c.half_dm *= BY;
             c.a[1] *= BY;
         })
         .poses(|_, poses| poses[2][0] += 1e-9);
     let keys = ["published-half-dm", "published-a", "published-points"];
-    assert_eq!(failing(&setup, &faulty, &samples), keys);
+    assert_eq!(failing(&setup, &mutated, &samples), keys);
 }
 
 /// A reaction that is not there, and nothing at all.

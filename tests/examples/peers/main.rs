@@ -2,9 +2,9 @@
 //! measures those and calls `cargo run --release --example peers -- THEIRS.csv`, which writes `reports/peers.md` and `.png`.
 #![allow(clippy::print_stdout, reason = "a study, run by hand")]
 
-mod claims;
-mod ours;
-mod page;
+mod dwell_runs;
+mod report;
+mod speedups;
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -15,7 +15,7 @@ const CASES: [&str; 2] = ["crank-rocker", "single-dwell"];
 /// Periods of a run.
 const PERIODS: f64 = 10.0;
 /// A crank angle of ten turns is known to one rounding, rad: a smaller error is no error.
-const FLOOR: f64 = 2.0 * PI * PERIODS * f64::EPSILON;
+const ANGLE_ROUNDING: f64 = 2.0 * PI * PERIODS * f64::EPSILON;
 
 /// A run of ten periods.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +26,7 @@ struct Run {
     /// Method, step, tolerance.
     setting: String,
     /// Least time of all repetitions, s.
-    wall: f64,
+    wall_time: f64,
     /// Of the crank angle at the end, rad.
     error: f64,
 }
@@ -34,21 +34,21 @@ struct Run {
 fn main() -> Result<(), Box<dyn Error>> {
     let file = std::env::args().nth(1);
     let theirs = file.ok_or("say where what the others took is: a CSV file")?;
-    let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut runs = read(&std::fs::read_to_string(theirs)?)?;
-    let mut made = Vec::new();
+    let mut stages_by_case = Vec::new();
     for case in CASES {
-        let (own, stages) = ours::measure(case, &home.join("validation").join(case))?;
-        runs.extend(own);
-        made.push(stages);
+        let (dwell_runs, stages) = dwell_runs::measure(case, &root.join("validation").join(case))?;
+        runs.extend(dwell_runs);
+        stages_by_case.push(stages);
     }
-    let claims = claims::all(&runs);
-    println!("{}", claims.join("\n"));
-    let reports = home.join("reports");
+    let speedups = speedups::speedup_lines(&runs);
+    println!("{}", speedups.join("\n"));
+    let reports = root.join("reports");
     std::fs::create_dir_all(&reports)?;
-    let figure = page::figure(&runs);
+    let figure = report::figure(&runs);
     std::fs::write(reports.join("peers.png"), dwell_report::png(&figure)?)?;
-    let document = page::document(&runs, &made, &claims);
+    let document = report::document(&runs, &stages_by_case, &speedups);
     std::fs::write(reports.join("peers.md"), document.markdown())?;
     Ok(())
 }
@@ -64,8 +64,8 @@ fn read(text: &str) -> Result<Vec<Run>, Box<dyn Error>> {
             case: case.to_owned(),
             tool: tool.to_owned(),
             setting: setting.to_owned(),
-            wall: wall.trim().parse()?,
-            error: error.trim().parse::<f64>()?.max(FLOOR),
+            wall_time: wall.trim().parse()?,
+            error: error.trim().parse::<f64>()?.max(ANGLE_ROUNDING),
         })
     };
     text.lines().skip(1).map(row).collect()
@@ -75,7 +75,7 @@ fn read(text: &str) -> Result<Vec<Run>, Box<dyn Error>> {
 ///
 /// An error may pass through zero on its way down. So a run counts with the largest error of itself and of all finer
 /// runs of its method.
-fn front(runs: &[Run], case: &str, tool: &str) -> Vec<Run> {
+fn fastest_runs(runs: &[Run], case: &str, tool: &str) -> Vec<Run> {
     let of = |run: &&Run| run.case == case && run.tool.starts_with(tool);
     let mut all: Vec<Run> = runs.iter().filter(of).cloned().collect();
     // What is before the comma is the method, before the equals sign the step; they stand from coarse to fine.
@@ -85,11 +85,11 @@ fn front(runs: &[Run], case: &str, tool: &str) -> Vec<Run> {
             all[k - 1].error = all[k - 1].error.max(all[k].error);
         }
     }
-    all.sort_by(|a, b| a.wall.total_cmp(&b.wall));
-    let mut least = f64::INFINITY;
+    all.sort_by(|a, b| a.wall_time.total_cmp(&b.wall_time));
+    let mut min = f64::INFINITY;
     all.retain(|run| {
-        let better = run.error < least;
-        least = least.min(run.error);
+        let better = run.error < min;
+        min = min.min(run.error);
         better
     });
     all

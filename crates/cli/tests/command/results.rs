@@ -1,6 +1,6 @@
 //! What the commands write and print when all is well, and what they leave alone when it is not.
 
-use crate::bench::{Bench, LIMITED, home, with};
+use crate::test_dir::{LIMITED, TestDir, four_bar_with, home};
 use std::fs;
 use std::io::Read as _;
 use std::process::Stdio;
@@ -10,17 +10,17 @@ fn case(name: &str) -> String {
     path.to_str().unwrap().to_owned()
 }
 
-fn first_line(bench: &Bench, file: &str) -> String {
-    let text = fs::read_to_string(bench.0.join(file)).unwrap();
+fn first_line(dir: &TestDir, file: &str) -> String {
+    let text = fs::read_to_string(dir.0.join(file)).unwrap();
     text.lines().next().unwrap().to_owned()
 }
 
 #[test]
 fn check_describes_the_single_dwell_and_writes_nothing() {
-    let bench = Bench::new();
-    let run = bench.run(&["check", &case("single-dwell")]);
+    let dir = TestDir::new();
+    let run = dir.run(&["check", &case("single-dwell")]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    assert!(bench.contents().is_empty());
+    assert!(dir.contents().is_empty());
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("../snapshots");
     settings.set_prepend_module_to_snapshot(false);
@@ -31,16 +31,23 @@ fn check_describes_the_single_dwell_and_writes_nothing() {
 /// Also of a mechanism without ends, over the turn that is shown.
 #[test]
 fn reduce_makes_a_table_that_needs_no_mechanism() {
-    let bench = Bench::new();
+    let dir = TestDir::new();
     for (name, of) in [
-        ("crank-rocker", "every turn"),
+        ("crank-rocker", "a full revolution"),
         ("planetary", "0 to 6.28319"),
     ] {
-        let run = bench.run(&["reduce", &case(name), "--table", "1e-9", "--out", "o"]);
+        let run = dir.run(&[
+            "reduce",
+            &case(name),
+            "--table-accuracy",
+            "1e-9",
+            "--out",
+            "o",
+        ]);
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
         assert!(run.out.contains(of), "{}", run.out);
         assert_eq!(
-            first_line(&bench, &format!("o/{name}.table")),
+            first_line(&dir, &format!("o/{name}.table")),
             "dwell-table 1"
         );
     }
@@ -49,103 +56,102 @@ fn reduce_makes_a_table_that_needs_no_mechanism() {
 /// Over a part of the turn, in the scene's unit: degrees here.
 #[test]
 fn reduce_makes_a_table_of_a_part_of_the_turn() {
-    let bench = Bench::new();
+    let dir = TestDir::new();
     let scene = case("slotted-rocker");
-    let extent = ["--from", "-30", "--to", "90"];
+    let interval = ["--from", "-30", "--to", "90"];
     let arguments = [
-        &["reduce", &scene, "--table", "1e-9", "--out", "o"],
-        &extent[..],
+        &["reduce", &scene, "--table-accuracy", "1e-9", "--out", "o"],
+        &interval[..],
     ]
     .concat();
-    let run = bench.run(&arguments);
+    let run = dir.run(&arguments);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert!(run.out.contains("from -30 to 90 deg"), "{}", run.out);
 }
 
 #[test]
 fn reduce_writes_a_table_with_units_and_pictures() {
-    let bench = Bench::new();
-    let run = bench.run(&["reduce", &case("single-dwell"), "--out", "o"]);
+    let dir = TestDir::new();
+    let run = dir.run(&["reduce", &case("single-dwell"), "--out", "o"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert_eq!(
-        bench.files("o"),
+        dir.files("o"),
         [
-            "single-dwell-b-reduced.png",
-            "single-dwell-c-reaction.png",
+            "single-dwell-reaction.png",
             "single-dwell-reduced.csv",
-            "single-dwell-reduced.npz"
+            "single-dwell-reduced.npz",
+            "single-dwell-reduced.png"
         ]
     );
     assert_eq!(
-        first_line(&bench, "o/single-dwell-reduced.csv"),
-        "phi [rad],m [kg m2],half_dm [kg m2/rad],slide.normal a [kg m],slide.normal b [kg m],relative_error"
+        first_line(&dir, "o/single-dwell-reduced.csv"),
+        "phi [rad],m [kg m2],half_dm [kg m2/rad],slide.normal.a [kg m],slide.normal.b [kg m],relative_error"
     );
     assert!(run.out.contains("o/single-dwell-reduced.csv"));
     assert!(run.out.contains("kg m²/rad"));
-    assert!(
-        run.out
-            .contains("rounding errors, held against 32 digits, below 1e-15 of the largest m")
-    );
+    assert!(run.out.contains(
+        "estimated rounding errors, compared with 32-digit arithmetic: below 1e-15 of the largest m"
+    ));
 }
 
 #[test]
 fn simulate_writes_a_table_with_units_and_a_picture() {
-    let bench = Bench::new();
+    let dir = TestDir::new();
     for method in ["bdf", "tsit45"] {
         let scene = case("single-dwell");
-        let run = bench.run(&["simulate", &scene, "--out", "o", "--method", method]);
+        let run = dir.run(&["simulate", &scene, "--out", "o", "--method", method]);
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-        let files = bench.files("o");
+        let files = dir.files("o");
         for file in [
-            "d-coordinates.png",
-            "j-energy.png",
-            "k-phase.png",
+            "coordinates.png",
+            "energies.png",
+            "phase-portrait.png",
             "mechanism.gif",
-            "peaks.csv",
+            "extrema.csv",
         ] {
             let file = format!("single-dwell-motion-{file}");
             assert!(files.contains(&file), "{file} is not in {files:?}");
         }
-        let header = first_line(&bench, "o/single-dwell-motion.csv");
-        let expected = "t [s],phi [rad],phi.speed [rad/s],phi.acceleration [rad/s2],";
+        let header = first_line(&dir, "o/single-dwell-motion.csv");
+        let expected = "t [s],phi [rad],phi.velocity [rad/s],phi.acceleration [rad/s2],";
         assert!(header.starts_with(expected), "{header}");
         for column in [
             "slide.normal [N]",
             "energy.kinetic [J]",
-            "energy.balance [J]",
+            "energy.balance_error [J]",
         ] {
             assert!(header.contains(column), "{header}");
         }
         assert!(
-            !header.contains("phi.action"),
+            !header.contains("phi.actuator_force"),
             "nothing acts through a free actuator: {header}"
         );
         let period = "period 5.419662677064 s by quadrature";
         assert!(run.out.contains(period), "{}", run.out);
-        let kept = "of the largest kinetic energy, 0.455087 J";
-        assert!(run.out.contains(kept), "{}", run.out);
+        let energy = "of the largest kinetic energy, 0.455087 J";
+        assert!(run.out.contains(energy), "{}", run.out);
     }
 }
 
 /// The four-bar with a motor, its weight and a damper.
-fn driven() -> String {
-    let driven = "duration = 2\n[loads]\nweight = { gravity = [0, -9.81] }\n\
-        press = { torsion-damper = [\"ground\", \"rocker\"], constant = 0.4 }\n[drives]\n\
-        engine = { motor = \"phi\", voltage = 24, constant = 0.05, resistance = 0.4, ratio = 10 }";
-    with(&[("periods = 2", driven)])
+fn motor_scene() -> String {
+    let sections = "duration = 2\n[loads]\nweight = { gravity = [0, -9.81] }\n\
+        press = { rotational-damper = [\"ground\", \"rocker\"], damping = 0.4 }\n[drives]\n\
+        engine = { motor = \"phi\", voltage = 24, torque-constant = 0.05, resistance = 0.4, gear-ratio = 10 }";
+    four_bar_with(&[("periods = 2", sections)])
 }
 
 #[test]
-fn tradeoff_writes_every_combination_and_the_front() {
-    let bench = Bench::new();
-    bench.put("driven.toml", driven());
-    let run = bench.run(&["tradeoff", "driven.toml", "--out", "o"]);
+fn work_precision_writes_every_combination_and_the_front() {
+    let dir = TestDir::new();
+    dir.put("driven.toml", motor_scene());
+    let run = dir.run(&["work-precision", "driven.toml", "--out", "o"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert_eq!(
-        bench.files("o"),
-        ["csv", "md", "npz", "png"].map(|end| format!("driven-tradeoff.{end}"))
+        dir.files("o"),
+        ["csv", "md", "npz", "png"].map(|end| format!("driven-work-precision.{end}"))
     );
-    let header = first_line(&bench, "o/driven-tradeoff.csv");
+    let header = first_line(&dir, "o/driven-work-precision.csv");
     assert!(
         header.starts_with("evaluation,integrator,tolerance"),
         "{header}"
@@ -154,8 +160,8 @@ fn tradeoff_writes_every_combination_and_the_front() {
 
 #[test]
 fn cycle_tells_the_steady_cycle_and_its_flywheel() {
-    let bench = Bench::new();
-    bench.put("driven.toml", driven());
+    let dir = TestDir::new();
+    dir.put("driven.toml", motor_scene());
     let arguments = [
         "cycle",
         "driven.toml",
@@ -164,10 +170,10 @@ fn cycle_tells_the_steady_cycle_and_its_flywheel() {
         "--out",
         "o",
     ];
-    let run = bench.run(&arguments);
+    let run = dir.run(&arguments);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert_eq!(
-        bench.files("o"),
+        dir.files("o"),
         [
             "driven-cycle-flywheel.csv",
             "driven-cycle-flywheel.npz",
@@ -178,14 +184,14 @@ fn cycle_tells_the_steady_cycle_and_its_flywheel() {
         ]
     );
     assert_eq!(
-        first_line(&bench, "o/driven-cycle.csv"),
-        "t [s],phi [rad],phi.speed [rad/s],phi.acceleration [rad/s2],press.work [J],engine.work [J]"
+        first_line(&dir, "o/driven-cycle.csv"),
+        "t [s],phi [rad],phi.velocity [rad/s],phi.acceleration [rad/s2],press.work [J],engine.work [J]"
     );
     for words in [
         "mean speed",
         "stable: ",
         "work of engine",
-        "for a fluctuation of 0.02: a flywheel of",
+        "for a coefficient of fluctuation of 0.02: flywheel of",
     ] {
         assert!(run.out.contains(words), "{words}: {}", run.out);
     }
@@ -193,26 +199,26 @@ fn cycle_tells_the_steady_cycle_and_its_flywheel() {
 
 #[test]
 fn equilibria_and_linearise_need_no_motion() {
-    let bench = Bench::new();
-    let hung = with(&[(
-        "[motion]\nstart = 1.0\nspeed = 10.0\nperiods = 2",
+    let dir = TestDir::new();
+    let hung = four_bar_with(&[(
+        "[motion]\ninitial-coordinate = 1.0\ninitial-velocity = 10.0\nperiods = 2",
         "[loads]\nweight = { gravity = [0, -9.81] }",
     )]);
-    bench.put("hung.toml", hung);
-    let run = bench.run(&["equilibria", "hung.toml", "--out", "o"]);
+    dir.put("hung.toml", hung);
+    let run = dir.run(&["equilibria", "hung.toml", "--out", "o"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert!(run.out.contains("2 equilibria of phi"), "{}", run.out);
-    assert!(run.out.contains("unstable") && run.out.contains("swings on"));
-    let run = bench.run(&["linearise", "hung.toml", "--out", "o"]);
+    assert!(run.out.contains("unstable") && run.out.contains("stable without damping"));
+    let run = dir.run(&["linearise", "hung.toml", "--out", "o"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert!(
         run.out
-            .contains("outputs: phi (rad), phi.speed (rad/s), A.x (N)"),
+            .contains("outputs: phi (rad), phi.velocity (rad/s), A.x (N)"),
         "{}",
         run.out
     );
     assert_eq!(
-        bench.files("o"),
+        dir.files("o"),
         [
             "hung-equilibria.csv",
             "hung-equilibria.png",
@@ -225,8 +231,8 @@ fn equilibria_and_linearise_need_no_motion() {
 
 #[test]
 fn calibrate_finds_the_inertia_of_the_single_dwell() {
-    let bench = Bench::new();
-    let run = bench.run(&["calibrate", &case("single-dwell")]);
+    let dir = TestDir::new();
+    let run = dir.run(&["calibrate", &case("single-dwell")]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert_eq!(
         run.out,
@@ -234,22 +240,22 @@ fn calibrate_finds_the_inertia_of_the_single_dwell() {
          the scene has 0.626 kg m2, which gives 5.419662677064 s\n"
     );
     // The other way round, with a value of another kind.
-    let arguments = ["--set", "coupler.mass", "--period", "5.42"];
-    let run = bench.run(&[&["calibrate", &case("single-dwell")], &arguments[..]].concat());
+    let arguments = ["--parameter", "coupler.mass", "--period", "5.42"];
+    let run = dir.run(&[&["calibrate", &case("single-dwell")], &arguments[..]].concat());
     assert_eq!(run.status, Some(0));
     assert!(run.out.contains("coupler.mass = 1.497607"), "{}", run.out);
-    assert!(bench.contents().is_empty());
+    assert!(dir.contents().is_empty());
 }
 
 #[test]
 fn validate_writes_the_report_and_its_status_tells_the_verdict() {
-    let bench = Bench::new();
+    let dir = TestDir::new();
     let folder = home().join("validation/single-dwell");
     let text = |file: &str| fs::read_to_string(folder.join(file)).unwrap();
     let reference = text("case.toml");
-    bench.put("cases/dwell/scene.toml", text("scene.toml"));
-    bench.put("cases/dwell/case.toml", &reference);
-    let run = bench.run(&["validate", "--folder", "cases"]);
+    dir.put("cases/dwell/scene.toml", text("scene.toml"));
+    dir.put("cases/dwell/case.toml", &reference);
+    let run = dir.run(&["validate", "--folder", "cases"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     let passed = |out: &str| -> [usize; 2] {
         let line = out.lines().next().unwrap();
@@ -260,90 +266,93 @@ fn validate_writes_the_report_and_its_status_tells_the_verdict() {
     };
     let [some, all] = passed(&run.out);
     assert!(some == all && all >= 31, "{}", run.out);
-    let files = bench.files("reports");
+    let files = dir.files("reports");
     for file in [
         "dwell.json",
         "dwell.md",
         "dwell.txt",
-        "dwell/a-mechanism.png",
-        "dwell/b-reduced.png",
-        "dwell/c-reaction.png",
-        "dwell/cost-bdf.csv",
-        "dwell/cost-tsit45.csv",
-        "dwell/d-motion.png",
-        "dwell/e-drift.png",
-        "dwell/f-differences.png",
-        "dwell/g-cost.png",
+        "dwell/mechanism.png",
+        "dwell/reduced.png",
+        "dwell/reaction.png",
+        "dwell/work-precision-bdf.csv",
+        "dwell/work-precision-tsit45.csv",
+        "dwell/motion.png",
+        "dwell/energy-drift.png",
+        "dwell/differences.png",
+        "dwell/work-precision.png",
         "dwell/motion.csv",
         "dwell/reduced.csv",
     ] {
         assert!(files.iter().any(|f| f == file), "{file} of {files:?}");
     }
     assert_eq!(
-        first_line(&bench, "reports/dwell/cost-bdf.csv"),
+        first_line(&dir, "reports/dwell/work-precision-bdf.csv"),
         "tolerance,steps,evaluations,jacobians,wall_time [s],period_error,\
          energy_drift,reaction_error"
     );
     // One published digit changed, the tenth of m at φ = 0: the check fails, the report says so.
     let wrong = reference.replacen("0.9101735605", "0.9101735606", 1);
     assert_ne!(wrong, reference);
-    bench.put("cases/dwell/case.toml", wrong);
-    let run = bench.run(&["validate", "--folder", "cases"]);
+    dir.put("cases/dwell/case.toml", wrong);
+    let run = dir.run(&["validate", "--folder", "cases"]);
     assert_eq!((run.status, run.err.as_str()), (Some(1), ""));
     assert_eq!(passed(&run.out), [all - 1, all]);
     let second = run.out.lines().nth(1).unwrap();
     assert!(second.starts_with("  FAIL published-m "), "{second}");
-    let report = fs::read_to_string(bench.0.join("reports/dwell.txt")).unwrap();
+    let report = fs::read_to_string(dir.0.join("reports/dwell.txt")).unwrap();
     assert!(report.contains("FAIL  published-m"));
 }
 
 #[test]
 fn a_report_is_left_alone_when_the_next_one_fails() {
-    let bench = Bench::new();
-    bench.put("scene.toml", with(&[]));
-    assert_eq!(bench.run(&["reduce", "scene.toml"]).status, Some(0));
+    let dir = TestDir::new();
+    dir.put("scene.toml", four_bar_with(&[]));
+    assert_eq!(dir.run(&["reduce", "scene.toml"]).status, Some(0));
     // The scene is wrong.
-    bench.put("scene.toml", with(&[("mass = 1.0", "mass = -1.0")]));
-    let before = bench.contents();
-    assert_eq!(bench.run(&["reduce", "scene.toml"]).status, Some(2));
-    assert!(bench.contents() == before);
+    dir.put(
+        "scene.toml",
+        four_bar_with(&[("mass = 1.0", "mass = -1.0")]),
+    );
+    let before = dir.contents();
+    assert_eq!(dir.run(&["reduce", "scene.toml"]).status, Some(2));
+    assert!(dir.contents() == before);
     // One of the files cannot be written, so none is.
-    bench.put("scene.toml", with(&[("mass = 1.0", "mass = 2.0")]));
-    let reports = bench.0.join("reports");
-    let table = bench
+    dir.put("scene.toml", four_bar_with(&[("mass = 1.0", "mass = 2.0")]));
+    let reports = dir.0.join("reports");
+    let table = dir
         .files("reports")
         .into_iter()
         .find(|f| f.ends_with(".csv"));
     let table = reports.join(table.unwrap());
     fs::remove_file(&table).unwrap();
     fs::create_dir(&table).unwrap();
-    let before = bench.contents();
-    let run = bench.run(&["reduce", "scene.toml"]);
+    let before = dir.contents();
+    let run = dir.run(&["reduce", "scene.toml"]);
     assert_eq!(run.status, Some(2));
-    assert!(run.err.contains("nothing was written"), "{}", run.err);
-    assert!(bench.contents() == before);
+    assert!(run.err.contains("no file was written"), "{}", run.err);
+    assert!(dir.contents() == before);
 }
 
 #[test]
 fn a_good_case_is_written_when_others_cannot_be_validated() {
-    let bench = Bench::new();
-    bench.put("cases/good/scene.toml", with(&[]));
-    bench.put(
+    let dir = TestDir::new();
+    dir.put("cases/good/scene.toml", four_bar_with(&[]));
+    dir.put(
         "cases/apart/scene.toml",
-        with(&[("C = [0.35, 0]", "C = [0.05, 0]")]),
+        four_bar_with(&[("C = [0.35, 0]", "C = [0.05, 0]")]),
     );
-    bench.put("cases/unread/scene.toml", "bodies = 3");
-    let run = bench.run(&["validate", "--folder", "cases", "--out", "o"]);
+    dir.put("cases/unread/scene.toml", "bodies = 3");
+    let run = dir.run(&["validate", "--folder", "cases", "--out", "o"]);
     assert_eq!(run.status, Some(2));
     for bad in ["apart/scene.toml", "unread/scene.toml"] {
         assert!(run.err.contains(bad), "{}", run.err);
     }
     assert!(run.out.contains("good: "), "{}", run.out);
-    let files = bench.files("o");
+    let files = dir.files("o");
     let of = |case: &str| files.iter().filter(|f| f.contains(case)).count();
     assert!(of("good") > 3, "{files:?}");
     assert_eq!((of("apart"), of("unread")), (0, 0));
-    let index = std::fs::read_to_string(bench.0.join("o/index.md")).unwrap();
+    let index = std::fs::read_to_string(dir.0.join("o/index.md")).unwrap();
     for row in [
         "(good.md) | pass |",
         "apart` | **not validated** |",
@@ -355,86 +364,95 @@ fn a_good_case_is_written_when_others_cannot_be_validated() {
 
 #[test]
 fn nothing_is_written_when_no_case_can_be_validated() {
-    let bench = Bench::new();
-    bench.put("cases/bad/scene.toml", "bodies = 3");
-    bench.put("cases/worse/scene.toml", "joints");
-    let before = bench.contents();
-    let run = bench.run(&["validate", "--folder", "cases"]);
+    let dir = TestDir::new();
+    dir.put("cases/bad/scene.toml", "bodies = 3");
+    dir.put("cases/worse/scene.toml", "joints");
+    let before = dir.contents();
+    let run = dir.run(&["validate", "--folder", "cases"]);
     assert_eq!(run.status, Some(2));
-    assert!(bench.contents() == before);
+    assert!(dir.contents() == before);
 }
 
 #[test]
 fn a_reader_that_has_seen_enough_is_no_error() {
-    let bench = Bench::new();
-    let mut child = bench
+    let dir = TestDir::new();
+    let mut child = dir
         .command(&["reduce", &case("single-dwell"), "--out", "o"])
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
     drop(child.stdout.take());
-    let mut said = String::new();
+    let mut messages = String::new();
     child
         .stderr
         .take()
         .unwrap()
-        .read_to_string(&mut said)
+        .read_to_string(&mut messages)
         .unwrap();
-    assert_eq!((child.wait().unwrap().code(), said.as_str()), (Some(0), ""));
-    assert_eq!(bench.files("o").len(), 4);
+    assert_eq!(
+        (child.wait().unwrap().code(), messages.as_str()),
+        (Some(0), "")
+    );
+    assert_eq!(dir.files("o").len(), 4);
 }
 
 #[test]
 fn names_in_any_script_and_folders_with_spaces() {
-    let bench = Bench::new();
-    let scene = with(&[])
+    let dir = TestDir::new();
+    let scene = four_bar_with(&[])
         .replace("rocker", "качалка")
         .replace("[bodies.качалка]", "[bodies.\"качалка\"]")
         .replace("phi =", "\"φ\" =")
         .replace("[actuators.phi]", "[actuators.\"φ\"]");
-    bench.put("my case/scene.toml", scene);
-    let run = bench.run(&["reduce", "my case/scene.toml"]);
+    dir.put("my case/scene.toml", scene);
+    let run = dir.run(&["reduce", "my case/scene.toml"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    let header = first_line(&bench, "reports/my case-reduced.csv");
+    let header = first_line(&dir, "reports/my case-reduced.csv");
     assert!(header.starts_with("φ [rad],m [kg m2]"), "{header}");
 }
 
 /// Reads what has no speed, no mass or a slack tolerance: true words instead of NaN.
 #[test]
 fn odd_motions_are_told_as_they_are() {
-    let bench = Bench::new();
-    let told = |scene: String, arguments: &[&str]| {
-        bench.put("scene.toml", scene);
-        let run = bench.run(arguments);
+    let dir = TestDir::new();
+    let output = |scene: String, arguments: &[&str]| {
+        dir.put("scene.toml", scene);
+        let run = dir.run(arguments);
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
         assert!(!run.out.contains("NaN"), "{}", run.out);
         run.out
     };
     let rest = [
-        ("speed = 10.0", "speed = 0"),
+        ("initial-velocity = 10.0", "initial-velocity = 0"),
         ("periods = 2", "duration = 2"),
     ];
-    let out = told(with(&rest), &["simulate", "scene.toml"]);
-    assert!(out.contains("it stays at rest: nothing moves it"), "{out}");
+    let out = output(four_bar_with(&rest), &["simulate", "scene.toml"]);
+    assert!(
+        out.contains("the mechanism stays at rest: no force moves it"),
+        "{out}"
+    );
     // A coordinate that folds back at its dead point: another carries the motion through.
-    let out = told(
-        with(&LIMITED),
+    let out = output(
+        four_bar_with(&LIMITED),
         &["simulate", "scene.toml", "--method", "tsit45"],
     );
-    assert!(out.contains("which folds back"), "{out}");
+    assert!(out.contains("at its dead point"), "{out}");
     assert!(out.contains("  2 s by Tsit45"), "{out}");
     // A hundred thousand turns on, the same motion.
-    let turned = [("start = 1.0", "start = 628319.5307179587")];
-    let out = told(with(&turned), &["simulate", "scene.toml"]);
+    let turned = [(
+        "initial-coordinate = 1.0",
+        "initial-coordinate = 628319.5307179587",
+    )];
+    let out = output(four_bar_with(&turned), &["simulate", "scene.toml"]);
     assert!(out.contains("period 0.75506323"), "{out}");
-    let fast = [("speed = 10.0", "speed = 1e30")];
-    let out = told(with(&fast), &["simulate", "scene.toml"]);
+    let fast = [("initial-velocity = 10.0", "initial-velocity = 1e30")];
+    let out = output(four_bar_with(&fast), &["simulate", "scene.toml"]);
     assert!(out.contains("  1.510126e-29 s by BDF"), "{out}");
-    let slack = ["simulate", "scene.toml", "--rtol", "1e-3"];
-    let out = told(with(&[]), &slack);
-    assert!(out.contains("take a smaller --rtol"), "{out}");
-    let massless: String = with(&[])
+    let loose = ["simulate", "scene.toml", "--rtol", "1e-3"];
+    let out = output(four_bar_with(&[]), &loose);
+    assert!(out.contains("use a smaller --rtol"), "{out}");
+    let massless: String = four_bar_with(&[])
         .lines()
         .filter(|l| {
             !["mass", "center", "inertia"]
@@ -443,7 +461,7 @@ fn odd_motions_are_told_as_they_are() {
         })
         .map(|l| format!("{l}\n"))
         .collect();
-    let out = told(massless, &["reduce", "scene.toml"]);
+    let out = output(massless, &["reduce", "scene.toml"]);
     assert!(out.contains("no body with mass moves"), "{out}");
 }
 
@@ -451,12 +469,12 @@ fn odd_motions_are_told_as_they_are() {
 /// told of another.
 #[test]
 fn a_method_that_chokes_is_told_of_another() {
-    let bench = Bench::new();
-    let rub = "[loads]\nweight = { gravity = [0, -9.81] }\n[friction.A]\ncoefficient = 0.3\n\
-               radius = 0.05\nfade = 0.001\n[motion]";
-    let stiff = [("[motion]", rub), ("periods = 2", "duration = 3")];
-    bench.put("scene.toml", with(&stiff));
-    let run = bench.run(&[
+    let dir = TestDir::new();
+    let friction = "[loads]\nweight = { gravity = [0, -9.81] }\n[friction.A]\ncoefficient = 0.3\n\
+               radius = 0.05\nregularization-speed = 0.001\n[motion]";
+    let stiff = [("[motion]", friction), ("periods = 2", "duration = 3")];
+    dir.put("scene.toml", four_bar_with(&stiff));
+    let run = dir.run(&[
         "simulate",
         "scene.toml",
         "--method",
@@ -466,17 +484,17 @@ fn a_method_that_chokes_is_told_of_another() {
     ]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert!(run.out.contains("hint: --method bdf"), "{}", run.out);
-    let run = bench.run(&["simulate", "scene.toml", "--rtol", "1e-6"]);
+    let run = dir.run(&["simulate", "scene.toml", "--rtol", "1e-6"]);
     assert!(!run.out.contains("hint"), "{}", run.out);
 }
 
 /// The schema needs no folder, and is the one of the documentation.
 #[test]
 fn the_schema_is_that_of_the_documentation() {
-    let bench = Bench::new();
-    let run = bench.run(&["schema"]);
+    let dir = TestDir::new();
+    let run = dir.run(&["schema"]);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    assert!(bench.contents().is_empty());
+    assert!(dir.contents().is_empty());
     let written = fs::read_to_string(home().join("docs/scene-schema.json")).unwrap();
     assert_eq!(run.out, written);
 }

@@ -1,7 +1,7 @@
 //! Sweeps: a run that is killed loses nothing and doubles nothing, shards make the whole, and the rows are
 //! those of the other commands.
 
-use crate::bench::{Bench, FOUR_BAR};
+use crate::test_dir::{FOUR_BAR, TestDir};
 use rusqlite::Connection;
 use rusqlite::types::Value;
 use std::fs;
@@ -40,19 +40,19 @@ fn rows(path: &Path) -> Vec<Vec<Value>> {
     rows.unwrap().map(Result::unwrap).collect()
 }
 
-fn bench() -> Bench {
-    let bench = Bench::new();
-    bench.put("four-bar.toml", FOUR_BAR);
-    bench
+fn test_dir() -> TestDir {
+    let dir = TestDir::new();
+    dir.put("four-bar.toml", FOUR_BAR);
+    dir
 }
 
 /// Starts a run, and kills it (SIGKILL) some time after it began to write more. Whether it came to its end before.
-fn kill_while_writing(bench: &Bench, arguments: &[&str], file: &Path, later: u64) -> bool {
+fn kill_while_writing(dir: &TestDir, arguments: &[&str], file: &Path, later: u64) -> bool {
     let size = |path: &Path| fs::metadata(path).map_or(0, |m| m.len());
     // The empty tables are below this, and a batch of rows is above it.
     let before = size(file).max(16 * 1024);
     // One thread, so that a large machine is not done before it is killed.
-    let mut command = bench.command(arguments);
+    let mut command = dir.command(arguments);
     let mut run = command.env("RAYON_NUM_THREADS", "1").spawn().unwrap();
     let begun = Instant::now();
     loop {
@@ -75,15 +75,15 @@ fn kill_while_writing(bench: &Bench, arguments: &[&str], file: &Path, later: u64
 
 #[test]
 fn a_killed_run_goes_on_and_its_rows_are_those_of_an_unbroken_one() {
-    let bench = bench();
+    let dir = test_dir();
     let points = 20 * 600;
     let broken = arguments("600", &["--out", "broken"]);
-    let file = bench.0.join("broken/four-bar-sweep.sqlite");
+    let file = dir.0.join("broken/four-bar-sweep.sqlite");
     let mut kept: Vec<Vec<Value>> = Vec::new();
     let mut killed = 0;
     // At once is in the midst of a commit, later between two.
     for later in [0, 30, 3, 60, 10] {
-        if kill_while_writing(&bench, &broken, &file, later) {
+        if kill_while_writing(&dir, &broken, &file, later) {
             break;
         }
         killed += 1;
@@ -94,75 +94,75 @@ fn a_killed_run_goes_on_and_its_rows_are_those_of_an_unbroken_one() {
     }
     assert!(killed >= 2, "killed but {killed} times: too few points");
     assert!((1..points).contains(&kept.len()), "{} kept", kept.len());
-    assert!(!bench.0.join("broken/four-bar-sweep.csv").exists());
-    let run = bench.run(&broken);
+    assert!(!dir.0.join("broken/four-bar-sweep.csv").exists());
+    let run = dir.run(&broken);
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    let told = format!(
-        "({} were there, {} computed)",
+    let counts = format!(
+        "({} already stored, {} computed)",
         kept.len(),
         points - kept.len()
     );
-    assert!(run.out.contains(&told), "{} not in {}", told, run.out);
+    assert!(run.out.contains(&counts), "{} not in {}", counts, run.out);
 
-    let run = bench.run(&arguments("600", &["--out", "whole"]));
+    let run = dir.run(&arguments("600", &["--out", "whole"]));
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    let whole = rows(&bench.0.join("whole/four-bar-sweep.sqlite"));
-    assert_eq!(whole.len(), points);
-    assert!(rows(&file) == whole, "the same rows to the last bit");
+    let complete = rows(&dir.0.join("whole/four-bar-sweep.sqlite"));
+    assert_eq!(complete.len(), points);
+    assert!(rows(&file) == complete, "the same rows to the last bit");
     for kind in ["csv", "npz", "png"] {
-        let read = |folder: &str| fs::read(bench.0.join(format!("{folder}/four-bar-sweep.{kind}")));
+        let read = |folder: &str| fs::read(dir.0.join(format!("{folder}/four-bar-sweep.{kind}")));
         assert!(read("broken").unwrap() == read("whole").unwrap(), "{kind}");
     }
 }
 
 #[test]
 fn shards_make_the_whole() {
-    let bench = bench();
-    let run = bench.run(&arguments("10", &["--out", "whole"]));
+    let dir = test_dir();
+    let run = dir.run(&arguments("10", &["--out", "whole"]));
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    let whole = rows(&bench.0.join("whole/four-bar-sweep.sqlite"));
-    assert_eq!(whole.len(), 200);
+    let complete = rows(&dir.0.join("whole/four-bar-sweep.sqlite"));
+    assert_eq!(complete.len(), 200);
     let mut gathered = Vec::new();
     for part in 1..=3 {
         let shard = format!("{part}/3");
-        let run = bench.run(&arguments("10", &["--out", "parts", "--shard", &shard]));
+        let run = dir.run(&arguments("10", &["--out", "parts", "--shard", &shard]));
         assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
         let file = format!("parts/four-bar-sweep-{part}-of-3.sqlite");
-        gathered.extend(rows(&bench.0.join(file)));
+        gathered.extend(rows(&dir.0.join(file)));
     }
     gathered.sort_by_key(|row| match row[0] {
         Value::Integer(index) => index,
         _ => -1,
     });
     assert!(
-        gathered == whole,
+        gathered == complete,
         "each point in one shard, with the same values"
     );
-    let run = bench.run(&arguments("10", &["--out", "parts", "--export", "csv"]));
+    let run = dir.run(&arguments("10", &["--out", "parts", "--export", "csv"]));
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert!(
-        run.out.contains("(200 taken over from shards)"),
+        run.out.contains("(200 imported from shards)"),
         "{}",
         run.out
     );
-    let csv = |folder: &str| fs::read(bench.0.join(folder).join("four-bar-sweep.csv")).unwrap();
+    let csv = |folder: &str| fs::read(dir.0.join(folder).join("four-bar-sweep.csv")).unwrap();
     assert!(csv("parts") == csv("whole"));
-    assert!(!bench.0.join("parts/four-bar-sweep.npz").exists());
+    assert!(!dir.0.join("parts/four-bar-sweep.npz").exists());
 }
 
 #[test]
 fn a_point_that_comes_apart_is_a_row_that_says_so() {
-    let bench = bench();
+    let dir = test_dir();
     // A coupler of 50 mm cannot reach from the crank to the rocker.
     let vary = ["--vary", "coupler.points.C[0]=0.35,0.05,0.36"];
-    let run = bench.run(&[&["sweep", "four-bar.toml", "--out", "o"], &vary[..]].concat());
+    let run = dir.run(&[&["sweep", "four-bar.toml", "--out", "o"], &vary[..]].concat());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
     assert!(
         run.out.contains("1 of 3 could not be computed"),
         "{}",
         run.out
     );
-    let rows = rows(&bench.0.join("o/four-bar-sweep.sqlite"));
+    let rows = rows(&dir.0.join("o/four-bar-sweep.sqlite"));
     let failed: Vec<bool> = rows
         .iter()
         .map(|row| row.last() != Some(&Value::Null))
@@ -171,24 +171,26 @@ fn a_point_that_comes_apart_is_a_row_that_says_so() {
     let empty = |cell: &Value| *cell == Value::Null;
     let last = rows[1].len() - 1;
     assert!(rows[1][2..last].iter().all(empty), "{:?}", rows[1]);
-    let csv = fs::read_to_string(bench.0.join("o/four-bar-sweep.csv")).unwrap();
+    let csv = fs::read_to_string(dir.0.join("o/four-bar-sweep.csv")).unwrap();
     assert_eq!(csv.lines().filter(|line| line.ends_with('"')).count(), 1);
 }
 
 #[test]
 fn the_file_says_what_it_is() {
-    let bench = bench();
-    let vary = ["--vary", "crank.inertia=0.01,0.02", "--want", "period"];
-    let run = bench.run(&[&["sweep", "four-bar.toml", "--out", "o"], &vary[..]].concat());
+    let dir = test_dir();
+    let vary = ["--vary", "crank.inertia=0.01,0.02", "--result", "period"];
+    let run = dir.run(&[&["sweep", "four-bar.toml", "--out", "o"], &vary[..]].concat());
     assert_eq!((run.status, run.err.as_str()), (Some(0), ""));
-    let connection = Connection::open(bench.0.join("o/four-bar-sweep.sqlite")).unwrap();
+    let connection = Connection::open(dir.0.join("o/four-bar-sweep.sqlite")).unwrap();
     let version: i64 = connection
         .pragma_query_value(None, "user_version", |row| row.get(0))
         .unwrap();
-    assert_eq!(version, 1);
+    assert_eq!(version, 2);
     let value = |key: &str| -> String {
-        let ask = "SELECT value FROM study WHERE \"key\" = ?";
-        connection.query_row(ask, [key], |row| row.get(0)).unwrap()
+        let query = "SELECT value FROM study WHERE \"key\" = ?";
+        connection
+            .query_row(query, [key], |row| row.get(0))
+            .unwrap()
     };
     assert_eq!(value("axes"), "crank.inertia=0.01,0.02");
     assert_eq!(value("results"), "period [s]");

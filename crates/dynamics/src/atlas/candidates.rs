@@ -1,19 +1,17 @@
-//! The coordinates that can carry a motion of one degree of freedom.
+//! The coordinates in which a motion of one degree of freedom can be described.
 
-use dwell_geometry::measure::Measured;
-use dwell_geometry::{
-    Actuator, BodyId, Coordinate, Drive as Drives, JointId, JointKind, Mechanism,
-};
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{Actuator, ActuatorKind, BodyId, Coordinate, JointId, JointKind, Mechanism};
 
 /// What an angle between two moving bodies counts against one from the ground: it may fold sooner.
-const RELATIVE: f64 = 0.5;
+const RELATIVE_ANGLE_WEIGHT: f64 = 0.5;
 
 /// A coordinate that a chart may have.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Candidate {
     pub(super) name: String,
     pub(super) coordinate: Coordinate,
-    pub(super) measured: Measured,
+    pub(super) measured: CoordinateFunction,
     /// What its speed is multiplied by to compare it.
     pub(super) weight: f64,
 }
@@ -24,41 +22,37 @@ pub(super) fn actuator(
     name: String,
     coordinate: Coordinate,
 ) -> Option<Actuator> {
-    let (bodies, drive) = match coordinate {
-        Coordinate::Angle(bodies) => (bodies, Drives::Angle),
+    let (bodies, kind) = match coordinate {
+        Coordinate::Angle(bodies) => (bodies, ActuatorKind::Angle),
         Coordinate::Travel(joint) => {
             let bodies = mechanism.joints.get(joint.0)?.bodies;
-            (bodies, Drives::Travel(joint))
+            (bodies, ActuatorKind::Travel(joint))
         }
-        Coordinate::Length { bodies, points } => (bodies, Drives::Length(points)),
+        Coordinate::Length { bodies, points } => (bodies, ActuatorKind::Length(points)),
     };
-    Some(Actuator {
-        name,
-        bodies,
-        drive,
-    })
+    Some(Actuator { name, bodies, kind })
 }
 
 /// The mechanism's own coordinate, the angles of all bodies and of all hinges, and all travels.
-pub(super) fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
+pub(super) fn candidates(mechanism: &Mechanism, length_scale: f64) -> Vec<Candidate> {
     let mut found: Vec<Candidate> = Vec::new();
     let ground = BodyId(mechanism.ground);
     let mut add = |name: String, coordinate: Coordinate| {
-        let turned = |c: Coordinate| match c {
+        let reversed = |c: Coordinate| match c {
             Coordinate::Angle([a, b]) => Coordinate::Angle([b, a]),
             other => other,
         };
         let known =
-            |c: &Candidate| c.coordinate == coordinate || c.coordinate == turned(coordinate);
+            |c: &Candidate| c.coordinate == coordinate || c.coordinate == reversed(coordinate);
         if found.iter().any(known) {
             return;
         }
         let weight = match coordinate {
             Coordinate::Angle(bodies) if bodies.contains(&ground) => 1.0,
-            Coordinate::Angle(_) => RELATIVE,
-            _ => 1.0 / size,
+            Coordinate::Angle(_) => RELATIVE_ANGLE_WEIGHT,
+            _ => 1.0 / length_scale,
         };
-        if let Some(measured) = Measured::find(mechanism, coordinate) {
+        if let Some(measured) = CoordinateFunction::find(mechanism, coordinate) {
             found.push(Candidate {
                 name,
                 coordinate,
@@ -67,8 +61,8 @@ pub(super) fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
             });
         }
     };
-    if let Some(own) = mechanism.actuators.first() {
-        add(own.name.clone(), own.coordinate());
+    if let Some(actuator) = mechanism.actuators.first() {
+        add(actuator.name.clone(), actuator.coordinate());
     }
     for b in (0..mechanism.bodies.len()).map(BodyId) {
         if b != ground {
@@ -93,21 +87,21 @@ pub(super) fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
 }
 
 /// The largest distance of two points of one body, m.
-pub(super) fn size(mechanism: &Mechanism) -> f64 {
-    let mut size = 0.0_f64;
+pub(super) fn length_scale(mechanism: &Mechanism) -> f64 {
+    let mut largest = 0.0_f64;
     let mut first = vec![None; mechanism.bodies.len()];
     let joints = mechanism.joints.iter().map(|j| (j.bodies, j.points));
-    let lengths = mechanism.actuators.iter().filter_map(|a| match a.drive {
-        Drives::Length(points) => Some((a.bodies, points)),
+    let lengths = mechanism.actuators.iter().filter_map(|a| match a.kind {
+        ActuatorKind::Length(points) => Some((a.bodies, points)),
         _ => None,
     });
     for (bodies, points) in joints.chain(lengths) {
         for (body, point) in bodies.iter().zip(points) {
             if let Some(first) = first.get_mut(body.0) {
                 let first = first.get_or_insert(point);
-                size = size.max((point - *first).norm());
+                largest = largest.max((point - *first).norm());
             }
         }
     }
-    if size > 0.0 { size } else { 1.0 }
+    if largest > 0.0 { largest } else { 1.0 }
 }

@@ -1,164 +1,197 @@
-//! From one branch to the next, across the change points in which their ranges end.
+//! Crossings from one branch to the next, at the change points in which their ranges end.
 
 use super::candidates::actuator;
 use super::{Atlas, Chart};
-use crate::bridge::{Bridge, BridgeError, Span, ahead, half_window};
-use dwell_geometry::measure::BodyStates;
-use dwell_geometry::{BodyId, End, Mechanism, Start};
+use crate::change_point_fit::{
+    ChangePointFit, ChangePointFitError, FitWindow, extrapolate, half_width_for,
+};
+use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::{AssemblyConfiguration, BodyId, Mechanism, RangeLimit};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// Two branches part by about the distance from their change point; one is known to this part of it.
-const PARTED: f64 = 0.1;
+const SEPARATION_FRACTION: f64 = 0.1;
 
 /// A bridge with the charts below and above it.
 #[derive(Debug, Clone)]
-pub(super) struct Crossing {
-    pub(super) bridge: Arc<Bridge>,
+pub(super) struct ChangePointCrossing {
+    pub(super) fit: Arc<ChangePointFit>,
     pub(super) charts: [usize; 2],
 }
 
 impl Atlas<'_> {
     /// Looks for bridges at the change points in which a chart's range ends.
-    pub(super) fn prepare(&mut self, chart: usize) {
+    pub(super) fn prepare_crossings(&mut self, chart: usize) {
         for (e, upwards) in [(0, false), (1, true)] {
-            let own = &mut self.charts[chart];
-            let end = own.machine.model.plan().ends()[e].filter(|end| end.change_point);
-            let looked = std::mem::replace(&mut own.looked[e], true);
+            let current = &mut self.charts[chart];
+            let limit =
+                current.machine.model.plan().range_limits()[e].filter(|limit| limit.change_point);
+            let searched = std::mem::replace(&mut current.limits_searched[e], true);
             let known = self.crossings.iter();
             let mut known = known.filter(|c| c.charts[usize::from(!upwards)] == chart);
-            let Some(end) = end.filter(|_| !looked && known.next().is_none()) else {
+            let Some(limit) = limit.filter(|_| !searched && known.next().is_none()) else {
                 continue;
             };
-            if let Err(error) = self.span(chart, end, upwards) {
-                self.refused.push((end.q, error));
+            if let Err(error) = self.build_crossing(chart, limit, upwards) {
+                self.uncrossable.push((limit.q, error));
             }
         }
     }
 
     /// Builds the bridge across a change point, with the chart behind it.
-    fn span(&mut self, chart: usize, end: End, upwards: bool) -> Result<(), BridgeError> {
-        let own = &self.charts[chart];
-        let plan = own.machine.model.plan();
-        if own.machine.model.frictions().len() > 0 {
-            return Err(BridgeError::Friction);
+    fn build_crossing(
+        &mut self,
+        chart: usize,
+        limit: RangeLimit,
+        upwards: bool,
+    ) -> Result<(), ChangePointFitError> {
+        let current = &self.charts[chart];
+        let plan = current.machine.model.plan();
+        if current.machine.model.frictions().len() > 0 {
+            return Err(ChangePointFitError::Friction);
         }
-        if plan.relations() > 0 {
-            return Err(BridgeError::Relations);
+        if plan.couplings() > 0 {
+            return Err(ChangePointFitError::Couplings);
         }
-        let unit = if own.coordinate.is_angle() {
+        let coordinate_scale = if current.coordinate.is_angle() {
             1.0
         } else {
-            self.size
+            self.length_scale
         };
-        let half = unit * half_window(plan, self.tolerance);
+        let half_width = coordinate_scale * half_width_for(plan, self.tolerance);
         // Far enough for the branches to have parted.
-        let beyond = (1.5 * half).max(0.05 * unit);
-        let way = if upwards { 1.0 } else { -1.0 };
-        let to = (4.0 * half).max(0.1 * unit);
-        let mut angles = ahead(&own.machine.model, end.q, upwards, [half, to], beyond)?;
-        angles.truncate(self.site.mechanism.bodies.len());
-        let q = end.q + way * beyond;
-        let there = self.behind(chart, q, &angles, PARTED * beyond / unit)?;
-        let (center, turns) = self.middle(end, there, upwards, half)?;
-        let period = self.close_ring(chart, turns)?;
+        let beyond = (1.5 * half_width).max(0.05 * coordinate_scale);
+        let direction = if upwards { 1.0 } else { -1.0 };
+        let to = (4.0 * half_width).max(0.1 * coordinate_scale);
+        let mut angles = extrapolate(
+            &current.machine.model,
+            limit.q,
+            upwards,
+            [half_width, to],
+            beyond,
+        )?;
+        angles.truncate(self.description.mechanism.bodies.len());
+        let q = limit.q + direction * beyond;
+        let next_chart = self.next_branch(
+            chart,
+            q,
+            &angles,
+            SEPARATION_FRACTION * beyond / coordinate_scale,
+        )?;
+        let (center, angle_shift) =
+            self.change_point_between(limit, next_chart, upwards, half_width)?;
+        let period = self.record_period(chart, angle_shift)?;
         let charts = if upwards {
-            [chart, there]
+            [chart, next_chart]
         } else {
-            [there, chart]
+            [next_chart, chart]
         };
-        let sides = charts.map(|c| &self.charts[c].shown);
-        let bridge = Bridge::new(self.site.mechanism, sides, center, [half, unit])?;
-        let bridge = Arc::new(bridge);
-        let far = if there == chart { half } else { bridge.reach };
-        for (c, above, reach) in [
-            (charts[0], false, [-half, far]),
-            (charts[1], true, [-far, half]),
+        let branches = charts.map(|c| &self.charts[c].output_model);
+        let fit = ChangePointFit::new(
+            self.description.mechanism,
+            branches,
+            center,
+            [half_width, coordinate_scale],
+        )?;
+        let fit = Arc::new(fit);
+        let far_bound = if next_chart == chart {
+            half_width
+        } else {
+            fit.fit_radius
+        };
+        for (c, above, bounds) in [
+            (charts[0], false, [-half_width, far_bound]),
+            (charts[1], true, [-far_bound, half_width]),
         ] {
-            self.charts[c].machine.bridges.push(Span {
-                bridge: bridge.clone(),
+            self.charts[c].machine.fit_windows.push(FitWindow {
+                fit: fit.clone(),
                 crossing: self.crossings.len(),
                 above,
-                reach,
+                bounds,
                 period,
             });
         }
-        self.crossings.push(Crossing { bridge, charts });
+        self.crossings.push(ChangePointCrossing { fit, charts });
         Ok(())
     }
 
     /// Notes that a coordinate comes back to a chart after some turns (rad); the period that is known
     /// then, if one is.
-    fn close_ring(&mut self, chart: usize, turns: f64) -> Result<Option<f64>, BridgeError> {
+    fn record_period(
+        &mut self,
+        chart: usize,
+        angle_shift: f64,
+    ) -> Result<Option<f64>, ChangePointFitError> {
         let coordinate = self.charts[chart].coordinate;
         let mut known = self.periods.iter().filter(|(c, _)| *c == coordinate);
         let known = known.next().map(|(_, period)| *period);
-        if turns == 0.0 {
+        if angle_shift == 0.0 {
             return Ok(known);
         }
         match known {
-            Some(period) if (turns / period).fract() == 0.0 => Ok(known),
-            Some(_) => Err(BridgeError::NotBehind),
+            Some(period) if (angle_shift / period).fract() == 0.0 => Ok(known),
+            Some(_) => Err(ChangePointFitError::NoContinuation),
             None => {
-                self.periods.push((coordinate, turns.abs()));
+                self.periods.push((coordinate, angle_shift.abs()));
                 let charts = self
                     .charts
                     .iter_mut()
                     .filter(|c| c.coordinate == coordinate);
-                for span in charts.flat_map(|c| &mut c.machine.bridges) {
-                    span.period = Some(turns.abs());
+                for window in charts.flat_map(|c| &mut c.machine.fit_windows) {
+                    window.period = Some(angle_shift.abs());
                 }
-                Ok(Some(turns.abs()))
+                Ok(Some(angle_shift.abs()))
             }
         }
     }
 
     /// The change point between the end of one range and the beginning of the next: both stop equally
     /// far from it. The second number is the turns between the two, rad.
-    fn middle(
+    fn change_point_between(
         &self,
-        end: End,
-        there: usize,
+        limit: RangeLimit,
+        next_chart: usize,
         upwards: bool,
-        half: f64,
-    ) -> Result<(f64, f64), BridgeError> {
-        let plan = self.charts[there].machine.model.plan();
-        let [low, high] = plan.ends();
+        half_width: f64,
+    ) -> Result<(f64, f64), ChangePointFitError> {
+        let plan = self.charts[next_chart].machine.model.plan();
+        let [low, high] = plan.range_limits();
         let opposite = if upwards { low } else { high };
         let Some(opposite) = opposite else {
-            return Ok((end.q, 0.0));
+            return Ok((limit.q, 0.0));
         };
-        let apart = opposite.q - end.q;
-        let turns = if plan.is_angle(0) {
-            TAU * (apart / TAU).round()
+        let difference = opposite.q - limit.q;
+        let angle_shift = if plan.is_angle(0) {
+            TAU * (difference / TAU).round()
         } else {
             0.0
         };
-        let apart = apart - turns;
-        if apart.abs() > 0.5 * half {
-            return Err(BridgeError::NotBehind);
+        let difference = difference - angle_shift;
+        if difference.abs() > 0.5 * half_width {
+            return Err(ChangePointFitError::NoContinuation);
         }
-        Ok((end.q + 0.5 * apart, turns))
+        Ok((limit.q + 0.5 * difference, angle_shift))
     }
 
     /// The chart of the same coordinate on the branch with these angles of the bodies, to so much.
-    fn behind(
+    fn next_branch(
         &mut self,
         chart: usize,
         q: f64,
         angles: &[f64],
-        within: f64,
-    ) -> Result<usize, BridgeError> {
-        let own = &self.charts[chart];
-        let (name, coordinate) = (own.name.clone(), own.coordinate);
+        tolerance: f64,
+    ) -> Result<usize, ChangePointFitError> {
+        let current = &self.charts[chart];
+        let (name, coordinate) = (current.name.clone(), current.coordinate);
         let on_branch = |chart: &Chart| {
             let plan = chart.machine.model.plan();
             let (mut pose, mut states) = (plan.pose(), BodyStates::new(plan));
-            let placed = plan.place(&[q], &mut pose).is_ok();
+            let placed = plan.positions(&[q], &mut pose).is_ok();
             states.fill(plan, &pose, &plan.motion());
             let near = |(b, angle): (usize, &f64)| {
-                let off = states.body(BodyId(b)).turn.angle() - angle;
-                (off - TAU * (off / TAU).round()).abs() < within
+                let difference = states.body(BodyId(b)).rotation.angle() - angle;
+                (difference - TAU * (difference / TAU).round()).abs() < tolerance
             };
             placed && angles.iter().enumerate().all(near)
         };
@@ -166,20 +199,20 @@ impl Atlas<'_> {
         if let Some(found) = self.charts.iter().position(known) {
             return Ok(found);
         }
-        let actuator = actuator(self.site.mechanism, name, coordinate);
+        let actuator = actuator(self.description.mechanism, name, coordinate);
         let mechanism = Mechanism {
-            actuators: vec![actuator.ok_or(BridgeError::NotBehind)?],
-            ..self.site.mechanism.clone()
+            actuators: vec![actuator.ok_or(ChangePointFitError::NoContinuation)?],
+            ..self.description.mechanism.clone()
         };
-        let start = Start {
+        let assembly = AssemblyConfiguration {
             q: vec![q],
-            rough: angles.iter().map(|&a| Some(a)).collect(),
-            joints: Vec::new(),
+            initial_guess: angles.iter().map(|&a| Some(a)).collect(),
+            branch_hints: Vec::new(),
         };
-        let built = self.build(&mechanism, &start);
-        let built = built.map_err(|_| BridgeError::NotBehind)?;
+        let built = self.build_chart(&mechanism, &assembly);
+        let built = built.map_err(|_| ChangePointFitError::NoContinuation)?;
         if !on_branch(&built) {
-            return Err(BridgeError::NotBehind);
+            return Err(ChangePointFitError::NoContinuation);
         }
         self.charts.push(built);
         Ok(self.charts.len() - 1)

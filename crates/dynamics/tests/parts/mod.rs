@@ -3,12 +3,13 @@
 #![allow(clippy::expect_used, reason = "tests")]
 
 use dwell_dynamics::{
-    Atlas, Drive, DriveKind, Event, Journey, Method, Motor, Options, Point, Site,
+    Atlas, ContinuedMotion, Event, MachineDescription, Method, OdeState, Options,
 };
 use dwell_geometry::{
-    Actuator, Body, BodyId, Drive as Drives, Joint, JointKind, Mechanism, Start, Vec2, vec2,
+    Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Joint, JointKind, Mechanism, Vec2,
+    vec2,
 };
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass};
+use dwell_kinetostatics::{Drive, DriveKind, Load, LoadKind, Magnitude, Mass, Motor};
 
 pub(crate) fn body(name: &str) -> Body {
     Body { name: name.into() }
@@ -27,7 +28,7 @@ pub(crate) fn angle(bodies: [usize; 2]) -> Actuator {
     Actuator {
         name: "angle".into(),
         bodies: bodies.map(BodyId),
-        drive: Drives::Angle,
+        kind: ActuatorKind::Angle,
     }
 }
 
@@ -35,7 +36,7 @@ pub(crate) fn length(bodies: [usize; 2], points: [Vec2; 2]) -> Actuator {
     Actuator {
         name: "length".into(),
         bodies: bodies.map(BodyId),
-        drive: Drives::Length(points),
+        kind: ActuatorKind::Length(points),
     }
 }
 
@@ -105,7 +106,7 @@ pub(crate) fn torsion_spring(bodies: [usize; 2]) -> Load {
         name: "spring".into(),
         kind: LoadKind::TorsionSpring {
             bodies: bodies.map(BodyId),
-            free: 0.3,
+            free_angle: 0.3,
         },
         magnitude: Magnitude::Constant(0.4),
     }
@@ -114,7 +115,7 @@ pub(crate) fn torsion_spring(bodies: [usize; 2]) -> Load {
 pub(crate) fn torsion_damper(bodies: [usize; 2]) -> Load {
     Load {
         name: "damper".into(),
-        kind: LoadKind::TorsionDamper {
+        kind: LoadKind::RotationalDamper {
             bodies: bodies.map(BodyId),
         },
         magnitude: Magnitude::Constant(0.5),
@@ -128,11 +129,11 @@ pub(crate) fn motor(bodies: [usize; 2]) -> Drive {
         coordinate: angle(bodies).coordinate(),
         kind: DriveKind::Motor(Motor {
             voltage: Magnitude::Constant(12.0),
-            constant: 0.1,
+            torque_constant: 0.1,
             resistance: 2.0,
             inductance: 0.05,
-            ratio: 3.0,
-            inertia: 0.001,
+            gear_ratio: 3.0,
+            rotor_inertia: 0.001,
         }),
     }
 }
@@ -141,7 +142,7 @@ pub(crate) fn motor(bodies: [usize; 2]) -> Drive {
 pub(crate) struct Setup {
     pub(crate) mechanism: Mechanism,
     pub(crate) masses: Vec<Mass>,
-    pub(crate) start: Start,
+    pub(crate) assembly: AssemblyConfiguration,
     pub(crate) loads: Vec<Load>,
     pub(crate) drives: Vec<Drive>,
 }
@@ -152,7 +153,7 @@ impl Setup {
         actuator: Actuator,
         masses: &[Mass],
         q: f64,
-        rough: &[f64],
+        initial_guess: &[f64],
     ) -> Self {
         Self {
             mechanism: Mechanism {
@@ -160,83 +161,85 @@ impl Setup {
                 ..mechanism.clone()
             },
             masses: masses.to_vec(),
-            start: Start {
+            assembly: AssemblyConfiguration {
                 q: vec![q],
-                rough: rough.iter().map(|&angle| Some(angle)).collect(),
-                joints: Vec::new(),
+                initial_guess: initial_guess.iter().map(|&angle| Some(angle)).collect(),
+                branch_hints: Vec::new(),
             },
             loads: Vec::new(),
             drives: Vec::new(),
         }
     }
 
-    pub(crate) fn under(mut self, loads: &[Load], drives: &[Drive]) -> Self {
+    pub(crate) fn with_loads(mut self, loads: &[Load], drives: &[Drive]) -> Self {
         self.loads = loads.to_vec();
         self.drives = drives.to_vec();
         self
     }
 
     pub(crate) fn atlas(&self) -> Atlas<'_> {
-        let site = Site {
+        let description = MachineDescription {
             mechanism: &self.mechanism,
             masses: &self.masses,
-            start: &self.start,
+            assembly: &self.assembly,
             loads: &self.loads,
             drives: &self.drives,
             reactions: &[],
         };
-        Atlas::new(site).expect("an atlas")
+        Atlas::new(description).expect("an atlas")
     }
 
     /// The start at a speed.
-    pub(crate) fn at(&self, atlas: &Atlas<'_>, q_dot: f64) -> Point {
+    pub(crate) fn initial_state(&self, atlas: &Atlas<'_>, q_dot: f64) -> OdeState {
         let machine = &atlas.charts()[0].machine;
-        Point {
+        OdeState {
             t: 0.0,
-            y: machine.start(&self.start.q, &[q_dot]),
+            y: machine.initial_state(&self.assembly.q, &[q_dot]),
         }
     }
 }
 
 /// Follows to an end, which must be reached.
-pub(crate) fn run(
+pub(crate) fn solve_setup(
     atlas: &mut Atlas<'_>,
-    start: &Point,
-    [end, every]: [f64; 2],
+    start: &OdeState,
+    [end, sample_interval]: [f64; 2],
     method: Method,
     events: &[Event],
-) -> Journey {
+) -> ContinuedMotion {
     let options = Options {
-        every: Some(every),
+        sample_interval: Some(sample_interval),
         ..Options::new(method, 1e-12)
     };
-    let journey = atlas.follow(start, end, &options, events).expect("a run");
-    assert_eq!(journey.failed, None, "{:?}", atlas.refused());
-    assert_eq!(journey.changes.len() + 1, journey.legs.len());
-    journey
+    let motion = atlas.solve(start, end, &options, events).expect("a run");
+    assert_eq!(motion.error, None, "{:?}", atlas.uncrossable());
+    assert_eq!(motion.changes.len() + 1, motion.segments.len());
+    motion
 }
 
 /// All samples, from all legs.
-pub(crate) fn samples(journey: &Journey) -> Vec<Point> {
-    let legs = journey.legs.iter();
-    legs.flat_map(|leg| leg.trace.samples.clone()).collect()
+pub(crate) fn samples(motion: &ContinuedMotion) -> Vec<OdeState> {
+    let segments = motion.segments.iter();
+    segments
+        .flat_map(|segment| segment.solution.samples.clone())
+        .collect()
 }
 
 /// How far kinetic and potential energy together vary, over the largest kinetic energy.
-pub(crate) fn energy_lost(atlas: &Atlas<'_>, journey: &Journey) -> f64 {
-    let (mut low, mut high, mut most) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
-    for leg in &journey.legs {
-        let machine = &atlas.charts()[leg.chart].machine;
-        let mut work = machine.work();
-        for point in &leg.trace.steps {
+pub(crate) fn energy_lost(atlas: &Atlas<'_>, motion: &ContinuedMotion) -> f64 {
+    let (mut low, mut high, mut max_kinetic) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
+    for segment in &motion.segments {
+        let machine = &atlas.charts()[segment.chart].machine;
+        let mut workspace = machine.workspace();
+        for point in &segment.solution.steps {
             machine
-                .evaluate(point.t, &point.y, &mut work)
+                .evaluate(point.t, &point.y, &mut workspace)
                 .expect("a state");
-            let [kinetic, potential] = machine.energy(&work);
-            most = most.max(kinetic);
+            let [kinetic, potential] = machine.energy(&workspace);
+            max_kinetic = max_kinetic.max(kinetic);
             low = low.min(kinetic + potential);
             high = high.max(kinetic + potential);
         }
     }
-    (high - low) / most
+    (high - low) / max_kinetic
 }

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "no benchmark needs all of it")]
 
 use dwell_geometry::Reaction;
-use dwell_kinetostatics::{Exact, Model};
+use dwell_kinetostatics::{ExactModel, Model};
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -13,16 +13,16 @@ use std::time::Instant;
 /// left alone by the rest of the machine.
 pub(crate) const EVALUATIONS: usize = 2000;
 /// Turns of each subject.
-pub(crate) const TURNS: usize = 400;
+pub(crate) const ROUNDS: usize = 400;
 /// Golden angle, rad: an irrational part of a turn.
-pub(crate) const STEP: f64 = TAU * 0.618_033_988_749_894_9;
+pub(crate) const GOLDEN_ANGLE: f64 = TAU * 0.618_033_988_749_894_9;
 
 /// One row of the table.
 pub(crate) struct Subject<'a> {
     pub(crate) name: String,
     evaluate: Box<dyn FnMut() + 'a>,
     /// What each turn took, ns per evaluation.
-    pub(crate) turns: Vec<f64>,
+    pub(crate) times: Vec<f64>,
 }
 
 impl<'a> Subject<'a> {
@@ -37,7 +37,7 @@ impl<'a> Subject<'a> {
         let evaluate = Box::new(move || {
             for _ in 0..EVALUATIONS {
                 at(black_box(from + width * phase));
-                phase += STEP / TAU;
+                phase += GOLDEN_ANGLE / TAU;
                 if phase >= 1.0 {
                     phase -= 1.0;
                 }
@@ -46,20 +46,20 @@ impl<'a> Subject<'a> {
         Self {
             name: name.into(),
             evaluate,
-            turns: Vec::with_capacity(TURNS),
+            times: Vec::with_capacity(ROUNDS),
         }
     }
 
-    pub(crate) fn take_turn(&mut self) {
+    pub(crate) fn run_round(&mut self) {
         let start = Instant::now();
         (self.evaluate)();
         let ns = start.elapsed().as_secs_f64() * 1e9 / EVALUATIONS as f64;
-        self.turns.push(ns);
+        self.times.push(ns);
     }
 }
 
 /// A whole turn from zero: where it begins, and its width, rad.
-pub(crate) const TURN: (f64, f64) = (0.0, TAU);
+pub(crate) const FULL_REVOLUTION: (f64, f64) = (0.0, TAU);
 
 /// A validation case.
 pub(crate) struct Case {
@@ -76,13 +76,13 @@ impl Case {
         }
     }
 
-    pub(crate) fn model(&self, reactions: &[Reaction]) -> Exact {
+    pub(crate) fn model(&self, reactions: &[Reaction]) -> ExactModel {
         let Scene {
             mechanism, masses, ..
         } = &self.scene;
-        let start = self.scene.assembly.to_start();
-        let model = Model::new(mechanism, masses, &start, reactions);
-        let exact = model.map(Exact::new).map_err(|e| e.to_string());
+        let assembly = self.scene.assembly.to_configuration();
+        let model = Model::new(mechanism, masses, &assembly, reactions);
+        let exact = model.map(ExactModel::new).map_err(|e| e.to_string());
         match exact {
             Ok(Some(exact)) => exact,
             Ok(None) => stop(&self.scene.name, "it has several actuators"),

@@ -1,129 +1,143 @@
-//! How far a table is from the exact model: measured between the places it was made from, with a margin,
-//! and measured again elsewhere.
+//! Error bounds of a table against the exact model: measured between the points it was built from and at further
+//! points, with a safety factor.
 
-use super::fit::{FEWEST_CELLS, Fit};
-use super::make::{Fill, Slopes};
-use super::pieces::{BETWEEN, Columns, Curve, Grid, TERMS};
-use super::{Entry, TableError};
-use dwell_geometry::Dual;
+use super::build::{ColumnSampler, SlopeSampler};
+use super::piecewise::{BETWEEN_NODES, Grid, IntegratedCurve, PiecewiseColumns, TERMS};
+use super::sizing::{MIN_CELLS, Sizing};
+use super::{TableError, TableQuantity};
+use dwell_numerics::Dual;
 
-/// The bound is so many times the largest error met. Over all cases of validation/ the largest at 10 000
+/// Ratio of the bound to the largest error found. Over all cases of validation/ the largest at 10 000
 /// other points was 1.7 times that; where the rounding of the exact model decides most,
 /// next to change points, 3.2 times.
-const MARGIN: f64 = 4.0;
+const SAFETY_FACTOR: f64 = 4.0;
 /// Points at which the pieces are looked at again, steps of the golden section: so many by cell, but no
 /// fewer and no more than these.
-const CHECKED_BY_CELL: usize = 32;
-const FEWEST_CHECKED: usize = 256;
-const MOST_CHECKED: usize = 4096;
+const CHECK_POINTS_PER_CELL: usize = 32;
+const MIN_CHECK_POINTS: usize = 256;
+const MAX_CHECK_POINTS: usize = 4096;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 /// Most cells: 10 megabytes for m and ½m′.
-pub(super) const MOST_CELLS: usize = 65_536;
+pub(super) const MAX_CELLS: usize = 65_536;
 /// Sizes that are tried.
-const TRIES: usize = 10;
+const MAX_ATTEMPTS: usize = 10;
 /// A table is made again with fewer cells if its bound is this part of the accuracy.
-const GENEROUS: f64 = 0.05;
+const OVERSIZED: f64 = 0.05;
 
-/// Something that can be made of any number of cells and held against what it is made from.
-pub(super) trait Pieces<S: ?Sized>: Sized {
-    /// It in cells.
-    fn make(grid: Grid, width: usize, source: &mut S) -> Result<Self, TableError>;
+/// A part of a table that can be built with any number of cells and compared with its sampler.
+pub(super) trait Piecewise<S: ?Sized>: Sized {
+    /// Builds it on a grid.
+    fn build(grid: Grid, width: usize, source: &mut S) -> Result<Self, TableError>;
 
-    /// Its errors at some coordinates, each raised to `most` if larger.
-    fn compare(&self, q: &[f64], source: &mut S, most: &mut [f64]) -> Result<(), TableError>;
+    /// Raises `max_errors` to its errors at some coordinates where these are larger.
+    fn raise_errors(&self, q: &[f64], source: &mut S, most: &mut [f64]) -> Result<(), TableError>;
 }
 
-impl<'a> Pieces<dyn Slopes + 'a> for Curve {
-    fn make(grid: Grid, _: usize, source: &mut (dyn Slopes + 'a)) -> Result<Self, TableError> {
-        Self::new(grid, source)
+impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
+    fn build(
+        grid: Grid,
+        _: usize,
+        sampler: &mut (dyn SlopeSampler + 'a),
+    ) -> Result<Self, TableError> {
+        Self::new(grid, sampler)
     }
 
-    fn compare(
+    fn raise_errors(
         &self,
         q: &[f64],
-        source: &mut (dyn Slopes + 'a),
-        most: &mut [f64],
+        sampler: &mut (dyn SlopeSampler + 'a),
+        max_errors: &mut [f64],
     ) -> Result<(), TableError> {
-        for (&q, exact) in q.iter().zip(source.many(q)?) {
-            let own = self.at(q)?;
-            raise(
-                most,
-                own.into_iter().zip(exact).map(|(own, exact)| own - exact),
+        for (&q, exact) in q.iter().zip(sampler.sample_many(q)?) {
+            let tabulated = self.eval(q)?;
+            raise_to(
+                max_errors,
+                tabulated
+                    .into_iter()
+                    .zip(exact)
+                    .map(|(tabulated, exact)| tabulated - exact),
             );
         }
         Ok(())
     }
 }
 
-impl<'a> Pieces<Fill<'a>> for Columns {
-    fn make(grid: Grid, width: usize, source: &mut Fill<'a>) -> Result<Self, TableError> {
-        Self::new(grid, width, source)
+impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
+    fn build(
+        grid: Grid,
+        width: usize,
+        sampler: &mut ColumnSampler<'a>,
+    ) -> Result<Self, TableError> {
+        Self::new(grid, width, sampler)
     }
 
-    fn compare(
+    fn raise_errors(
         &self,
         q: &[f64],
-        source: &mut Fill<'a>,
-        most: &mut [f64],
+        sampler: &mut ColumnSampler<'a>,
+        max_errors: &mut [f64],
     ) -> Result<(), TableError> {
-        let (mut exact, mut own) = (vec![Dual::default(); self.width], vec![0.0; self.width]);
+        let (mut exact, mut tabulated) = (vec![Dual::default(); self.width], vec![0.0; self.width]);
         for &q in q {
-            source(q, &mut exact)?;
-            self.at(q, &mut own, &mut [])?;
-            raise(
-                most,
-                own.iter().zip(&exact).map(|(own, exact)| own - exact.v),
+            sampler(q, &mut exact)?;
+            self.eval(q, &mut tabulated, &mut [])?;
+            raise_to(
+                max_errors,
+                tabulated
+                    .iter()
+                    .zip(&exact)
+                    .map(|(tabulated, exact)| tabulated - exact.v),
             );
         }
         Ok(())
     }
 }
 
-fn raise(most: &mut [f64], errors: impl Iterator<Item = f64>) {
-    for (most, error) in most.iter_mut().zip(errors) {
-        // An error that is not a number is the largest there is.
+fn raise_to(max_errors: &mut [f64], errors: impl Iterator<Item = f64>) {
+    for (max_errors, error) in max_errors.iter_mut().zip(errors) {
+        // NaN counts as the largest error.
         let error = if error.is_nan() {
             f64::INFINITY
         } else {
             error.abs()
         };
-        *most = most.max(error);
+        *max_errors = max_errors.max(error);
     }
 }
 
 /// The smallest table met whose bound is within the accuracy, and the bounds by entry, as parts of the
 /// scales.
-pub(super) fn size<S: ?Sized, P: Pieces<S>>(
+pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     grid: Grid,
-    which: &[Entry],
-    fit: &Fit,
+    quantities: &[TableQuantity],
+    sizing: &Sizing,
     accuracy: f64,
-    source: &mut S,
+    sampler: &mut S,
 ) -> Result<(P, Vec<f64>), TableError> {
-    let mut cells = fit.cells;
+    let mut cells = sizing.cells;
     let mut best: Option<(P, Vec<f64>, usize)> = None;
-    let mut least = (f64::INFINITY, Entry::M);
-    for _ in 0..TRIES {
-        if cells > MOST_CELLS {
+    let mut smallest = (f64::INFINITY, TableQuantity::M);
+    for _ in 0..MAX_ATTEMPTS {
+        if cells > MAX_CELLS {
             break;
         }
-        let grid = grid.with(cells);
-        let pieces = P::make(grid, which.len(), source)?;
-        let bounds = bounds(&pieces, grid, fit, source)?;
-        let worst = worst(&bounds, which);
-        if worst.0 < least.0 {
-            least = worst;
+        let grid = grid.with_cells(cells);
+        let piecewise = P::build(grid, quantities.len(), sampler)?;
+        let bounds = bounds(&piecewise, grid, sizing, sampler)?;
+        let largest = largest_bound(&bounds, quantities);
+        if largest.0 < smallest.0 {
+            smallest = largest;
         }
-        let part = worst.0 / accuracy;
+        let part = largest.0 / accuracy;
         let enough = part <= 1.0;
         if enough && best.as_ref().is_none_or(|(.., known)| cells < *known) {
-            best = Some((pieces, bounds, cells));
+            best = Some((piecewise, bounds, cells));
         }
         // The error goes as the size of a cell to the number of terms; aimed at is half the accuracy.
         let next = cells as f64 * (2.0 * part).powf(1.0 / TERMS as f64);
-        let next = (next.ceil() as usize).max(FEWEST_CELLS);
+        let next = (next.ceil() as usize).max(MIN_CELLS);
         cells = match (enough, &best) {
-            (true, _) if part > GENEROUS || next >= cells => break,
+            (true, _) if part > OVERSIZED || next >= cells => break,
             (true, _) => next,
             // One that was too small follows one that was large enough.
             (false, Some(_)) => break,
@@ -131,45 +145,42 @@ pub(super) fn size<S: ?Sized, P: Pieces<S>>(
         };
     }
     match best {
-        Some((pieces, bounds, _)) => Ok((pieces, bounds)),
+        Some((piecewise, bounds, _)) => Ok((piecewise, bounds)),
         None => Err(TableError::NotReached {
-            what: least.1,
-            reached: least.0,
+            what: smallest.1,
+            reached: smallest.0,
             accuracy,
         }),
     }
 }
 
 /// The bounds by entry as parts of the scales: from points between the nodes of every cell, and others.
-fn bounds<S: ?Sized, P: Pieces<S>>(
-    pieces: &P,
+fn bounds<S: ?Sized, P: Piecewise<S>>(
+    piecewise: &P,
     grid: Grid,
-    fit: &Fit,
-    source: &mut S,
+    sizing: &Sizing,
+    sampler: &mut S,
 ) -> Result<Vec<f64>, TableError> {
-    let mut most = vec![0.0; fit.scales.len()];
+    let mut max_errors = vec![0.0; sizing.scales.len()];
     let cells = 0..grid.cells;
-    let between = cells.flat_map(|cell| BETWEEN.map(|x| grid.coordinate(cell, x)));
-    let others = (CHECKED_BY_CELL * grid.cells).clamp(FEWEST_CHECKED, MOST_CHECKED);
+    let between = cells.flat_map(|cell| BETWEEN_NODES.map(|x| grid.coordinate(cell, x)));
+    let others = (CHECK_POINTS_PER_CELL * grid.cells).clamp(MIN_CHECK_POINTS, MAX_CHECK_POINTS);
     let elsewhere = (0..others).map(|i| {
         let part = (0.5 + i as f64 * GOLDEN).fract();
         grid.from + grid.length * part
     });
-    let places: Vec<f64> = between.chain(elsewhere).collect();
-    pieces.compare(&places, source, &mut most)?;
-    let bound = |(&most, &scale): (&f64, &f64)| match most {
+    let coordinates: Vec<f64> = between.chain(elsewhere).collect();
+    piecewise.raise_errors(&coordinates, sampler, &mut max_errors)?;
+    let bound = |(&max_errors, &scale): (&f64, &f64)| match max_errors {
         0.0 => 0.0,
-        most => MARGIN * most / scale,
+        max_errors => SAFETY_FACTOR * max_errors / scale,
     };
-    Ok(most.iter().zip(&fit.scales).map(bound).collect())
+    Ok(max_errors.iter().zip(&sizing.scales).map(bound).collect())
 }
 
-fn worst(bounds: &[f64], which: &[Entry]) -> (f64, Entry) {
-    let all = bounds.iter().copied().zip(which.iter().copied());
-    all.fold(
-        (0.0, Entry::M),
-        |worst, one| {
-            if one.0 <= worst.0 { worst } else { one }
-        },
-    )
+fn largest_bound(bounds: &[f64], quantities: &[TableQuantity]) -> (f64, TableQuantity) {
+    let all = bounds.iter().copied().zip(quantities.iter().copied());
+    all.fold((0.0, TableQuantity::M), |largest, one| {
+        if one.0 <= largest.0 { largest } else { one }
+    })
 }

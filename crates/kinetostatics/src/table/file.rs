@@ -2,20 +2,20 @@
 //! many digits as it takes to read the same bits again. Of m only its values in the middles of the cells
 //! are kept: the rest is made from ½m′ as when the table was new.
 
-use super::bound::MOST_CELLS;
-use super::pieces::{Columns, Curve, Grid, TERMS};
-use super::{Bound, Table, entries};
+use super::bound::MAX_CELLS;
+use super::piecewise::{Grid, IntegratedCurve, PiecewiseColumns, TERMS};
+use super::{Bound, TabulatedModel, table_quantities};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::str::{FromStr, Lines};
 use thiserror::Error;
 
 /// First word of every file.
-const NAME: &str = "dwell-table";
+const MAGIC: &str = "dwell-table";
 /// The only version so far.
 const VERSION: u32 = 1;
 /// Most turns after which a mechanism comes back.
-const MOST_TURNS: u32 = 8;
+const MAX_REVOLUTIONS: u32 = 8;
 
 /// What a table is of: names that a model does not know. None may hold a line break.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -43,7 +43,7 @@ pub enum FileError {
     },
     /// Not a table at all.
     #[error("this is no table: its first line is not `dwell-table` and a version")]
-    NoTable,
+    NotATable,
     /// A version that is not known here.
     #[error("a table of version {found}: version {VERSION} is known")]
     Version {
@@ -55,7 +55,7 @@ pub enum FileError {
     Truncated,
     /// The sum in the last line is not that of the lines before.
     #[error("the table was altered, or damaged: its sum does not agree")]
-    Altered,
+    ChecksumMismatch,
     /// A line that is not what the format asks for.
     #[error("line {line} of the table: expected {expected}")]
     Line {
@@ -66,7 +66,7 @@ pub enum FileError {
     },
 }
 
-impl Table {
+impl TabulatedModel {
     /// The table as the text of a file.
     ///
     /// # Errors
@@ -86,40 +86,40 @@ impl Table {
         let Grid {
             from,
             length,
-            turns,
+            revolutions,
             ..
         } = self.inertia.grid;
-        let unit = if self.angle { "rad" } else { "m" };
+        let unit = if self.is_angle { "rad" } else { "m" };
         let [inertia, forces, pushes] = self.cells();
         let mut text = format!(
-            "{NAME} {VERSION}\nscene {}\ncoordinate {unit} {}\n",
+            "{MAGIC} {VERSION}\nscene {}\ncoordinate {unit} {}\n",
             labels.scene, labels.coordinate
         );
-        for (word, list) in ["reaction", "load"].into_iter().zip(lists) {
-            put(&mut text, &format!("{word}s"), [list.len() as f64]);
+        for (keyword, list) in ["reaction", "load"].into_iter().zip(lists) {
+            write_line(&mut text, &format!("{keyword}s"), [list.len() as f64]);
             for name in list {
-                text.push_str(&format!("{word} {name}\n"));
+                text.push_str(&format!("{keyword} {name}\n"));
             }
         }
-        put(&mut text, "accuracy", [self.accuracy]);
-        put(&mut text, "extent", [from, length]);
-        put(&mut text, "turns", [f64::from(turns)]);
-        put(
+        write_line(&mut text, "accuracy", [self.accuracy]);
+        write_line(&mut text, "extent", [from, length]);
+        write_line(&mut text, "turns", [f64::from(revolutions)]);
+        write_line(
             &mut text,
             "cells",
             [inertia, forces, pushes].map(|n| n as f64),
         );
-        put(&mut text, "scales", self.bounds.iter().map(|b| b.scale));
-        put(&mut text, "errors", self.bounds.iter().map(|b| b.error));
-        for (m, slope) in self.inertia.seeds() {
-            put(&mut text, "m", [m].into_iter().chain(slope));
+        write_line(&mut text, "scales", self.bounds.iter().map(|b| b.scale));
+        write_line(&mut text, "errors", self.bounds.iter().map(|b| b.error));
+        for (m, slope) in self.inertia.cell_data() {
+            write_line(&mut text, "m", [m].into_iter().chain(slope));
         }
-        for (word, columns) in [("ab", &self.reactions), ("wc", &self.loads)] {
+        for (keyword, columns) in [("ab", &self.reactions), ("wc", &self.loads)] {
             for cell in columns.terms.chunks(TERMS * columns.width.max(1)) {
-                put(&mut text, word, cell.iter().copied());
+                write_line(&mut text, keyword, cell.iter().copied());
             }
         }
-        let sum = sum(text.as_bytes());
+        let sum = fnv1a_64(text.as_bytes());
         text.push_str(&format!("check {sum:016x}\n"));
         Ok(text)
     }
@@ -130,8 +130,8 @@ impl Table {
     /// [`FileError`] for anything that is not a whole table as it was written.
     pub fn from_text(text: &str) -> Result<(Self, Labels), FileError> {
         let first = text.lines().next().unwrap_or_default();
-        let version = first.strip_prefix(NAME).and_then(|v| v.strip_prefix(' '));
-        let version = version.ok_or(FileError::NoTable)?;
+        let version = first.strip_prefix(MAGIC).and_then(|v| v.strip_prefix(' '));
+        let version = version.ok_or(FileError::NotATable)?;
         if version != VERSION.to_string() {
             return Err(FileError::Version {
                 found: version.to_owned(),
@@ -141,8 +141,8 @@ impl Table {
         let (_, last) = whole.rsplit_once('\n').ok_or(FileError::Truncated)?;
         let stated = last.strip_prefix("check ").ok_or(FileError::Truncated)?;
         let body = &text[..whole.len() - last.len()];
-        if format!("{:016x}", sum(body.as_bytes())) != stated {
-            return Err(FileError::Altered);
+        if format!("{:016x}", fnv1a_64(body.as_bytes())) != stated {
+            return Err(FileError::ChecksumMismatch);
         }
         Reader {
             lines: body.lines(),
@@ -153,8 +153,8 @@ impl Table {
 }
 
 /// A line of a word and numbers.
-fn put(text: &mut String, word: &str, numbers: impl IntoIterator<Item = f64>) {
-    text.push_str(word);
+fn write_line(text: &mut String, keyword: &str, numbers: impl IntoIterator<Item = f64>) {
+    text.push_str(keyword);
     for number in numbers {
         // Writing to a string does not fail.
         let _ = write!(text, " {number:e}");
@@ -164,7 +164,7 @@ fn put(text: &mut String, word: &str, numbers: impl IntoIterator<Item = f64>) {
 
 /// Fowler, Noll and Vo's sum of 64 bits (1a). Each byte's step can be undone, so no single altered byte
 /// leaves it as it was.
-fn sum(bytes: &[u8]) -> u64 {
+fn fnv1a_64(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |sum, &byte| {
         (sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
@@ -177,22 +177,22 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn table(mut self) -> Result<(Table, Labels), FileError> {
-        self.rest(NAME)?;
-        let scene = self.rest("scene")?.to_owned();
-        let coordinate = self.rest("coordinate")?;
+    fn table(mut self) -> Result<(TabulatedModel, Labels), FileError> {
+        self.after_keyword(MAGIC)?;
+        let scene = self.after_keyword("scene")?.to_owned();
+        let coordinate = self.after_keyword("coordinate")?;
         let (unit, coordinate) = coordinate
             .split_once(' ')
             .filter(|(unit, _)| ["rad", "m"].contains(unit))
-            .ok_or_else(|| self.wrong("rad or m, and a name"))?;
-        let (angle, coordinate) = (unit == "rad", coordinate.to_owned());
+            .ok_or_else(|| self.line_error("rad or m, and a name"))?;
+        let (is_angle, coordinate) = (unit == "rad", coordinate.to_owned());
         let reactions = self.names("reactions", "reaction")?;
         let loads = self.names("loads", "load")?;
         let accuracy = self.numbers("accuracy", 1)?[0];
-        let extent = self.numbers("extent", 2)?;
-        let turns = self.count("turns", MOST_TURNS as usize)? as u32;
-        let one = self.grid(&extent, turns)?;
-        let cells = self.counts("cells", 3, MOST_CELLS)?;
+        let domain = self.numbers("extent", 2)?;
+        let revolutions = self.count("turns", MAX_REVOLUTIONS as usize)? as u32;
+        let one = self.grid(&domain, revolutions)?;
+        let cells = self.counts("cells", 3, MAX_CELLS)?;
         let counts = [reactions.len(), loads.len()];
         let widths = [2 * counts[0], counts[1] * (1 + counts[0])];
         let none = [false, widths[0] == 0, widths[1] == 0];
@@ -201,33 +201,40 @@ impl<'a> Reader<'a> {
             .zip(none)
             .any(|(&cells, none)| (cells == 0) != none)
         {
-            return Err(self.wrong("cells of whatever there is"));
+            return Err(self.line_error("cells of whatever there is"));
         }
-        let (both, ab, wc) = entries(counts);
+        let (both, ab, wc) = table_quantities(counts);
         let entries = [both.to_vec(), ab, wc].concat();
         let scales = self.numbers("scales", entries.len())?;
         let errors = self.numbers("errors", entries.len())?;
         let known = entries.iter().zip(scales).zip(errors);
-        let bounds = known.map(|((&of, scale), error)| Bound { of, scale, error });
-        let mut seeds = Vec::new();
+        let bounds = known.map(|((&quantity, scale), error)| Bound {
+            quantity,
+            scale,
+            error,
+        });
+        let mut cell_data = Vec::new();
         for _ in 0..cells[0] {
             let numbers = self.numbers("m", 1 + TERMS)?;
             let mut slope = [0.0; TERMS];
             slope.copy_from_slice(&numbers[1..]);
-            seeds.push((numbers[0], slope));
+            cell_data.push((numbers[0], slope));
         }
-        let table = Table {
+        let table = TabulatedModel {
             accuracy,
-            angle,
-            inertia: Curve::from_seeds(one.with(cells[0]), seeds.into_iter()),
-            reactions: self.columns("ab", one.with(cells[1].max(1)), widths[0])?,
-            loads: self.columns("wc", one.with(cells[2].max(1)), widths[1])?,
+            is_angle,
+            inertia: IntegratedCurve::from_cell_data(
+                one.with_cells(cells[0]),
+                cell_data.into_iter(),
+            ),
+            reactions: self.columns("ab", one.with_cells(cells[1].max(1)), widths[0])?,
+            loads: self.columns("wc", one.with_cells(cells[2].max(1)), widths[1])?,
             counts,
             bounds: bounds.collect(),
         };
         if self.lines.next().is_some() {
             self.line += 1;
-            return Err(self.wrong("nothing after the last cell but `check`"));
+            return Err(self.line_error("nothing after the last cell but `check`"));
         }
         let labels = Labels {
             scene,
@@ -239,32 +246,33 @@ impl<'a> Reader<'a> {
     }
 
     /// The extent as a grid of one cell.
-    fn grid(&self, extent: &[f64], turns: u32) -> Result<Grid, FileError> {
-        let (from, length) = (extent[0], extent[1]);
-        let whole = turns == 0 || (from == 0.0 && length == TAU * f64::from(turns));
+    fn grid(&self, domain: &[f64], revolutions: u32) -> Result<Grid, FileError> {
+        let (from, length) = (domain[0], domain[1]);
+        let whole = revolutions == 0 || (from == 0.0 && length == TAU * f64::from(revolutions));
         if whole && length > 0.0 && (from + length).is_finite() {
-            Ok(Grid::new(from, length, turns, 1))
+            Ok(Grid::new(from, length, revolutions, 1))
         } else {
-            Err(self.wrong("an extent that is not empty, and of whole turns if it repeats itself"))
+            Err(self
+                .line_error("an extent that is not empty, and of whole turns if it repeats itself"))
         }
     }
 
     fn columns(
         &mut self,
-        word: &'static str,
+        keyword: &'static str,
         grid: Grid,
         width: usize,
-    ) -> Result<Columns, FileError> {
+    ) -> Result<PiecewiseColumns, FileError> {
         let mut terms = Vec::new();
         if width > 0 {
             for _ in 0..grid.cells {
-                terms.extend(self.numbers(word, TERMS * width)?);
+                terms.extend(self.numbers(keyword, TERMS * width)?);
             }
         }
-        Ok(Columns { grid, width, terms })
+        Ok(PiecewiseColumns { grid, width, terms })
     }
 
-    fn wrong(&self, expected: &'static str) -> FileError {
+    fn line_error(&self, expected: &'static str) -> FileError {
         FileError::Line {
             line: self.line,
             expected,
@@ -272,16 +280,16 @@ impl<'a> Reader<'a> {
     }
 
     /// What follows the word that the next line begins with.
-    fn rest(&mut self, word: &'static str) -> Result<&'a str, FileError> {
+    fn after_keyword(&mut self, keyword: &'static str) -> Result<&'a str, FileError> {
         self.line += 1;
         let line = self.lines.next().unwrap_or_default();
-        let rest = line.strip_prefix(word).and_then(|l| l.strip_prefix(' '));
-        rest.ok_or_else(|| self.wrong(word))
+        let rest = line.strip_prefix(keyword).and_then(|l| l.strip_prefix(' '));
+        rest.ok_or_else(|| self.line_error(keyword))
     }
 
     fn list<T: FromStr>(
         &mut self,
-        word: &'static str,
+        keyword: &'static str,
         count: usize,
         fits: impl Fn(&T) -> bool,
         expected: &'static str,
@@ -290,14 +298,14 @@ impl<'a> Reader<'a> {
             // Without a number there is no blank either.
             0 => {
                 self.line += 1;
-                let empty = self.lines.next() == Some(word);
+                let empty = self.lines.next() == Some(keyword);
                 return if empty {
                     Ok(Vec::new())
                 } else {
-                    Err(self.wrong(word))
+                    Err(self.line_error(keyword))
                 };
             }
-            _ => self.rest(word)?,
+            _ => self.after_keyword(keyword)?,
         };
         let numbers: Option<Vec<T>> = rest
             .split(' ')
@@ -305,34 +313,43 @@ impl<'a> Reader<'a> {
             .collect();
         numbers
             .filter(|numbers| numbers.len() == count)
-            .ok_or_else(|| self.wrong(expected))
+            .ok_or_else(|| self.line_error(expected))
     }
 
-    fn numbers(&mut self, word: &'static str, count: usize) -> Result<Vec<f64>, FileError> {
+    fn numbers(&mut self, keyword: &'static str, count: usize) -> Result<Vec<f64>, FileError> {
         let expected = "finite numbers, as many as the counts say";
-        self.list(word, count, |n: &f64| n.is_finite(), expected)
+        self.list(keyword, count, |n: &f64| n.is_finite(), expected)
     }
 
     fn counts(
         &mut self,
-        word: &'static str,
+        keyword: &'static str,
         count: usize,
-        most: usize,
+        max: usize,
     ) -> Result<Vec<usize>, FileError> {
-        let whole = |n: &f64| n.fract() == 0.0 && (0.0..=most as f64).contains(n);
-        let found = self.list(word, count, whole, "whole numbers that are not too large")?;
+        let whole = |n: &f64| n.fract() == 0.0 && (0.0..=max as f64).contains(n);
+        let found = self.list(
+            keyword,
+            count,
+            whole,
+            "whole numbers that are not too large",
+        )?;
         Ok(found.into_iter().map(|n| n as usize).collect())
     }
 
-    fn count(&mut self, word: &'static str, most: usize) -> Result<usize, FileError> {
-        Ok(self.counts(word, 1, most)?[0])
+    fn count(&mut self, keyword: &'static str, max: usize) -> Result<usize, FileError> {
+        Ok(self.counts(keyword, 1, max)?[0])
     }
 
-    fn names(&mut self, word: &'static str, each: &'static str) -> Result<Vec<String>, FileError> {
-        let count = self.count(word, u32::MAX as usize)?;
+    fn names(
+        &mut self,
+        keyword: &'static str,
+        each: &'static str,
+    ) -> Result<Vec<String>, FileError> {
+        let count = self.count(keyword, u32::MAX as usize)?;
         let mut names = Vec::new();
         for _ in 0..count {
-            names.push(self.rest(each)?.to_owned());
+            names.push(self.after_keyword(each)?.to_owned());
         }
         Ok(names)
     }

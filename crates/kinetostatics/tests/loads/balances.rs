@@ -2,17 +2,17 @@
 
 use crate::scenes::{Case, all};
 use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::{Act, By, Ledger, Wrench};
+use dwell_kinetostatics::{AppliedWrench, ForceSource, FreeBodyForces, Wrench};
 
 /// Visits every case in all its states, with what acts on its bodies there.
-fn each_state(mut check: impl FnMut(&Case, &Ledger, &[Act])) {
+fn each_state(mut check: impl FnMut(&Case, &FreeBodyForces, &[AppliedWrench])) {
     for mut case in all() {
-        let ledger = Ledger::new(&case.mechanism, &case.model).expect("every reaction");
-        let mut acts = Vec::new();
+        let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
+        let mut wrenches = Vec::new();
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.run(t, &q, &q_dot, &q_ddot);
-            ledger.acts(&case.model, &case.work, &case.actions, &mut acts);
-            check(&case, &ledger, &acts);
+            case.evaluate(t, &q, &q_dot, &q_ddot);
+            free_body_forces.wrenches(&case.model, &case.workspace, &case.result, &mut wrenches);
+            check(&case, &free_body_forces, &wrenches);
         }
     }
 }
@@ -21,11 +21,11 @@ fn each_state(mut check: impl FnMut(&Case, &Ledger, &[Act])) {
 fn power_is_balanced() {
     for mut case in all() {
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.run(t, &q, &q_dot, &q_ddot);
-            let power = case.model.power(&case.work, &case.actions);
+            case.evaluate(t, &q, &q_dot, &q_ddot);
+            let power = case.model.power_balance(&case.workspace, &case.result);
             assert!(power.scale > 0.1 && power.loads != 0.0);
-            let off = power.residual().abs() / power.scale;
-            assert!(off < 1e-13, "{}: {off:e}", case.name);
+            let difference = power.residual().abs() / power.scale;
+            assert!(difference < 1e-13, "{}: {difference:e}", case.name);
         }
     }
 }
@@ -34,8 +34,8 @@ fn power_is_balanced() {
 /// it: force and moment about its root.
 #[test]
 fn every_body_is_balanced() {
-    each_state(|case, _, acts| {
-        let states = case.work.states();
+    each_state(|case, _, wrenches| {
+        let states = case.workspace.states();
         for b in 0..case.mechanism.bodies.len() {
             let id = BodyId(b);
             if b == case.mechanism.ground {
@@ -43,16 +43,17 @@ fn every_body_is_balanced() {
             }
             let mass = case.masses[b];
             let body = states.body(id);
-            let arm = body.arm(mass.center);
-            let rate = body.acceleration_at(arm) * mass.mass;
+            let center_offset = body.moment_arm(mass.center);
+            let rate = body.acceleration_at(center_offset) * mass.mass;
             let mut force = -rate;
-            let mut moment = -(arm.cross(rate) + mass.inertia * body.spin_rate);
+            let mut moment =
+                -(center_offset.cross(rate) + mass.inertia * body.angular_acceleration);
             let mut scale = [rate.norm(), moment.abs()];
-            for act in acts.iter().filter(|a| a.body == id) {
-                force += act.force;
-                moment += act.moment();
-                scale[0] += act.force.norm();
-                scale[1] += act.arm.norm() * act.force.norm() + act.couple.abs();
+            for wrench in wrenches.iter().filter(|a| a.body == id) {
+                force += wrench.force;
+                moment += wrench.moment();
+                scale[0] += wrench.force.norm();
+                scale[1] += wrench.moment_arm.norm() * wrench.force.norm() + wrench.couple.abs();
             }
             // Rounding through the tree and the loops of the whole mechanism, against what acts
             // on this body.
@@ -73,16 +74,17 @@ fn every_body_is_balanced() {
 /// Joints do no work; what they do to their two bodies is opposite.
 #[test]
 fn joints_are_ideal() {
-    each_state(|case, _, acts| {
-        let states = case.work.states();
+    each_state(|case, _, wrenches| {
+        let states = case.workspace.states();
         for j in 0..case.mechanism.joints.len() {
-            let own = |a: &&Act| a.by == By::Joint(dwell_geometry::JointId(j));
+            let of_joint =
+                |a: &&AppliedWrench| a.source == ForceSource::Joint(dwell_geometry::JointId(j));
             let (mut power, mut scale) = (0.0, 0.0);
             let mut force = Vec2::ZERO;
-            for act in acts.iter().filter(own) {
-                power += act.power(states);
-                scale += act.power(states).abs() + act.force.norm();
-                force += act.force;
+            for wrench in wrenches.iter().filter(of_joint) {
+                power += wrench.power(states);
+                scale += wrench.power(states).abs() + wrench.force.norm();
+                force += wrench.force;
             }
             assert_eq!(force, Vec2::ZERO);
             assert!(
@@ -96,13 +98,13 @@ fn joints_are_ideal() {
 
 #[test]
 fn the_frame_feels_the_same_by_momentum_and_by_reactions() {
-    each_state(|case, ledger, acts| {
-        let shaking = ledger.shaking(&case.model, &case.work, acts);
-        let [one, two] = [shaking.by_momentum, shaking.by_reactions];
-        let states = case.work.states();
-        let forces = acts.iter().map(|a| a.force.norm()).sum::<f64>();
-        let moment = |a: &Act| a.point(states).norm() * a.force.norm() + a.couple.abs();
-        let moments = acts.iter().map(moment).sum::<f64>();
+    each_state(|case, free_body_forces, wrenches| {
+        let shaking = free_body_forces.shaking_force(&case.model, &case.workspace, wrenches);
+        let [one, two] = [shaking.from_momentum, shaking.from_reactions];
+        let states = case.workspace.states();
+        let forces = wrenches.iter().map(|a| a.force.norm()).sum::<f64>();
+        let moment = |a: &AppliedWrench| a.point(states).norm() * a.force.norm() + a.couple.abs();
+        let moments = wrenches.iter().map(moment).sum::<f64>();
         // Against all that acts anywhere, since the forces within cancel.
         assert!(
             (one.force - two.force).norm() < 1e-13 * forces,
@@ -122,7 +124,7 @@ fn the_frame_feels_the_same_by_momentum_and_by_reactions() {
 #[test]
 fn a_ledger_needs_every_reaction() {
     let case = all().remove(0);
-    let bare = case.model.without_reactions();
-    assert!(Ledger::new(&case.mechanism, &bare).is_err());
-    assert!(Ledger::new(&case.mechanism, &case.model).is_ok());
+    let without_reactions = case.model.without_reactions();
+    assert!(FreeBodyForces::new(&without_reactions).is_err());
+    assert!(FreeBodyForces::new(&case.model).is_ok());
 }

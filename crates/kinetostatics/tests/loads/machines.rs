@@ -1,8 +1,8 @@
 //! Small machines with every kind of joint and drive, described by hand.
 
 use dwell_geometry::{
-    Actuator, Body, BodyId, Coordinate, Drive, Joint, JointId, JointKind, Mechanism, Relation,
-    Start, Vec2, vec2,
+    Actuator, ActuatorKind, AssemblyConfiguration, Body, BodyId, Coordinate, Coupling, Joint,
+    JointId, JointKind, Mechanism, Vec2, vec2,
 };
 use dwell_kinetostatics::Mass;
 use dwell_laws::{Law, Polynomial};
@@ -11,21 +11,21 @@ pub(crate) struct Machine {
     pub(crate) name: &'static str,
     pub(crate) mechanism: Mechanism,
     pub(crate) masses: Vec<Mass>,
-    pub(crate) start: Start,
+    pub(crate) assembly: AssemblyConfiguration,
 }
 
 const O: Vec2 = Vec2::ZERO;
 const X: Vec2 = vec2(1.0, 0.0);
-const PIN: JointKind = JointKind::Revolute;
-const SLIDE: JointKind = JointKind::Prismatic { axes: [X, X] };
+const REVOLUTE: JointKind = JointKind::Revolute;
+const PRISMATIC: JointKind = JointKind::Prismatic { axes: [X, X] };
 
 /// Bodies 1 to `n` move, each with its centre off its frame's origin.
 fn machine<const J: usize>(
     name: &'static str,
-    rough: &[f64],
+    initial_angles: &[f64],
     joints: [([usize; 2], [Vec2; 2], JointKind); J],
-    (bodies, drive, q): ([usize; 2], Drive, f64),
-    relations: Vec<Relation>,
+    (bodies, drive, q): ([usize; 2], ActuatorKind, f64),
+    relations: Vec<Coupling>,
 ) -> Machine {
     let body = |i: usize| Body {
         name: format!("body {i}"),
@@ -37,7 +37,7 @@ fn machine<const J: usize>(
         kind,
     };
     let ground = [Mass::default()].into_iter();
-    let moving = (0..rough.len()).map(|i| {
+    let moving = (0..initial_angles.len()).map(|i| {
         let one = [0.7, 1.1, 0.9][i % 3];
         Mass {
             mass: one,
@@ -45,41 +45,47 @@ fn machine<const J: usize>(
             inertia: 4e-3 * one,
         }
     });
-    let at = [None].into_iter().chain(rough.iter().map(|&a| Some(a)));
+    let at = [None]
+        .into_iter()
+        .chain(initial_angles.iter().map(|&a| Some(a)));
     Machine {
         name,
         mechanism: Mechanism {
-            bodies: (0..=rough.len()).map(body).collect(),
+            bodies: (0..=initial_angles.len()).map(body).collect(),
             ground: 0,
             joints: joints.into_iter().map(joint).collect(),
             actuators: vec![Actuator {
                 name: "q".into(),
                 bodies: bodies.map(BodyId),
-                drive,
+                kind: drive,
             }],
-            relations,
+            couplings: relations,
         },
         masses: ground.chain(moving).collect(),
-        start: Start {
+        assembly: AssemblyConfiguration {
             q: vec![q],
-            rough: at.collect(),
-            ..Start::default()
+            initial_guess: at.collect(),
+            ..AssemblyConfiguration::default()
         },
     }
 }
 
-fn related(of: Coordinate, by: Coordinate, coefficients: &[f64]) -> Vec<Relation> {
+fn couplings(
+    dependent: Coordinate,
+    independent: Coordinate,
+    coefficients: &[f64],
+) -> Vec<Coupling> {
     let coefficients = coefficients.to_vec();
-    vec![Relation {
-        of,
-        by,
+    vec![Coupling {
+        dependent,
+        independent,
         law: Law::Polynomial(Polynomial { coefficients }),
     }]
 }
 
 pub(crate) fn all() -> Vec<Machine> {
-    let crank = ([0, 1], [O, O], PIN);
-    let turned = ([0, 1], Drive::Angle, 0.5);
+    let crank = ([0, 1], [O, O], REVOLUTE);
+    let driven_angle = ([0, 1], ActuatorKind::Angle, 0.5);
     let gear = |radii, internal| JointKind::Gear { radii, internal };
     let (track, rack) = (vec2(0.0, -0.1), vec2(0.1, -0.15));
     let rolling = JointKind::Rolling {
@@ -102,10 +108,10 @@ pub(crate) fn all() -> Vec<Machine> {
             &[0.5, 0.2],
             [
                 crank,
-                ([0, 2], [vec2(0.3, 0.0), O], PIN),
+                ([0, 2], [vec2(0.3, 0.0), O], REVOLUTE),
                 ([1, 2], [O, O], gear([0.1, 0.2], false)),
             ],
-            turned,
+            driven_angle,
             none(),
         ),
         machine(
@@ -113,17 +119,21 @@ pub(crate) fn all() -> Vec<Machine> {
             &[0.5, 0.9],
             [
                 crank,
-                ([1, 2], [vec2(0.2, 0.0), O], PIN),
+                ([1, 2], [vec2(0.2, 0.0), O], REVOLUTE),
                 ([0, 2], [O, O], gear([0.3, 0.1], true)),
             ],
-            turned,
+            driven_angle,
             none(),
         ),
         machine(
             "rack and pinion",
             &[0.5, 0.0],
-            [crank, ([0, 2], [rack, O], SLIDE), ([2, 1], [O, O], on_rack)],
-            turned,
+            [
+                crank,
+                ([0, 2], [rack, O], PRISMATIC),
+                ([2, 1], [O, O], on_rack),
+            ],
+            driven_angle,
             none(),
         ),
         machine(
@@ -131,10 +141,10 @@ pub(crate) fn all() -> Vec<Machine> {
             &[0.5, 0.3],
             [
                 ([0, 1], [track, O], rolling),
-                ([1, 2], [vec2(0.0, 0.05), O], PIN),
+                ([1, 2], [vec2(0.0, 0.05), O], REVOLUTE),
                 ([0, 2], [vec2(0.6, 0.0), vec2(0.6, 0.0)], slot),
             ],
-            turned,
+            driven_angle,
             none(),
         ),
         machine(
@@ -142,10 +152,10 @@ pub(crate) fn all() -> Vec<Machine> {
             &[0.5, 0.2],
             [
                 crank,
-                ([0, 2], [vec2(-0.3, 0.0), O], PIN),
+                ([0, 2], [vec2(-0.3, 0.0), O], REVOLUTE),
                 ([2, 1], [vec2(0.0, 0.02), vec2(0.1, 0.0)], slot),
             ],
-            turned,
+            driven_angle,
             none(),
         ),
         machine(
@@ -153,10 +163,10 @@ pub(crate) fn all() -> Vec<Machine> {
             &[0.5, 1.2],
             [
                 crank,
-                ([0, 2], [vec2(0.3, 0.0), O], PIN),
+                ([0, 2], [vec2(0.3, 0.0), O], REVOLUTE),
                 ([1, 2], [vec2(0.1, 0.0), vec2(0.25, 0.0)], rod),
             ],
-            turned,
+            driven_angle,
             none(),
         ),
         machine(
@@ -170,14 +180,14 @@ pub(crate) fn all() -> Vec<Machine> {
                     JointKind::Weld { angle: 0.3 },
                 ),
             ],
-            turned,
+            driven_angle,
             none(),
         ),
         machine(
             "cylinder",
             &[0.6],
             [crank],
-            ([0, 1], Drive::Length(line), 0.25),
+            ([0, 1], ActuatorKind::Length(line), 0.25),
             none(),
         ),
         machine(
@@ -185,11 +195,11 @@ pub(crate) fn all() -> Vec<Machine> {
             &[0.6, -0.3, 0.0],
             [
                 crank,
-                ([1, 2], [vec2(0.1, 0.0), O], PIN),
-                ([2, 3], [vec2(0.35, 0.0), O], PIN),
-                ([0, 3], [vec2(0.0, 0.02), O], SLIDE),
+                ([1, 2], [vec2(0.1, 0.0), O], REVOLUTE),
+                ([2, 3], [vec2(0.35, 0.0), O], REVOLUTE),
+                ([0, 3], [vec2(0.0, 0.02), O], PRISMATIC),
             ],
-            ([0, 3], Drive::Travel(JointId(3)), 0.37),
+            ([0, 3], ActuatorKind::Travel(JointId(3)), 0.37),
             none(),
         ),
         machine(
@@ -197,10 +207,10 @@ pub(crate) fn all() -> Vec<Machine> {
             &[0.6, 0.2],
             [
                 crank,
-                ([0, 2], [vec2(-0.3, 0.0), O], PIN),
+                ([0, 2], [vec2(-0.3, 0.0), O], REVOLUTE),
                 ([2, 1], [vec2(0.0, 0.02), vec2(0.1, 0.0)], slot),
             ],
-            ([2, 1], Drive::Travel(JointId(2)), 0.33),
+            ([2, 1], ActuatorKind::Travel(JointId(2)), 0.33),
             none(),
         ),
         machine(
@@ -208,33 +218,33 @@ pub(crate) fn all() -> Vec<Machine> {
             &[0.5, 0.3],
             [
                 crank,
-                ([0, 2], [vec2(0.3, 0.0), O], PIN),
-                ([0, 2], [O, O], JointKind::Relation(0)),
+                ([0, 2], [vec2(0.3, 0.0), O], REVOLUTE),
+                ([0, 2], [O, O], JointKind::Coupling(0)),
             ],
-            turned,
-            related(second, first, &[0.1, 0.5, -0.3, 0.2]),
+            driven_angle,
+            couplings(second, first, &[0.1, 0.5, -0.3, 0.2]),
         ),
         machine(
             "lifting cam",
             &[0.5, 0.0],
             [
                 crank,
-                ([0, 2], [vec2(0.3, 0.0), O], SLIDE),
-                ([0, 2], [O, O], JointKind::Relation(0)),
+                ([0, 2], [vec2(0.3, 0.0), O], PRISMATIC),
+                ([0, 2], [O, O], JointKind::Coupling(0)),
             ],
-            turned,
-            related(Coordinate::Travel(JointId(1)), first, &[0.1, 0.05, -0.02]),
+            driven_angle,
+            couplings(Coordinate::Travel(JointId(1)), first, &[0.1, 0.05, -0.02]),
         ),
         machine(
             "angle by a length",
             &[0.6, 0.3],
             [
                 crank,
-                ([0, 2], [vec2(0.3, 0.0), O], PIN),
-                ([0, 2], [O, O], JointKind::Relation(0)),
+                ([0, 2], [vec2(0.3, 0.0), O], REVOLUTE),
+                ([0, 2], [O, O], JointKind::Coupling(0)),
             ],
-            turned,
-            related(
+            driven_angle,
+            couplings(
                 second,
                 Coordinate::Length {
                     bodies: [BodyId(0), BodyId(1)],

@@ -3,8 +3,8 @@
 
 mod balances;
 mod machines;
+mod revolutions;
 mod scenes;
 mod sections;
 mod shapes;
 mod statics;
-mod turns;

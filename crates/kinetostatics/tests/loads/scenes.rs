@@ -2,7 +2,9 @@
 
 use crate::machines::{self, Machine};
 use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Vec2, vec2};
-use dwell_kinetostatics::{Actions, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace};
+use dwell_kinetostatics::{
+    InverseDynamics, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace,
+};
 use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::Scene;
 use std::path::Path;
@@ -53,22 +55,22 @@ pub(crate) struct Case {
     pub(crate) name: String,
     pub(crate) mechanism: Mechanism,
     pub(crate) model: Model,
-    pub(crate) work: Workspace<f64>,
-    pub(crate) actions: Actions<f64>,
+    pub(crate) workspace: Workspace<f64>,
+    pub(crate) result: InverseDynamics<f64>,
     pub(crate) masses: Vec<Mass>,
     /// How far states may lie from the start: 1 for an angle, less for a length.
     pub(crate) reach: f64,
-    start: Vec<f64>,
+    assembly_q: Vec<f64>,
 }
 
 impl Case {
     pub(crate) fn of(scene: &Scene, loads: impl FnOnce(&Mechanism) -> Vec<Load>) -> Self {
-        let start = scene.assembly.to_start();
+        let assembly = scene.assembly.to_configuration();
         let machine = Machine {
             name: "",
             mechanism: scene.mechanism.clone(),
             masses: scene.masses.clone(),
-            start,
+            assembly,
         };
         Self {
             name: scene.name.clone(),
@@ -81,20 +83,20 @@ impl Case {
             name,
             mechanism,
             masses,
-            start,
+            assembly,
         } = machine;
-        let model = Model::new(&mechanism, &masses, &start, &mechanism.reactions())
+        let model = Model::new(&mechanism, &masses, &assembly, &mechanism.reactions())
             .unwrap_or_else(|e| panic!("{name}: {e}"))
-            .with_loads(&mechanism, loads(&mechanism))
+            .with_loads(loads(&mechanism))
             .expect("loads of the mechanism");
         Self {
             name: name.to_owned(),
-            work: model.workspace(),
-            actions: model.actions(),
+            workspace: model.workspace(),
+            result: model.result_buffer(),
             masses,
             // A length is driven over less than an angle.
             reach: if model.plan().is_angle(0) { 1.0 } else { 0.1 },
-            start: start.q,
+            assembly_q: assembly.q,
             mechanism,
             model,
         }
@@ -109,15 +111,15 @@ impl Case {
     }
 
     /// Evaluates at t, q, q̇, q̈.
-    pub(crate) fn run(&mut self, t: f64, q: &[f64], q_dot: &[f64], q_ddot: &[f64]) {
+    pub(crate) fn evaluate(&mut self, t: f64, q: &[f64], q_dot: &[f64], q_ddot: &[f64]) {
         self.model
-            .kinetostatics(t, q, q_dot, q_ddot, &mut self.work, &mut self.actions)
+            .kinetostatics(t, q, q_dot, q_ddot, &mut self.workspace, &mut self.result)
             .expect("a pose");
     }
 
     /// The reaction of this name, such as `A.x`.
     pub(crate) fn reaction(&self, name: &str) -> f64 {
-        let mut all = self.model.reactions().iter().zip(&self.actions.reactions);
+        let mut all = self.model.reactions().iter().zip(&self.result.reactions);
         let found = all.find(|(r, _)| self.mechanism.reaction_name(**r) == name);
         *found.expect("a reaction of that name").1
     }
@@ -126,12 +128,12 @@ impl Case {
     pub(crate) fn states(&self) -> Vec<State> {
         let mut scatter = Scatter(0.37);
         let reach = self.reach;
-        let n = self.start.len();
+        let n = self.assembly_q.len();
         (0..12)
             .map(|_| {
                 let t = scatter.next(3.0);
                 let q = self
-                    .start
+                    .assembly_q
                     .iter()
                     .map(|q| q + scatter.next(0.3 * reach))
                     .collect();
@@ -190,7 +192,7 @@ pub(crate) fn case(name: &str) -> Scene {
 
 /// A load whose magnitude is an expression of time and of an angle with its speed.
 fn formula(name: &str, kind: LoadKind, angle: Coordinate, text: &str) -> Load {
-    let signals = vec![Signal::Time, Signal::Value(angle), Signal::Speed(angle)];
+    let signals = vec![Signal::Time, Signal::Value(angle), Signal::Velocity(angle)];
     let expression = Expression::parse(text, &["t", "angle", "speed"]).expect("an expression");
     Load {
         name: name.to_owned(),
@@ -246,7 +248,7 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
                 body: ground,
                 point: vec2(0.3, 0.2),
                 direction: vec2(0.0, 1.0),
-                follows: false,
+                body_fixed: false,
             },
             40.0,
         ),
@@ -262,16 +264,16 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
             points,
         };
         let angle = Coordinate::Angle([ground, body]);
-        let force = |follows| LoadKind::Force {
+        let force = |body_fixed| LoadKind::Force {
             body,
             point: points[0],
             direction: Vec2::from_angle(0.7 + points[1].x),
-            follows,
+            body_fixed,
         };
         let spring = LoadKind::Spring {
             bodies: between,
             points,
-            free: 0.13,
+            free_length: 0.13,
         };
         let torque = |first| LoadKind::Torque {
             bodies: [first, body],
@@ -279,7 +281,12 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
         loads.extend([
             varied("force", force(false), Signal::Time, &[3.0, -2.0]),
             varied("follower", force(true), Signal::Value(angle), &[5.0, 1.0]),
-            varied("torque", torque(ground), Signal::Speed(angle), &[0.4, -0.2]),
+            varied(
+                "torque",
+                torque(ground),
+                Signal::Velocity(angle),
+                &[0.4, -0.2],
+            ),
             formula(
                 "fan",
                 torque(ground),
@@ -293,7 +300,7 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
                 "torsion",
                 LoadKind::TorsionSpring {
                     bodies: [ground, body],
-                    free: 0.2,
+                    free_angle: 0.2,
                 },
                 2.0,
             ),
@@ -311,12 +318,12 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
                     bodies: between,
                     points,
                 },
-                Signal::Speed(length),
+                Signal::Velocity(length),
                 &[1.0, 0.0, 3.0],
             ),
             load(
                 "torsion damper",
-                LoadKind::TorsionDamper { bodies: between },
+                LoadKind::RotationalDamper { bodies: between },
                 0.3,
             ),
         ]);
@@ -328,10 +335,10 @@ pub(crate) fn every_kind(mechanism: &Mechanism) -> Vec<Load> {
                 body: joint.bodies[1],
                 point: joint.points[1],
                 direction: vec2(0.0, 1.0),
-                follows: true,
+                body_fixed: true,
             };
             loads.push(varied("push", push, Signal::Value(travel), &[1.0, 20.0]));
-            loads.push(varied("drag", push, Signal::Speed(travel), &[0.0, -6.0]));
+            loads.push(varied("drag", push, Signal::Velocity(travel), &[0.0, -6.0]));
         }
     }
     loads

@@ -2,7 +2,7 @@
 
 use crate::scenes::{Case, all, case, load};
 use dwell_geometry::{BodyId, Vec2, vec2};
-use dwell_kinetostatics::{Act, Distribution, Ledger, LinkForces, LoadKind};
+use dwell_kinetostatics::{AppliedWrench, Distribution, FreeBodyForces, LinkForces, LoadKind};
 
 const G: f64 = 9.81;
 
@@ -23,10 +23,15 @@ const BAR: &str = r#"
     phi = { angle = ["ground", "bar"] }
 "#;
 
-fn link(case: &Case, acts: &mut Vec<Act>, body: BodyId, points: [Vec2; 2]) -> LinkForces {
-    let ledger = Ledger::new(&case.mechanism, &case.model).expect("every reaction");
-    ledger.acts(&case.model, &case.work, &case.actions, acts);
-    let found = ledger.link_forces(&case.model, body, points, &case.work, acts);
+fn link(
+    case: &Case,
+    wrenches: &mut Vec<AppliedWrench>,
+    body: BodyId,
+    points: [Vec2; 2],
+) -> LinkForces {
+    let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
+    free_body_forces.wrenches(&case.model, &case.workspace, &case.result, wrenches);
+    let found = free_body_forces.link_forces(&case.model, body, points, &case.workspace, wrenches);
     found.expect("a link with a length")
 }
 
@@ -37,7 +42,7 @@ fn a_bar_turned_at_its_end_is_a_cantilever() {
     let mut case = Case::parse(BAR, |_| vec![load("weight", gravity(), G)]);
     let (l, density) = (0.8, 3.0 / 0.8);
     let (q, w, a) = (0.7, 5.0, -30.0);
-    case.run(0.0, &[q], &[w], &[a]);
+    case.evaluate(0.0, &[q], &[w], &[a]);
     let bar = case.body("bar");
     let link = link(
         &case,
@@ -66,7 +71,7 @@ fn a_bar_turned_at_its_end_is_a_cantilever() {
         );
     }
     // The whole couple of the actuator enters at the fixed end.
-    assert!((link.at(0.0).bending + case.actions.tau[0]).abs() < 1e-13 * 20.0);
+    assert!((link.section_after(0.0).bending + case.result.tau[0]).abs() < 1e-13 * 20.0);
 }
 
 /// The coupler is a beam on two pins under its own inertia, which grows evenly along it from w₀ by w₁:
@@ -80,14 +85,14 @@ fn a_coupler_is_a_beam_on_two_pins() {
     let ends = [vec2(0.0, 0.0), vec2(3.5, 0.0)];
     let (l, density) = (3.5, 2.0 / 3.5);
     for (t, q, q_dot, q_ddot) in case.states() {
-        case.run(t, &q, &q_dot, &q_ddot);
+        case.evaluate(t, &q, &q_dot, &q_ddot);
         let link = link(&case, &mut Vec::new(), coupler, ends);
         assert_eq!(link.distribution, Distribution::UniformBar);
-        let states = case.work.states();
-        let normal = states.body(coupler).turn.perp();
+        let states = case.workspace.states();
+        let normal = states.body(coupler).rotation.perp();
         let load = ends.map(|p| {
-            let felt = states.point(coupler, p).acceleration + vec2(0.0, G);
-            density * felt.dot(normal)
+            let apparent = states.point(coupler, p).acceleration + vec2(0.0, G);
+            density * apparent.dot(normal)
         });
         let (w0, w1) = (load[0], (load[1] - load[0]) / l);
         let largest = (w0.abs() + load[1].abs()) * l * l;
@@ -103,9 +108,9 @@ fn a_coupler_is_a_beam_on_two_pins() {
             assert!((section.shear - shear).abs() < 2e-13 * largest);
         }
         // The first pin pulls the coupler with the axial force just behind it.
-        let along = states.body(coupler).turn;
+        let along = states.body(coupler).rotation;
         let pin = vec2(case.reaction("B.x"), case.reaction("B.y"));
-        assert!((link.at(0.0).axial + pin.dot(along)).abs() < 1e-12 * pin.norm());
+        assert!((link.section_after(0.0).axial + pin.dot(along)).abs() < 1e-12 * pin.norm());
     }
 }
 
@@ -113,21 +118,21 @@ fn a_coupler_is_a_beam_on_two_pins() {
 #[test]
 fn sections_close_at_the_second_end() {
     for mut case in all() {
-        let ledger = Ledger::new(&case.mechanism, &case.model).expect("every reaction");
+        let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
         for (t, q, q_dot, q_ddot) in case.states().into_iter().take(4) {
-            case.run(t, &q, &q_dot, &q_ddot);
-            let mut acts = Vec::new();
-            ledger.acts(&case.model, &case.work, &case.actions, &mut acts);
+            case.evaluate(t, &q, &q_dot, &q_ddot);
+            let mut wrenches = Vec::new();
+            free_body_forces.wrenches(&case.model, &case.workspace, &case.result, &mut wrenches);
             for b in (0..case.mechanism.bodies.len()).filter(|&b| b != case.mechanism.ground) {
                 let body = BodyId(b);
                 // A line across the body with all that acts within its length.
                 let points = [vec2(-9.0, 0.2), vec2(9.0, -0.1)];
-                let link = ledger
-                    .link_forces(&case.model, body, points, &case.work, &acts)
+                let link = free_body_forces
+                    .link_forces(&case.model, body, points, &case.workspace, &wrenches)
                     .expect("a link with a length");
                 assert_eq!(link.distribution, Distribution::Lumped);
-                let scale: f64 = 1.0 + acts.iter().map(|a| a.force.norm()).sum::<f64>();
-                for end in [link.at(0.0), link.at(link.length)] {
+                let scale: f64 = 1.0 + wrenches.iter().map(|a| a.force.norm()).sum::<f64>();
+                for end in [link.section_after(0.0), link.section_after(link.length)] {
                     let largest = end.axial.abs().max(end.shear.abs()).max(end.bending.abs());
                     // Everything stands between the ends: nothing is left at either. 18 m of lever.
                     assert!(largest < 1e-12 * 18.0 * scale, "{} {b}: {end:?}", case.name);
@@ -143,9 +148,11 @@ fn sections_close_at_the_second_end() {
 #[test]
 fn what_has_no_line_has_no_sections() {
     let mut case = Case::parse(BAR, |_| Vec::new());
-    case.run(0.0, &[0.0], &[0.0], &[0.0]);
-    let ledger = Ledger::new(&case.mechanism, &case.model).expect("every reaction");
-    let of = |body, points| ledger.link_forces(&case.model, body, points, &case.work, &[]);
+    case.evaluate(0.0, &[0.0], &[0.0], &[0.0]);
+    let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
+    let of = |body, points| {
+        free_body_forces.link_forces(&case.model, body, points, &case.workspace, &[])
+    };
     let points = [Vec2::ZERO, vec2(1.0, 0.0)];
     assert_eq!(of(case.body("ground"), points), None);
     assert_eq!(of(case.body("bar"), [Vec2::ZERO; 2]), None);

@@ -2,9 +2,9 @@
 
 use crate::scenes::{Case, all, body, case, load};
 use crate::statics::SLIDER_CRANK;
-use dwell_geometry::measure::Measured;
+use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Mechanism, Vec2, vec2};
-use dwell_kinetostatics::{By, LoadKind, Magnitude};
+use dwell_kinetostatics::{ForceSource, LoadKind, Magnitude};
 
 /// Over any motion a spring's power is −k (length − free) times the length's own speed, and a
 /// damper's −c times its square; the same with angles.
@@ -12,48 +12,52 @@ use dwell_kinetostatics::{By, LoadKind, Magnitude};
 fn springs_give_back_and_dampers_dissipate() {
     for mut case in all() {
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.run(t, &q, &q_dot, &q_ddot);
+            case.evaluate(t, &q, &q_dot, &q_ddot);
             let mut powers = vec![0.0; case.model.loads().len()];
-            case.model.load_powers(&case.work, &mut powers);
-            let states = case.work.states();
-            let acts_of = |i| {
-                let acts = case.work.loads().acts.iter();
-                acts.filter(move |a| a.by == By::Load(i))
+            case.model.load_powers(&case.workspace, &mut powers);
+            let states = case.workspace.states();
+            let wrenches_of = |i| {
+                let wrenches = case.workspace.loads().wrenches.iter();
+                wrenches.filter(move |a| a.source == ForceSource::Load(i))
             };
             for (i, load) in case.model.loads().iter().enumerate() {
-                let f = case.work.loads().magnitude[i];
+                let f = case.workspace.loads().magnitude[i];
                 let (measured, free) = match load.kind {
                     LoadKind::Spring {
                         bodies,
                         points,
-                        free,
-                    } => (Measured::Length { bodies, points }, Some(free)),
+                        free_length: free,
+                    } => (CoordinateFunction::Length { bodies, points }, Some(free)),
                     LoadKind::Damper { bodies, points } => {
-                        (Measured::Length { bodies, points }, None)
+                        (CoordinateFunction::Length { bodies, points }, None)
                     }
-                    LoadKind::TorsionSpring { bodies, free } => {
-                        (Measured::Angle(bodies), Some(free))
+                    LoadKind::TorsionSpring {
+                        bodies,
+                        free_angle: free,
+                    } => (CoordinateFunction::Angle(bodies), Some(free)),
+                    LoadKind::RotationalDamper { bodies } => {
+                        (CoordinateFunction::Angle(bodies), None)
                     }
-                    LoadKind::TorsionDamper { bodies } => (Measured::Angle(bodies), None),
                     _ => continue,
                 };
-                let [value, speed, _] = states.measure(measured);
+                let [value, velocity, _] = states.coordinate(measured);
                 let expected = match free {
-                    Some(free) => -f * (value - free) * speed,
-                    None => -f * speed * speed,
+                    Some(free) => -f * (value - free) * velocity,
+                    None => -f * velocity * velocity,
                 };
                 // Against the two parts of a stretch, each times the speed of both ends: the parts
                 // may nearly cancel, and so may the ends.
-                let size = f.abs() * (value.abs() + free.unwrap_or(speed).abs());
-                let own = acts_of(i).map(|act| {
-                    let body = states.body(act.body);
-                    size * (body.velocity_at(act.arm).norm() + body.spin.abs())
+                let size = f.abs() * (value.abs() + free.unwrap_or(velocity).abs());
+                let terms = wrenches_of(i).map(|wrench| {
+                    let body = states.body(wrench.body);
+                    size * (body.velocity_at(wrench.moment_arm).norm()
+                        + body.angular_velocity.abs())
                 });
-                let scale: f64 = own.sum();
-                let off = (powers[i] - expected).abs();
+                let scale: f64 = terms.sum();
+                let difference = (powers[i] - expected).abs();
                 assert!(
-                    off <= 1e-13 * scale.max(expected.abs()),
-                    "{} {}: {off}",
+                    difference <= 1e-13 * scale.max(expected.abs()),
+                    "{} {}: {difference}",
                     case.name,
                     load.name
                 );
@@ -67,34 +71,39 @@ fn springs_give_back_and_dampers_dissipate() {
 #[test]
 fn virtual_work_gives_what_the_actuators_feel() {
     for mut case in all() {
-        let mut bare = (case.model.workspace(), case.model.actions());
+        let mut unloaded = (case.model.workspace(), case.model.result_buffer());
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.run(t, &q, &q_dot, &q_ddot);
+            case.evaluate(t, &q, &q_dot, &q_ddot);
             case.model
-                .act(&q, &q_dot, &q_ddot, &mut bare.0, &mut bare.1)
+                .inverse_dynamics(&q, &q_dot, &q_ddot, &mut unloaded.0, &mut unloaded.1)
                 .expect("a pose");
             let (n, loads) = (q.len(), case.model.loads().len());
             let mut forces = vec![0.0; n * loads];
-            case.model.generalised_forces(&mut case.work, &mut forces);
+            case.model
+                .generalised_forces(&mut case.workspace, &mut forces);
             for i in 0..n {
                 let of_loads = (0..loads).map(|l| forces[l * n + i]);
                 let scale: f64 = of_loads.clone().map(f64::abs).sum();
-                let expected = bare.1.tau[i] - of_loads.sum::<f64>();
-                let off = (case.actions.tau[i] - expected).abs();
-                let scale = scale + bare.1.tau[i].abs();
+                let expected = unloaded.1.tau[i] - of_loads.sum::<f64>();
+                let difference = (case.result.tau[i] - expected).abs();
+                let scale = scale + unloaded.1.tau[i].abs();
                 // Rounding of some 50 loads through groups of up to four unknowns.
-                assert!(off < 1e-12 * scale, "{} {i}: {off} of {scale}", case.name);
+                assert!(
+                    difference < 1e-12 * scale,
+                    "{} {i}: {difference} of {scale}",
+                    case.name
+                );
             }
         }
     }
 }
 
-fn force(body: &'static str, direction: Vec2, follows: bool) -> impl Fn(&Mechanism) -> LoadKind {
+fn force(body: &'static str, direction: Vec2, body_fixed: bool) -> impl Fn(&Mechanism) -> LoadKind {
     move |mechanism| LoadKind::Force {
         body: crate::scenes::body(mechanism, body),
         point: vec2(0.2, 0.05),
         direction,
-        follows,
+        body_fixed,
     }
 }
 
@@ -107,16 +116,16 @@ fn a_force_follows_its_body() {
     let rod = following.body("rod");
     for k in 0..5 {
         let q = 0.4 + 0.5 * f64::from(k);
-        following.run(0.0, &[q], &[0.0], &[0.0]);
-        let turn = following.work.states().body(rod).turn;
-        let turned = force("rod", direction.turn(turn), false);
-        let mut fixed = Case::parse(SLIDER_CRANK, |m| vec![load("f", turned(m), 30.0)]);
-        fixed.run(0.0, &[q], &[0.0], &[0.0]);
-        assert_eq!(fixed.actions, following.actions);
-        let unturned = force("rod", direction, false);
-        let mut other = Case::parse(SLIDER_CRANK, |m| vec![load("f", unturned(m), 30.0)]);
-        other.run(0.0, &[q], &[0.0], &[0.0]);
-        assert!((other.actions.tau[0] - following.actions.tau[0]).abs() > 1e-3);
+        following.evaluate(0.0, &[q], &[0.0], &[0.0]);
+        let rotation = following.workspace.states().body(rod).rotation;
+        let rotated = force("rod", direction.rotate(rotation), false);
+        let mut fixed = Case::parse(SLIDER_CRANK, |m| vec![load("f", rotated(m), 30.0)]);
+        fixed.evaluate(0.0, &[q], &[0.0], &[0.0]);
+        assert_eq!(fixed.result, following.result);
+        let unrotated = force("rod", direction, false);
+        let mut other = Case::parse(SLIDER_CRANK, |m| vec![load("f", unrotated(m), 30.0)]);
+        other.evaluate(0.0, &[q], &[0.0], &[0.0]);
+        assert!((other.result.tau[0] - following.result.tau[0]).abs() > 1e-3);
     }
 }
 
@@ -125,30 +134,30 @@ fn a_force_follows_its_body() {
 #[test]
 fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
     let scene = case("slotted-rocker");
-    let mut bare = Case::of(&scene, |_| Vec::new());
+    let mut unloaded = Case::of(&scene, |_| Vec::new());
     let mut case = Case::of(&scene, |mechanism| {
         let bodies = ["rocker", "block"].map(|name| body(mechanism, name));
         vec![load("torque", LoadKind::Torque { bodies }, 5.0)]
     });
     for (t, q, q_dot, q_ddot) in case.states() {
-        bare.run(t, &q, &q_dot, &q_ddot);
-        case.run(t, &q, &q_dot, &q_ddot);
-        let largest = bare
-            .actions
+        unloaded.evaluate(t, &q, &q_dot, &q_ddot);
+        case.evaluate(t, &q, &q_dot, &q_ddot);
+        let largest = unloaded
+            .result
             .reactions
             .iter()
             .fold(5.0, |m: f64, r| m.max(r.abs()));
         // Five is added to and taken off the same frame: rounding of the largest.
         let same = |a: f64, b: f64| (a - b).abs() < 1e-13 * largest;
-        assert!(same(case.actions.tau[0], bare.actions.tau[0]));
+        assert!(same(case.result.tau[0], unloaded.result.tau[0]));
         for (k, &reaction) in case.model.reactions().iter().enumerate() {
             let name = case.mechanism.reaction_name(reaction);
             let of_torque = if name == "slot.moment" { -5.0 } else { 0.0 };
-            let [with, without] = [&case, &bare].map(|c| c.actions.reactions[k]);
+            let [with, without] = [&case, &unloaded].map(|c| c.result.reactions[k]);
             assert!(same(with - without, of_torque), "{name}: {with} {without}");
         }
         let mut power = [0.0];
-        case.model.load_powers(&case.work, &mut power);
+        case.model.load_powers(&case.workspace, &mut power);
         assert_eq!(power, [0.0]);
     }
 }
@@ -158,16 +167,20 @@ fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
 fn magnitudes_follow_their_signals() {
     for mut case in all() {
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.run(t, &q, &q_dot, &q_ddot);
-            let loads = case.model.loads().iter().zip(&case.work.loads().magnitude);
+            case.evaluate(t, &q, &q_dot, &q_ddot);
+            let loads = case
+                .model
+                .loads()
+                .iter()
+                .zip(&case.workspace.loads().magnitude);
             for (load, &f) in loads {
                 let LoadKind::Torque { bodies } = load.kind else {
                     continue;
                 };
-                let [angle, speed, _] = case.work.states().angle(bodies);
+                let [angle, velocity, _] = case.workspace.states().angle(bodies);
                 let expected = match load.name.as_str() {
-                    "fan" => -0.1 * speed * speed.abs() * (2.0 + (t + angle).sin()),
-                    "torque" => 0.4 - 0.2 * speed,
+                    "fan" => -0.1 * velocity * velocity.abs() * (2.0 + (t + angle).sin()),
+                    "torque" => 0.4 - 0.2 * velocity,
                     _ => 0.7,
                 };
                 // Another order of the same few operations.
@@ -187,12 +200,12 @@ fn statics_is_kinetostatics_at_rest() {
     for mut case in all() {
         for (t, q, ..) in case.states() {
             let rest = vec![0.0; q.len()];
-            case.run(t, &q, &rest, &rest);
-            let moving = case.actions.clone();
+            case.evaluate(t, &q, &rest, &rest);
+            let moving = case.result.clone();
             case.model
-                .statics(t, &q, &mut case.work, &mut case.actions)
+                .statics(t, &q, &mut case.workspace, &mut case.result)
                 .expect("a pose");
-            assert_eq!(case.actions, moving);
+            assert_eq!(case.result, moving);
         }
         let constant = |m: &Magnitude| matches!(m, Magnitude::Constant(_));
         assert!(case.model.loads().iter().any(|l| !constant(&l.magnitude)));

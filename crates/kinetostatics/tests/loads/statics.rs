@@ -1,8 +1,10 @@
 //! Statics by hand formulas, and against the potential.
 
 use crate::scenes::{Case, all, body, load, varied};
-use dwell_geometry::{Coordinate, Mechanism, Vec2, vec2};
-use dwell_kinetostatics::{KinetostaticsError, Load, LoadKind, Magnitude, Signal};
+use dwell_geometry::{Coordinate, JointId, Mechanism, Vec2, vec2};
+use dwell_kinetostatics::{
+    Friction, FrictionContact, KinetostaticsError, Load, LoadKind, Magnitude, Model, Signal,
+};
 
 const GRAVITY: LoadKind = LoadKind::Gravity {
     direction: vec2(0.0, -1.0),
@@ -44,10 +46,10 @@ fn a_pendulum_is_held_by_its_weight_times_its_lever() {
     let mut case = Case::parse(PENDULUM, |_| vec![load("weight", GRAVITY, 9.81)]);
     for k in 0..8 {
         let q = 0.8 * f64::from(k);
-        case.run(0.0, &[q], &[0.0], &[0.0]);
-        let lever = vec2(0.4, 0.3).turn(Vec2::from_angle(q)).x;
+        case.evaluate(0.0, &[q], &[0.0], &[0.0]);
+        let lever = vec2(0.4, 0.3).rotate(Vec2::from_angle(q)).x;
         // 20 N·m: a few units in the last place.
-        assert!((case.actions.tau[0] - 2.0 * 9.81 * lever).abs() < 1e-14 * 20.0);
+        assert!((case.result.tau[0] - 2.0 * 9.81 * lever).abs() < 1e-14 * 20.0);
         assert!(case.reaction("A.x").abs() < 1e-14 * 20.0);
         assert!((case.reaction("A.y") - 2.0 * 9.81).abs() < 1e-14 * 20.0);
     }
@@ -62,7 +64,7 @@ fn a_massless_slider_crank_carries_the_piston_force() {
             body: body(mechanism, "piston"),
             point: Vec2::ZERO,
             direction: vec2(-1.0, 0.0),
-            follows: false,
+            body_fixed: false,
         };
         vec![load("gas", kind, force)]
     };
@@ -70,13 +72,13 @@ fn a_massless_slider_crank_carries_the_piston_force() {
     for k in 0..9 {
         let q = 0.3 + 0.65 * f64::from(k);
         // At any speed: there is no mass.
-        case.run(0.0, &[q], &[3.0], &[-5.0]);
+        case.evaluate(0.0, &[q], &[3.0], &[-5.0]);
         let (r, l) = (0.1, 0.35);
         let sin = r * q.sin() / l;
         let cos = (1.0 - sin * sin).sqrt();
         let tangential = q.sin() * cos + q.cos() * sin;
         let found = [
-            case.actions.tau[0],
+            case.result.tau[0],
             case.reaction("guide.normal"),
             case.reaction("guide.moment"),
             case.reaction("B.x"),
@@ -103,10 +105,10 @@ fn a_massless_slider_crank_carries_the_piston_force() {
 fn potential_slope(case: &mut Case, q: f64) -> f64 {
     let h = 2e-3 * case.reach;
     let mut at = |k: f64| {
-        case.run(0.0, &[q + k * h], &[0.0], &[0.0]);
+        case.evaluate(0.0, &[q + k * h], &[0.0], &[0.0]);
         let loads = case.model.loads().len();
         (0..loads)
-            .filter_map(|i| case.model.potential(i, &case.work))
+            .filter_map(|i| case.model.potential_energy(i, &case.workspace))
             .sum::<f64>()
     };
     let mut d = |k: f64| at(k) - at(-k);
@@ -119,23 +121,26 @@ fn conservative_loads_are_held_by_the_slope_of_their_potential() {
         .into_iter()
         .filter(|c| c.model.plan().actuators() == 1)
     {
-        let mechanism = case.mechanism.clone();
         let loads = case.model.loads().to_vec();
-        for alone in loads {
-            let one = vec![alone.clone()];
-            case.model = case.model.with_loads(&mechanism, one).expect("it fits");
-            case.work = case.model.workspace();
+        for single in loads {
+            let one = vec![single.clone()];
+            case.model = case.model.with_loads(one).expect("it fits");
+            case.workspace = case.model.workspace();
             for (_, q, ..) in case.states().into_iter().take(3) {
-                case.run(0.0, &q, &[0.0], &[0.0]);
-                if case.model.potential(0, &case.work).is_none() {
+                case.evaluate(0.0, &q, &[0.0], &[0.0]);
+                if case.model.potential_energy(0, &case.workspace).is_none() {
                     continue;
                 }
-                let energy = case.model.potential(0, &case.work).unwrap_or(0.0).abs();
-                let tau = case.actions.tau[0];
+                let energy = case
+                    .model
+                    .potential_energy(0, &case.workspace)
+                    .unwrap_or(0.0)
+                    .abs();
+                let tau = case.result.tau[0];
                 let slope = potential_slope(&mut case, q[0]);
                 // Rounding of V over the step, 1e-16/2e-3, and h⁶ of the difference.
                 let tolerance = 1e-12 * energy + 2e-10 * (tau.abs() + energy);
-                let (name, load) = (&case.name, &alone.name);
+                let (name, load) = (&case.name, &single.name);
                 assert!(
                     (tau - slope).abs() < tolerance,
                     "{name} {load}: {tau} {slope}"
@@ -151,7 +156,7 @@ fn meeting_spring(free: f64) -> impl FnOnce(&Mechanism) -> Vec<Load> {
         let kind = LoadKind::Spring {
             bodies: ["ground", "crank"].map(|name| body(mechanism, name)),
             points: [vec2(0.1, 0.0); 2],
-            free,
+            free_length: free,
         };
         vec![load("weight", GRAVITY, 9.81), load("spring", kind, 50.0)]
     }
@@ -160,11 +165,11 @@ fn meeting_spring(free: f64) -> impl FnOnce(&Mechanism) -> Vec<Load> {
 #[test]
 fn a_spring_of_no_length_pulls_smoothly_or_says_that_it_has_no_direction() {
     let mut case = Case::parse(SLIDER_CRANK, meeting_spring(0.0));
-    case.run(0.0, &[0.0], &[1.0], &[0.0]);
-    assert_eq!(case.actions.tau[0], 0.0);
+    case.evaluate(0.0, &[0.0], &[1.0], &[0.0]);
+    assert_eq!(case.result.tau[0], 0.0);
     let mut tau_at = |q: f64| {
-        case.run(0.0, &[q], &[0.0], &[0.0]);
-        case.actions.tau[0]
+        case.evaluate(0.0, &[q], &[0.0], &[0.0]);
+        case.result.tau[0]
     };
     // V = k r² (1 − cos q): τ = k r² sin q, to rounding of a length of 1e-9 m.
     assert!((tau_at(1e-8) - 50.0 * 0.01 * 1e-8).abs() < 1e-16);
@@ -172,17 +177,17 @@ fn a_spring_of_no_length_pulls_smoothly_or_says_that_it_has_no_direction() {
     let mut case = Case::parse(SLIDER_CRANK, meeting_spring(0.02));
     let Case {
         model,
-        work,
-        actions,
+        workspace,
+        result,
         ..
     } = &mut case;
-    let error = model.statics(0.0, &[0.0], work, actions).err();
+    let error = model.statics(0.0, &[0.0], workspace, result).err();
     assert_eq!(error, Some(KinetostaticsError::NoDirection { load: 1 }));
     let load = error
         .and_then(|e| e.load())
         .map(|l| model.loads()[l].name.as_str());
     assert_eq!(load, Some("spring"));
-    assert!(model.statics(0.0, &[0.1], work, actions).is_ok());
+    assert!(model.statics(0.0, &[0.1], workspace, result).is_ok());
 }
 
 #[test]
@@ -196,13 +201,16 @@ fn a_damper_at_rest_needs_no_direction() {
     };
     let Case {
         model,
-        mut work,
-        mut actions,
+        mut workspace,
+        mut result,
         ..
     } = Case::parse(SLIDER_CRANK, damper);
-    assert_eq!(model.statics(0.0, &[0.0], &mut work, &mut actions), Ok(()));
-    assert_eq!(actions.tau, [0.0]);
-    let moving = model.kinetostatics(0.0, &[0.0], &[1.0], &[0.0], &mut work, &mut actions);
+    assert_eq!(
+        model.statics(0.0, &[0.0], &mut workspace, &mut result),
+        Ok(())
+    );
+    assert_eq!(result.tau, [0.0]);
+    let moving = model.kinetostatics(0.0, &[0.0], &[1.0], &[0.0], &mut workspace, &mut result);
     assert_eq!(moving, Err(KinetostaticsError::NoDirection { load: 0 }));
 }
 
@@ -211,11 +219,11 @@ fn a_magnitude_without_a_value_is_refused() {
     let endless = |_: &Mechanism| vec![varied("endless", GRAVITY, Signal::Time, &[0.0, 1e308])];
     let Case {
         model,
-        mut work,
-        mut actions,
+        mut workspace,
+        mut result,
         ..
     } = Case::parse(PENDULUM, endless);
-    let error = model.statics(1e10, &[0.0], &mut work, &mut actions);
+    let error = model.statics(1e10, &[0.0], &mut workspace, &mut result);
     assert_eq!(
         error,
         Err(KinetostaticsError::MagnitudeNotFinite { load: 0 })
@@ -226,7 +234,7 @@ fn a_magnitude_without_a_value_is_refused() {
 fn loads_that_do_not_fit_are_refused() {
     let case = Case::parse(PENDULUM, |_| Vec::new());
     let refused = |load: Load| {
-        let found = case.model.clone().with_loads(&case.mechanism, vec![load]);
+        let found = case.model.clone().with_loads(vec![load]);
         found.err().map(|e| e.to_string())
     };
     let bodies = [dwell_geometry::BodyId(0), dwell_geometry::BodyId(9)];
@@ -234,12 +242,14 @@ fn loads_that_do_not_fit_are_refused() {
     let at = |what| Some(format!("load 0: {what}"));
     assert_eq!(
         refused(load("torque", torque, 1.0)),
-        at("it acts on a body that is not there")
+        at("it acts on a body that does not exist")
     );
     let long = LoadKind::Gravity {
         direction: vec2(0.0, 2.0),
     };
-    let senseless = at("a point, direction or free length that makes no sense");
+    let senseless = at(
+        "its points and free value must be finite, its direction a unit vector, its free length not negative",
+    );
     assert_eq!(refused(load("gravity", long, 1.0)), senseless);
     let not = at("its magnitude is not a finite number");
     assert_eq!(refused(load("gravity", GRAVITY, f64::NAN)), not);
@@ -248,4 +258,44 @@ fn loads_that_do_not_fit_are_refused() {
     let varied = varied("gravity", GRAVITY, Signal::Value(travel), &[1.0]);
     assert!(matches!(varied.magnitude, Magnitude::Law(..)));
     assert_eq!(refused(varied), unknown);
+}
+
+/// The friction of a joint depends on all of its reactions, whichever of them are requested.
+#[test]
+fn friction_has_its_reactions_whichever_are_requested() {
+    let case = Case::parse(PENDULUM, |mechanism| {
+        let joint = JointId(0);
+        let friction = Friction {
+            joint,
+            coefficient: 0.3,
+            contact: FrictionContact::Pin { radius: 0.05 },
+            regularization_speed: 0.1,
+        };
+        let bodies = mechanism.joints[joint.0].bodies;
+        vec![
+            load("weight", GRAVITY, 9.81),
+            Load {
+                name: "friction".into(),
+                kind: LoadKind::Torque { bodies },
+                magnitude: Magnitude::Friction(friction),
+            },
+        ]
+    });
+    let evaluate = |model: &Model| {
+        let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
+        model
+            .kinetostatics(0.0, &[0.4], &[2.0], &[3.0], &mut workspace, &mut result)
+            .expect("a pose");
+        assert!(workspace.loads().magnitude[1] < -0.1, "it rubs");
+        result
+    };
+    let all = evaluate(&case.model);
+    let y_only = [case.model.reactions()[1]];
+    let y_only = case.model.clone().with_reactions(&y_only).expect("A.y");
+    let found = evaluate(&y_only);
+    assert_eq!(
+        (&found.tau, found.reactions[0]),
+        (&all.tau, all.reactions[1])
+    );
+    assert_eq!(evaluate(&case.model.without_reactions()).tau, all.tau);
 }

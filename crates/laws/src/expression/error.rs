@@ -29,32 +29,31 @@ impl ExpressionError {
     }
 }
 
-/// The candidate that was probably meant, if one is near enough: a third of its letters wrong at
-/// most, and at least one allowed.
-pub(super) fn nearest<'a>(
-    name: &str,
-    candidates: impl Iterator<Item = &'a str>,
-) -> Option<&'a str> {
-    let name = name.to_lowercase();
-    let length = name.chars().count();
-    // Nobody means a name of thousands of letters, and the distance takes their square.
-    if length > 64 {
+/// Longest name that is compared with others: the distance takes the square of its length.
+const MAX_COMPARED: usize = 64;
+
+/// The name that was probably meant: the one that differs in capitals only, or the nearest, with one slip
+/// (a letter inserted, left out, replaced, or exchanged with its neighbour) for three letters, and three at most.
+pub fn nearest<'n>(wrong: &str, names: impl Iterator<Item = &'n str> + Clone) -> Option<&'n str> {
+    let length = wrong.chars().count();
+    if length > MAX_COMPARED {
         return None;
     }
-    candidates
-        .filter(|candidate| candidate.len() <= 256)
-        .map(|candidate| {
-            let folded = candidate.to_lowercase();
-            let letters = folded.chars().count();
-            let allowed = (letters.min(length) / 3).max(1);
-            // Letters inserted, left out, replaced, or exchanged with a neighbour.
-            let wrong = strsim::osa_distance(&name, &folded);
-            (wrong, allowed, letters, candidate)
-        })
-        // One letter for another one-letter name is no likeness.
-        .filter(|&(wrong, allowed, length, _)| wrong <= allowed && wrong < length)
-        .min_by_key(|&(wrong, ..)| wrong)
-        .map(|(.., candidate)| candidate)
+    let folded = wrong.to_lowercase();
+    if let Some(same) = names.clone().find(|n| n.to_lowercase() == folded) {
+        return Some(same);
+    }
+    // Two one-letter names have nothing in common; `A` is no slip for `B`.
+    let slips = match length {
+        0 | 1 => 0,
+        _ => length.div_ceil(3).min(3),
+    };
+    names
+        .filter(|n| n.chars().count().abs_diff(length) <= slips)
+        .map(|n| (strsim::osa_distance(&n.to_lowercase(), &folded), n))
+        .filter(|(d, n)| *d <= slips && *d < n.chars().count())
+        .min_by_key(|(d, _)| *d)
+        .map(|(_, n)| n)
 }
 
 #[cfg(test)]
@@ -63,15 +62,15 @@ mod tests {
 
     #[test]
     fn the_nearest_or_none() {
-        let names = ["t", "phi", "phi.speed", "omega"];
+        let names = ["t", "phi", "phi.velocity", "omega"];
         for (name, meant) in [
             ("omga", Some("omega")),
             ("oemga", Some("omega")),
             ("Omega", Some("omega")),
-            ("phi.sped", Some("phi.speed")),
+            ("phi.velocty", Some("phi.velocity")),
             ("T", Some("t")),
             ("x", None),
-            ("velocity", None),
+            ("height", None),
         ] {
             assert_eq!(nearest(name, names.into_iter()), meant, "{name}");
         }

@@ -101,7 +101,7 @@ impl Function {
         ("if", Self::If),
     ];
 
-    pub(super) fn named(name: &str) -> Option<Self> {
+    pub(super) fn from_name(name: &str) -> Option<Self> {
         let found = Self::ALL.iter().find(|(known, _)| *known == name);
         found.map(|&(_, function)| function)
     }
@@ -112,7 +112,7 @@ impl Function {
     }
 
     /// How many arguments it takes, the comparison of `if` counted as one.
-    pub(super) fn arguments(self) -> usize {
+    pub(super) fn argument_count(self) -> usize {
         match self {
             Self::Unary(_) => 1,
             Self::Binary(_) => 2,
@@ -122,15 +122,6 @@ impl Function {
 }
 
 impl Comparison {
-    pub(super) fn symbol(self) -> &'static str {
-        match self {
-            Self::Less => "<",
-            Self::LessOrEqual => "<=",
-            Self::Greater => ">",
-            Self::GreaterOrEqual => ">=",
-        }
-    }
-
     pub(super) fn holds(self, a: f64, b: f64) -> bool {
         match self {
             Self::Less => a < b,
@@ -180,8 +171,8 @@ impl Unary {
                 let (t, s) = (value, 1.0 + value * value);
                 [s, 2.0 * t * s, 2.0 * s * (1.0 + 3.0 * t * t)]
             }
-            Self::Asin => arc(x),
-            Self::Acos => arc(x).map(|d| -d),
+            Self::Asin => asin_derivatives(x),
+            Self::Acos => asin_derivatives(x).map(|d| -d),
             Self::Atan => {
                 let d = 1.0 / (1.0 + x * x);
                 [d, -2.0 * x * d * d, (6.0 * x * x - 2.0) * d * d * d]
@@ -194,8 +185,8 @@ impl Unary {
                 [s, -2.0 * t * s, 2.0 * s * (2.0 * t * t - s)]
             }
             Self::Exp => [value; 3],
-            Self::Ln => logarithm(x),
-            Self::Log10 => logarithm(x).map(|d| d / LN_10),
+            Self::Ln => ln_derivatives(x),
+            Self::Log10 => ln_derivatives(x).map(|d| d / LN_10),
             Self::Sqrt => {
                 let d = 0.5 / value;
                 [d, -0.5 * d / x, 0.75 * d / (x * x)]
@@ -205,13 +196,13 @@ impl Unary {
     }
 }
 
-fn arc(x: f64) -> [f64; 3] {
+fn asin_derivatives(x: f64) -> [f64; 3] {
     let r = 1.0 / ((1.0 - x) * (1.0 + x));
     let d = r.sqrt();
     [d, x * d * r, (1.0 + 2.0 * x * x) * d * r * r]
 }
 
-fn logarithm(x: f64) -> [f64; 3] {
+fn ln_derivatives(x: f64) -> [f64; 3] {
     let d = 1.0 / x;
     [d, -d * d, 2.0 * d * d * d]
 }
@@ -226,16 +217,16 @@ impl Binary {
             Self::Power => power(a, b),
             Self::Atan2 => a.atan2(b),
             Self::Hypot => a.hypot(b),
-            Self::Min | Self::Max if self.first(a, b) => a,
+            Self::Min | Self::Max if self.selects_first(a, b) => a,
             Self::Min | Self::Max => b,
         }
     }
 
     /// Whether `min` or `max` takes its first argument: on a tie it does, and not a number is taken
     /// rather than hidden.
-    pub(super) fn first(self, a: f64, b: f64) -> bool {
-        let wins = if self == Self::Min { a <= b } else { a >= b };
-        a.is_nan() || (wins && !b.is_nan())
+    pub(super) fn selects_first(self, a: f64, b: f64) -> bool {
+        let is_selected = if self == Self::Min { a <= b } else { a >= b };
+        a.is_nan() || (is_selected && !b.is_nan())
     }
 }
 

@@ -3,7 +3,7 @@
 use super::function::{Binary, Unary, power, sign};
 
 /// What a tape can be run on.
-pub(super) trait Scalar: Copy {
+pub(super) trait TapeScalar: Copy {
     fn constant(value: f64) -> Self;
     fn value(self) -> f64;
     fn negate(self) -> Self;
@@ -11,7 +11,7 @@ pub(super) trait Scalar: Copy {
     fn binary(self, operation: Binary, other: Self) -> Self;
 }
 
-impl Scalar for f64 {
+impl TapeScalar for f64 {
     fn constant(value: f64) -> Self {
         value
     }
@@ -37,35 +37,38 @@ impl Scalar for f64 {
 /// that of a plain number is, to the last bit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Jet {
-    at: [f64; 4],
+    entries: [f64; 4],
     /// Whether it moves with the variable at all. That its derivatives are zero does not tell:
     /// those of x⁴ are, at 0, and those of its root are not.
-    moves: bool,
+    is_active: bool,
 }
 
 impl Jet {
     /// The variable itself.
     pub(super) fn variable(value: f64) -> Self {
-        Self::moving([value, 1.0, 0.0, 0.0])
+        Self::active([value, 1.0, 0.0, 0.0])
     }
 
-    fn moving(at: [f64; 4]) -> Self {
-        Self { at, moves: true }
+    fn active(entries: [f64; 4]) -> Self {
+        Self {
+            entries,
+            is_active: true,
+        }
     }
 
     /// The value and its derivatives; all undefined where the value is.
     pub(super) fn derivatives(self) -> [f64; 4] {
-        if self.at[0].is_nan() {
+        if self.entries[0].is_nan() {
             [f64::NAN; 4]
         } else {
-            self.at
+            self.entries
         }
     }
 
     /// f(self) by the chain rule, from f and its first three derivatives there.
     fn chain(self, f: [f64; 4]) -> Self {
-        let [_, u1, u2, u3] = self.at;
-        Self::moving([
+        let [_, u1, u2, u3] = self.entries;
+        Self::active([
             f[0],
             f[1] * u1,
             f[2] * u1 * u1 + f[1] * u2,
@@ -74,10 +77,10 @@ impl Jet {
     }
 
     /// Its derivative as a jet, with its last entry unknown.
-    fn rate(self) -> Self {
-        let [_, a1, a2, a3] = self.at;
+    fn derivative(self) -> Self {
+        let [_, a1, a2, a3] = self.entries;
         Self {
-            at: [a1, a2, a3, f64::NAN],
+            entries: [a1, a2, a3, f64::NAN],
             ..self
         }
     }
@@ -85,19 +88,19 @@ impl Jet {
     /// |self|. Where it is zero, the first derivative that is not decides: an odd one changes the
     /// sign, and the derivatives are the mean of both sides, 0; an even one does not.
     fn abs(self) -> Self {
-        let leading = self.at.iter().position(|&d| d != 0.0);
+        let leading = self.entries.iter().position(|&d| d != 0.0);
         let sign = match leading {
-            Some(k) if k % 2 == 0 => sign(self.at[k]),
+            Some(k) if k % 2 == 0 => sign(self.entries[k]),
             _ => 0.0,
         };
-        let mut at = self.at.map(|d| sign * d);
-        at[0] = self.at[0].abs();
-        Self { at, ..self }
+        let mut entries = self.entries.map(|d| sign * d);
+        entries[0] = self.entries[0].abs();
+        Self { entries, ..self }
     }
 
     fn multiply(self, other: Self) -> Self {
-        let [a, b] = [self.at, other.at];
-        Self::moving([
+        let [a, b] = [self.entries, other.entries];
+        Self::active([
             a[0] * b[0],
             a[1] * b[0] + a[0] * b[1],
             a[2] * b[0] + 2.0 * a[1] * b[1] + a[0] * b[2],
@@ -107,20 +110,20 @@ impl Jet {
 
     /// The product rule for (self/other) · other, solved for one derivative after the other.
     fn divide(self, other: Self) -> Self {
-        let [a, b] = [self.at, other.at];
+        let [a, b] = [self.entries, other.entries];
         let q = a[0] / b[0];
         let q1 = (a[1] - q * b[1]) / b[0];
         let q2 = (a[2] - 2.0 * q1 * b[1] - q * b[2]) / b[0];
         let q3 = (a[3] - 3.0 * (q2 * b[1] + q1 * b[2]) - q * b[3]) / b[0];
-        Self::moving([q, q1, q2, q3])
+        Self::active([q, q1, q2, q3])
     }
 
     /// A constant exponent needs no logarithm: any base will do, and the derivatives of a whole
     /// power are exact at 0 too.
     fn power(self, exponent: Self) -> Self {
-        let [x, n] = [self.at[0], exponent.at[0]];
+        let [x, n] = [self.entries[0], exponent.entries[0]];
         let value = power(x, n);
-        if !exponent.moves {
+        if !exponent.is_active {
             let falling = [n, n * (n - 1.0), n * (n - 1.0) * (n - 2.0)];
             let derivative = |k: usize, less: f64| match falling[k] {
                 0.0 => 0.0,
@@ -129,83 +132,86 @@ impl Jet {
             let [d1, d2, d3] = [derivative(0, 1.0), derivative(1, 2.0), derivative(2, 3.0)];
             return self.chain([value, d1, d2, d3]);
         }
-        if !self.moves && x == 0.0 && n > 0.0 {
+        if !self.is_active && x == 0.0 && n > 0.0 {
             return exponent.chain([value, 0.0, 0.0, 0.0]);
         }
         // exp(n ln x), whose derivatives are undefined unless x > 0.
         let logarithm = if x > 0.0 {
             self.unary(Unary::Ln)
         } else {
-            Self::moving([f64::NAN; 4])
+            Self::active([f64::NAN; 4])
         };
-        let [_, d1, d2, d3] = exponent.multiply(logarithm).chain([value; 4]).at;
-        Self::moving([value, d1, d2, d3])
+        let [_, d1, d2, d3] = exponent.multiply(logarithm).chain([value; 4]).entries;
+        Self::active([value, d1, d2, d3])
     }
 
     /// θ′ = (x y′ − y x′)/(x² + y²), with both arguments divided by their present hypotenuse so
     /// that no square overflows.
     fn atan2(self, other: Self) -> Self {
-        let value = Binary::Atan2.value(self.at[0], other.at[0]);
+        let value = Binary::Atan2.value(self.entries[0], other.entries[0]);
         let [y, x] = Self::over_hypotenuse(self, other);
-        let rate = x.multiply(y.rate()).minus(y.multiply(x.rate()));
-        let [d1, d2, d3, _] = rate.divide(x.multiply(x).plus(y.multiply(y))).at;
-        Self::moving([value, d1, d2, d3])
+        let numerator = x.multiply(y.derivative()).minus(y.multiply(x.derivative()));
+        let [d1, d2, d3, _] = numerator.divide(x.multiply(x).plus(y.multiply(y))).entries;
+        Self::active([value, d1, d2, d3])
     }
 
     /// From h h′ = x x′ + y y′, h² and the derivatives of both sides.
     fn hypot(self, other: Self) -> Self {
-        let h = Binary::Hypot.value(self.at[0], other.at[0]);
+        let h = Binary::Hypot.value(self.entries[0], other.entries[0]);
         let [x, y] = Self::over_hypotenuse(self, other);
-        let [n, n1, n2, _] = x.multiply(x.rate()).plus(y.multiply(y.rate())).at;
+        let [n, n1, n2, _] = x
+            .multiply(x.derivative())
+            .plus(y.multiply(y.derivative()))
+            .entries;
         // With h scaled to 1.
         let h1 = n;
         let h2 = n1 - h1 * h1;
         let h3 = n2 - 3.0 * h1 * h2;
-        Self::moving([h, h * h1, h * h2, h * h3])
+        Self::active([h, h * h1, h * h2, h * h3])
     }
 
     fn over_hypotenuse(a: Self, b: Self) -> [Self; 2] {
-        let h = a.at[0].hypot(b.at[0]);
+        let h = a.entries[0].hypot(b.entries[0]);
         [a, b].map(|jet| Self {
-            at: jet.at.map(|d| d / h),
+            entries: jet.entries.map(|d| d / h),
             ..jet
         })
     }
 
     fn plus(self, other: Self) -> Self {
-        Self::moving(std::array::from_fn(|k| self.at[k] + other.at[k]))
+        Self::active(std::array::from_fn(|k| self.entries[k] + other.entries[k]))
     }
 
     fn minus(self, other: Self) -> Self {
-        Self::moving(std::array::from_fn(|k| self.at[k] - other.at[k]))
+        Self::active(std::array::from_fn(|k| self.entries[k] - other.entries[k]))
     }
 }
 
-impl Scalar for Jet {
+impl TapeScalar for Jet {
     fn constant(value: f64) -> Self {
         Self {
-            at: [value, 0.0, 0.0, 0.0],
-            moves: false,
+            entries: [value, 0.0, 0.0, 0.0],
+            is_active: false,
         }
     }
 
     fn value(self) -> f64 {
-        self.at[0]
+        self.entries[0]
     }
 
     fn negate(self) -> Self {
         Self {
-            at: self.at.map(|d| -d),
+            entries: self.entries.map(|d| -d),
             ..self
         }
     }
 
     fn unary(self, function: Unary) -> Self {
-        let value = function.value(self.at[0]);
-        if !self.moves {
+        let value = function.value(self.entries[0]);
+        if !self.is_active {
             return Self::constant(value);
         }
-        match function.derivatives(self.at[0], value) {
+        match function.derivatives(self.entries[0], value) {
             Some([d1, d2, d3]) => self.chain([value, d1, d2, d3]),
             None if function == Unary::Abs => self.abs(),
             None => Self::constant(value),
@@ -213,8 +219,8 @@ impl Scalar for Jet {
     }
 
     fn binary(self, operation: Binary, other: Self) -> Self {
-        if !(self.moves || other.moves) {
-            return Self::constant(operation.value(self.at[0], other.at[0]));
+        if !(self.is_active || other.is_active) {
+            return Self::constant(operation.value(self.entries[0], other.entries[0]));
         }
         match operation {
             Binary::Add => self.plus(other),
@@ -224,7 +230,11 @@ impl Scalar for Jet {
             Binary::Power => self.power(other),
             Binary::Atan2 => self.atan2(other),
             Binary::Hypot => self.hypot(other),
-            Binary::Min | Binary::Max if operation.first(self.at[0], other.at[0]) => self,
+            Binary::Min | Binary::Max
+                if operation.selects_first(self.entries[0], other.entries[0]) =>
+            {
+                self
+            }
             Binary::Min | Binary::Max => other,
         }
     }

@@ -4,7 +4,7 @@
 //! - Numbers: `2`, `0.5`, `.5`, `1e-3`, `1.5E+2`. There are no units: everything is SI.
 //! - Operators, the loosest first: `+ -`, `* /`, the sign `-x`, `^`. Equals are taken from the
 //!   left, powers from the right: `2^3^2` is 2⁹, `-x^2` is −(x²), `2^-x` is 2⁻ˣ.
-//! - Names: letters, digits, `_` and `.`, not beginning with a digit or a point: `phi.speed`. Any
+//! - Names: letters, digits, `_` and `.`, not beginning with a digit or a point: `phi.velocity`. Any
 //!   other name stands between backticks: `` `my-body.angle` ``, since `my-body` is a difference.
 //! - Constants: `pi`, and `tau` = 2π; a variable of that name comes first. Euler's number is
 //!   `exp(1)`: an `e` would hide a name, or a forgotten one.
@@ -29,20 +29,18 @@ mod parse;
 mod tape;
 mod token;
 
-use std::fmt;
-
-pub use error::ExpressionError;
-use jet::{Jet, Scalar};
+pub use error::{ExpressionError, nearest};
+use jet::{Jet, TapeScalar};
 use tape::{Op, Tape};
 
-/// An expression of named variables, ready to be evaluated. Its language is told
-/// [here](crate::expression). `Display` writes a text that parses to the same expression again.
+/// An expression of named variables, ready to be evaluated. Its language is described
+/// [in the module](crate::expression).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expression {
     tape: Tape,
     /// The variables that occur, in order of first use, and which of the given ones they are.
     names: Vec<String>,
-    places: Vec<usize>,
+    variable_indices: Vec<usize>,
 }
 
 impl Expression {
@@ -55,20 +53,23 @@ impl Expression {
     /// nesting (about 60 parentheses, or 32 intermediate results at once).
     pub fn parse(text: &str, variables: &[&str]) -> Result<Self, ExpressionError> {
         let tape = parse::parse(text, variables)?;
-        let mut places = Vec::new();
+        let mut variable_indices = Vec::new();
         let mut seen = vec![false; variables.len()];
         for op in &tape.ops {
             if let Op::Variable(index) = *op
                 && !std::mem::replace(&mut seen[index], true)
             {
-                places.push(index);
+                variable_indices.push(index);
             }
         }
-        let names = places.iter().map(|&i| variables[i].to_owned()).collect();
+        let names = variable_indices
+            .iter()
+            .map(|&i| variables[i].to_owned())
+            .collect();
         Ok(Self {
             tape,
             names,
-            places,
+            variable_indices,
         })
     }
 
@@ -77,15 +78,28 @@ impl Expression {
         &self.names
     }
 
+    /// The same expression of the variables that occur alone: it is then evaluated with a value for each of
+    /// [`variables`](Self::variables), in their order.
+    pub fn retain_used(mut self) -> Self {
+        for op in &mut self.tape.ops {
+            if let Op::Variable(index) = op {
+                let position = self.variable_indices.iter().position(|i| i == index);
+                *index = position.unwrap_or_default();
+            }
+        }
+        self.variable_indices = (0..self.names.len()).collect();
+        self
+    }
+
     /// The value for `values` of all variables given to [`parse`](Self::parse), in their order. A
     /// variable without a value is NaN.
-    pub fn at(&self, values: &[f64]) -> f64 {
+    pub fn eval(&self, values: &[f64]) -> f64 {
         self.tape.run(|i| value(values, i))
     }
 
     /// The value, and its first three derivatives with respect to the variable of that place in
     /// the list given to [`parse`](Self::parse), the others held.
-    pub fn along(&self, values: &[f64], variable: usize) -> [f64; 4] {
+    pub fn derivatives_wrt(&self, values: &[f64], variable: usize) -> [f64; 4] {
         let jet = self.tape.run(|i| {
             let value = value(values, i);
             if i == variable {
@@ -100,16 +114,6 @@ impl Expression {
 
 fn value(values: &[f64], index: usize) -> f64 {
     values.get(index).copied().unwrap_or(f64::NAN)
-}
-
-impl fmt::Display for Expression {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut table = vec![""; self.places.iter().max().map_or(0, |last| last + 1)];
-        for (&place, name) in self.places.iter().zip(&self.names) {
-            table[place] = name;
-        }
-        f.write_str(&tape::print(&self.tape.ops, |i| table[i]))
-    }
 }
 
 #[cfg(test)]

@@ -5,14 +5,14 @@ use std::ops::Range;
 
 use super::error::{ExpressionError, nearest};
 use super::function::{Binary, Comparison, Constant, Function};
-use super::tape::{Op, PLACES, Tape, is_plain, run};
-use super::token::{self, Kind, Token};
+use super::tape::{Op, STACK_SIZE, Tape, is_identifier, run};
+use super::token::{self, Token, TokenKind};
 
 /// How deep parentheses, powers and signs may nest: each takes a few calls of the parser.
-const NESTING: usize = 64;
+const MAX_NESTING: usize = 64;
 
 /// How tightly the sign of an operand binds: -x^2 is -(x^2), and -x*y is (-x)*y.
-const SIGN: u8 = 6;
+const SIGN_BINDING: u8 = 6;
 
 /// A part of the text that has a value.
 struct Operand {
@@ -25,11 +25,11 @@ struct Parser<'a> {
     text: &'a str,
     variables: &'a [&'a str],
     /// The token just consumed, and the one to come.
-    before: Option<Token>,
+    previous: Option<Token>,
     token: Token,
     tape: Tape,
     /// How many results the tape keeps here.
-    kept: usize,
+    stack_depth: usize,
     nesting: usize,
 }
 
@@ -38,57 +38,57 @@ pub(super) fn parse(text: &str, variables: &[&str]) -> Result<Tape, ExpressionEr
     let mut parser = Parser {
         text,
         variables,
-        before: None,
-        token: token::next(text, 0)?,
+        previous: None,
+        token: token::next_token(text, 0)?,
         tape: Tape::default(),
-        kept: 0,
+        stack_depth: 0,
         nesting: 0,
     };
     parser.operand(0)?;
     match parser.token.kind {
-        Kind::End => Ok(parser.tape),
+        TokenKind::EndOfText => Ok(parser.tape),
         _ => Err(parser.unexpected()),
     }
 }
 
 /// The operation between two operands, and how tightly it binds the one before and after it.
-fn infix(kind: Kind) -> Option<(Binary, u8, u8)> {
+fn infix(kind: TokenKind) -> Option<(Binary, u8, u8)> {
     Some(match kind {
-        Kind::Plus => (Binary::Add, 1, 2),
-        Kind::Minus => (Binary::Subtract, 1, 2),
-        Kind::Star => (Binary::Multiply, 3, 4),
-        Kind::Slash => (Binary::Divide, 3, 4),
-        Kind::Caret => (Binary::Power, 8, 7),
+        TokenKind::Plus => (Binary::Add, 1, 2),
+        TokenKind::Minus => (Binary::Subtract, 1, 2),
+        TokenKind::Star => (Binary::Multiply, 3, 4),
+        TokenKind::Slash => (Binary::Divide, 3, 4),
+        TokenKind::Caret => (Binary::Power, 8, 7),
         _ => return None,
     })
 }
 
 impl<'a> Parser<'a> {
     fn advance(&mut self) -> Result<(), ExpressionError> {
-        self.before = Some(self.token);
-        self.token = token::next(self.text, self.token.to)?;
+        self.previous = Some(self.token);
+        self.token = token::next_token(self.text, self.token.end)?;
         Ok(())
     }
 
-    fn of(&self, span: Range<usize>) -> &'a str {
+    fn slice(&self, span: Range<usize>) -> &'a str {
         self.text.get(span).unwrap_or("")
     }
 
     /// Everything from here that binds at least as tightly as `least`.
-    fn operand(&mut self, least: u8) -> Result<Operand, ExpressionError> {
+    fn operand(&mut self, min_binding: u8) -> Result<Operand, ExpressionError> {
         self.nesting += 1;
-        if self.nesting > NESTING {
+        if self.nesting > MAX_NESTING {
             return Err(self.too_deep(self.token.span()));
         }
         let mut left = self.prefix()?;
-        while let Some((operation, before, after)) = infix(self.token.kind) {
-            if before < least {
+        while let Some((operation, left_binding, right_binding)) = infix(self.token.kind) {
+            if left_binding < min_binding {
                 break;
             }
             self.advance()?;
-            let right = self.operand(after)?;
+            let right = self.operand(right_binding)?;
             let span = left.span.start..right.span.end;
-            left = self.join(Op::Binary(operation), span, &[left, right])?;
+            left = self.emit(Op::Binary(operation), span, &[left, right])?;
         }
         self.nesting -= 1;
         Ok(left)
@@ -97,51 +97,51 @@ impl<'a> Parser<'a> {
     fn prefix(&mut self) -> Result<Operand, ExpressionError> {
         let token = self.token;
         match token.kind {
-            Kind::Number(number) => {
+            TokenKind::Number(number) => {
                 self.advance()?;
-                self.join(Op::Number(number), token.span(), &[])
+                self.emit(Op::Number(number), token.span(), &[])
             }
-            Kind::Plain => self.name(token),
-            Kind::Quoted => {
+            TokenKind::Identifier => self.name(token),
+            TokenKind::QuotedIdentifier => {
                 self.advance()?;
-                let name = self.of(token.from + 1..token.to - 1);
+                let name = self.slice(token.start + 1..token.end - 1);
                 match self.variables.iter().position(|v| *v == name) {
-                    Some(index) => self.join(Op::Variable(index), token.span(), &[]),
+                    Some(index) => self.emit(Op::Variable(index), token.span(), &[]),
                     None => Err(self.unknown_name(name, token)),
                 }
             }
-            Kind::Minus => {
+            TokenKind::Minus => {
                 self.advance()?;
-                let operand = self.operand(SIGN)?;
-                let span = token.from..operand.span.end;
-                self.join(Op::Negate, span, &[operand])
+                let operand = self.operand(SIGN_BINDING)?;
+                let span = token.start..operand.span.end;
+                self.emit(Op::Negate, span, &[operand])
             }
-            Kind::Open => {
+            TokenKind::OpenParen => {
                 self.advance()?;
                 let inner = self.operand(0)?;
-                let span = token.from..self.token.to;
+                let span = token.start..self.token.end;
                 self.close(token)?;
                 Ok(Operand { span, ..inner })
             }
-            _ => Err(self.no_operand()),
+            _ => Err(self.missing_operand()),
         }
     }
 
     fn name(&mut self, token: Token) -> Result<Operand, ExpressionError> {
         self.advance()?;
-        let name = self.of(token.span());
-        if self.token.kind == Kind::Open {
-            return match Function::named(name) {
+        let name = self.slice(token.span());
+        if self.token.kind == TokenKind::OpenParen {
+            return match Function::from_name(name) {
                 Some(function) => self.call(function, token),
                 None => Err(self.unknown_function(name, token)),
             };
         }
         // Names of the scene come first: none of them is hidden by a constant.
         if let Some(index) = self.variables.iter().position(|v| *v == name) {
-            return self.join(Op::Variable(index), token.span(), &[]);
+            return self.emit(Op::Variable(index), token.span(), &[]);
         }
         match Constant::ALL.iter().find(|(known, _)| *known == name) {
-            Some(&(_, constant)) => self.join(Op::Constant(constant), token.span(), &[]),
+            Some(&(_, constant)) => self.emit(Op::Constant(constant), token.span(), &[]),
             None => Err(self.unknown_name(name, token)),
         }
     }
@@ -152,7 +152,7 @@ impl<'a> Parser<'a> {
         let mut operands = Vec::new();
         let mut comparison = None;
         let mut found = 0;
-        while !(found == 0 && self.token.kind == Kind::Close) {
+        while !(found == 0 && self.token.kind == TokenKind::CloseParen) {
             if found > 0 {
                 self.advance()?;
             }
@@ -161,13 +161,13 @@ impl<'a> Parser<'a> {
                 comparison = Some(self.comparison(&mut operands)?);
             }
             found += 1;
-            if self.token.kind != Kind::Comma {
+            if self.token.kind != TokenKind::Comma {
                 break;
             }
         }
-        let span = name.from..self.token.to;
+        let span = name.start..self.token.end;
         self.close(open)?;
-        let needed = function.arguments();
+        let needed = function.argument_count();
         let op = match (function, comparison) {
             _ if found != needed => {
                 let called = function.name();
@@ -180,13 +180,13 @@ impl<'a> Parser<'a> {
             (_, Some(comparison)) => Op::If(comparison),
             (_, None) => Op::Clamp,
         };
-        self.join(op, span, &operands)
+        self.emit(op, span, &operands)
     }
 
     /// The rest of the first argument of `if`, whose first operand has been read.
     fn comparison(&mut self, operands: &mut Vec<Operand>) -> Result<Comparison, ExpressionError> {
-        let Kind::Comparison(comparison) = self.token.kind else {
-            if !matches!(self.token.kind, Kind::Comma | Kind::Close) {
+        let TokenKind::Comparison(comparison) = self.token.kind else {
+            if !matches!(self.token.kind, TokenKind::Comma | TokenKind::CloseParen) {
                 return Err(self.unexpected());
             }
             let span = operands
@@ -202,24 +202,24 @@ impl<'a> Parser<'a> {
 
     fn close(&mut self, open: Token) -> Result<(), ExpressionError> {
         match self.token.kind {
-            Kind::Close => self.advance(),
-            Kind::End => Err(not_closed(open)),
+            TokenKind::CloseParen => self.advance(),
+            TokenKind::EndOfText => Err(not_closed(open)),
             _ => Err(self.unexpected()),
         }
     }
 
     /// Writes an operation behind its operands.
-    fn join(
+    fn emit(
         &mut self,
         op: Op,
         span: Range<usize>,
         operands: &[Operand],
     ) -> Result<Operand, ExpressionError> {
-        self.kept = self.kept - op.takes() + 1;
-        if self.kept > PLACES {
+        self.stack_depth = self.stack_depth - op.arity() + 1;
+        if self.stack_depth > STACK_SIZE {
             return Err(self.too_deep(span));
         }
-        self.tape.depth = self.tape.depth.max(self.kept);
+        self.tape.depth = self.tape.depth.max(self.stack_depth);
         self.tape.ops.push(op);
         let constant = match op {
             Op::Variable(_) => None,
@@ -232,7 +232,7 @@ impl<'a> Parser<'a> {
                 } else {
                     "infinite"
                 };
-                let message = format!("`{}` is {what}", self.of(span.clone()));
+                let message = format!("`{}` is {what}", self.slice(span.clone()));
                 Err(ExpressionError::new(span, message))
             }
             _ => Ok(Operand { span, constant }),
@@ -247,32 +247,36 @@ impl<'a> Parser<'a> {
     }
 
     /// The token to come cannot begin an operand.
-    fn no_operand(&self) -> ExpressionError {
+    fn missing_operand(&self) -> ExpressionError {
         let here = self.token;
-        match (self.before, here.kind) {
-            (None, Kind::End) => {
+        match (self.previous, here.kind) {
+            (None, TokenKind::EndOfText) => {
                 ExpressionError::new(0..self.text.len(), "the expression is empty")
             }
-            (None, Kind::Close) => no_opening(here),
-            (Some(open), Kind::Close) if open.kind == Kind::Open => ExpressionError::new(
-                open.from..here.to,
-                "there is nothing between the parentheses",
-            ),
-            (Some(open), Kind::End) if open.kind == Kind::Open => not_closed(open),
-            (Some(before), _) if before.kind != Kind::Open => {
-                let what = self.of(before.span());
+            (None, TokenKind::CloseParen) => no_opening(here),
+            (Some(open), TokenKind::CloseParen) if open.kind == TokenKind::OpenParen => {
+                ExpressionError::new(
+                    open.start..here.end,
+                    "there is nothing between the parentheses",
+                )
+            }
+            (Some(open), TokenKind::EndOfText) if open.kind == TokenKind::OpenParen => {
+                not_closed(open)
+            }
+            (Some(previous), _) if previous.kind != TokenKind::OpenParen => {
+                let what = self.slice(previous.span());
                 let error = ExpressionError::new(
-                    before.span(),
+                    previous.span(),
                     format!("there is no operand after `{what}`"),
                 );
-                match (before.kind, here.kind) {
-                    (Kind::Star, Kind::Star) => error.help("a power is written `x^2`"),
-                    (_, Kind::Plus) => error.help("a number needs no plus sign"),
+                match (previous.kind, here.kind) {
+                    (TokenKind::Star, TokenKind::Star) => error.help("a power is written `x^2`"),
+                    (_, TokenKind::Plus) => error.help("a number needs no plus sign"),
                     _ => error,
                 }
             }
             _ => {
-                let what = self.of(here.span());
+                let what = self.slice(here.span());
                 let message = format!("there is no operand before `{what}`");
                 ExpressionError::new(here.span(), message)
             }
@@ -282,15 +286,15 @@ impl<'a> Parser<'a> {
     /// The token to come cannot follow an operand.
     fn unexpected(&self) -> ExpressionError {
         let here = self.token;
-        let what = self.of(here.span());
+        let what = self.slice(here.span());
         match here.kind {
-            Kind::Close => no_opening(here),
-            Kind::Comma => ExpressionError::new(
+            TokenKind::CloseParen => no_opening(here),
+            TokenKind::Comma => ExpressionError::new(
                 here.span(),
                 "a comma stands only between the arguments of a function",
             )
             .help("the decimal sign is a point"),
-            Kind::Comparison(_) => ExpressionError::new(
+            TokenKind::Comparison(_) => ExpressionError::new(
                 here.span(),
                 format!("`{what}` stands only in the first argument of `if`, once"),
             )
@@ -302,11 +306,11 @@ impl<'a> Parser<'a> {
 
     fn unknown_name(&self, name: &str, token: Token) -> ExpressionError {
         let error = ExpressionError::new(token.span(), format!("unknown name `{name}`"));
-        if Function::named(name).is_some() {
+        if Function::from_name(name).is_some() {
             return error.help(format!("the function is written `{name}(…)`"));
         }
-        let tail = self.of(token.from..self.text.len());
-        let quoted = |v: &&&str| !is_plain(v) && v.starts_with(name) && tail.starts_with(**v);
+        let tail = self.slice(token.start..self.text.len());
+        let quoted = |v: &&&str| !is_identifier(v) && v.starts_with(name) && tail.starts_with(**v);
         if let Some(quoted) = self.variables.iter().find(quoted) {
             return error.help(format!(
                 "did you mean {quoted:?}? It is written between two backticks"
@@ -359,21 +363,21 @@ fn no_opening(close: Token) -> ExpressionError {
 
 /// The value of an operation on constants.
 fn constant(op: Op, operands: &[Operand]) -> Option<f64> {
-    const MOST: usize = 4;
-    let mut ops = [op; MOST + 1];
-    for (place, operand) in ops.iter_mut().zip(operands) {
-        *place = Op::Number(operand.constant?);
+    const MAX_OPERANDS: usize = 4;
+    let mut ops = [op; MAX_OPERANDS + 1];
+    for (slot, operand) in ops.iter_mut().zip(operands) {
+        *slot = Op::Number(operand.constant?);
     }
     ops.get(..=operands.len())
-        .map(|ops| run::<f64, MOST>(ops, |_| f64::NAN))
+        .map(|ops| run::<f64, MAX_OPERANDS>(ops, |_| f64::NAN))
 }
 
 /// A scene can have hundreds of names; the first two dozen are told.
 fn list<'a>(title: &str, names: impl Iterator<Item = &'a str>) -> String {
-    const SHOWN: usize = 24;
+    const MAX_LISTED: usize = 24;
     let mut names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
-    if names.len() > SHOWN {
-        names.truncate(SHOWN);
+    if names.len() > MAX_LISTED {
+        names.truncate(MAX_LISTED);
         names.push("…".to_owned());
     }
     format!("{title} {}", names.join(", "))

@@ -10,7 +10,7 @@ fn parse(text: &str) -> Expression {
 
 /// With x = 2, y = 3, phi.speed = 5, my-body.angle = 7, omega = 11.
 fn value(text: &str) -> f64 {
-    parse(text).at(&[2.0, 3.0, 5.0, 7.0, 11.0])
+    parse(text).eval(&[2.0, 3.0, 5.0, 7.0, 11.0])
 }
 
 /// Small whole numbers: every result is exact.
@@ -62,7 +62,7 @@ fn numbers_and_names() {
     ] {
         assert_eq!(value(text), expected, "{text}");
     }
-    let of = |text, name| Expression::parse(text, &[name]).map(|e| e.at(&[4.0]));
+    let of = |text, name| Expression::parse(text, &[name]).map(|e| e.eval(&[4.0]));
     assert_eq!(of("2*φ₁", "φ₁"), Ok(8.0));
     assert_eq!(of("e^2", "e"), Ok(16.0));
     // What the scene names is not hidden by a constant or a function.
@@ -118,7 +118,7 @@ fn the_variables_that_occur() {
     let e = parse("omega*y + omega*`my-body.angle`");
     assert_eq!(e.variables(), ["omega", "y", "my-body.angle"]);
     assert!(parse("2*pi").variables().is_empty());
-    assert!(e.at(&[0.0, 1.0]).is_nan());
+    assert!(e.eval(&[0.0, 1.0]).is_nan());
 }
 
 #[test]
@@ -138,14 +138,22 @@ fn what_is_not_a_number_is_not_hidden() {
         "hypot(x, 1)",
     ] {
         let e = parse(text);
-        assert!(e.at(&[f64::NAN]).is_nan(), "{text}");
+        assert!(e.eval(&[f64::NAN]).is_nan(), "{text}");
         for variable in 0..2 {
-            let along = e.along(&[f64::NAN], variable);
-            assert!(along.iter().all(|d| d.is_nan()), "{text}: {along:?}");
+            let derivatives = e.derivatives_wrt(&[f64::NAN], variable);
+            assert!(
+                derivatives.iter().all(|d| d.is_nan()),
+                "{text}: {derivatives:?}"
+            );
         }
     }
     // Beyond its domain a function has no derivative either.
-    assert!(parse("ln(x)").along(&[-1.0], 0).iter().all(|d| d.is_nan()));
+    assert!(
+        parse("ln(x)")
+            .derivatives_wrt(&[-1.0], 0)
+            .iter()
+            .all(|d| d.is_nan())
+    );
 }
 
 /// Cases where derivatives are exact numbers, or defined by us.
@@ -181,44 +189,25 @@ fn derivatives_at_special_places() {
         ("atan2(x, 1)", 0.0, [0.0, 1.0, 0.0, -2.0]),
         ("atan2(1e200*x, 1e200)", 0.0, [0.0, 1.0, 0.0, -2.0]),
     ] {
-        assert_eq!(parse(text).along(&[x], 0), expected, "{text} at {x}");
+        assert_eq!(
+            parse(text).derivatives_wrt(&[x], 0),
+            expected,
+            "{text} at {x}"
+        );
     }
     // And where there is none, none is invented.
     for text in ["sqrt(x^4)", "hypot(x, x)", "atan2(x, x)", "sqrt(abs(x))"] {
-        assert!(parse(text).along(&[0.0], 0)[2].is_nan(), "{text}");
+        assert!(parse(text).derivatives_wrt(&[0.0], 0)[2].is_nan(), "{text}");
     }
-    assert_eq!(parse("sqrt(x)").along(&[0.0], 0)[1], f64::INFINITY);
+    assert_eq!(
+        parse("sqrt(x)").derivatives_wrt(&[0.0], 0)[1],
+        f64::INFINITY
+    );
     // The others held; and along what does not occur.
     let e = parse("x^2*y");
-    assert_eq!(e.along(&[3.0, 5.0], 0), [45.0, 30.0, 10.0, 0.0]);
-    assert_eq!(e.along(&[3.0, 5.0], 1), [45.0, 9.0, 0.0, 0.0]);
-    assert_eq!(e.along(&[3.0, 5.0], 9), [45.0, 0.0, 0.0, 0.0]);
-}
-
-#[test]
-fn printing() {
-    for (text, printed) in [
-        ("((x))+(y*2.0)", "x + y*2"),
-        ("x-(y-1)", "x - (y - 1)"),
-        ("x+(y+1)", "x + (y + 1)"),
-        ("-(x^2)", "-x^2"),
-        ("(-x)^2", "(-x)^2"),
-        ("-(x*y)", "-(x*y)"),
-        ("(-x)*y", "-x*y"),
-        ("2^(-x)", "2^-x"),
-        ("(2^x)^y", "(2^x)^y"),
-        ("2^(x^y)", "2^x^y"),
-        ("x*(y/2)", "x*(y/2)"),
-        ("x--(-y)", "x - --y"),
-        ("0.001*1e-7*1e300", "0.001*1e-7*1e300"),
-        ("2*pi*`phi.speed`", "2*pi*phi.speed"),
-        ("`my-body.angle`", "`my-body.angle`"),
-        ("max( x ,y )", "max(x, y)"),
-        ("if(x<=y,clamp(x,0,1),-1)", "if(x <= y, clamp(x, 0, 1), -1)"),
-    ] {
-        assert_eq!(parse(text).to_string(), printed, "{text}");
-        assert_eq!(parse(printed), parse(text), "{text}");
-    }
+    assert_eq!(e.derivatives_wrt(&[3.0, 5.0], 0), [45.0, 30.0, 10.0, 0.0]);
+    assert_eq!(e.derivatives_wrt(&[3.0, 5.0], 1), [45.0, 9.0, 0.0, 0.0]);
+    assert_eq!(e.derivatives_wrt(&[3.0, 5.0], 9), [45.0, 0.0, 0.0, 0.0]);
 }
 
 /// Every error: where it is, what it says, what it advises.
@@ -377,6 +366,5 @@ fn deep_and_long() {
 
     let long = "x + ".repeat(many) + "x";
     let expression = parse(&long);
-    assert_eq!(expression.at(&[1.0]), 100_001.0);
-    assert_eq!(expression.to_string(), long);
+    assert_eq!(expression.eval(&[1.0]), 100_001.0);
 }

@@ -4,16 +4,16 @@ use std::ops::Range;
 
 use super::error::ExpressionError;
 use super::function::Comparison;
-use super::tape::{begins_name, continues_name};
+use super::tape::{continues_identifier, starts_identifier};
 
 /// What a piece of the text is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum TokenKind {
     Number(f64),
     /// Letters, digits, `_` and `.`.
-    Plain,
+    Identifier,
     /// Anything between backticks.
-    Quoted,
+    QuotedIdentifier,
     Plus,
     Minus,
     Star,
@@ -21,80 +21,82 @@ pub(super) enum Kind {
     Caret,
     Comparison(Comparison),
     Comma,
-    Open,
-    Close,
-    End,
+    OpenParen,
+    CloseParen,
+    EndOfText,
 }
 
 /// A piece of the text, from one byte to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Token {
-    pub(super) kind: Kind,
-    pub(super) from: usize,
-    pub(super) to: usize,
+    pub(super) kind: TokenKind,
+    pub(super) start: usize,
+    pub(super) end: usize,
 }
 
 impl Token {
     pub(super) fn span(self) -> Range<usize> {
-        self.from..self.to
+        self.start..self.end
     }
 }
 
 /// The piece that begins at byte `from` or, after blanks, behind it.
-pub(super) fn next(text: &str, from: usize) -> Result<Token, ExpressionError> {
-    let tail = text.get(from..).unwrap_or("");
+pub(super) fn next_token(text: &str, start: usize) -> Result<Token, ExpressionError> {
+    let tail = text.get(start..).unwrap_or("");
     let rest = tail.trim_start();
-    let from = from + tail.len() - rest.len();
+    let start = start + tail.len() - rest.len();
     let Some(first) = rest.chars().next() else {
-        let kind = Kind::End;
+        let kind = TokenKind::EndOfText;
         return Ok(Token {
             kind,
-            from,
-            to: from,
+            start,
+            end: start,
         });
     };
     let token = |kind, length| {
         Ok(Token {
             kind,
-            from,
-            to: from + length,
+            start,
+            end: start + length,
         })
     };
     let second = rest[first.len_utf8()..].chars().next();
     if first.is_ascii_digit() || (first == '.' && second.is_some_and(|c| c.is_ascii_digit())) {
-        return number(rest, from);
+        return number(rest, start);
     }
-    if begins_name(first) {
-        let length = rest.find(|c| !continues_name(c)).unwrap_or(rest.len());
-        return token(Kind::Plain, length);
+    if starts_identifier(first) {
+        let length = rest
+            .find(|c| !continues_identifier(c))
+            .unwrap_or(rest.len());
+        return token(TokenKind::Identifier, length);
     }
     match (first, second) {
-        ('+', _) => token(Kind::Plus, 1),
-        ('-', _) => token(Kind::Minus, 1),
-        ('*', _) => token(Kind::Star, 1),
-        ('/', _) => token(Kind::Slash, 1),
-        ('^', _) => token(Kind::Caret, 1),
-        (',', _) => token(Kind::Comma, 1),
-        ('(', _) => token(Kind::Open, 1),
-        (')', _) => token(Kind::Close, 1),
-        ('<', Some('=')) => token(Kind::Comparison(Comparison::LessOrEqual), 2),
-        ('>', Some('=')) => token(Kind::Comparison(Comparison::GreaterOrEqual), 2),
-        ('<', _) => token(Kind::Comparison(Comparison::Less), 1),
-        ('>', _) => token(Kind::Comparison(Comparison::Greater), 1),
+        ('+', _) => token(TokenKind::Plus, 1),
+        ('-', _) => token(TokenKind::Minus, 1),
+        ('*', _) => token(TokenKind::Star, 1),
+        ('/', _) => token(TokenKind::Slash, 1),
+        ('^', _) => token(TokenKind::Caret, 1),
+        (',', _) => token(TokenKind::Comma, 1),
+        ('(', _) => token(TokenKind::OpenParen, 1),
+        (')', _) => token(TokenKind::CloseParen, 1),
+        ('<', Some('=')) => token(TokenKind::Comparison(Comparison::LessOrEqual), 2),
+        ('>', Some('=')) => token(TokenKind::Comparison(Comparison::GreaterOrEqual), 2),
+        ('<', _) => token(TokenKind::Comparison(Comparison::Less), 1),
+        ('>', _) => token(TokenKind::Comparison(Comparison::Greater), 1),
         ('`', _) => match rest[1..].find('`') {
-            Some(length) => token(Kind::Quoted, length + 2),
+            Some(length) => token(TokenKind::QuotedIdentifier, length + 2),
             None => Err(ExpressionError::new(
-                from..from + 1,
+                start..start + 1,
                 "this backtick begins a name that has no end",
             )
             .help("a name with other characters than letters, digits, `_` and `.` stands between two backticks")),
         },
-        _ => Err(unexpected(first, from)),
+        _ => Err(unexpected(first, start)),
     }
 }
 
 /// Digits with at most one point, and an exponent only if it has digits of its own.
-fn number(rest: &str, from: usize) -> Result<Token, ExpressionError> {
+fn number(rest: &str, start: usize) -> Result<Token, ExpressionError> {
     let digits = |at: usize| {
         let tail = rest.get(at..).unwrap_or("");
         at + tail.bytes().take_while(u8::is_ascii_digit).count()
@@ -110,20 +112,20 @@ fn number(rest: &str, from: usize) -> Result<Token, ExpressionError> {
             length = end;
         }
     }
-    let to = from + length;
+    let to = start + length;
     match rest[..length].parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(Token {
-            kind: Kind::Number(number),
-            from,
-            to,
+            kind: TokenKind::Number(number),
+            start,
+            end: to,
         }),
-        _ => Err(ExpressionError::new(from..to, "this number is too large")),
+        _ => Err(ExpressionError::new(start..to, "this number is too large")),
     }
 }
 
-fn unexpected(c: char, from: usize) -> ExpressionError {
+fn unexpected(c: char, start: usize) -> ExpressionError {
     let error = ExpressionError::new(
-        from..from + c.len_utf8(),
+        start..start + c.len_utf8(),
         format!("unexpected character {c:?}"),
     );
     let instead = match c {

@@ -35,7 +35,7 @@ pub(crate) fn corners() -> Figure {
     };
     let constant = Chart {
         title: "A constant and large numbers".to_owned(),
-        x: Axis::new("revolutions", "").within(0.0, 1e6),
+        x: Axis::new("revolutions", "").with_range(0.0, 1e6),
         y: Axis::new("stiffness", "N/m"),
         series: vec![Series::line("k", vec![[0.0, 2.5e8], [1e6, 2.5e8]])],
         ..Chart::default()

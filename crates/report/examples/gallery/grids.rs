@@ -8,7 +8,7 @@ fn scattered(row: usize, column: usize) -> usize {
 }
 
 /// Faults against checks: the colour is by how much a fault exceeds the tolerance.
-pub(crate) fn faults() -> Figure {
+pub(crate) fn mutations() -> Figure {
     let columns = [
         "dense rows",
         "virtual power",
@@ -32,7 +32,7 @@ pub(crate) fn faults() -> Figure {
         let n = scattered(row, column);
         match n {
             0..30 => None,
-            30..38 => Some(Cell::words("0")),
+            30..38 => Some(Cell::text_only("0")),
             _ => {
                 let exponent = n as f64 / 8.0 - 3.0;
                 let cell = Cell::new(
@@ -68,7 +68,7 @@ pub(crate) fn faults() -> Figure {
                 title: "Difference over tolerance".to_owned(),
                 columns: columns.map(str::to_owned).into(),
                 groups: groups.into(),
-                values: Axis::log("difference over tolerance", "").within(1e-2, 1e8),
+                values: Axis::log("difference over tolerance", "").with_range(1e-2, 1e8),
             }
             .into(),
         ],
@@ -98,7 +98,7 @@ pub(crate) fn digits() -> Figure {
                     rows: rows.collect(),
                     ..Group::default()
                 }],
-                values: Axis::new("digits that agree with the truth", "").within(0.0, 16.0),
+                values: Axis::new("digits that agree with the truth", "").with_range(0.0, 16.0),
                 ..Grid::default()
             }
             .into(),

@@ -3,7 +3,8 @@
 
 use crate::charts::sampled;
 use dwell_report::{
-    Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Scale, Series, Shape, Side, Stroke,
+    Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Scale, Series, Shape, Stroke,
+    TextPlacement,
 };
 use std::f64::consts::TAU;
 
@@ -80,7 +81,7 @@ pub(crate) fn path() -> Figure {
             name: Some("every 15° of the crank".to_owned()),
         });
     }
-    shapes.push(Shape::text(at(0, 1), "φ = 0", Side::Below));
+    shapes.push(Shape::text(at(0, 1), "φ = 0", TextPlacement::Below));
     let drawing = Drawing {
         title: "Path of the coupler point".to_owned(),
         x: Axis::new("x", "m"),
@@ -100,26 +101,27 @@ pub(crate) fn path() -> Figure {
 pub(crate) fn motion() -> Figure {
     // A slider-crank at constant speed: crank 0.05 m, rod 0.2 m, 10 rad/s.
     let (r, l, w) = (0.05, 0.2, 10.0);
-    let place = move |t: f64| {
+    let position = move |t: f64| {
         let (s, c) = (w * t).sin_cos();
         r * c + (l * l - r * r * s * s).sqrt()
     };
-    let speed = move |t: f64| (place(t + 1e-5) - place(t - 1e-5)) / 2e-5;
-    let acceleration = move |t: f64| (place(t + 1e-4) - 2.0 * place(t) + place(t - 1e-4)) / 1e-8;
-    let turn = TAU / w;
+    let speed = move |t: f64| (position(t + 1e-5) - position(t - 1e-5)) / 2e-5;
+    let acceleration =
+        move |t: f64| (position(t + 1e-4) - 2.0 * position(t) + position(t - 1e-4)) / 1e-8;
+    let period = TAU / w;
     let panel = |title: &str, label: &str, unit: &str, f: &dyn Fn(f64) -> f64| Chart {
         title: title.to_owned(),
         x: Axis::new("time t", "s"),
         y: Axis::new(label, unit),
-        series: vec![Series::line("", sampled(720, 0.0, turn, f))],
+        series: vec![Series::line("", sampled(720, 0.0, period, f))],
         marks: vec![Mark::Vertical {
-            at: 0.5 * turn,
+            at: 0.5 * period,
             label: if title.is_empty() { "" } else { "half a turn" }.to_owned(),
         }],
         ..Chart::default()
     };
     let slider = vec![
-        panel("Slider", "x", "m", &place),
+        panel("Slider", "x", "m", &position),
         panel("", "ẋ", "m/s", &speed),
         panel("", "ẍ", "m/s²", &acceleration),
     ];
@@ -203,8 +205,8 @@ pub(crate) fn profile() -> Figure {
     let first = 0.5 * load * length + force * (length - at) / length;
     let shear = |s: f64, beyond: bool| first - load * s - if beyond { force } else { 0.0 };
     let moment = |s: f64| first * s - 0.5 * load * s * s - force * (s - at).max(0.0);
-    let worst = (first - force) / load;
-    let peak = if worst > at { worst } else { at };
+    let zero_shear = (first - force) / load;
+    let peak = if zero_shear > at { zero_shear } else { at };
     let chart = |title: &str, label: &str, unit: &str, color: usize, points: Vec<[f64; 2]>| Chart {
         title: title.to_owned(),
         x: Axis::new("place s along the coupler, from B to C", "m"),

@@ -1,6 +1,6 @@
 //! Drawings: a dwell mechanism in ghosted positions, a slider–crank with its guide and load.
 
-use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Pen, Shape, Side};
+use dwell_report::{Animation, Axis, Drawing, Figure, Paint, Pen, Shape, TextPlacement};
 use std::f64::consts::{PI, TAU};
 
 /// A Hoeken linkage whose point P drives a rocker with a dwell.
@@ -8,7 +8,7 @@ struct Pose {
     b: [f64; 2],
     c: [f64; 2],
     p: [f64; 2],
-    end: [f64; 2],
+    rocker_end: [f64; 2],
 }
 
 const A: [f64; 2] = [0.0, 0.0];
@@ -28,7 +28,7 @@ fn pose(phi: f64) -> Pose {
         b,
         c,
         p,
-        end: [Q[0] + 0.7 * ex / e, Q[1] + 0.7 * ey / e],
+        rocker_end: [Q[0] + 0.7 * ex / e, Q[1] + 0.7 * ey / e],
     }
 }
 
@@ -56,7 +56,12 @@ pub(crate) fn linkage() -> Figure {
         .named("dwell"),
     ];
     for (i, lightness) in [0.82, 0.74, 0.66, 0.58, 0.0].into_iter().enumerate() {
-        let Pose { b, c, p, end } = pose(2.0 + 1.2 * (4 - i) as f64);
+        let Pose {
+            b,
+            c,
+            p,
+            rocker_end: end,
+        } = pose(2.0 + 1.2 * (4 - i) as f64);
         let link = |points: Vec<[f64; 2]>, color: usize, name: &str| {
             let line = Shape::line(
                 points,
@@ -77,16 +82,16 @@ pub(crate) fn linkage() -> Figure {
         shapes.push(Shape::area(block(p, angle, [0.03, 0.015]), slider, 0.15));
         shapes.extend([b, c, p].map(|at| Shape::pin(at, Paint::Ink, lightness)));
         if lightness == 0.0 {
-            shapes.push(Shape::text(b, "B", Side::BelowLeft));
-            shapes.push(Shape::text(c, "C", Side::AboveLeft));
-            shapes.push(Shape::text(p, "P", Side::Above));
+            shapes.push(Shape::text(b, "B", TextPlacement::BelowLeft));
+            shapes.push(Shape::text(c, "C", TextPlacement::AboveLeft));
+            shapes.push(Shape::text(p, "P", TextPlacement::Above));
         }
     }
     shapes.extend([A, O, Q].map(|at| Shape::GroundPin { at }));
     for (at, name, side) in [
-        (A, "A", Side::Left),
-        (O, "O", Side::Right),
-        (Q, "Q", Side::Left),
+        (A, "A", TextPlacement::Left),
+        (O, "O", TextPlacement::Right),
+        (Q, "Q", TextPlacement::Left),
     ] {
         shapes.push(Shape::text(at, name, side));
     }
@@ -133,8 +138,8 @@ pub(crate) fn linkage() -> Figure {
                 pen: Pen::new(Paint::Palette(1), 5.0),
                 name: Some("force".to_owned()),
             },
-            Shape::text([60.0, 80.0], "B", Side::Above),
-            Shape::text([0.0, 0.0], "A", Side::AboveLeft),
+            Shape::text([60.0, 80.0], "B", TextPlacement::Above),
+            Shape::text([0.0, 0.0], "A", TextPlacement::AboveLeft),
         ],
     };
     Figure {
@@ -150,14 +155,19 @@ pub(crate) fn linkage() -> Figure {
 }
 
 /// The dwell mechanism over a turn.
-pub(crate) fn film() -> Animation {
+pub(crate) fn animation() -> Animation {
     const FRAMES: i32 = 60;
     let path: Vec<[f64; 2]> = (0..=720)
         .map(|i| pose(TAU * f64::from(i) / 720.0).p)
         .collect();
     let frame = |i: i32| {
         let phi = TAU * f64::from(i) / f64::from(FRAMES);
-        let Pose { b, c, p, end } = pose(phi);
+        let Pose {
+            b,
+            c,
+            p,
+            rocker_end: end,
+        } = pose(phi);
         let bar = |points: Vec<[f64; 2]>, color: usize, name: &str| {
             Shape::line(points, Pen::new(Paint::Palette(color), 9.0)).named(name)
         };

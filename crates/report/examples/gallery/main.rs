@@ -26,7 +26,7 @@ fn main() -> Result<(), ReportError> {
         kinematics::motion(),
         kinematics::cost(),
         kinematics::profile(),
-        grids::faults(),
+        grids::mutations(),
         grids::digits(),
     ];
     let mut files = Files::new();
@@ -41,16 +41,16 @@ fn main() -> Result<(), ReportError> {
         );
         files.add(format!("{}.png", figure.name), bytes);
     }
-    let film = linkage::film();
+    let animation = linkage::animation();
     let start = Instant::now();
-    let bytes = film.gif()?;
+    let bytes = animation.gif()?;
     println!(
         "{:<24} {:6.1} ms  {:4} kB",
-        film.name,
+        animation.name,
         start.elapsed().as_secs_f64() * 1e3,
         bytes.len() / 1000
     );
-    files.add(format!("{}.gif", film.name), bytes);
+    files.add(format!("{}.gif", animation.name), bytes);
     let start = Instant::now();
     std::thread::scope(|scope| {
         for half in figures.chunks(figures.len().div_ceil(2)) {

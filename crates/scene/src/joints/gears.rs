@@ -1,37 +1,37 @@
-//! Joints of things that roll on each other.
+//! Gears, racks and rolling wheels.
 
 use super::pairs::{axis, two_radii};
-use crate::fields::{Entry, Fields, Sign, boolean, signed};
-use crate::problem::{Problem, Problems};
+use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::table_reader::{Entry, SignRule, TableReader, boolean, quantity_with_sign};
 use crate::units::Units;
 use dwell_geometry::{JointKind, Vec2};
 
 pub(super) fn gear(
     entry: &Entry<'_>,
-    fields: &Fields<'_>,
+    fields: &TableReader<'_>,
     units: &Units,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<JointKind> {
     let what = &fields.what;
     let internal = match fields.get("internal") {
         None => Some(false),
-        Some(e) => boolean(e.value, format_args!("`internal` of {what}"), problems),
+        Some(e) => boolean(e.value, format_args!("`internal` of {what}"), diagnostics),
     };
     let help = "add `radii = [30, 20]`: the pitch radius of each gear";
-    let given = fields.need("radii", &entry.key, help, problems)?;
+    let given = fields.require("radii", &entry.key, help, diagnostics)?;
     let radii = two_radii(
         given,
         units,
-        Sign::Positive,
+        SignRule::Positive,
         &format!("the radii of {what}"),
         "a pitch radius is above zero; a ring gear is one with `internal = true`",
-        problems,
+        diagnostics,
     )?;
     let internal = internal?;
     if internal && radii[0] == radii[1] {
-        problems.push(
-            Problem::new(format!("the ring and the gear of {what} have equal radii"))
-                .at(given.value.span(), "no room for a gear inside the ring")
+        diagnostics.push(
+            Diagnostic::new(format!("the ring and the gear of {what} have equal radii"))
+                .label(given.value.span(), "the gear does not fit into the ring")
                 .help("the ring's radius is the larger one; two equal gears are external"),
         );
         return None;
@@ -39,33 +39,33 @@ pub(super) fn gear(
     Some(JointKind::Gear { radii, internal })
 }
 
-/// The axis and the radius of what rolls on a line, as a pinion or a wheel.
+/// The axis and the radius of a pinion or wheel that rolls along a line.
 pub(super) fn on_a_line(
     entry: &Entry<'_>,
-    fields: &Fields<'_>,
+    fields: &TableReader<'_>,
     units: &Units,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<(Vec2, f64)> {
-    let axis = axis(entry, fields, problems);
-    let radius = radius(entry, fields, units, problems);
+    let axis = axis(entry, fields, diagnostics);
+    let radius = radius(entry, fields, units, diagnostics);
     Some((axis?, radius?))
 }
 
 /// A radius other than zero; its sign tells on which side of the line it is.
 fn radius(
     entry: &Entry<'_>,
-    fields: &Fields<'_>,
+    fields: &TableReader<'_>,
     units: &Units,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<f64> {
     let help = "add `radius = 20`: above zero to the left of the axis, below to its right";
-    let radius = fields.need("radius", &entry.key, help, problems)?;
-    signed(
+    let radius = fields.require("radius", &entry.key, help, diagnostics)?;
+    quantity_with_sign(
         radius.value,
         &units.length,
-        Sign::NotZero,
+        SignRule::NotZero,
         format_args!("the radius of {}", fields.what),
-        "what has no radius does not roll",
-        problems,
+        "a wheel without a radius cannot roll",
+        diagnostics,
     )
 }

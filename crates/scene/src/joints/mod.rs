@@ -1,31 +1,32 @@
-//! The joints: which points of which bodies they hold together, and what they let move.
+//! The joints: which points of which bodies they connect, and their kinds.
 
+mod coupling;
 mod gears;
 mod pairs;
-mod relation;
 
 use crate::bodies::{Bodies, NamedPoint, TWO_POINTS};
-use crate::fields::{Entry, Fields, array, string};
+use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::keys::JOINTS;
 use crate::kind::kind;
-use crate::names::{check, shorten};
-use crate::problem::{Problem, Problems, Span};
+use crate::names::check;
+use crate::table_reader::{Entry, TableReader, array, string};
 use crate::units::Units;
-use dwell_geometry::{Joint, JointId, JointKind, Relation};
+use crate::wording::shorten;
+use dwell_geometry::{Coupling, Joint, JointId, JointKind};
 use dwell_kinetostatics::Guide;
 use std::collections::HashMap;
 use std::ops::Range;
 
 /// A joint as read; nothing in it if it was wrong, while its name still counts as known.
 #[derive(Debug)]
-pub(crate) struct JointText {
+pub(crate) struct ParsedJoint {
     pub(crate) name: String,
     pub(crate) key: Span,
-    /// Where its two points are named; of a relation its coordinates.
-    pub(crate) ends: [Span; 2],
+    /// Where its two points are named; of a coupling, its coordinates.
+    pub(crate) points: [Span; 2],
     /// Its axis or axes.
     pub(crate) axis: Option<Span>,
-    /// The law of a relation.
+    /// The law of a coupling.
     pub(crate) law: Option<Span>,
     pub(crate) joint: Option<Joint>,
 }
@@ -33,28 +34,28 @@ pub(crate) struct JointText {
 /// All the joints as read.
 #[derive(Debug, Default)]
 pub(crate) struct Joints<'a> {
-    pub(crate) list: Vec<JointText>,
+    pub(crate) list: Vec<ParsedJoint>,
     /// Which joints a name stands for: several only if it is that of a pin of several bodies.
     by_name: HashMap<String, Range<usize>>,
-    pub(crate) relations: Vec<Relation>,
-    /// Relations that wait for the coordinates to be read.
-    waiting: Vec<(usize, Fields<'a>)>,
+    pub(crate) couplings: Vec<Coupling>,
+    /// Couplings, which are read after the coordinates.
+    pending_couplings: Vec<(usize, TableReader<'a>)>,
 }
 
 impl<'a> Joints<'a> {
-    /// Every joint, the relations by their names alone: [`Self::relate`] reads them.
+    /// Every joint, the couplings by their names alone: [`Self::read_couplings`] reads them.
     pub(crate) fn read(
-        fields: &Fields<'a>,
+        fields: &TableReader<'a>,
         bodies: &Bodies<'_>,
         units: &Units,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Self {
         let mut joints = Self::default();
         for entry in &fields.entries {
-            check("a joint", entry.name, &entry.key, problems);
-            let (first, count) = (joints.list.len(), problems.count());
-            joints.joint(entry, bodies, units, problems);
-            if problems.count() > count {
+            check("a joint", entry.name, &entry.key, diagnostics);
+            let (first, count) = (joints.list.len(), diagnostics.count());
+            joints.joint(entry, bodies, units, diagnostics);
+            if diagnostics.count() > count {
                 // What is wrong with it is said: nothing follows from the rest of it.
                 for joint in &mut joints.list[first..] {
                     joint.joint = None;
@@ -63,7 +64,7 @@ impl<'a> Joints<'a> {
             let all = first..joints.list.len();
             joints.by_name.insert(entry.name.to_owned(), all);
         }
-        joints.name_pins(problems);
+        joints.name_pins(diagnostics);
         joints
     }
 
@@ -72,17 +73,17 @@ impl<'a> Joints<'a> {
         &self,
         name: &str,
         at: &Span,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Option<Range<usize>> {
         if let Some(range) = self.by_name.get(name) {
             return Some(range.clone());
         }
         // Without any joint the scene has a greater problem, reported by now.
         if !self.list.is_empty() {
-            let help = problems.choices(name, "joints", self.names());
-            problems.push(
-                Problem::new(format!("there is no joint `{}`", shorten(name)))
-                    .at(at.clone(), "unknown joint")
+            let help = diagnostics.choices(name, "joints", self.names());
+            diagnostics.push(
+                Diagnostic::new(format!("there is no joint `{}`", shorten(name)))
+                    .label(at.clone(), "unknown joint")
                     .help(help),
             );
         }
@@ -94,26 +95,26 @@ impl<'a> Joints<'a> {
         &self,
         name: &str,
         at: &Span,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) -> Option<JointId> {
-        let first = self.find(name, at, problems)?.start;
+        let first = self.find(name, at, diagnostics)?.start;
         let kind = self.list[first].joint.as_ref()?.kind;
-        if slides(kind) {
+        if has_travel(kind) {
             return Some(JointId(first));
         }
         let sliding = self.list.iter().filter(|j| match &j.joint {
-            Some(joint) => slides(joint.kind),
+            Some(joint) => has_travel(joint.kind),
             None => false,
         });
-        let help = problems.choices(
+        let help = diagnostics.choices(
             "",
             "prismatic joints and slots",
             sliding.map(|j| j.name.as_str()),
         );
         let name = shorten(name);
-        problems.push(
-            Problem::new(format!("joint `{name}` has no travel"))
-                .at(at.clone(), format!("its kind is {}", word(kind)))
+        diagnostics.push(
+            Diagnostic::new(format!("joint `{name}` has no travel"))
+                .label(at.clone(), format!("its kind is {}", kind_name(kind)))
                 .help(help),
         );
         None
@@ -139,7 +140,7 @@ impl<'a> Joints<'a> {
 
     /// A joint between two bodies stands in the list under its own name; the joints of a pin of
     /// several bodies have names of their own, which no other joint may have.
-    fn name_pins(&mut self, problems: &mut Problems) {
+    fn name_pins(&mut self, diagnostics: &mut Diagnostics) {
         for (k, joint) in self.list.iter().enumerate() {
             if self
                 .by_name
@@ -152,10 +153,10 @@ impl<'a> Joints<'a> {
                 continue;
             };
             let name = shorten(&joint.name);
-            problems.push(
-                Problem::new(format!("two joints are named `{name}`"))
-                    .at(joint.key.clone(), "one is made from this pin")
-                    .at(self.list[other.start].key.clone(), "the other is here")
+            diagnostics.push(
+                Diagnostic::new(format!("two joints are named `{name}`"))
+                    .label(joint.key.clone(), "one is made from this pin")
+                    .label(self.list[other.start].key.clone(), "the other is here")
                     .help(
                         "rename this joint: a pin of several bodies makes joints named `pin-body`",
                     ),
@@ -168,87 +169,89 @@ impl<'a> Joints<'a> {
         entry: &Entry<'a>,
         bodies: &Bodies<'_>,
         units: &Units,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) {
         let key = entry.key.clone();
-        let mut text = JointText {
+        let mut parsed = ParsedJoint {
             name: entry.name.to_owned(),
-            ends: [key.clone(), key.clone()],
+            points: [key.clone(), key.clone()],
             key,
             axis: None,
             law: None,
             joint: None,
         };
         let what = format!("joint `{}`", shorten(entry.name));
-        let Some(fields) = Fields::open(entry, what, problems) else {
-            self.list.push(text);
+        let Some(fields) = TableReader::open(entry, what, diagnostics) else {
+            self.list.push(parsed);
             return;
         };
-        let Some((kind, held)) = kind(&fields, &entry.key, "joint", &JOINTS, problems) else {
-            self.list.push(text);
+        let Some((kind, kind_entry)) = kind(&fields, &entry.key, "joint", &JOINTS, diagnostics)
+        else {
+            self.list.push(parsed);
             return;
         };
         let axis = fields.get("axis").or(fields.get("axes"));
-        text.axis = axis.map(|e| e.value.span());
+        parsed.axis = axis.map(|e| e.value.span());
         if kind == "revolute" {
-            self.pin(text, held, &fields, bodies, problems);
+            self.pin(parsed, kind_entry, &fields, bodies, diagnostics);
             return;
         }
-        if kind == "relation" {
-            self.waiting.push((self.list.len(), fields));
-            self.list.push(text);
+        if kind == "coupling" {
+            self.pending_couplings.push((self.list.len(), fields));
+            self.list.push(parsed);
             return;
         }
-        let ends = two_ends(held, TWO_POINTS, &fields, bodies, problems);
-        let kind = match kind {
-            "prismatic" => pairs::prismatic(entry, &fields, problems),
-            "slot" => pairs::slot(entry, &fields, problems),
-            "weld" => pairs::weld(&fields, units, problems),
-            "distance" => pairs::distance(entry, &fields, units, problems),
-            "gear" => gears::gear(entry, &fields, units, problems),
-            _ => {
-                gears::on_a_line(entry, &fields, units, problems).map(|(axis, radius)| match kind {
-                    "rack" => JointKind::Rack { axis, radius },
-                    _ => JointKind::Rolling { axis, radius },
-                })
-            }
-        };
-        if let Some(ends) = ends {
-            text.ends = ends.clone().map(|(_, _, at)| at);
-            let [a, b] = &ends;
-            text.joint = kind.map(|kind| between(&text.name, a, b, kind, bodies));
+        let points = two_points(kind_entry, TWO_POINTS, &fields, bodies, diagnostics);
+        let kind =
+            match kind {
+                "prismatic" => pairs::prismatic(entry, &fields, diagnostics),
+                "slot" => pairs::slot(entry, &fields, diagnostics),
+                "weld" => pairs::weld(&fields, units, diagnostics),
+                "distance" => pairs::distance(entry, &fields, units, diagnostics),
+                "gear" => gears::gear(entry, &fields, units, diagnostics),
+                _ => gears::on_a_line(entry, &fields, units, diagnostics).map(|(axis, radius)| {
+                    match kind {
+                        "rack" => JointKind::Rack { axis, radius },
+                        _ => JointKind::Rolling { axis, radius },
+                    }
+                }),
+            };
+        if let Some(points) = points {
+            parsed.points = points.clone().map(|(_, _, at)| at);
+            let [a, b] = &points;
+            parsed.joint = kind.map(|kind| between(&parsed.name, a, b, kind, bodies));
         }
-        self.list.push(text);
+        self.list.push(parsed);
     }
 
     /// A pin: the first body holds every other.
     fn pin(
         &mut self,
-        mut text: JointText,
-        held: &Entry<'_>,
-        fields: &Fields<'_>,
+        mut parsed: ParsedJoint,
+        kind_entry: &Entry<'_>,
+        fields: &TableReader<'_>,
         bodies: &Bodies<'_>,
-        problems: &mut Problems,
+        diagnostics: &mut Diagnostics,
     ) {
-        let Some(ends) = pin_ends(held, fields, bodies, problems) else {
-            self.list.push(text);
+        let Some(points) = pin_points(kind_entry, fields, bodies, diagnostics) else {
+            self.list.push(parsed);
             return;
         };
-        let [first, others @ ..] = ends.as_slice() else {
-            self.list.push(text);
+        let [first, others @ ..] = points.as_slice() else {
+            self.list.push(parsed);
             return;
         };
-        for end in others {
+        for other in others {
             let name = match others.len() {
-                1 => text.name.clone(),
-                _ => format!("{}-{}", text.name, bodies.list[end.0.0].name),
+                1 => parsed.name.clone(),
+                _ => format!("{}-{}", parsed.name, bodies.list[other.0.0].name),
             };
-            text.ends = [first.2.clone(), end.2.clone()];
-            self.list.push(JointText {
-                joint: Some(between(&name, first, end, JointKind::Revolute, bodies)),
+            parsed.points = [first.2.clone(), other.2.clone()];
+            self.list.push(ParsedJoint {
+                joint: Some(between(&name, first, other, JointKind::Revolute, bodies)),
                 name,
-                key: text.key.clone(),
-                ends: text.ends.clone(),
+                key: parsed.key.clone(),
+                points: parsed.points.clone(),
                 axis: None,
                 law: None,
             });
@@ -266,18 +269,18 @@ fn between(
     Joint {
         name: name.to_owned(),
         bodies: [a.0, b.0],
-        points: [a, b].map(|end| bodies.at(end)),
+        points: [a, b].map(|point| bodies.at(point)),
         kind,
     }
 }
 
 /// Whether a joint of that kind has a travel.
-fn slides(kind: JointKind) -> bool {
+fn has_travel(kind: JointKind) -> bool {
     matches!(kind, JointKind::Prismatic { .. } | JointKind::Slot { .. })
 }
 
 /// What a scene calls the kind.
-pub(crate) fn word(kind: JointKind) -> &'static str {
+pub(crate) fn kind_name(kind: JointKind) -> &'static str {
     match kind {
         JointKind::Revolute => "revolute",
         JointKind::Prismatic { .. } => "prismatic",
@@ -287,77 +290,82 @@ pub(crate) fn word(kind: JointKind) -> &'static str {
         JointKind::Rack { .. } => "rack",
         JointKind::Rolling { .. } => "rolling",
         JointKind::Distance { .. } => "distance",
-        JointKind::Relation(_) => "relation",
+        JointKind::Coupling(_) => "coupling",
     }
 }
 
 /// The two points that the joint's first key names.
-fn two_ends(
-    held: &Entry<'_>,
+fn two_points(
+    kind_entry: &Entry<'_>,
     expected: &str,
-    fields: &Fields<'_>,
+    fields: &TableReader<'_>,
     bodies: &Bodies<'_>,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<[NamedPoint; 2]> {
-    let what = format_args!("{} of {}", held.name, fields.what);
-    let ends = bodies.find_two_points(held.value, expected, what, problems)?;
-    let [a, b] = &ends;
-    different(a, b, fields, bodies, problems)?;
-    Some(ends)
+    let what = format_args!("{} of {}", kind_entry.name, fields.what);
+    let points = bodies.find_two_points(kind_entry.value, expected, what, diagnostics)?;
+    let [a, b] = &points;
+    require_different_bodies(a, b, fields, bodies, diagnostics)?;
+    Some(points)
 }
 
 /// The points of a pin, two or more, each of another body.
-fn pin_ends(
-    held: &Entry<'_>,
-    fields: &Fields<'_>,
+fn pin_points(
+    kind_entry: &Entry<'_>,
+    fields: &TableReader<'_>,
     bodies: &Bodies<'_>,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<Vec<NamedPoint>> {
-    let what = format!("{} of {}", held.name, fields.what);
+    let what = format!("{} of {}", kind_entry.name, fields.what);
     let expected = "two or more points [\"body.point\", \"body.point\"]";
-    let values = array(held.value, expected, format_args!("{what}"), problems)?;
+    let values = array(
+        kind_entry.value,
+        expected,
+        format_args!("{what}"),
+        diagnostics,
+    )?;
     if values.len() < 3 {
-        return two_ends(held, expected, fields, bodies, problems).map(Vec::from);
+        return two_points(kind_entry, expected, fields, bodies, diagnostics).map(Vec::from);
     }
-    let count = problems.count();
-    let mut ends: Vec<NamedPoint> = Vec::new();
+    let count = diagnostics.count();
+    let mut points: Vec<NamedPoint> = Vec::new();
     for value in values {
-        let Some(name) = string(value, format_args!("{what}"), problems) else {
+        let Some(name) = string(value, format_args!("{what}"), diagnostics) else {
             continue;
         };
         let at = value.span();
-        let Some((body, point)) = bodies.find_point(name, &at, problems) else {
+        let Some((body, point)) = bodies.find_point(name, &at, diagnostics) else {
             continue;
         };
-        let end = (body, point, at);
-        match ends.iter().find(|e| e.0 == body) {
+        let named_point = (body, point, at);
+        match points.iter().find(|e| e.0 == body) {
             Some(other) => {
-                different(other, &end, fields, bodies, problems);
+                require_different_bodies(other, &named_point, fields, bodies, diagnostics);
             }
-            None => ends.push(end),
+            None => points.push(named_point),
         }
     }
-    (problems.count() == count).then_some(ends)
+    (diagnostics.count() == count).then_some(points)
 }
 
 /// A joint is between two bodies: says so if it is not.
-fn different(
+fn require_different_bodies(
     a: &NamedPoint,
     b: &NamedPoint,
-    fields: &Fields<'_>,
+    fields: &TableReader<'_>,
     bodies: &Bodies<'_>,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<()> {
     if a.0 != b.0 {
         return Some(());
     }
-    problems.push(
-        Problem::new(format!(
+    diagnostics.push(
+        Diagnostic::new(format!(
             "{} joins body `{}` to itself",
             fields.what, bodies.list[a.0.0].name
         ))
-        .at(a.2.clone(), "this body")
-        .at(b.2.clone(), "and the same again")
+        .label(a.2.clone(), "this body")
+        .label(b.2.clone(), "and the same again")
         .help("a joint holds two different bodies together"),
     );
     None

@@ -1,42 +1,44 @@
-//! The kinds of joints between two links: what they let move.
+//! Prismatic joints, slots, welds and distances.
 
-use crate::fields::{Entry, Fields, Sign, angle, pair, signed, unit_vector};
-use crate::problem::{Problem, Problems};
+use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::table_reader::{
+    Entry, SignRule, TableReader, angle, pair, quantity_with_sign, unit_vector,
+};
 use crate::units::Units;
 use dwell_geometry::{JointKind, Vec2};
 
 pub(super) fn prismatic(
     entry: &Entry<'_>,
-    fields: &Fields<'_>,
-    problems: &mut Problems,
+    fields: &TableReader<'_>,
+    diagnostics: &mut Diagnostics,
 ) -> Option<JointKind> {
     let what = &fields.what;
     let axes = match (fields.get("axis"), fields.get("axes")) {
         (Some(axis), None) => {
-            let axis = unit_vector(axis.value, &format!("the axis of {what}"), problems)?;
+            let axis = unit_vector(axis.value, &format!("the axis of {what}"), diagnostics)?;
             [axis, axis]
         }
         (None, Some(axes)) => {
             let what = format!("the axes of {what}");
             let expected = "one axis for each body [[x, y], [x, y]]";
-            let [a, b] = pair(axes.value, expected, format_args!("{what}"), problems)?;
-            let a = unit_vector(a, &format!("the first of {what}"), problems);
-            let b = unit_vector(b, &format!("the second of {what}"), problems);
+            let [a, b] = pair(axes.value, expected, format_args!("{what}"), diagnostics)?;
+            let a = unit_vector(a, &format!("the first of {what}"), diagnostics);
+            let b = unit_vector(b, &format!("the second of {what}"), diagnostics);
             [a?, b?]
         }
         (Some(a), Some(b)) => {
-            problems.push(
-                Problem::new(format!("{what} has both `axis` and `axes`"))
-                    .at(a.key.clone(), "the same axis in both bodies")
-                    .at(b.key.clone(), "one axis for each body")
+            diagnostics.push(
+                Diagnostic::new(format!("{what} has both `axis` and `axes`"))
+                    .label(a.key.clone(), "the same axis in both bodies")
+                    .label(b.key.clone(), "one axis for each body")
                     .help("keep one of them"),
             );
             return None;
         }
         (None, None) => {
-            problems.push(
-                Problem::new(format!("{what} has no axis"))
-                    .at(entry.key.clone(), "slides along which direction?")
+            diagnostics.push(
+                Diagnostic::new(format!("{what} has no axis"))
+                    .label(entry.key.clone(), "`axis` is missing")
                     .help("add `axis = [1, 0]`, in the frames of both bodies, or `axes` with one for each"),
             );
             return None;
@@ -47,35 +49,35 @@ pub(super) fn prismatic(
 
 pub(super) fn slot(
     entry: &Entry<'_>,
-    fields: &Fields<'_>,
-    problems: &mut Problems,
+    fields: &TableReader<'_>,
+    diagnostics: &mut Diagnostics,
 ) -> Option<JointKind> {
-    let axis = axis(entry, fields, problems)?;
+    let axis = axis(entry, fields, diagnostics)?;
     Some(JointKind::Slot { axis })
 }
 
 /// The axis of a joint that has one in its first body.
 pub(super) fn axis(
     entry: &Entry<'_>,
-    fields: &Fields<'_>,
-    problems: &mut Problems,
+    fields: &TableReader<'_>,
+    diagnostics: &mut Diagnostics,
 ) -> Option<Vec2> {
     let help = "add `axis = [1, 0]`, in the frame of the first body";
-    let axis = fields.need("axis", &entry.key, help, problems)?;
+    let axis = fields.require("axis", &entry.key, help, diagnostics)?;
     let what = format!("the axis of {}", fields.what);
-    unit_vector(axis.value, &what, problems)
+    unit_vector(axis.value, &what, diagnostics)
 }
 
 pub(super) fn weld(
-    fields: &Fields<'_>,
+    fields: &TableReader<'_>,
     units: &Units,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<JointKind> {
     let angle = match fields.get("angle") {
         None => 0.0,
         Some(e) => {
             let what = format_args!("the angle of {}", fields.what);
-            angle(e.value, &units.angle, what, problems)?
+            angle(e.value, &units.angle, what, diagnostics)?
         }
     };
     Some(JointKind::Weld { angle })
@@ -83,20 +85,20 @@ pub(super) fn weld(
 
 pub(super) fn distance(
     entry: &Entry<'_>,
-    fields: &Fields<'_>,
+    fields: &TableReader<'_>,
     units: &Units,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<JointKind> {
     let what = &fields.what;
     let help = "add `length = 200`: the distance the two points keep";
-    let length = fields.need("length", &entry.key, help, problems)?;
-    let length = signed(
+    let length = fields.require("length", &entry.key, help, diagnostics)?;
+    let length = quantity_with_sign(
         length.value,
         &units.length,
-        Sign::Positive,
+        SignRule::Positive,
         format_args!("the length of {what}"),
-        "two points at no distance are a revolute joint",
-        problems,
+        "two coinciding points are a revolute joint",
+        diagnostics,
     )?;
     Some(JointKind::Distance { length })
 }
@@ -105,20 +107,20 @@ pub(super) fn distance(
 pub(super) fn two_radii(
     entry: &Entry<'_>,
     units: &Units,
-    sign: Sign,
+    sign: SignRule,
     what: &str,
     why: &str,
-    problems: &mut Problems,
+    diagnostics: &mut Diagnostics,
 ) -> Option<[f64; 2]> {
     let [a, b] = pair(
         entry.value,
         "two radii [r1, r2]",
         format_args!("{what}"),
-        problems,
+        diagnostics,
     )?;
     let mut one = |value, which: &str| {
         let what = format_args!("the {which} of {what}");
-        signed(value, &units.length, sign, what, why, problems)
+        quantity_with_sign(value, &units.length, sign, what, why, diagnostics)
     };
     let (a, b) = (one(a, "first"), one(b, "second"));
     Some([a?, b?])

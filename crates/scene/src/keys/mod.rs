@@ -2,41 +2,45 @@
 //! lists of keys that messages know, the schema that editors complete with, and the tables of
 //! docs/scene-format.md.
 
-mod acting;
-mod driving;
-mod free;
-mod moving;
-mod parts;
-mod root;
+mod drives;
+mod loads;
+mod mechanism;
+mod motion;
+mod prescribed;
+mod scene;
 
-pub(crate) use acting::{LOADS, RUBBING_PIN, RUBBING_SLIDE};
-pub(crate) use driving::DRIVES;
-pub(crate) use free::{EVENT_KINDS, MOTION};
-pub(crate) use moving::{LAW, MAGNITUDE, PRESCRIBED, PROFILE, SINUSOID, SWEEP, TRAPEZOID};
-pub(crate) use parts::{ACTUATOR, BODY, COORDINATE, JOINTS, LAWS_OF_RELATIONS};
-pub(crate) use root::{CALIBRATION, DWELL, REQUESTS, SCENE, SECTION, UNITS};
+pub(crate) use drives::DRIVES;
+pub(crate) use loads::{LOADS, PRISMATIC_FRICTION, REVOLUTE_FRICTION};
+pub(crate) use mechanism::{ACTUATOR, BODY, COORDINATE, COUPLING_LAWS, JOINTS};
+pub(crate) use motion::{EVENT_KINDS, MOTION};
+pub(crate) use prescribed::{
+    COORDINATE_SWEEP, LAW, MAGNITUDE, PRESCRIBED, PROFILE, SINUSOID, TRAPEZOID,
+};
+pub(crate) use scene::{CALIBRATION, DWELL, REQUESTS, SCENE, SECTION, UNITS};
 
 /// A table of a scene.
 #[derive(Debug)]
-pub(crate) struct Table {
+pub(crate) struct TableSchema {
     /// How the documentation calls it: its header, or its first key.
     pub(crate) name: &'static str,
     /// What it is for, in a sentence.
     pub(crate) doc: &'static str,
     /// Its keys.
-    pub(crate) keys: &'static [Key],
+    pub(crate) keys: &'static [KeySchema],
     /// What its other keys are, where they are names of the scene's own.
-    pub(crate) named: Option<Key>,
+    pub(crate) named: Option<KeySchema>,
 }
 
 /// A key of a table.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Key {
+pub(crate) struct KeySchema {
     pub(crate) name: &'static str,
-    pub(crate) shape: Shape,
+    /// Its former names, which are still read.
+    pub(crate) former: &'static [&'static str],
+    pub(crate) shape: ValueShape,
     /// Unit of its numbers; `length`, `angle`, `mass` and `inertia` are the scene's own.
     pub(crate) unit: &'static str,
-    pub(crate) need: Need,
+    pub(crate) presence: Presence,
     /// What it says, in a sentence.
     pub(crate) doc: &'static str,
     /// A value as it is written.
@@ -45,7 +49,7 @@ pub(crate) struct Key {
 
 /// Whether a key has to be there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Need {
+pub(crate) enum Presence {
     Required,
     /// What stands in for it.
     Default(&'static str),
@@ -57,7 +61,7 @@ pub(crate) enum Need {
 
 /// How the value of a key is written.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Shape {
+pub(crate) enum ValueShape {
     Text,
     Number,
     Boolean,
@@ -79,56 +83,68 @@ pub(crate) enum Shape {
     TwoNames(&'static str),
     /// A list of them, at least so many.
     Names(&'static str, usize),
-    Table(&'static Table),
+    Table(&'static TableSchema),
     /// A list of tables.
-    Tables(&'static Table),
+    Tables(&'static TableSchema),
     /// A table of one of several kinds, each told by its first key.
-    Kinds(&'static [&'static Table]),
+    Kinds(&'static [&'static TableSchema]),
     /// Any of these.
-    Either(&'static [Shape]),
+    Either(&'static [ValueShape]),
 }
 
 /// A key that has to be there.
 const fn key(
     name: &'static str,
-    shape: Shape,
+    shape: ValueShape,
     unit: &'static str,
     doc: &'static str,
     example: &'static str,
-) -> Key {
-    Key {
+) -> KeySchema {
+    KeySchema {
         name,
+        former: &[],
         shape,
         unit,
-        need: Need::Required,
+        presence: Presence::Required,
         doc,
         example,
     }
 }
 
-impl Key {
+impl KeySchema {
+    /// The same key, which had these names before.
+    const fn formerly(mut self, former: &'static [&'static str]) -> Self {
+        self.former = former;
+        self
+    }
+
+    /// Its name before it was renamed; its name if it never was.
+    pub(crate) fn former_name(&self) -> &'static str {
+        self.former.first().copied().unwrap_or(self.name)
+    }
+
     /// The same key, which may be absent.
-    const fn or(mut self, default: &'static str) -> Self {
-        self.need = Need::Default(default);
+    const fn with_default(mut self, default: &'static str) -> Self {
+        self.presence = Presence::Default(default);
         self
     }
 
     /// The same key, one of a group of which one has to be there.
     const fn one_of(mut self, group: &'static str) -> Self {
-        self.need = Need::OneOf(group);
+        self.presence = Presence::OneOf(group);
         self
     }
 
     /// The same key, needed with the others of its set, where no other set is there.
     const fn in_set(mut self, set: &'static str) -> Self {
-        self.need = Need::Set(set);
+        self.presence = Presence::Set(set);
         self
     }
 }
 
 /// A table without keys of the scene's own.
-const fn table(name: &'static str, doc: &'static str, keys: &'static [Key]) -> Table {
-    Table {
+const fn table(name: &'static str, doc: &'static str, keys: &'static [KeySchema]) -> TableSchema {
+    TableSchema {
         name,
         doc,
         keys,
@@ -136,22 +152,30 @@ const fn table(name: &'static str, doc: &'static str, keys: &'static [Key]) -> T
     }
 }
 
-impl Table {
+impl TableSchema {
     /// Names of its keys.
     pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> + Clone + use<> {
         let keys = self.keys;
         keys.iter().map(|k| k.name)
     }
 
-    pub(crate) fn knows(&self, name: &str) -> bool {
+    pub(crate) fn contains_key(&self, name: &str) -> bool {
         self.names().any(|n| n == name)
+    }
+
+    /// The key of that name, or the description of the names of the scene's own.
+    pub(crate) fn key(&self, name: &str) -> Option<KeySchema> {
+        let known = self.keys.iter().find(|k| k.name == name);
+        known.copied().or(self.named)
     }
 
     /// The names of each of its sets of keys, in their order.
     pub(crate) fn sets(&self) -> Vec<Vec<&'static str>> {
         let mut sets: Vec<(&str, Vec<&'static str>)> = Vec::new();
         for key in self.keys {
-            let Need::Set(set) = key.need else { continue };
+            let Presence::Set(set) = key.presence else {
+                continue;
+            };
             match sets.iter_mut().find(|(name, _)| *name == set) {
                 Some((_, keys)) => keys.push(key.name),
                 None => sets.push((set, vec![key.name])),
@@ -161,7 +185,7 @@ impl Table {
     }
 
     /// The key that tells its kind among others.
-    pub(crate) fn kind(&self) -> &'static str {
+    pub(crate) fn kind_key(&self) -> &'static str {
         self.keys.first().map_or("", |k| k.name)
     }
 }

@@ -1,7 +1,7 @@
 //! What a scene says, as data.
 
 use super::*;
-use crate::{Calibration, DwellRequest, Length, PathPoint};
+use crate::{Calibration, DwellRequest, MotionDuration, PathPoint};
 use dwell_geometry::{BodyId, Component, JointId, JointKind, Vec2, vec2};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -37,30 +37,36 @@ fn the_whole_language() {
     ];
     assert_eq!(scene.points[2], rod);
 
-    assert_eq!(scene.assembly.start, [FRAC_PI_2]);
-    assert_eq!(scene.assembly.rough, [None, None, Some(-PI / 9.0), None]);
-    let asked: Vec<_> = scene.requests.reactions.iter().collect();
-    assert_eq!(asked.len(), 3, "slide.normal is asked for twice");
-    assert_eq!(m.reaction_name(*asked[0]), "slide.normal");
-    assert_eq!(m.reaction_name(*asked[1]), "slide.moment");
-    assert_eq!(asked[2].joint, JointId(0));
-    assert_eq!(asked[2].component, Component::X);
+    assert_eq!(scene.assembly.coordinates, [FRAC_PI_2]);
+    assert_eq!(
+        scene.assembly.initial_guess,
+        [None, None, Some(-PI / 9.0), None]
+    );
+    let requested: Vec<_> = scene.requests.reactions.iter().collect();
+    assert_eq!(requested.len(), 3, "slide.normal is asked for twice");
+    assert_eq!(m.reaction_name(*requested[0]), "slide.normal");
+    assert_eq!(m.reaction_name(*requested[1]), "slide.moment");
+    assert_eq!(requested[2].joint, JointId(0));
+    assert_eq!(requested[2].component, Component::X);
     let (body, name, at) = (BodyId(2), "P".to_owned(), vec2(0.3, 0.0));
     assert_eq!(scene.requests.paths[0], PathPoint { body, name, at });
     assert_eq!(
         scene.requests.dwell,
-        Some(DwellRequest { body, band: 0.02 })
+        Some(DwellRequest {
+            body,
+            relative_band: 0.02
+        })
     );
     let motion = scene.motion.unwrap();
-    assert_eq!(motion.start, [PI / 6.0]);
-    assert_eq!(motion.speed, [PI]);
-    assert_eq!(motion.length, Length::Periods(2.0));
+    assert_eq!(motion.initial_coordinates, [PI / 6.0]);
+    assert_eq!(motion.initial_velocities, [PI]);
+    assert_eq!(motion.duration, MotionDuration::Periods(2.0));
     let path = "crank.inertia".to_owned();
     assert_eq!(scene.calibration, Some(Calibration { path, period: 5.42 }));
 }
 
 /// Two bodies and a joint: the least a scene can be.
-const LEAST: &str = r#"
+const MINIMAL: &str = r#"
 bodies.bob = { points = { O = [0, 0] }, inertia = 1 }
 bodies.ground.points.O = [0, 0]
 joints.O.revolute = ["ground.O", "bob.O"]
@@ -69,23 +75,23 @@ actuators.phi.angle = ["ground", "bob"]
 
 #[test]
 fn what_is_absent_has_its_default() {
-    let scene = parse(LEAST).unwrap();
+    let scene = parse(MINIMAL).unwrap();
     assert_eq!(scene.title, "test");
     assert_eq!(scene.note, None);
     assert_eq!(scene.mechanism.ground, 1, "the order is that of the file");
-    assert_eq!(scene.assembly.start, [0.0]);
+    assert_eq!(scene.assembly.coordinates, [0.0]);
     assert_eq!(scene.requests.reactions, scene.mechanism.reactions());
     assert!(scene.requests.paths.is_empty());
     assert_eq!(scene.requests.dwell, None);
     assert_eq!(scene.motion, None);
     assert_eq!(scene.calibration, None);
 
-    let with_requests = format!("{LEAST}\nrequests = {{ paths = [] }}");
+    let with_requests = format!("{MINIMAL}\nrequests = {{ paths = [] }}");
     let scene = parse(&with_requests).unwrap();
     assert_eq!(scene.requests.reactions, scene.mechanism.reactions());
-    let none = format!("{LEAST}\nrequests = {{ reactions = [] }}");
+    let none = format!("{MINIMAL}\nrequests = {{ reactions = [] }}");
     assert!(parse(&none).unwrap().requests.reactions.is_empty());
-    let both = format!("{LEAST}\nrequests = {{ reactions = [\"O\"] }}");
+    let both = format!("{MINIMAL}\nrequests = {{ reactions = [\"O\"] }}");
     let scene = parse(&both).unwrap();
     assert_eq!(scene.requests.reactions, scene.mechanism.reactions());
 }
@@ -93,14 +99,17 @@ fn what_is_absent_has_its_default() {
 #[test]
 fn motion_and_assembly_start_where_the_other_does() {
     let start = |more: &str| {
-        let scene = parse(&format!("{LEAST}\n{more}")).unwrap();
-        (scene.assembly.start[0], scene.motion.unwrap().start[0])
+        let scene = parse(&format!("{MINIMAL}\n{more}")).unwrap();
+        (
+            scene.assembly.coordinates[0],
+            scene.motion.unwrap().initial_coordinates[0],
+        )
     };
-    let motion = "speed = 1, duration = 2";
-    let both = format!("assembly.phi = 1\nmotion = {{ start = 2, {motion} }}");
+    let motion = "initial-velocity = 1, duration = 2";
+    let both = format!("assembly.phi = 1\nmotion = {{ initial-coordinate = 2, {motion} }}");
     assert_eq!(start(&both), (1.0, 2.0));
     assert_eq!(
-        start(&format!("motion = {{ start = 2, {motion} }}")),
+        start(&format!("motion = {{ initial-coordinate = 2, {motion} }}")),
         (2.0, 2.0)
     );
     assert_eq!(
@@ -112,13 +121,13 @@ fn motion_and_assembly_start_where_the_other_does() {
 
 #[test]
 fn any_body_can_be_the_ground() {
-    let moving = LEAST.replace(
+    let moving = MINIMAL.replace(
         "ground.points",
         "ground.fixed = false\nbodies.ground.points",
     );
     let scene = parse(&moving.replace("inertia = 1", "fixed = true")).unwrap();
     assert_eq!(scene.mechanism.ground, 0);
-    let renamed = LEAST
+    let renamed = MINIMAL
         .replace("inertia = 1", "fixed = true")
         .replace("ground", "link-1");
     assert_eq!(parse(&renamed).unwrap().mechanism.ground, 0);
@@ -127,10 +136,10 @@ fn any_body_can_be_the_ground() {
 #[test]
 fn the_mass_of_the_ground_is_read_and_dropped() {
     let heavy = "bodies.ground.mass = 5\nbodies.ground.inertia = 2\nbodies.ground.points.O";
-    let scene = parse(&LEAST.replace("bodies.ground.points.O", heavy)).unwrap();
+    let scene = parse(&MINIMAL.replace("bodies.ground.points.O", heavy)).unwrap();
     assert_eq!(scene.masses[1], dwell_kinetostatics::Mass::default());
     assert!(scene.value("ground.mass").is_err());
-    let wrong = LEAST.replace(
+    let wrong = MINIMAL.replace(
         "bodies.ground.points.O",
         "bodies.ground.mass = -5\nbodies.ground.points.O",
     );
@@ -139,7 +148,7 @@ fn the_mass_of_the_ground_is_read_and_dropped() {
 
 #[test]
 fn names_of_many_scripts() {
-    let text = LEAST
+    let text = MINIMAL
         .replace("bob", "\"Kurbel-1 φ₂\"")
         .replace(".\"Kurbel-1 φ₂\".", ".Kurbel-1 φ₂.")
         .replace("\"\"Kurbel-1 φ₂\".O\"", "\"Kurbel-1 φ₂.O\"")
@@ -175,7 +184,7 @@ fn units_convert_to_the_last_digit() {
 #[test]
 fn every_unit() {
     let bob = |units: &str| {
-        let text = LEAST.replace("inertia = 1", "inertia = 1, mass = 1, center = [1, 2]");
+        let text = MINIMAL.replace("inertia = 1", "inertia = 1, mass = 1, center = [1, 2]");
         parse(&format!("{text}\n[units]\n{units}")).unwrap().masses[0]
     };
     for (unit, meters) in [

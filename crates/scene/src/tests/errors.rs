@@ -16,8 +16,8 @@ fn catalogue(text: &str, scene: &str) -> (String, usize) {
         let _ = writeln!(now, "{}", kept.join("\n"));
         if case.lines().any(|l| l.starts_with('-')) {
             cases += 1;
-            for said in told(&changed(scene, &lines('-'), &lines('+'))) {
-                let _ = writeln!(now, "={said}");
+            for message in messages(&changed(scene, &lines('-'), &lines('+'))) {
+                let _ = writeln!(now, "={message}");
             }
         }
         now.push('\n');
@@ -28,7 +28,7 @@ fn catalogue(text: &str, scene: &str) -> (String, usize) {
 
 #[test]
 fn every_careless_scene_is_told_what_is_wrong() {
-    for (path, text, scene, least) in [
+    for (path, text, scene, min_cases) in [
         (
             "src/tests/errors.txt",
             include_str!("errors.txt"),
@@ -44,12 +44,12 @@ fn every_careless_scene_is_told_what_is_wrong() {
         (
             "src/tests/driven.txt",
             include_str!("driven.txt"),
-            DRIVEN,
+            FREE_MOTION,
             35,
         ),
     ] {
         let (now, cases) = catalogue(text, scene);
-        assert!(cases >= least, "{cases} cases in {path}");
+        assert!(cases >= min_cases, "{cases} cases in {path}");
         same_as_written(path, &now);
     }
 }
@@ -90,14 +90,16 @@ fn next_to_nothing() {
     let empty = [
         "the scene is empty | «» no bodies, no joints ⇒ a scene has at least [bodies] and [joints]",
     ];
-    assert_eq!(told(""), empty);
-    assert_eq!(told("\u{feff}\n \t\r\n"), empty);
-    let comments = told("# a comment\n");
+    assert_eq!(messages(""), empty);
+    assert_eq!(messages("\u{feff}\n \t\r\n"), empty);
+    let comments = messages("# a comment\n");
     assert!(comments[0].starts_with("the scene has nothing but comments"));
-    assert!(told("title = \"t\"")[0].starts_with("the scene has no bodies"));
-    assert!(told("[bodies]")[0].starts_with("the scene has no bodies | «bodies» nothing in it"));
+    assert!(messages("title = \"t\"")[0].starts_with("the scene has no bodies"));
+    assert!(
+        messages("[bodies]")[0].starts_with("the scene has no bodies | «bodies» nothing in it")
+    );
     let ground = "[bodies.ground]\npoints = { A = [0, 0] }\n[joints]";
-    assert!(told(ground)[0].starts_with("the scene has no joints | «joints» nothing in it"));
+    assert!(messages(ground)[0].starts_with("the scene has no joints | «joints» nothing in it"));
 }
 
 #[test]
@@ -152,11 +154,11 @@ fn what_a_terminal_would_obey_is_not_shown_to_it() {
 
 #[test]
 fn an_error_found_later_points_into_the_file() {
-    use crate::Place::*;
+    use crate::SceneLocation::*;
     use dwell_geometry::{ActuatorId, BodyId, JointId};
     let scene = parse(WHOLE).unwrap();
     let (crank, rod, slide, phi) = (BodyId(1), BodyId(2), JointId(3), ActuatorId(0));
-    for (place, text) in [
+    for (location, text) in [
         (Whole, ""),
         (Units, "[units]"),
         (Body(crank), "crank"),
@@ -165,36 +167,36 @@ fn an_error_found_later_points_into_the_file() {
         (Inertia(crank), "1666.0"),
         (Center(crank), "[50, 1]"),
         (Joint(slide), "slide"),
-        (JointEnd(slide, 1), "\"piston.P\""),
+        (JointPoint(slide, 1), "\"piston.P\""),
         (Axis(slide), "[3, 4]"),
         (Actuator(phi), "phi"),
         (Assembly, "[assembly]"),
-        (Start(phi), "phi = 90"),
-        (Rough(rod), "rod = -20"),
+        (AssemblyCoordinate(phi), "phi = 90"),
+        (InitialGuess(rod), "rod = -20"),
         (Requests, "[requests]"),
         (Reaction(2), "\"A.x\""),
         (Path(1), "\"crank.B\""),
-        (Dwell, "{ body = \"rod\", band = 0.02 }"),
+        (Dwell, "{ body = \"rod\", relative-band = 0.02 }"),
         (Motion, "[motion]"),
-        (MotionStart(phi), "30"),
-        (Speed(phi), "180"),
-        (Length, "periods = 2"),
+        (InitialCoordinate(phi), "30"),
+        (InitialVelocity(phi), "180"),
+        (Duration, "periods = 2"),
         (Calibration, "\"crank.inertia\""),
         // Not written down: the nearest thing that is.
         (Inertia(rod), "rod"),
-        (Rough(crank), "crank"),
+        (InitialGuess(crank), "crank"),
         (Axis(JointId(0)), "A"),
         // Not in the scene at all: no panic.
         (Mass(BodyId(99)), ""),
-        (JointEnd(slide, 9), "slide"),
+        (JointPoint(slide, 9), "slide"),
         (Reaction(99), "[requests]"),
     ] {
         let error = scene.error(
             "it does not close".to_owned(),
             Some("move it".to_owned()),
-            &[(place, "here".to_owned())],
+            &[(location, "here".to_owned())],
         );
-        assert_eq!(error.labelled(), [(text, "here")], "{place:?}");
+        assert_eq!(error.labelled(), [(text, "here")], "{location:?}");
         assert!(render(&error).contains("it does not close"));
     }
 }

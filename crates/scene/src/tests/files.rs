@@ -1,7 +1,7 @@
 //! Files: those that cannot be read, and the scenes of the validation.
 
 use super::*;
-use crate::Length;
+use crate::MotionDuration;
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
@@ -22,9 +22,9 @@ fn a_file_that_cannot_be_read_says_why() {
     let read = |name: &str| {
         let error = Scene::read(folder.join(name)).unwrap_err();
         render(&error);
-        let shown = folder.display().to_string();
+        let display_path = folder.display().to_string();
         let help = error.help.unwrap_or_default();
-        format!("{} ⇒ {help}", error.message).replace(&shown, "DIR")
+        format!("{} ⇒ {help}", error.message).replace(&display_path, "DIR")
     };
     assert_eq!(read("none.toml"), "there is no file `DIR/none.toml` ⇒ ");
     assert_eq!(read(""), "`DIR/` is a folder ⇒ give the scene file itself");
@@ -99,12 +99,15 @@ fn single_dwell() {
     assert_eq!(mass("guide").1, 0.35);
     assert_eq!(mass("slider"), (0.5, 0.0, 0.0));
     assert_eq!(m.joints[6].points[0].x, 0.0);
-    let asked = &scene.requests.reactions;
-    assert_eq!(asked.len(), 1);
-    assert_eq!(m.reaction_name(asked[0]), "slide.normal");
+    let requested = &scene.requests.reactions;
+    assert_eq!(requested.len(), 1);
+    assert_eq!(m.reaction_name(requested[0]), "slide.normal");
     let motion = scene.motion.as_ref().unwrap();
-    assert_eq!(motion.length, Length::Periods(10.0));
-    assert_eq!((motion.start[0], motion.speed[0]), (0.0, 1.0));
+    assert_eq!(motion.duration, MotionDuration::Periods(10.0));
+    assert_eq!(
+        (motion.initial_coordinates[0], motion.initial_velocities[0]),
+        (0.0, 1.0)
+    );
     let calibration = scene.calibration.as_ref().unwrap();
     assert_eq!(scene.value(&calibration.path).unwrap(), 0.626);
     assert_eq!(scene.unit_of(&calibration.path), "kg m2");
@@ -115,8 +118,11 @@ fn crank_rocker() {
     let scene = case("crank-rocker");
     assert_eq!(scene.masses[2].inertia, 2.0 * 3.5 * 3.5 / 12.0);
     assert_eq!(scene.masses[1].inertia, 1.0 / 12.0);
-    assert_eq!(scene.assembly.start, [60.0 * std::f64::consts::PI / 180.0]);
-    assert_eq!(scene.motion.unwrap().speed, [10.0]);
+    assert_eq!(
+        scene.assembly.coordinates,
+        [60.0 * std::f64::consts::PI / 180.0]
+    );
+    assert_eq!(scene.motion.unwrap().initial_velocities, [10.0]);
 }
 
 #[test]
@@ -140,7 +146,7 @@ fn class_three_six_bar() {
             .body_name(scene.mechanism.actuators[0].bodies[1]),
         "link5"
     );
-    assert_eq!(scene.assembly.start, [-0.6]);
+    assert_eq!(scene.assembly.coordinates, [-0.6]);
     assert_eq!(scene.requests.reactions, scene.mechanism.reactions());
     assert_eq!(scene.motion, None);
 }

@@ -2,7 +2,7 @@
 //! say is held against what the reader does.
 
 use super::*;
-use crate::keys::{Key, Need, SCENE, Shape, Table};
+use crate::keys::{KeySchema, Presence, SCENE, TableSchema, ValueShape};
 use crate::schema::{as_json, schema};
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -10,16 +10,16 @@ use std::fmt::Write as _;
 const PAGE: &str = include_str!("../../../../docs/scene-format.md");
 
 /// Every table that the scene's keys lead to, each once.
-fn tables() -> Vec<&'static Table> {
-    fn follow(shape: Shape, found: &mut Vec<&'static Table>) {
+pub(super) fn tables() -> Vec<&'static TableSchema> {
+    fn follow(shape: ValueShape, found: &mut Vec<&'static TableSchema>) {
         match shape {
-            Shape::Table(table) | Shape::Tables(table) => visit(table, found),
-            Shape::Kinds(kinds) => kinds.iter().for_each(|table| visit(table, found)),
-            Shape::Either(shapes) => shapes.iter().for_each(|shape| follow(*shape, found)),
+            ValueShape::Table(table) | ValueShape::Tables(table) => visit(table, found),
+            ValueShape::Kinds(kinds) => kinds.iter().for_each(|table| visit(table, found)),
+            ValueShape::Either(shapes) => shapes.iter().for_each(|shape| follow(*shape, found)),
             _ => {}
         }
     }
-    fn visit(table: &'static Table, found: &mut Vec<&'static Table>) {
+    fn visit(table: &'static TableSchema, found: &mut Vec<&'static TableSchema>) {
         if found.iter().any(|t| std::ptr::eq(*t, table)) {
             return;
         }
@@ -34,31 +34,31 @@ fn tables() -> Vec<&'static Table> {
 }
 
 /// How the value of a key is written, for a reader.
-fn value(shape: Shape) -> String {
+fn value(shape: ValueShape) -> String {
     match shape {
-        Shape::Text => "text".to_owned(),
-        Shape::Number => "number".to_owned(),
-        Shape::Boolean => "`true` or `false`".to_owned(),
-        Shape::Count => "whole number from 2".to_owned(),
-        Shape::Word(words) => {
+        ValueShape::Text => "text".to_owned(),
+        ValueShape::Number => "number".to_owned(),
+        ValueShape::Boolean => "`true` or `false`".to_owned(),
+        ValueShape::Count => "whole number from 2".to_owned(),
+        ValueShape::Word(words) => {
             let words: Vec<_> = words.iter().map(|w| format!("`\"{w}\"`")).collect();
             words.join(", ")
         }
-        Shape::Expression => "expression".to_owned(),
-        Shape::Pair => "two numbers".to_owned(),
-        Shape::TwoPairs => "two pairs of numbers".to_owned(),
-        Shape::Rows => "two or more pairs of numbers".to_owned(),
-        Shape::Name(what) => what.to_owned(),
-        Shape::TwoNames(what) => format!("two of {what}"),
-        Shape::Names(what, 0) => format!("list of {what}"),
-        Shape::Names(what, least) => format!("{least} or more of {what}"),
-        Shape::Table(_) => "table".to_owned(),
-        Shape::Tables(_) => "list of tables".to_owned(),
-        Shape::Kinds(kinds) => {
+        ValueShape::Expression => "expression".to_owned(),
+        ValueShape::Pair => "two numbers".to_owned(),
+        ValueShape::TwoPairs => "two pairs of numbers".to_owned(),
+        ValueShape::Rows => "two or more pairs of numbers".to_owned(),
+        ValueShape::Name(what) => what.to_owned(),
+        ValueShape::TwoNames(what) => format!("two of {what}"),
+        ValueShape::Names(what, 0) => format!("list of {what}"),
+        ValueShape::Names(what, min) => format!("{min} or more of {what}"),
+        ValueShape::Table(_) => "table".to_owned(),
+        ValueShape::Tables(_) => "list of tables".to_owned(),
+        ValueShape::Kinds(kinds) => {
             let kinds: Vec<_> = kinds.iter().map(|t| format!("`{}`", t.name)).collect();
             format!("table of a kind: {}", kinds.join(", "))
         }
-        Shape::Either(shapes) => {
+        ValueShape::Either(shapes) => {
             let mut shapes: Vec<_> = shapes.iter().map(|s| value(*s)).collect();
             shapes.dedup();
             shapes.join(", or ")
@@ -67,7 +67,7 @@ fn value(shape: Shape) -> String {
 }
 
 /// When a key of a set may be absent.
-fn instead_of(table: &Table, key: &Key) -> String {
+fn instead_of(table: &TableSchema, key: &KeySchema) -> String {
     let sets = table.sets();
     let others = sets.iter().filter(|set| !set.contains(&key.name));
     let others: Vec<_> = others.flatten().map(|name| format!("`{name}`")).collect();
@@ -75,18 +75,18 @@ fn instead_of(table: &Table, key: &Key) -> String {
 }
 
 /// The keys of a table as Markdown.
-fn markdown(table: &Table) -> String {
+fn markdown(table: &TableSchema) -> String {
     let mut text = format!("**`{}`** {}\n\n", table.name, table.doc);
     text.push_str(
         "| key | value | unit | if absent | meaning | example |\n|---|---|---|---|---|---|\n",
     );
     for key in table.keys.iter().chain(&table.named) {
-        let absent = match key.need {
-            Need::Required if key.name.starts_with('<') => "",
-            Need::Required => "needed",
-            Need::OneOf(_) => "one of these is needed",
-            Need::Set(_) => &instead_of(table, key),
-            Need::Default(default) => default,
+        let absent = match key.presence {
+            Presence::Required if key.name.starts_with('<') => "",
+            Presence::Required => "needed",
+            Presence::OneOf(_) => "one of these is needed",
+            Presence::Set(_) => &instead_of(table, key),
+            Presence::Default(default) => default,
         };
         let _ = writeln!(
             text,
@@ -105,7 +105,7 @@ fn markdown(table: &Table) -> String {
 fn the_page_shows_every_table_as_the_reader_knows_it() {
     let tables = tables();
     let mut page = String::new();
-    let mut shown = Vec::new();
+    let mut listed = Vec::new();
     let mut rest = PAGE;
     while let Some((before, after)) = rest.split_once("<!-- keys: ") {
         let (name, after) = after.split_once(" -->").unwrap();
@@ -117,12 +117,12 @@ fn the_page_shows_every_table_as_the_reader_knows_it() {
             "{before}<!-- keys: {name} -->\n{}<!-- /keys -->",
             markdown(table)
         );
-        shown.push(name);
+        listed.push(name);
         rest = after;
     }
     page.push_str(rest);
     for table in &tables {
-        let times = shown.iter().filter(|name| **name == table.name).count();
+        let times = listed.iter().filter(|name| **name == table.name).count();
         assert_eq!(times, 1, "`{}` on the page", table.name);
     }
     same_as_written("../../docs/scene-format.md", &page);
@@ -194,18 +194,21 @@ fn every_example_of_the_page_is_read() {
 }
 
 /// Tables with the example of each key, in turn, and what else it needs, as inline tables.
-fn tables_of_examples(table: &Table) -> Vec<(String, String)> {
-    let written = |key: &Key| format!("{} = {}", key.name, key.example);
-    let one = |wanted: &Key| {
+fn tables_of_examples(table: &TableSchema) -> Vec<(String, String)> {
+    let written = |key: &KeySchema| format!("{} = {}", key.name, key.example);
+    let one = |wanted: &KeySchema| {
         let mut parts: Vec<_> = table
             .keys
             .iter()
-            .filter(|k| k.need == Need::Required && k.name != wanted.name)
+            .filter(|k| k.presence == Presence::Required && k.name != wanted.name)
             .map(written)
             .collect();
-        let alternative = table.keys.iter().find(|k| matches!(k.need, Need::OneOf(_)));
-        match (wanted.need, alternative) {
-            (Need::OneOf(_), _) => {}
+        let alternative = table
+            .keys
+            .iter()
+            .find(|k| matches!(k.presence, Presence::OneOf(_)));
+        match (wanted.presence, alternative) {
+            (Presence::OneOf(_), _) => {}
             // Numbers of dry friction make sense together.
             _ if table.name.starts_with("[friction.") => {
                 let others = table.keys.iter().filter(|k| k.name != wanted.name);
@@ -213,13 +216,13 @@ fn tables_of_examples(table: &Table) -> Vec<(String, String)> {
             }
             (_, None) => {
                 let sets = table.sets();
-                let own = sets.iter().find(|set| set.contains(&wanted.name));
-                let set = own.or(sets.first()).into_iter().flatten();
+                let containing = sets.iter().find(|set| set.contains(&wanted.name));
+                let set = containing.or(sets.first()).into_iter().flatten();
                 let keys = set.filter_map(|name| table.keys.iter().find(|k| k.name == *name));
                 parts.extend(keys.filter(|k| k.name != wanted.name).map(written));
             }
             // A start is that of a sine or a rise.
-            _ if wanted.name == "start" && table.name == "relation" => {
+            _ if wanted.name == "start" && table.name == "coupling" => {
                 let rise = table.keys.iter().find(|k| k.name == "cycloidal");
                 parts.extend(rise.map(written));
             }
@@ -238,7 +241,7 @@ fn tables_of_examples(table: &Table) -> Vec<(String, String)> {
 #[test]
 fn every_example_of_a_key_is_read() {
     let scene = &examples()[0];
-    let around = |table: &Table, inner: &str| -> Option<String> {
+    let around = |table: &TableSchema, inner: &str| -> Option<String> {
         let law = "cycloidal = { rise = 1.0, duration = 0.5 }";
         Some(match table.name {
             "[bodies.<body>]" => format!("bodies.crank = {inner}"),
@@ -249,13 +252,13 @@ fn every_example_of_a_key_is_read() {
                 format!("prescribed = {inner}, phi = {{ {law} }} }}")
             }
             // One actuator is led, another has to be free.
-            "[motion]" if inner.contains("laws") => format!(
+            "[motion]" if inner.contains("prescribed") => format!(
                 "actuators.phi = {{ angle = [\"ground\", \"crank\"] }}\n\
                  actuators.psi = {{ angle = [\"crank\", \"rod\"] }}\nmotion = {inner}"
             ),
             "[friction.<pin>]" => format!("friction.A = {inner}"),
             "[friction.<slide>]" => format!("friction.slide = {inner}"),
-            "[prescribed.<actuator>], [motion.laws.<actuator>]" => {
+            "[prescribed.<actuator>], [motion.prescribed.<actuator>]" => {
                 format!("prescribed = {{ duration = 2.0, phi = {inner} }}")
             }
             "sinusoid" => format!("prescribed = {{ duration = 2.0, phi.sinusoid = {inner} }}"),
@@ -265,7 +268,7 @@ fn every_example_of_a_key_is_read() {
             "trapezoidal" => {
                 format!("prescribed = {{ duration = 2.0, phi.trapezoidal = {inner} }}")
             }
-            "magnitude, stiffness, constant, voltage, speed" => {
+            "magnitude, stiffness, damping, voltage, speed" => {
                 format!("loads.other = {{ torque = \"crank\", magnitude = {inner} }}")
             }
             "dwell" => format!("requests.dwell = {inner}"),
@@ -282,7 +285,7 @@ fn every_example_of_a_key_is_read() {
                 format!("drives.other = {inner}")
             }
             name if crate::keys::EVENT_KINDS.iter().any(|t| t.name == name) => {
-                format!("motion = {{ speed = 1, duration = 1, events.other = {inner} }}")
+                format!("motion = {{ initial-velocity = 1, duration = 1, events.other = {inner} }}")
             }
             _ => return None,
         })
@@ -351,8 +354,9 @@ fn wrong(schema: &Value, value: &Value) -> Option<String> {
     }
     if let Some(items) = value.as_array() {
         let limit = |key: &str| schema[key].as_u64().map(|n| n as usize);
-        let (least, most) = (limit("minItems"), limit("maxItems"));
-        if least.is_some_and(|n| items.len() < n) || most.is_some_and(|n| items.len() > n) {
+        let (min_items, max_items) = (limit("minItems"), limit("maxItems"));
+        if min_items.is_some_and(|n| items.len() < n) || max_items.is_some_and(|n| items.len() > n)
+        {
             return Some(format!("{value} has {} items", items.len()));
         }
         return items.iter().find_map(|item| wrong(&schema["items"], item));
@@ -382,7 +386,7 @@ fn refused(text: &str) -> Option<String> {
 #[test]
 fn the_schema_takes_what_the_reader_takes() {
     let mut texts = examples();
-    texts.extend([WHOLE, MACHINE, DRIVEN].map(str::to_owned));
+    texts.extend([WHOLE, MACHINE, FREE_MOTION].map(str::to_owned));
     let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
     for case in std::fs::read_dir(cases).unwrap() {
         let path = case.unwrap().path().join("scene.toml");
@@ -398,26 +402,26 @@ fn the_schema_takes_what_the_reader_takes() {
 /// value of another kind.
 #[test]
 fn the_schema_refuses_what_has_the_wrong_shape() {
-    let mut seen = 0;
+    let mut refused_count = 0;
     for (text, scene) in [
         (include_str!("errors.txt"), WHOLE),
         (include_str!("machine.txt"), MACHINE),
-        (include_str!("driven.txt"), DRIVEN),
+        (include_str!("driven.txt"), FREE_MOTION),
     ] {
         for case in text.split("\n\n") {
             let lines = |sign: char| {
                 let lines: Vec<_> = case.lines().filter_map(|l| l.strip_prefix(sign)).collect();
                 lines.join("\n")
             };
-            let said = lines('=');
+            let messages = lines('=');
             let shape = ["unknown key", "is missing", ": expected a number, found"];
-            if said.contains("not valid TOML") || !shape.iter().any(|s| said.contains(s)) {
+            if messages.contains("not valid TOML") || !shape.iter().any(|s| messages.contains(s)) {
                 continue;
             }
             let text = changed(scene, &lines('-'), &lines('+'));
             assert!(refused(&text).is_some(), "{case}");
-            seen += 1;
+            refused_count += 1;
         }
     }
-    assert!(seen > 40, "{seen}");
+    assert!(refused_count > 40, "{refused_count}");
 }

@@ -4,10 +4,11 @@
 use super::*;
 use crate::NamedCoordinate;
 use dwell_geometry::{
-    ActuatorId, BodyId, Component, Coordinate, Drive, JointId, JointKind, Reaction, Vec2, vec2,
+    ActuatorId, ActuatorKind, BodyId, Component, Coordinate, JointId, JointKind, Reaction, Vec2,
+    vec2,
 };
 use dwell_kinetostatics::{LoadKind, Magnitude, Signal};
-use dwell_laws::{Expression, Law, Polynomial, Profile, Shape, Spline, Travel};
+use dwell_laws::{Expression, Law, Polynomial, Profile, Rise, Shape, Spline};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 // The bodies in the order of the file.
@@ -101,9 +102,9 @@ fn joints() {
             "cam",
             [GROUND, FOLLOWER],
             [mm(0.0, 10.0), o],
-            JointKind::Relation(0),
+            JointKind::Coupling(0),
         ),
-        ("map", [GROUND, ROD], [o, o], JointKind::Relation(1)),
+        ("map", [GROUND, ROD], [o, o], JointKind::Coupling(1)),
     ];
     let joints = &scene.mechanism.joints;
     assert_eq!(joints.len(), expected.len());
@@ -120,14 +121,17 @@ fn joints() {
 #[test]
 fn relations() {
     let scene = machine();
-    let [cam, map] = scene.mechanism.relations.as_slice() else {
+    let [cam, map] = scene.mechanism.couplings.as_slice() else {
         panic!("two relations");
     };
-    assert_eq!((cam.of, cam.by), (LIFT, PHI));
+    assert_eq!((cam.dependent, cam.independent), (LIFT, PHI));
     let law = Expression::parse("0.01*(1 - cos(x))", &["x"]).unwrap();
     assert_eq!(cam.law, Law::Expression(law));
     let reach = scene.coordinate("reach").unwrap();
-    assert_eq!((map.of, map.by), (Coordinate::Angle([GROUND, ROD]), reach));
+    assert_eq!(
+        (map.dependent, map.independent),
+        (Coordinate::Angle([GROUND, ROD]), reach)
+    );
     let points = [[0.02, 0.0], [0.04, deg(10.0)], [0.08, deg(15.0)]];
     assert_eq!(map.law, Law::Spline(Spline::through(&points).unwrap()));
 }
@@ -141,32 +145,32 @@ fn a_rise_over_an_angle() {
         "polynomial345 = { rise = 20, duration = 120, delay = -30 }, start = 50",
     );
     let scene = parse(&text).unwrap();
-    let travel = Travel {
+    let rise = Rise {
         start: 0.05,
         rise: 0.02,
         duration: deg(120.0),
         delay: deg(-30.0),
     };
-    let law = Profile::new(Shape::Polynomial345, travel).unwrap();
-    assert_eq!(scene.mechanism.relations[0].law, Law::Profile(law));
+    let law = Profile::new(Shape::Polynomial345, rise).unwrap();
+    assert_eq!(scene.mechanism.couplings[0].law, Law::Profile(law));
 }
 
 #[test]
 fn actuators_and_coordinates() {
     let scene = machine();
-    let drives: Vec<_> = scene
+    let actuators: Vec<_> = scene
         .mechanism
         .actuators
         .iter()
-        .map(|a| (a.name.as_str(), a.bodies, a.drive))
+        .map(|a| (a.name.as_str(), a.bodies, a.kind))
         .collect();
     let jack = [mm(90.0, 90.0), mm(20.0, 0.0)];
     assert_eq!(
-        drives,
+        actuators,
         [
-            ("phi", [GROUND, CRANK], Drive::Angle),
-            ("stroke", [LEVER, BLOCK], Drive::Travel(JointId(6))),
-            ("jack", [GROUND, PLATE], Drive::Length(jack)),
+            ("phi", [GROUND, CRANK], ActuatorKind::Angle),
+            ("stroke", [LEVER, BLOCK], ActuatorKind::Travel(JointId(6))),
+            ("jack", [GROUND, PLATE], ActuatorKind::Length(jack)),
         ]
     );
     let named = |name: &str, coordinate| NamedCoordinate {
@@ -190,8 +194,8 @@ fn actuators_and_coordinates() {
     assert_eq!(scene.coordinate("lift"), Some(LIFT));
     assert_eq!(scene.coordinate("crank"), None);
     // Rad, m and m: each actuator's own unit.
-    assert_eq!(scene.assembly.start, [deg(60.0), 0.0, 0.08]);
-    assert_eq!(scene.assembly.rough[ROD.0], Some(deg(-20.0)));
+    assert_eq!(scene.assembly.coordinates, [deg(60.0), 0.0, 0.08]);
+    assert_eq!(scene.assembly.initial_guess[ROD.0], Some(deg(-20.0)));
 }
 
 #[test]
@@ -199,7 +203,7 @@ fn prescribed_and_swept() {
     let scene = machine();
     let prescribed = scene.prescribed.unwrap();
     assert_eq!((prescribed.duration, prescribed.points), (2.0, 401));
-    let travel = Travel {
+    let rise = Rise {
         start: 0.0,
         rise: 0.03,
         duration: 0.5,
@@ -207,7 +211,7 @@ fn prescribed_and_swept() {
     };
     let laws = [
         Law::Polynomial(Polynomial::motion(deg(60.0), TAU, 0.0)),
-        Law::Profile(Profile::new(Shape::Trapezoidal { ramp: 0.1 }, travel).unwrap()),
+        Law::Profile(Profile::new(Shape::Trapezoidal { ramp: 0.1 }, rise).unwrap()),
         Law::Spline(Spline::through(&[[0.0, 0.08], [1.0, 0.09], [2.0, 0.085]]).unwrap()),
     ];
     assert_eq!(prescribed.laws, laws);
@@ -216,7 +220,7 @@ fn prescribed_and_swept() {
         (sweep.actuator, sweep.range),
         (ActuatorId(0), Some([0.0, TAU]))
     );
-    assert_eq!(sweep.held, [deg(60.0), 0.005, 0.08]);
+    assert_eq!(sweep.fixed_coordinates, [deg(60.0), 0.005, 0.08]);
     assert_eq!((sweep.points, sweep.speed), (181, PI));
 }
 
@@ -227,10 +231,10 @@ fn defaults_of_motions_and_sweeps() {
         let bare = WHOLE.split("[requests]").next().unwrap();
         parse(&format!("{bare}{sections}")).unwrap()
     };
-    let swept = scene("[sweep]").sweep.unwrap();
+    let swept = scene("[coordinate-sweep]").sweep.unwrap();
     assert_eq!((swept.actuator, swept.range), (ActuatorId(0), None));
     assert_eq!((swept.points, swept.speed), (361, 1.0));
-    assert_eq!(swept.held, [deg(90.0)]);
+    assert_eq!(swept.fixed_coordinates, [deg(90.0)]);
     for (law, at_start) in [
         ("speed = 1", deg(90.0)),
         (
@@ -245,7 +249,7 @@ fn defaults_of_motions_and_sweeps() {
         let prescribed = scene(&format!("[prescribed]\nduration = 3\nphi = {{ {law} }}"));
         let prescribed = prescribed.prescribed.unwrap();
         assert_eq!(prescribed.points, 361);
-        let [start, ..] = prescribed.laws[0].at(0.0);
+        let [start, ..] = prescribed.laws[0].eval(0.0);
         // Numbers near 1; the sine subtracts and adds its phase, two roundings.
         assert!((start - at_start).abs() < 4e-16, "{law}: {start}");
     }
@@ -256,9 +260,9 @@ fn loads() {
     let scene = machine();
     let down = vec2(0.0, -1.0);
     let couple = Spline::through(&[[0.0, 1.0], [FRAC_PI_2, 2.0], [PI, 1.5]]).unwrap();
-    let twist = Spline::through(&[[0.0, 10.0], [2.0, 20.0]]).unwrap();
-    let follow = "100*max(0, sin(phi)) + 2*lift.speed";
-    let follow = Expression::parse(follow, &["phi", "lift.speed"]).unwrap();
+    let torsion = Spline::through(&[[0.0, 10.0], [2.0, 20.0]]).unwrap();
+    let follow = "100*max(0, sin(phi)) + 2*lift.velocity";
+    let follow = Expression::parse(follow, &["phi", "lift.velocity"]).unwrap();
     let grease = Expression::parse("0.1 + 0.05*exp(-t)", &["t"]).unwrap();
     let constant = Magnitude::Constant;
     let expected = [
@@ -273,7 +277,7 @@ fn loads() {
                 body: PISTON,
                 point: Vec2::ZERO,
                 direction: vec2(-1.0, 0.0),
-                follows: false,
+                body_fixed: false,
             },
             constant(100.0),
         ),
@@ -283,9 +287,9 @@ fn loads() {
                 body: ROD,
                 point: mm(60.0, 5.0),
                 direction: vec2(0.0, 1.0),
-                follows: true,
+                body_fixed: true,
             },
-            Magnitude::Expression(follow, vec![Signal::Value(PHI), Signal::Speed(LIFT)]),
+            Magnitude::Expression(follow, vec![Signal::Value(PHI), Signal::Velocity(LIFT)]),
         ),
         (
             "moment",
@@ -306,7 +310,7 @@ fn loads() {
             LoadKind::Spring {
                 bodies: [GROUND, PLATE],
                 points: [mm(90.0, 90.0), mm(20.0, 0.0)],
-                free: 77.85 / 1e3,
+                free_length: 77.85 / 1e3,
             },
             constant(4530.0),
         ),
@@ -314,9 +318,9 @@ fn loads() {
             "twist",
             LoadKind::TorsionSpring {
                 bodies: [GROUND, WHEEL],
-                free: deg(45.0),
+                free_angle: deg(45.0),
             },
-            Magnitude::Law(Signal::Time, Law::Spline(twist)),
+            Magnitude::Law(Signal::Time, Law::Spline(torsion)),
         ),
         (
             "oil",
@@ -328,7 +332,7 @@ fn loads() {
         ),
         (
             "grease",
-            LoadKind::TorsionDamper {
+            LoadKind::RotationalDamper {
                 bodies: [GROUND, CRANK],
             },
             Magnitude::Expression(grease, vec![Signal::Time]),
@@ -345,10 +349,10 @@ fn loads() {
 /// A table of a speed has its first column in the scene's unit of that speed, the second in SI.
 #[test]
 fn a_table_of_a_speed() {
-    let text = changed(MACHINE, "of = \"phi\"", "of = \"lift.speed\"");
+    let text = changed(MACHINE, "of = \"phi\"", "of = \"lift.velocity\"");
     let scene = parse(&text).unwrap();
     let spline = Spline::through(&[[0.0, 1.0], [0.09, 2.0], [0.18, 1.5]]).unwrap();
-    let expected = Magnitude::Law(Signal::Speed(LIFT), Law::Spline(spline));
+    let expected = Magnitude::Law(Signal::Velocity(LIFT), Law::Spline(spline));
     assert_eq!(scene.loads[4].magnitude, expected);
 }
 
@@ -356,14 +360,14 @@ fn a_table_of_a_speed() {
 fn names_that_are_no_words_stand_between_backticks() {
     let text = MACHINE
         .replace("lift", "lift-1")
-        .replace("2*lift-1.speed", "2*`lift-1.speed`");
+        .replace("2*lift-1.velocity", "2*`lift-1.velocity`");
     let scene = parse(&text).unwrap();
     let Magnitude::Expression(expression, signals) = &scene.loads[2].magnitude else {
         panic!("an expression");
     };
-    assert_eq!(signals, &[Signal::Value(PHI), Signal::Speed(LIFT)]);
+    assert_eq!(signals, &[Signal::Value(PHI), Signal::Velocity(LIFT)]);
     // One value for each signal is all it takes: 100 × 1 + 2 × 3.
-    assert_eq!(expression.at(&[FRAC_PI_2, 3.0]), 106.0);
+    assert_eq!(expression.eval(&[FRAC_PI_2, 3.0]), 106.0);
 }
 
 #[test]
@@ -406,17 +410,20 @@ fn requests() {
 
 #[test]
 fn a_later_error_points_at_what_is_new() {
-    use crate::Place::*;
+    use crate::SceneLocation::*;
     let scene = machine();
-    for (place, text) in [
-        (Law(JointId(12)), "expression = \"0.01*(1 - cos(x))\""),
-        (JointEnd(JointId(12), 1), "\"phi\""),
-        (JointEnd(JointId(3), 1), "\"lever.P\""),
+    for (location, text) in [
+        (
+            CouplingLaw(JointId(12)),
+            "expression = \"0.01*(1 - cos(x))\"",
+        ),
+        (JointPoint(JointId(12), 1), "\"phi\""),
+        (JointPoint(JointId(3), 1), "\"lever.P\""),
         (Axis(JointId(9)), "[1, 0]"),
         (Coordinate(1), "alpha"),
         (Prescribed, "[prescribed]"),
-        (Motor(ActuatorId(2)), "jack"),
-        (Sweep, "[sweep]"),
+        (PrescribedLaw(ActuatorId(2)), "jack"),
+        (CoordinateSweep, "[coordinate-sweep]"),
         (Swept(ActuatorId(1)), "stroke = 5"),
         (Load(1), "push"),
         (Magnitude(1), "100"),
@@ -424,13 +431,13 @@ fn a_later_error_points_at_what_is_new() {
         (Variable(2), "\"phi.action\""),
         (Section(0), "{ body = \"rod\", from = \"P\", to = \"Q\" }"),
         // Not written down: the nearest thing that is.
-        (Law(JointId(4)), "slide"),
-        (Swept(ActuatorId(2)), "[sweep]"),
+        (CouplingLaw(JointId(4)), "slide"),
+        (Swept(ActuatorId(2)), "[coordinate-sweep]"),
         (Section(9), "[requests]"),
         (Magnitude(99), ""),
     ] {
-        let error = scene.error("wrong".to_owned(), None, &[(place, "here".to_owned())]);
-        assert_eq!(error.labelled(), [(text, "here")], "{place:?}");
+        let error = scene.error("wrong".to_owned(), None, &[(location, "here".to_owned())]);
+        assert_eq!(error.labelled(), [(text, "here")], "{location:?}");
     }
 }
 
@@ -438,11 +445,14 @@ fn a_later_error_points_at_what_is_new() {
 #[test]
 fn without_an_actuator_there_is_no_motion_to_prescribe() {
     let bare = WHOLE.split("[actuators.phi]").next().unwrap();
-    let text = format!("{bare}[prescribed]\nduration = 1\n[sweep]\npoints = 3\n");
-    let said = told(&text);
-    assert_eq!(said.len(), 2, "{said:#?}");
-    assert!(said[0].starts_with("there is a [prescribed] but no actuator | «[prescribed]»"));
-    assert!(said[1].starts_with("there is a [sweep] but no actuator | «[sweep]»"));
+    let text = format!("{bare}[prescribed]\nduration = 1\n[coordinate-sweep]\npoints = 3\n");
+    let diagnosed = messages(&text);
+    assert_eq!(diagnosed.len(), 2, "{diagnosed:#?}");
+    assert!(diagnosed[0].starts_with("there is a [prescribed] but no actuator | «[prescribed]»"));
+    assert!(
+        diagnosed[1]
+            .starts_with("there is a [coordinate-sweep] but no actuator | «[coordinate-sweep]»")
+    );
     let text = format!("{bare}[actuators]\nt = {{ angle = [\"ground\", \"crank\"] }}\n");
-    assert!(told(&text)[0].starts_with("`t` cannot be the name of an actuator | «t»"));
+    assert!(messages(&text)[0].starts_with("`t` cannot be the name of an actuator | «t»"));
 }

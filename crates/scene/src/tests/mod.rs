@@ -1,10 +1,11 @@
 //! Tests of the whole crate: text in, data or messages out.
 
 mod content;
-mod driven;
 mod errors;
 mod files;
 mod format;
+mod former_keys;
+mod free_motion;
 mod machine;
 mod mutations;
 mod values;
@@ -48,13 +49,13 @@ rod = -20
 [requests]
 reactions = ["slide", "A.x", "slide.normal"]
 paths = ["rod.P", "crank.B"]
-dwell = { body = "rod", band = 0.02 }
+dwell = { body = "rod", relative-band = 0.02 }
 [motion]
-start = 30
-speed = { phi = 180 }
+initial-coordinate = 30
+initial-velocity = { phi = 180 }
 periods = 2
 [calibration]
-set = "crank.inertia"
+parameter = "crank.inertia"
 period = 5.42
 "#;
 
@@ -62,7 +63,7 @@ period = 5.42
 const MACHINE: &str = include_str!("machine.toml");
 
 /// And one for what moves freely: drives, friction, led actuators, events.
-const DRIVEN: &str = include_str!("driven.toml");
+const FREE_MOTION: &str = include_str!("driven.toml");
 
 /// `WHOLE` with one piece of text, which it must contain once, replaced.
 fn with(old: &str, new: &str) -> String {
@@ -116,7 +117,7 @@ fn render(error: &SceneError) -> String {
 }
 
 /// Message, labelled text, its label and help of each error, one line each.
-fn told(text: &str) -> Vec<String> {
+fn messages(text: &str) -> Vec<String> {
     let Err(error) = parse(text) else {
         return vec!["nothing is wrong".to_owned()];
     };

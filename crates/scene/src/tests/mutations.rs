@@ -11,24 +11,27 @@ fn survive(text: &str) -> bool {
             assert_eq!(scene.masses.len(), scene.mechanism.bodies.len());
             assert_eq!(scene.points.len(), scene.mechanism.bodies.len());
             let actuators = scene.mechanism.actuators.len();
-            assert_eq!(scene.assembly.start.len(), actuators);
+            assert_eq!(scene.assembly.coordinates.len(), actuators);
             // So is what the new sections say: a law for each actuator, numbers that are finite.
             if let Some(prescribed) = &scene.prescribed {
                 assert_eq!(prescribed.laws.len(), actuators);
                 assert!(prescribed.duration > 0.0 && prescribed.points >= 2);
             }
             if let Some(sweep) = &scene.sweep {
-                assert!(sweep.actuator.0 < actuators && sweep.held.len() == actuators);
-                assert!(sweep.held.iter().all(|q| q.is_finite()) && sweep.speed > 0.0);
+                assert!(sweep.actuator.0 < actuators && sweep.fixed_coordinates.len() == actuators);
+                assert!(sweep.fixed_coordinates.iter().all(|q| q.is_finite()) && sweep.speed > 0.0);
             }
             if let Some(motion) = &scene.motion {
                 assert_eq!(motion.laws.len(), actuators);
-                let start = motion.start.iter().chain(&motion.speed);
+                let start = motion
+                    .initial_coordinates
+                    .iter()
+                    .chain(&motion.initial_velocities);
                 assert!(start.filter(|q| q.is_finite()).count() == 2 * actuators);
             }
             for joint in &scene.mechanism.joints {
-                if let JointKind::Relation(k) = joint.kind {
-                    assert!(k < scene.mechanism.relations.len());
+                if let JointKind::Coupling(k) = joint.kind {
+                    assert!(k < scene.mechanism.couplings.len());
                 }
             }
             true
@@ -58,7 +61,7 @@ fn pieces(text: &str) -> Vec<std::ops::Range<usize>> {
 #[test]
 fn cut_short_anywhere() {
     let text = with("For tests.", "φ ünd ½");
-    for text in [&text, MACHINE, DRIVEN] {
+    for text in [&text, MACHINE, FREE_MOTION] {
         for end in 0..=text.len() {
             survive(&String::from_utf8_lossy(&text.as_bytes()[..end]));
             survive(&String::from_utf8_lossy(&text.as_bytes()[end..]));
@@ -73,11 +76,11 @@ fn any_piece_replaced() {
         "φ", "\u{0}", "0",
     ];
     // The second scene is long; its own sections are what is new in it.
-    let laws = ["", "[", "\"", "nan", "phi", "0", "lift.speed"];
+    let laws = ["", "[", "\"", "nan", "phi", "0", "lift.velocity"];
     for (scene, from, strange) in [
         (WHOLE, 0, &strange[..]),
         (MACHINE, MACHINE.find("[joints]").unwrap(), &laws[..]),
-        (DRIVEN, DRIVEN.find("[loads]").unwrap(), &laws[..]),
+        (FREE_MOTION, FREE_MOTION.find("[loads]").unwrap(), &laws[..]),
     ] {
         let pieces: Vec<_> = pieces(scene);
         let pieces = pieces.iter().filter(|p| p.start >= from);
@@ -96,7 +99,7 @@ fn any_piece_replaced() {
 
 #[test]
 fn any_piece_twice_or_swapped_with_the_next_but_one() {
-    for scene in [WHOLE, MACHINE, DRIVEN] {
+    for scene in [WHOLE, MACHINE, FREE_MOTION] {
         let pieces = pieces(scene);
         for (k, piece) in pieces.iter().enumerate() {
             let (before, this) = (&scene[..piece.start], &scene[piece.clone()]);

@@ -1,7 +1,6 @@
 //! Numbers by their path.
 
 use super::*;
-use std::time::Instant;
 
 #[test]
 fn every_number_by_its_path() {
@@ -15,12 +14,12 @@ fn every_number_by_its_path() {
     ] {
         assert_eq!(scene.value(path).unwrap(), value);
         assert_eq!(scene.unit_of(path), unit);
-        let label = (scene.place_of(path), "here".to_owned());
+        let label = (scene.location_of(path), "here".to_owned());
         let error = scene.error("too heavy".to_owned(), None, &[label]);
         assert_eq!(error.labelled(), [(written, "here")]);
-        assert!(scene.numbers().contains(&path.to_owned()));
+        assert!(scene.number_paths().contains(&path.to_owned()));
     }
-    assert_eq!(scene.numbers().len(), 2 * 7 + 3 + 2 + 1);
+    assert_eq!(scene.number_paths().len(), 2 * 7 + 3 + 2 + 1);
 }
 
 #[test]
@@ -66,7 +65,7 @@ fn a_changed_number_changes_what_follows_from_it_and_nothing_else() {
 #[test]
 fn a_wrong_path_is_told_what_there_is() {
     let scene = parse(WHOLE).unwrap();
-    let told = |path: &str| {
+    let message = |path: &str| {
         let error = scene.with_value(path, 1.0).unwrap_err();
         assert_eq!(scene.value(path).unwrap_err().message, error.message);
         assert_eq!(scene.unit_of(path), "");
@@ -74,11 +73,11 @@ fn a_wrong_path_is_told_what_there_is() {
         format!("{} ⇒ {}", error.message, error.help.unwrap())
     };
     assert_eq!(
-        told("crank.interia"),
+        message("crank.interia"),
         "the scene has no number `crank.interia` ⇒ did you mean `crank.inertia`?"
     );
     assert_eq!(
-        told("piston.center[0]"),
+        message("piston.center[0]"),
         "the scene has no number `piston.center[0]` ⇒ the numbers written in `piston` are \
          `piston.points.P[0]`, `piston.points.P[1]` and `piston.mass`"
     );
@@ -91,7 +90,7 @@ fn a_wrong_path_is_told_what_there_is() {
         "crank.points.B",
         "φ",
     ] {
-        assert!(told(path).contains("has no number"), "{path}");
+        assert!(message(path).contains("has no number"), "{path}");
     }
 }
 
@@ -100,26 +99,13 @@ fn a_wrong_value_is_shown_where_it_stands() {
     let scene = parse(WHOLE).unwrap();
     let error = scene.with_value("crank.mass", -1.5).unwrap_err();
     assert_eq!(error.message, "the mass of body `crank` is negative");
-    assert_eq!(error.labelled(), [("-1.5", "less than nothing")]);
+    assert_eq!(error.labelled(), [("-1.5", "expected 0 or more")]);
     for value in [f64::NAN, f64::INFINITY] {
         let error = scene.with_value("crank.mass", value).unwrap_err();
         assert!(error.message.contains("not finite"));
         assert_eq!(error.labelled(), [("2.0", "this number")]);
     }
     assert!(scene.with_value("crank.mass", 1e61).is_err());
-}
-
-/// A root search asks some hundred times.
-#[test]
-fn changing_a_number_is_fast() {
-    let scene = parse(WHOLE).unwrap();
-    let start = Instant::now();
-    for k in 0..200 {
-        scene.with_value("crank.inertia", f64::from(k)).unwrap();
-    }
-    let each = start.elapsed() / 200;
-    println!("with_value: {each:?}");
-    assert!(each.as_micros() < 300, "{each:?}");
 }
 
 #[test]
@@ -141,11 +127,11 @@ fn several_numbers_change_at_once() {
 #[test]
 fn numbers_outside_the_bodies_are_found_by_their_keys() {
     let text = WHOLE.to_owned()
-        + "\n[loads]\nbrake = { torsion-damper = [\"ground\", \"crank\"], constant = 1_2.5 }\n\
+        + "\n[loads]\nbrake = { rotational-damper = [\"ground\", \"crank\"], damping = 1_2.5 }\n\
            weight = { gravity = [0, -9.81] }\n";
     let scene = parse(&text).unwrap();
     for (path, value) in [
-        ("loads.brake.constant", 12.5),
+        ("loads.brake.damping", 12.5),
         ("loads.weight.gravity[1]", -9.81),
     ] {
         assert_eq!(scene.value(path).unwrap(), value);
@@ -155,8 +141,8 @@ fn numbers_outside_the_bodies_are_found_by_their_keys() {
         // What was not asked for is as it was.
         assert_eq!(changed.masses, scene.masses);
     }
-    let error = scene.value("loads.brake.constnt").unwrap_err();
-    assert_eq!(error.help.unwrap(), "did you mean `loads.brake.constant`?");
-    let error = scene.with_value("loads.brake.constant", -1.0).unwrap_err();
+    let error = scene.value("loads.brake.dampng").unwrap_err();
+    assert_eq!(error.help.unwrap(), "did you mean `loads.brake.damping`?");
+    let error = scene.with_value("loads.brake.damping", -1.0).unwrap_err();
     assert_eq!(error.labelled()[0].0, "-1.0");
 }

@@ -1,80 +1,75 @@
-//! A study written up: its table, its summary, its pictures.
+//! The output of a sweep: table, summary and figure.
 
-use super::spread::Spread;
-use super::store::Row;
-use super::{Prepared, Sweep, figure};
-use crate::error::StudyError;
-use crate::outcome::Outcome;
-use crate::provenance::picture;
-use crate::words::{count, digits, number};
-use dwell_report::{Column, Table};
+use crate::explain::StudyError;
+use crate::number_format::{count, digits, number};
+use crate::output::{Outcome, signed_png};
+use crate::sweep::compute::Spread;
+use crate::sweep::figure::figure;
+use crate::sweep::output::{ParameterSweep, PreparedSweep};
+use crate::sweep::store::Row;
+use dwell_report::TableExport as _;
+use dwell_report::{Column, Table, TableFormat};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Messages that a summary repeats.
-const TOLD: usize = 3;
+/// Maximum number of messages in a summary.
+const MAX_LISTED: usize = 3;
 
-/// A form in which the rows are written.
+/// The origin of the rows, and the number of missing ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Exported {
-    /// Text, with the messages.
-    Csv,
-    /// A NumPy archive.
-    Npz,
+pub(crate) struct Counts {
+    pub(crate) existing: usize,
+    pub(crate) imported: usize,
+    pub(crate) computed: usize,
+    pub(crate) missing: usize,
 }
 
-/// Where the rows come from, and how many are not there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Counts {
-    pub(super) found: usize,
-    pub(super) taken: usize,
-    pub(super) computed: usize,
-    pub(super) missing: usize,
-}
-
-pub(super) fn write_up(
-    prepared: &Prepared<'_>,
-    sweep: &Sweep<'_>,
+pub(crate) fn report_sweep(
+    prepared_sweep: &PreparedSweep<'_>,
+    sweep: &ParameterSweep<'_>,
     path: &Path,
     rows: &[Row],
     counts: Counts,
 ) -> Result<Outcome, StudyError> {
     let mut outcome = Outcome {
-        summary: summary(prepared, sweep, path, rows, counts),
+        summary: summary(prepared_sweep, sweep, path, rows, counts),
         ..Outcome::default()
     };
-    // A shard is half a study: it is written up where all of them meet.
+    // A shard is incomplete: tables and figures are written when all shards are together.
     if sweep.shard.is_some() {
         return Ok(outcome);
     }
-    let scene = prepared.scene;
+    let scene = prepared_sweep.scene;
     let name = |rest: &str| format!("{}-sweep{rest}", scene.name);
     let wants = |form| sweep.export.is_none_or(|only| only == form);
-    if wants(Exported::Csv) {
-        outcome.files.add(name(".csv"), csv(prepared, rows)?);
-    }
-    if wants(Exported::Npz) {
-        outcome.files.add(name(".npz"), archive(prepared, rows)?);
+    for format in TableFormat::ALL.into_iter().filter(|format| wants(*format)) {
+        let bytes = match format {
+            TableFormat::Csv => csv(prepared_sweep, rows)?.into_bytes(),
+            TableFormat::Npz => npz(prepared_sweep, rows)?,
+        };
+        outcome
+            .files
+            .add(name(&format!(".{}", format.extension())), bytes);
     }
     if sweep.export.is_none() {
-        match figure::figure(prepared, rows) {
+        match figure(prepared_sweep, rows) {
             Ok((figure, note)) => {
-                outcome.files.add(name(".png"), picture(scene, &figure)?);
+                outcome.files.add(name(".png"), signed_png(scene, &figure)?);
                 outcome.summary += &note.map_or(String::new(), |note| format!("  {note}\n"));
             }
-            Err(why) => outcome.summary += &format!("  no picture: {why}\n"),
+            Err(why) => outcome.summary += &format!("  no figure: {why}\n"),
         }
     }
     Ok(outcome)
 }
 
 /// Inputs and results.
-fn table(prepared: &Prepared<'_>, rows: &[Row]) -> Table {
-    let axes = prepared.design.axes.iter();
-    let results = prepared.wanted.quantities.iter();
+pub(crate) fn table(prepared_sweep: &PreparedSweep<'_>, rows: &[Row]) -> Table {
+    let axes = prepared_sweep.design.axes.iter();
+    let results = prepared_sweep.requested.quantities.iter();
     let mut columns: Vec<Column> = axes.map(|a| Column::new(&a.path, &a.unit)).collect();
     columns.extend(results.map(|q| Column::new(&q.name, q.unit)));
-    let row = |row: &Row| [row.inputs.as_slice(), &row.found.values].concat();
+    let row = |row: &Row| [row.inputs.as_slice(), &row.result.values].concat();
     Table {
         columns,
         rows: rows.iter().map(row).collect(),
@@ -82,26 +77,26 @@ fn table(prepared: &Prepared<'_>, rows: &[Row]) -> Table {
 }
 
 /// The table as arrays, with the index of each row and whether it has a message.
-fn archive(prepared: &Prepared<'_>, rows: &[Row]) -> Result<Vec<u8>, StudyError> {
-    let mut table = table(prepared, rows);
+fn npz(prepared_sweep: &PreparedSweep<'_>, rows: &[Row]) -> Result<Vec<u8>, StudyError> {
+    let mut table = table(prepared_sweep, rows);
     table.columns.insert(0, Column::new("index", ""));
-    table.columns.push(Column::new("failed", ""));
+    table.columns.push(Column::new("has_message", ""));
     for (cells, row) in table.rows.iter_mut().zip(rows) {
         cells.insert(0, row.index as f64);
-        cells.push(f64::from(u8::from(row.found.message.is_some())));
+        cells.push(f64::from(u8::from(row.result.message.is_some())));
     }
     Ok(table.npz()?)
 }
 
 /// The table with the index of each row before it and its message behind it.
-fn csv(prepared: &Prepared<'_>, rows: &[Row]) -> Result<String, StudyError> {
-    let numbers = table(prepared, rows).csv()?;
+pub(crate) fn csv(prepared_sweep: &PreparedSweep<'_>, rows: &[Row]) -> Result<String, StudyError> {
+    let numbers = table(prepared_sweep, rows).csv()?;
     let mut lines = numbers.lines();
     let mut text = format!("index,{},message\n", lines.next().unwrap_or_default());
-    // No number has a line of its own.
+    // One line per row.
     for (line, row) in lines.zip(rows) {
         let _ = write!(text, "{},{line},", row.index);
-        if let Some(message) = &row.found.message {
+        if let Some(message) = &row.result.message {
             let _ = write!(text, "\"{}\"", message.replace('"', "\"\""));
         }
         text.push('\n');
@@ -109,20 +104,24 @@ fn csv(prepared: &Prepared<'_>, rows: &[Row]) -> Result<String, StudyError> {
     Ok(text)
 }
 
-fn summary(
-    prepared: &Prepared<'_>,
-    sweep: &Sweep<'_>,
+pub(crate) fn summary(
+    prepared_sweep: &PreparedSweep<'_>,
+    sweep: &ParameterSweep<'_>,
     path: &Path,
     rows: &[Row],
     counts: Counts,
 ) -> String {
-    let design = &prepared.design;
-    let mut text = format!("{}: {}", prepared.scene.title, of_points(design.points));
+    let design = &prepared_sweep.design;
+    let mut text = format!(
+        "{}: {}",
+        prepared_sweep.scene.title,
+        points_text(design.points)
+    );
     if design.is_random() {
         let _ = write!(
             text,
-            ", {} of seed {}",
-            count_of(design.samples, "sample"),
+            ", {} with seed {}",
+            count_u64(design.samples, "sample"),
             design.seed
         );
     }
@@ -135,8 +134,8 @@ fn summary(
     }
     let _ = write!(text, "\n  {}: {}", path.display(), count(rows.len(), "row"));
     let parts = [
-        (counts.found, "were there"),
-        (counts.taken, "taken over from shards"),
+        (counts.existing, "already stored"),
+        (counts.imported, "imported from shards"),
         (counts.computed, "computed"),
     ];
     let parts: Vec<String> = parts
@@ -151,23 +150,23 @@ fn summary(
     if counts.missing > 0 {
         let _ = writeln!(
             text,
-            "  {} still to be computed",
-            of_points(counts.missing as u64)
+            "  {} not computed yet",
+            points_text(counts.missing as u64)
         );
     }
-    for (k, heading) in prepared.results.iter().enumerate() {
-        let values = rows.iter().map(|row| row.found.values[k]);
+    for (k, heading) in prepared_sweep.results.iter().enumerate() {
+        let values = rows.iter().map(|row| row.result.values[k]);
         let Some(spread) = Spread::of(values) else {
             continue;
         };
         let _ = write!(
             text,
             "  {heading}: from {} to {}",
-            number(spread.least),
-            number(spread.most)
+            number(spread.min),
+            number(spread.max)
         );
         if let Some(deviation) = spread.deviation.filter(|_| design.is_random()) {
-            let [low, high] = spread.limits.map(number);
+            let [low, high] = spread.quantiles.map(number);
             let _ = write!(
                 text,
                 ", mean {}, standard deviation {}, 95 % between {low} and {high}",
@@ -177,36 +176,36 @@ fn summary(
         }
         text.push('\n');
     }
-    text + &failures(rows)
+    text + &failures(rows) + &prepared_sweep.requested.notes
 }
 
-/// What could not be computed, and the first reasons.
+/// The number of failed points, and the first messages.
 fn failures(rows: &[Row]) -> String {
     let failed: Vec<(u64, &str)> = rows
         .iter()
-        .filter_map(|row| Some((row.index, row.found.message.as_deref()?)))
+        .filter_map(|row| Some((row.index, row.result.message.as_deref()?)))
         .collect();
     if failed.is_empty() {
         return String::new();
     }
     let mut text = format!(
-        "  {} of {} could not be computed, or not in all; their rows say why\n",
+        "  {} of {} could not be computed completely; their rows hold the message\n",
         failed.len(),
         rows.len()
     );
-    for (index, message) in failed.iter().take(TOLD) {
+    for (index, message) in failed.iter().take(MAX_LISTED) {
         let _ = writeln!(text, "    point {index}: {message}");
     }
-    if failed.len() > TOLD {
-        let _ = writeln!(text, "    and {} more", failed.len() - TOLD);
+    if failed.len() > MAX_LISTED {
+        let _ = writeln!(text, "    and {} more", failed.len() - MAX_LISTED);
     }
     text
 }
 
-fn of_points(points: u64) -> String {
-    count_of(points, "point")
+fn points_text(points: u64) -> String {
+    count_u64(points, "point")
 }
 
-fn count_of(number: u64, thing: &str) -> String {
+fn count_u64(number: u64, thing: &str) -> String {
     count(usize::try_from(number).unwrap_or(usize::MAX), thing)
 }

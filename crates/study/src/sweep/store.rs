@@ -1,38 +1,39 @@
-//! The results of a study in an SQLite file: what is computed once stays, whatever ends the run.
+//! The results of a sweep in an SQLite file, which survive an interruption.
 //!
-//! Two tables: `study` tells by key and value what is computed, `points` has a row for each finished point, whose
-//! index is its key. A rollback journal, and an exclusive lock as long as the file is open: that also holds on the
-//! network file systems of clusters, where SQLite's write-ahead log does not.
+//! Two tables: `study` holds the definition of the sweep by key and value, `points` one row per finished point, keyed
+//! by its index. SQLite uses a rollback journal and an exclusive lock while the file is open: both work on network
+//! file systems, where the write-ahead log does not.
 
-use super::error::SweepError;
-use super::point::Found;
-use rusqlite::{Connection, ErrorCode, params_from_iter, types::Value};
+use crate::explain::SweepError;
+use crate::sweep::compute::PointResult;
+use rusqlite::types::Value;
+use rusqlite::{Connection, ErrorCode, params_from_iter};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant};
 
-/// Marks the file as ours (`Dwel`), and the version of its tables.
+/// SQLite application id of Dwell (`Dwel`), and the version of the tables.
 const APPLICATION: i32 = 0x4477_656c;
-const VERSION: i32 = 1;
-/// Longest that a finished point is not yet on the disk.
+const VERSION: i32 = 2;
+/// Longest time until a finished point is on disk.
 const BATCH: Duration = Duration::from_millis(200);
-/// How long another run may hold the file before we give up.
-const PATIENCE: Duration = Duration::from_millis(500);
-/// The part of the study that a file holds: the one key that a file may differ in.
+/// How long to wait for another process that has the file open.
+const BUSY_TIMEOUT: Duration = Duration::from_millis(500);
+/// Key of the shard that a file holds: the only key in which files of one study may differ.
 pub(crate) const SHARD: &str = "shard";
-/// The text of the scene, whose hash is compared in its place.
-pub(crate) const TEXT: &str = "scene_text";
+/// Key of the scene's text; its hash is compared instead.
+pub(crate) const SCENE_TEXT: &str = "scene_text";
 
-/// What a file is about, by key, in the order in which differences are told.
-pub(crate) type Study = Vec<(&'static str, String)>;
+/// The identity of a study, by key, in the order in which differences are reported.
+pub(crate) type StudyIdentity = Vec<(&'static str, String)>;
 
 /// A finished point.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub(crate) index: u64,
     pub(crate) inputs: Vec<f64>,
-    pub(crate) found: Found,
+    pub(crate) result: PointResult,
 }
 
 /// An open file.
@@ -50,22 +51,26 @@ fn quoted(name: &str) -> String {
 }
 
 impl Store {
-    /// Opens the file of a study, or makes it. `headings` are those of the inputs and of the results.
+    /// Opens the file of a study, or creates it. `headings` are those of the inputs and of the results.
     ///
     /// # Errors
-    /// [`SweepError::Other`] if it holds another study, [`SweepError::Store`] if it is none, cannot be read or
-    /// written, or another run has it open.
+    /// [`SweepError::DifferentStudy`] if it holds another study; [`SweepError::Store`] if it is not a sweep store, cannot
+    /// be read or written, or another process has it open.
     pub(crate) fn open(
         path: &Path,
-        study: &Study,
+        study: &StudyIdentity,
         headings: [&[String]; 2],
     ) -> Result<Self, SweepError> {
-        Self::within(path, study, headings).map_err(|e| e.at(path))
+        Self::try_open(path, study, headings).map_err(|e| e.with_path(path))
     }
 
-    fn within(path: &Path, study: &Study, headings: [&[String]; 2]) -> Result<Self, Fault> {
+    fn try_open(
+        path: &Path,
+        study: &StudyIdentity,
+        headings: [&[String]; 2],
+    ) -> Result<Self, StoreFault> {
         let mut connection = Connection::open(path)?;
-        connection.busy_timeout(PATIENCE)?;
+        connection.busy_timeout(BUSY_TIMEOUT)?;
         connection.pragma_update(None, "locking_mode", "EXCLUSIVE")?;
         let number = |name: &str| connection.pragma_query_value(None, name, |row| row.get(0));
         let (application, version): (i32, i32) =
@@ -75,10 +80,11 @@ impl Store {
         if tables == 0 && application == 0 {
             create(&mut connection, study, headings)?;
         } else if application != APPLICATION {
-            return Err(Fault::Reason("it is no store of a sweep".to_owned()));
+            return Err(StoreFault::Reason("it is not a sweep store".to_owned()));
         } else if version != VERSION {
-            return Err(Fault::Reason(format!(
-                "its tables are of version {version}, and this Dwell knows version {VERSION}"
+            return Err(StoreFault::Reason(format!(
+                "its format is version {version}, and this version of Dwell reads only version {VERSION}; \
+                 export it with the version of Dwell that wrote it (`dwell sweep … --export csv`)"
             )));
         }
         compare(&connection, study)?;
@@ -91,9 +97,9 @@ impl Store {
         })
     }
 
-    /// The points that are there.
+    /// The indices of the stored points.
     pub(crate) fn indices(&self) -> Result<Vec<u64>, SweepError> {
-        let read = || -> Result<Vec<u64>, Fault> {
+        let read = || -> Result<Vec<u64>, StoreFault> {
             let mut statement = self
                 .connection
                 .prepare("SELECT \"index\" FROM points ORDER BY 1")?;
@@ -102,13 +108,13 @@ impl Store {
                 .map(|row| row.map(|k| k as u64))
                 .collect::<Result<_, _>>()?)
         };
-        read().map_err(|e| e.at(&self.path))
+        read().map_err(|e| e.with_path(&self.path))
     }
 
     /// All finished points, by index.
     pub(crate) fn rows(&self) -> Result<Vec<Row>, SweepError> {
         let real = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        let read = || -> Result<Vec<Row>, Fault> {
+        let read = || -> Result<Vec<Row>, StoreFault> {
             let mut statement = self
                 .connection
                 .prepare("SELECT * FROM points ORDER BY \"index\"")?;
@@ -120,7 +126,7 @@ impl Store {
                 Ok(Row {
                     index: row.get::<_, i64>(0)? as u64,
                     inputs: some(1, self.inputs)?,
-                    found: Found {
+                    result: PointResult {
                         values: some(1 + self.inputs, self.results)?,
                         message: row.get(1 + self.inputs + self.results)?,
                     },
@@ -128,16 +134,16 @@ impl Store {
             })?;
             Ok(rows.collect::<Result<_, _>>()?)
         };
-        read().map_err(|e| e.at(&self.path))
+        read().map_err(|e| e.with_path(&self.path))
     }
 
-    /// Writes what arrives, until no one sends any more: on the disk at the latest after a fifth of a second.
-    pub(crate) fn take(&mut self, rows: &Receiver<Row>) -> Result<(), SweepError> {
+    /// Writes rows as they arrive, until the channel closes; each is on disk after at most 0.2 s.
+    pub(crate) fn write_rows(&mut self, rows: &Receiver<Row>) -> Result<(), SweepError> {
         let path = self.path.clone();
-        self.write(rows).map_err(|e| e.at(&path))
+        self.write(rows).map_err(|e| e.with_path(&path))
     }
 
-    fn write(&mut self, rows: &Receiver<Row>) -> Result<(), Fault> {
+    fn write(&mut self, rows: &Receiver<Row>) -> Result<(), StoreFault> {
         let marks = vec!["?"; 2 + self.inputs + self.results].join(", ");
         let insert = format!("INSERT INTO points VALUES ({marks})");
         while let Ok(first) = rows.recv() {
@@ -147,12 +153,12 @@ impl Store {
             let mut next = Some(first);
             while let Some(row) = next {
                 statement.execute(params_from_iter(cells(row)))?;
-                let left = until.saturating_duration_since(Instant::now());
-                // Nothing is taken from the channel that is not written.
-                next = if left.is_zero() {
+                let remaining = until.saturating_duration_since(Instant::now());
+                // Every row taken from the channel is written.
+                next = if remaining.is_zero() {
                     None
                 } else {
-                    rows.recv_timeout(left).ok()
+                    rows.recv_timeout(remaining).ok()
                 };
             }
             drop(statement);
@@ -162,8 +168,8 @@ impl Store {
     }
 }
 
-fn cells(row: Row) -> Vec<Value> {
-    // SQLite has no NaN: an absent value is NULL.
+pub(crate) fn cells(row: Row) -> Vec<Value> {
+    // SQLite has no NaN: it is stored as NULL.
     let real = |v: f64| {
         if v.is_nan() {
             Value::Null
@@ -171,20 +177,20 @@ fn cells(row: Row) -> Vec<Value> {
             Value::Real(v)
         }
     };
-    // An index is far below the largest whole number of SQLite.
+    // An index is far below SQLite's largest integer.
     let mut cells = vec![Value::Integer(row.index as i64)];
     cells.extend(row.inputs.into_iter().map(real));
-    cells.extend(row.found.values.into_iter().map(real));
-    cells.push(row.found.message.map_or(Value::Null, Value::Text));
+    cells.extend(row.result.values.into_iter().map(real));
+    cells.push(row.result.message.map_or(Value::Null, Value::Text));
     cells
 }
 
-/// The tables, all at once or not at all.
+/// Creates the tables in one transaction.
 fn create(
     connection: &mut Connection,
-    study: &Study,
+    study: &StudyIdentity,
     headings: [&[String]; 2],
-) -> Result<(), Fault> {
+) -> Result<(), StoreFault> {
     let transaction = connection.transaction()?;
     transaction.execute_batch(
         "CREATE TABLE study (\"key\" TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;",
@@ -206,60 +212,64 @@ fn create(
     Ok(transaction.commit()?)
 }
 
-/// Whether the file is about this study.
-fn compare(connection: &Connection, study: &Study) -> Result<(), Fault> {
+/// Checks that the file holds this study.
+fn compare(connection: &Connection, study: &StudyIdentity) -> Result<(), StoreFault> {
     let mut statement = connection.prepare("SELECT \"key\", value FROM study")?;
     let rows = statement.query_map((), |row| Ok((row.get(0)?, row.get(1)?)))?;
-    let there: HashMap<String, String> = rows.collect::<Result<_, _>>()?;
-    for (key, here) in study {
-        let found = there.get(*key).map_or("", String::as_str);
-        // The hash tells whether the text is the same, whatever ends its lines.
-        if *key != TEXT && found != here {
-            return Err(Fault::Differs(match *key {
-                "scene_sha256" => "the scene was changed since".to_owned(),
-                key => format!("its {key}: {}, not {}", shown(found), shown(here)),
+    let stored: HashMap<String, String> = rows.collect::<Result<_, _>>()?;
+    for (key, expected) in study {
+        let found = stored.get(*key).map_or("", String::as_str);
+        // The hash is independent of line endings, the text is not.
+        if *key != SCENE_TEXT && found != expected {
+            return Err(StoreFault::Differs(match *key {
+                "scene_sha256" => "the scene has changed since".to_owned(),
+                key => format!(
+                    "its {key}: {}, not {}",
+                    shortened(found),
+                    shortened(expected)
+                ),
             }));
         }
     }
     Ok(())
 }
 
-/// A value in a message, cut where it is long.
-fn shown(value: &str) -> String {
-    const LONGEST: usize = 70;
-    if value.chars().count() <= LONGEST {
+/// A value in a message, shortened if it is long.
+fn shortened(value: &str) -> String {
+    const MAX_LENGTH: usize = 70;
+    if value.chars().count() <= MAX_LENGTH {
         return format!("`{value}`");
     }
-    let start: String = value.chars().take(LONGEST).collect();
+    let start: String = value.chars().take(MAX_LENGTH).collect();
     format!("`{start}…`")
 }
 
-/// What went wrong within a file that its caller names.
+/// An error of the store, to which the caller adds the path.
 #[derive(Debug)]
-enum Fault {
+enum StoreFault {
     Reason(String),
     Differs(String),
 }
 
-impl Fault {
-    fn at(self, path: &Path) -> SweepError {
+impl StoreFault {
+    fn with_path(self, path: &Path) -> SweepError {
         let path = path.to_owned();
         match self {
             Self::Reason(reason) => SweepError::Store { path, reason },
-            Self::Differs(difference) => SweepError::Other { path, difference },
+            Self::Differs(difference) => SweepError::DifferentStudy { path, difference },
         }
     }
 }
 
-impl From<rusqlite::Error> for Fault {
+impl From<rusqlite::Error> for StoreFault {
     fn from(error: rusqlite::Error) -> Self {
         Self::Reason(match error.sqlite_error_code() {
             Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => {
-                "another run has it open: wait for it, or give each run a --shard of its own"
+                "another process has it open: wait for it, or give each process its own --shard"
                     .to_owned()
             }
-            Some(ErrorCode::NotADatabase) => "it is no SQLite file".to_owned(),
-            Some(ErrorCode::DatabaseCorrupt) => "the file is damaged: move it away".to_owned(),
+            Some(ErrorCode::NotADatabase) => "it is not an SQLite file".to_owned(),
+            Some(ErrorCode::DatabaseCorrupt) => "the file is corrupt: move it".to_owned(),
             Some(ErrorCode::DiskFull) => "the disk is full".to_owned(),
             Some(ErrorCode::CannotOpen) => "cannot be opened".to_owned(),
             Some(ErrorCode::ReadOnly) => "cannot be written".to_owned(),

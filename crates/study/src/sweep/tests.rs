@@ -1,12 +1,9 @@
-//! Points against the other commands, references and theory.
+//! Points compared with other analyses, references and theory.
 
-use super::design::Design;
-use super::error::SweepError;
-use super::point::Wanted;
-use super::spread::Spread;
-use crate::calibrate::find_value;
-use crate::prepare::Prepared;
-use crate::reduce::Sweep as Reduced;
+use crate::explain::SweepError;
+use crate::find_value;
+use crate::models::PreparedScene;
+use crate::sweep::compute::{Design, RequestedQuantities, Spread};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -17,20 +14,24 @@ fn case(name: &str) -> Scene {
     Scene::read(folder.join(name).join("scene.toml")).expect("a scene")
 }
 
-fn words(all: &[&str]) -> Vec<String> {
-    all.iter().map(|&word| word.to_owned()).collect()
+fn words(texts: &[&str]) -> Vec<String> {
+    texts.iter().map(|&word| word.to_owned()).collect()
 }
 
-fn names(wanted: &Wanted) -> Vec<&str> {
-    wanted.quantities.iter().map(|q| q.name.as_str()).collect()
+fn names(requested: &RequestedQuantities) -> Vec<&str> {
+    requested
+        .quantities
+        .iter()
+        .map(|q| q.name.as_str())
+        .collect()
 }
 
-/// The values of one point by name.
-fn at(scene: &Scene, wishes: &[&str], values: &[(&str, f64)]) -> Vec<f64> {
-    let wanted = Wanted::new(scene, &words(wishes)).expect("results");
-    let found = wanted.at(scene, values);
-    assert_eq!(found.message, None);
-    found.values
+/// The results of one point, by name.
+fn at(scene: &Scene, requests: &[&str], values: &[(&str, f64)]) -> Vec<f64> {
+    let requested = RequestedQuantities::new(scene, &words(requests)).expect("results");
+    let result = requested.evaluate(scene, values);
+    assert_eq!(result.message, None);
+    result.values
 }
 
 #[test]
@@ -40,25 +41,25 @@ fn the_period_is_that_of_the_reference_and_of_calibrate() {
     // 50 digits of an independent program; the sum of some tens of square roots errs by a few roundings.
     let reference = 5.419_662_677_064_27;
     assert!((period(0.626) - reference).abs() < 1e-14 * reference);
-    let found = find_value(&scene, "crank.inertia", 5.42).expect("a value");
-    assert!((period(found.found) - 5.42).abs() < 1e-14 * 5.42);
+    let result = find_value(&scene, "crank.inertia", 5.42).expect("a value");
+    assert!((period(result.value) - 5.42).abs() < 1e-14 * 5.42);
 }
 
 #[test]
 fn inertia_is_that_of_reduce_and_linear_in_the_cranks() {
     let scene = case("single-dwell");
-    let prepared = Prepared::new(&scene).expect("a model");
-    let reduced = Reduced::new(&prepared).expect("a table");
-    let m = reduced.at.iter().map(|at| at.m);
-    let [least, most] = [
+    let prepared = PreparedScene::new(&scene).expect("a model");
+    let reduced = crate::reduce::compute::ReducedCurves::new(&prepared).expect("a table");
+    let m = reduced.coefficients.iter().map(|at| at.m);
+    let [min, max] = [
         m.clone().fold(f64::INFINITY, f64::min),
         m.fold(0.0, f64::max),
     ];
-    let found = at(&scene, &["m"], &[("crank.inertia", 0.626)]);
-    assert_eq!(found, [least, most]);
+    let result = at(&scene, &["m"], &[("crank.inertia", 0.626)]);
+    assert_eq!(result, [min, max]);
     // Of a crank on the ground its inertia is added to m: a rounding or two of m.
     let heavier = at(&scene, &["m"], &[("crank.inertia", 1.626)]);
-    for (now, then) in heavier.iter().zip(found) {
+    for (now, then) in heavier.iter().zip(result) {
         assert!((now - then - 1.0).abs() < 4.0 * f64::EPSILON * now);
     }
 }
@@ -68,11 +69,16 @@ fn peaks_are_those_of_kinetostatics() {
     let scene = case("slider-crank");
     let peaks = at(
         &scene,
-        &["phi.action", "guide.normal"],
+        &["phi.actuator_force", "guide.normal"],
         &[("crank.mass", 2.0)],
     );
-    let run = crate::run(&scene, crate::Command::Kinetostatics, None, &crate::silent);
-    let outcome = run.expect("a way").outcome;
+    let run = crate::analyse_trajectory(
+        &scene,
+        crate::Analysis::Kinetostatics,
+        None,
+        &crate::no_progress,
+    );
+    let outcome = run.expect("a trajectory").outcome;
     let files = outcome.files.iter();
     let table = files
         .filter(|(name, _)| name.to_string_lossy().ends_with("kinetostatics.csv"))
@@ -90,7 +96,10 @@ fn peaks_are_those_of_kinetostatics() {
     };
     assert_eq!(
         peaks,
-        [largest("phi.action [N m]"), largest("guide.normal [N]")]
+        [
+            largest("phi.actuator_force [N m]"),
+            largest("guide.normal [N]")
+        ]
     );
 }
 
@@ -98,16 +107,18 @@ fn peaks_are_those_of_kinetostatics() {
 fn sections_decide_what_there_is() {
     let known = |name: &str| {
         let scene = case(name);
-        let wanted = Wanted::new(&scene, &[]).expect("results");
-        names(&wanted).join(" ")
+        let requested = RequestedQuantities::new(&scene, &[]).expect("results");
+        names(&requested).join(" ")
     };
-    let reduced = "m.least m.most half_dm.least half_dm.most range.from range.to";
+    let reduced = "m.min m.max half_dm.min half_dm.max range.lower range.upper";
     assert_eq!(known("single-dwell"), format!("{reduced} period energy"));
     // A weight, and a motion that keeps its energy; no prescribed motion, so that peaks are those at rest.
-    assert!(known("pendulum-a01").starts_with(&format!("{reduced} period energy phi.action.peak")));
+    assert!(known("pendulum-a01").starts_with(&format!(
+        "{reduced} period energy phi.actuator_force.max_abs"
+    )));
     assert!(!known("slider-crank").contains("period"));
-    let wanted = Wanted::new(&case("single-dwell"), &words(&["perod"]));
-    let message = wanted.expect_err("no such result");
+    let requested = RequestedQuantities::new(&case("single-dwell"), &words(&["perod"]));
+    let message = requested.expect_err("no such result");
     assert_eq!(message.to_string(), "this scene has no result `perod`");
 }
 
@@ -115,15 +126,15 @@ fn sections_decide_what_there_is() {
 fn a_pendulums_energy_is_its_height() {
     // Level at rest: E = m g y with y = 0, where the potential of a weight is zero at the origin. T of a quarter
     // turn's release is 4 √(l/g) K(sin 45°), with K(½) = 1.85407467730137 (the parameter is m = k²).
-    let found = at(
+    let result = at(
         &case("pendulum-a01"),
         &["period", "energy"],
         &[("bar.mass", 3.0)],
     );
     let exact = 4.0 * (1.0 / 9.81_f64).sqrt() * 1.854_074_677_301_372;
     // A few roundings of the quadrature, and those of the position at π.
-    assert!((found[0] - exact).abs() < 1e-13 * exact);
-    assert!(found[1].abs() < 1e-13);
+    assert!((result[0] - exact).abs() < 1e-13 * exact);
+    assert!(result[1].abs() < 1e-13);
 }
 
 #[test]
@@ -132,12 +143,12 @@ fn a_linear_result_is_spread_as_what_it_follows_from() {
     let vary = words(&["crank.inertia~normal(0.626,0.002)", "coupler.mass±1%"]);
     let samples = 4000;
     let design = Design::new(&scene, &vary, Some(samples), 5).expect("a design");
-    let wanted = Wanted::new(&scene, &words(&["m.most"])).expect("results");
+    let requested = RequestedQuantities::new(&scene, &words(&["m.max"])).expect("results");
     // m is linear in both: m = I + c₁ M + …; c₁ from two points.
     let m = |inertia: f64, mass: f64| {
         at(
             &scene,
-            &["m.most"],
+            &["m.max"],
             &[("crank.inertia", inertia), ("coupler.mass", mass)],
         )[0]
     };
@@ -149,7 +160,7 @@ fn a_linear_result_is_spread_as_what_it_follows_from() {
         .map(|k| {
             let values = design.values(k);
             let values = [("crank.inertia", values[0]), ("coupler.mass", values[1])];
-            wanted.at(&scene, &values).values[0]
+            requested.evaluate(&scene, &values).values[0]
         })
         .collect();
     let spread = Spread::of(values.into_iter()).expect("values");

@@ -1,7 +1,9 @@
 //! Actions, reactions and balances.
 
-use crate::table::{MASSES, Table, WEIGHTS, case, file, follow, gap, largest, scene, table};
-use dwell_study::Command;
+use crate::table::{
+    MASSES, Table, WEIGHTS, analyse, case, derivative_error, file, largest, scene, table,
+};
+use dwell_study::Analysis;
 
 const GRAVITY: f64 = 9.81;
 
@@ -18,19 +20,22 @@ fn sum(table: &Table, of: impl Fn(&str, f64) -> Vec<f64>) -> Vec<f64> {
 /// V(φ) = Σ m g y of the centres.
 #[test]
 fn under_weight_the_action_at_rest_is_the_slope_of_the_potential() {
-    let table = table(&scene(WEIGHTS), Command::Statics, 721);
+    let table = table(&scene(WEIGHTS), Analysis::Statics, 721);
     let phi = table.column("phi");
     let height = |body: &str, mass: f64| {
         let y = table.column(&format!("{body}.G.y"));
         y.iter().map(|y| mass * GRAVITY * y).collect()
     };
     let potential = sum(&table, height);
-    let action = table.column("phi.action");
-    let off = gap(&potential, &action, phi[1] - phi[0]);
+    let action = table.column("phi.actuator_force");
+    let difference = derivative_error(&potential, &action, phi[1] - phi[0]);
     // Half a degree: rounding of 10 J over 0.009 rad.
-    assert!(off < 2e-12 * largest(&action).max(1.0), "{off:e}");
+    assert!(
+        difference < 2e-12 * largest(&action).max(1.0),
+        "{difference:e}"
+    );
     assert!(largest(&action) > 1.0);
-    assert!(!table.has("crank.speed") && !table.has("balance.loads"));
+    assert!(!table.has("crank.angular_velocity") && !table.has("power.loads"));
 }
 
 /// Scenes with every kind of load. The tolerance is what the summary says of all rows; besides, the
@@ -52,12 +57,12 @@ fn actuators_and_loads_change_the_kinetic_energy() {
     for name in cases {
         let mut scene = case(name);
         scene.requests.variables = None;
-        let followed = follow(&scene, Command::Kinetostatics, 2001);
-        let words = &followed.outcome.summary;
-        let kept = words.split("power balance kept to ").nth(1).unwrap();
-        let kept: f64 = kept.split(' ').next().unwrap().parse().unwrap();
-        assert!(kept <= 1e-12, "{name}: {words}");
-        let table = Table::parse(&file(&followed, "-kinetostatics.csv"));
+        let result = analyse(&scene, Analysis::Kinetostatics, 2001);
+        let summary = &result.outcome.summary;
+        let residual = summary.split("power balance closes to ").nth(1).unwrap();
+        let residual: f64 = residual.split(' ').next().unwrap().parse().unwrap();
+        assert!(residual <= 1e-12, "{name}: {summary}");
+        let table = Table::parse(&file(&result, "-kinetostatics.csv"));
         let rows = table.column("t").len();
         let mut terms = vec![(0.0, 0.0); rows];
         let mut add = |i: usize, value: f64| {
@@ -65,15 +70,15 @@ fn actuators_and_loads_change_the_kinetic_energy() {
             terms[i].1 += value.abs();
         };
         for actuator in &scene.mechanism.actuators {
-            let action = table.column(&format!("{}.action", actuator.name));
-            let speed = table.column(&format!("{}.speed", actuator.name));
+            let action = table.column(&format!("{}.actuator_force", actuator.name));
+            let speed = table.column(&format!("{}.velocity", actuator.name));
             (0..rows).for_each(|i| add(i, action[i] * speed[i]));
         }
         for load in &scene.loads {
             let power = table.column(&format!("{}.power", load.name));
             (0..rows).for_each(|i| add(i, power[i]));
         }
-        let rate = table.column("balance.dE/dt");
+        let rate = table.column("power.kinetic");
         let size = largest(&rate).max(terms.iter().fold(0.0, |m, t| t.1.max(m)));
         for i in 0..rows {
             // A handful of terms, each rounded.
@@ -85,18 +90,18 @@ fn actuators_and_loads_change_the_kinetic_energy() {
         }
         let t = table.column("t");
         let step = t[1] - t[0];
-        let energy = table.column("balance.energy");
-        let off = gap(&energy, &rate, step);
+        let energy = table.column("energy.kinetic_bodies");
+        let difference = derivative_error(&energy, &rate, step);
         // As in the test of the speeds, at half as many positions: 6e-10 · 2⁸.
         let allowed = 2e-7 * size + 1e-14 * largest(&energy) / step;
-        assert!(off <= allowed, "{name}: {off:e} {allowed:e}");
+        assert!(difference <= allowed, "{name}: {difference:e} {allowed:e}");
     }
 }
 
 /// Newton for the whole mechanism: the frame gets the weights less Σ m a of the centres.
 #[test]
 fn the_frame_gets_what_the_momentum_does_not() {
-    let table = table(&scene(WEIGHTS), Command::Kinetostatics, 90);
+    let table = table(&scene(WEIGHTS), Analysis::Kinetostatics, 90);
     let scaled = |factor: f64, part: &'static str| {
         let table = &table;
         move |body: &str, mass: f64| -> Vec<f64> {
@@ -107,7 +112,7 @@ fn the_frame_gets_what_the_momentum_does_not() {
     let weight: f64 = MASSES.iter().map(|(_, mass)| mass * GRAVITY).sum();
     let x = sum(&table, scaled(-1.0, "ax"));
     let y = sum(&table, scaled(-1.0, "ay"));
-    let (fx, fy) = (table.column("frame.fx"), table.column("frame.fy"));
+    let (fx, fy) = (table.column("shaking.fx"), table.column("shaking.fy"));
     for i in 0..x.len() {
         // Forces of about a hundred newtons.
         assert!((fx[i] - x[i]).abs() < 1e-11);
@@ -124,17 +129,17 @@ fn the_frame_gets_what_the_momentum_does_not() {
 /// ground feels nothing of what it does itself.
 #[test]
 fn loads_from_the_ground_act_on_the_frame_too() {
-    let followed = follow(&case("planetary"), Command::Statics, 361);
-    let table = Table::parse(&file(&followed, "-statics.csv"));
-    let m = table.column("frame.m");
+    let result = analyse(&case("planetary"), Analysis::Statics, 361);
+    let table = Table::parse(&file(&result, "-statics.csv"));
+    let m = table.column("shaking.moment");
     // Couples of 12 N m.
     assert!(m.len() > 200 && largest(&m) < 1e-13, "{}", largest(&m));
-    assert_eq!(largest(&table.column("load.load")), 12.0);
+    assert_eq!(largest(&table.column("load.load_moment")), 12.0);
 }
 
 #[test]
 fn a_force_is_one_in_all_axes() {
-    let table = table(&scene(WEIGHTS), Command::Kinetostatics, 60);
+    let table = table(&scene(WEIGHTS), Analysis::Kinetostatics, 60);
     for body in ["crank", "coupler"] {
         let [x, y, u, v, size, direction, angle] = [
             "B.x".to_owned(),
@@ -161,17 +166,17 @@ fn a_force_is_one_in_all_axes() {
 /// Between its pins, a coupler bends by what acts between them alone.
 #[test]
 fn a_link_does_not_bend_at_its_pins() {
-    let followed = follow(&scene(WEIGHTS), Command::Kinetostatics, 90);
-    let worst = Table::parse(&file(&followed, "-section-coupler-B-C.csv"));
-    let envelope = Table::parse(&file(&followed, "-section-coupler-B-C-envelope.csv"));
-    let bending = worst.column("bending");
-    let most = largest(&bending);
-    assert!(most > 0.1 && bending[0].abs() < 1e-12 && bending.last().unwrap().abs() < 1e-12);
-    let [low, high] = ["bending min", "bending max"].map(|name| envelope.column(name));
+    let result = analyse(&scene(WEIGHTS), Analysis::Kinetostatics, 90);
+    let sections = Table::parse(&file(&result, "-internal-forces-coupler-B-C.csv"));
+    let envelope = Table::parse(&file(&result, "-internal-forces-coupler-B-C-envelope.csv"));
+    let bending = sections.column("bending");
+    let max_bending = largest(&bending);
+    assert!(max_bending > 0.1 && bending[0].abs() < 1e-12 && bending.last().unwrap().abs() < 1e-12);
+    let [low, high] = ["bending.min", "bending.max"].map(|name| envelope.column(name));
     // The worst position is one of those in the envelope, which has no station at the mass itself.
     let widest = largest(&low).max(largest(&high));
-    assert!(widest <= most * (1.0 + 1e-12) && widest > 0.97 * most);
+    assert!(widest <= max_bending * (1.0 + 1e-12) && widest > 0.97 * max_bending);
     assert!(low.iter().zip(&high).all(|(l, h)| l <= h));
-    let stations = worst.column("station");
+    let stations = sections.column("station");
     assert!(stations.is_sorted() && stations.windows(3).all(|s| s[0] < s[2]));
 }

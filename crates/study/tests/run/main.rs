@@ -2,11 +2,12 @@
 //! nothing with them but the table itself.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
 
-mod ends;
+mod branch_hints;
+mod early_stops;
 mod forces;
-mod leverage;
+mod former_names;
 mod machines;
+mod mechanical_advantage;
 mod motion;
-mod need;
+mod pruning;
 mod table;
-mod told;

@@ -1,7 +1,7 @@
 //! Positions, speeds and accelerations.
 
-use crate::table::{Table, WEIGHTS, case, gap, largest, scene, table};
-use dwell_study::Command;
+use crate::table::{Table, WEIGHTS, case, derivative_error, largest, scene, table};
+use dwell_study::Analysis;
 use std::f64::consts::TAU;
 
 /// Every column with the one that is its derivative by time.
@@ -9,17 +9,19 @@ fn derivatives(table: &Table) -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     for name in &table.names {
         let others = if let Some(stem) = name.strip_suffix(".angle") {
-            vec![format!("{stem}.speed")]
-        } else if let Some(stem) = name.strip_suffix(".speed") {
+            vec![format!("{stem}.angular_velocity")]
+        } else if let Some(stem) = name.strip_suffix(".angular_velocity") {
+            vec![format!("{stem}.angular_acceleration")]
+        } else if let Some(stem) = name.strip_suffix(".velocity") {
             vec![format!("{stem}.acceleration")]
         } else if let Some((stem, part)) = name.rsplit_once('.') {
             match part {
                 "x" | "y" => vec![format!("{stem}.v{part}")],
                 "vx" | "vy" => vec![format!("{stem}.{}", part.replace('v', "a"))],
-                _ => vec![format!("{name}.speed")],
+                _ => vec![format!("{name}.velocity")],
             }
         } else {
-            vec![format!("{name}.speed")]
+            vec![format!("{name}.velocity")]
         };
         pairs.extend(
             others
@@ -50,20 +52,20 @@ fn speeds_and_accelerations_are_derivatives_by_time() {
     for name in cases {
         let mut scene = case(name);
         scene.requests.variables = None;
-        let table = table(&scene, Command::Kinematics, 4001);
+        let table = table(&scene, Analysis::Kinematics, 4001);
         let t = table.column("t");
         let step = t[1] - t[0];
         let pairs = derivatives(&table);
         assert!(pairs.len() >= 6, "{name}: {pairs:?}");
         for (of, by_time) in pairs {
             let (values, derivative) = (table.column(&of), table.column(&by_time));
-            let off = gap(&values, &derivative, step);
+            let difference = derivative_error(&values, &derivative, step);
             // Rounding of the values over a step. In ten turns of 400 positions each, harmonics up
             // to the tenth: (2π·10/400)⁸/630 = 6e-10 of the largest.
             let allowed = 1e-9 * largest(&derivative) + 5e-15 * (1.0 + largest(&values)) / step;
             assert!(
-                off <= allowed,
-                "{name}: {by_time} is off by {off:e}, allowed {allowed:e}"
+                difference <= allowed,
+                "{name}: {by_time} is off by {difference:e}, allowed {allowed:e}"
             );
         }
     }
@@ -73,7 +75,7 @@ fn speeds_and_accelerations_are_derivatives_by_time() {
 #[test]
 fn whole_turns_are_counted_between_far_positions() {
     let scene = case("slider-crank");
-    for command in [Command::Kinematics, Command::Statics] {
+    for command in [Analysis::Kinematics, Analysis::Statics] {
         let table = table(&scene, command, 12);
         let (angle, phi) = (table.column("crank.angle"), table.column("phi"));
         assert!(angle.last().unwrap() - angle[0] > 9.0 * TAU);
@@ -86,11 +88,11 @@ fn whole_turns_are_counted_between_far_positions() {
 
 #[test]
 fn the_velocity_ratio_is_what_the_speeds_have() {
-    let table = table(&scene(WEIGHTS), Command::Kinematics, 50);
-    let phi = table.column("phi.speed");
+    let table = table(&scene(WEIGHTS), Analysis::Kinematics, 50);
+    let phi = table.column("phi.velocity");
     for body in ["crank", "coupler", "rocker"] {
-        let ratio = table.column(&format!("{body}.ratio"));
-        let speed = table.column(&format!("{body}.speed"));
+        let ratio = table.column(&format!("{body}.velocity_ratio"));
+        let speed = table.column(&format!("{body}.angular_velocity"));
         for ((ratio, speed), phi) in ratio.iter().zip(&speed).zip(&phi) {
             // One product; the speeds are a few rad/s.
             assert!((ratio * phi - speed).abs() < 1e-13);
@@ -101,9 +103,9 @@ fn the_velocity_ratio_is_what_the_speeds_have() {
 /// By the law of cosines in the triangle of the coupler, the rocker and the way from B to D.
 #[test]
 fn the_transmission_angle_closes_a_triangle() {
-    let table = table(&scene(WEIGHTS), Command::Kinematics, 100);
+    let table = table(&scene(WEIGHTS), Analysis::Kinematics, 100);
     let [x, y, angle] =
-        ["coupler.B.x", "coupler.B.y", "C.transmission"].map(|name| table.column(name));
+        ["coupler.B.x", "coupler.B.y", "C.transmission_angle"].map(|name| table.column(name));
     for i in 0..angle.len() {
         let square = (x[i] - 0.5).powi(2) + (y[i] + 0.2).powi(2);
         let expected = (0.35_f64.powi(2) + 0.3_f64.powi(2) - square) / (2.0 * 0.35 * 0.3);
@@ -111,9 +113,9 @@ fn the_transmission_angle_closes_a_triangle() {
         assert!((angle[i].cos() - expected).abs() < 1e-14);
     }
     // Of a slider-crank: the rod's angle from the normal of the slide, which lies along x.
-    let table = crate::table::table(&case("slider-crank"), Command::Kinematics, 50);
+    let table = crate::table::table(&case("slider-crank"), Analysis::Kinematics, 50);
     let both = table
-        .column("C.transmission")
+        .column("C.transmission_angle")
         .into_iter()
         .zip(table.column("rod.angle"));
     for (transmission, rod) in both {
@@ -127,7 +129,7 @@ fn the_transmission_angle_closes_a_triangle() {
 fn a_driven_body_counts_as_its_coordinate_does() {
     let mut scene = case("rolling-wheel");
     scene.requests.variables = None;
-    let table = table(&scene, Command::Kinetostatics, 7);
+    let table = table(&scene, Analysis::Kinetostatics, 7);
     let (phi, wheel) = (table.column("phi"), table.column("wheel.angle"));
     assert!(phi[0] == -6.0 && phi == wheel, "{phi:?} {wheel:?}");
 }

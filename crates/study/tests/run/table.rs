@@ -1,7 +1,7 @@
 //! A run's table, read back from its file.
 
 use dwell_scene::Scene;
-use dwell_study::{Command, Followed, run, silent};
+use dwell_study::{Analysis, TrajectoryOutcome, analyse_trajectory, no_progress};
 use std::path::Path;
 
 /// A crank-rocker whose bodies' centres are named points, under weight alone.
@@ -49,13 +49,13 @@ pub(crate) fn scene(text: &str) -> Scene {
     Scene::parse("test.toml", text).unwrap()
 }
 
-pub(crate) fn follow(scene: &Scene, command: Command, points: usize) -> Followed {
-    run(scene, command, Some(points), &silent).unwrap()
+pub(crate) fn analyse(scene: &Scene, command: Analysis, points: usize) -> TrajectoryOutcome {
+    analyse_trajectory(scene, command, Some(points), &no_progress).unwrap()
 }
 
 /// The file of a run whose name ends so, as text.
-pub(crate) fn file(followed: &Followed, end: &str) -> String {
-    let mut files = followed.outcome.files.iter();
+pub(crate) fn file(result: &TrajectoryOutcome, end: &str) -> String {
+    let mut files = result.outcome.files.iter();
     let (_, bytes) = files
         .find(|(path, _)| path.to_str().unwrap().ends_with(end))
         .unwrap();
@@ -63,10 +63,10 @@ pub(crate) fn file(followed: &Followed, end: &str) -> String {
 }
 
 /// The table of a run that reaches its end.
-pub(crate) fn table(scene: &Scene, command: Command, points: usize) -> Table {
-    let followed = follow(scene, command, points);
-    assert!(followed.stopped.is_none(), "{}", scene.name);
-    Table::parse(&file(&followed, &format!("-{}.csv", command.name())))
+pub(crate) fn table(scene: &Scene, command: Analysis, points: usize) -> Table {
+    let result = analyse(scene, command, points);
+    assert!(result.early_stop.is_none(), "{}", scene.name);
+    Table::parse(&file(&result, &format!("-{}.csv", command.name())))
 }
 
 /// The largest magnitude.
@@ -91,7 +91,7 @@ pub(crate) fn differences(values: &[f64], step: f64) -> Vec<Option<f64>> {
 }
 
 /// The largest difference of a column from the derivative of another.
-pub(crate) fn gap(of: &[f64], derivative: &[f64], step: f64) -> f64 {
+pub(crate) fn derivative_error(of: &[f64], derivative: &[f64], step: f64) -> f64 {
     let both = differences(of, step).into_iter().zip(derivative);
     let gaps = both.filter_map(|(d, v)| Some((d? - v).abs()));
     gaps.fold(0.0, f64::max)

@@ -3,12 +3,12 @@
 
 use crate::mechanisms::all;
 use crate::setup::Setup;
-use crate::{failing, told};
+use crate::{describe, failing};
 use dwell_findings::{Finding, all_pass};
-use dwell_verify::{State, judge_energies};
+use dwell_verify::{ClaimedState, check_energies};
 
 /// M, row by row, from a run at unit acceleration for each coordinate.
-fn inertias(setup: &Setup, state: &State) -> Vec<f64> {
+fn inertias(setup: &Setup, state: &ClaimedState) -> Vec<f64> {
     let n = state.q.len();
     let columns: Vec<Vec<f64>> = (0..n)
         .map(|i| {
@@ -20,26 +20,37 @@ fn inertias(setup: &Setup, state: &State) -> Vec<f64> {
     (0..n * n).map(|k| columns[k % n][k / n]).collect()
 }
 
-fn judged(setup: &Setup, states: &[State]) -> Vec<Finding> {
+fn findings_for(setup: &Setup, states: &[ClaimedState]) -> Vec<Finding> {
     let all: Vec<_> = states.iter().map(|s| inertias(setup, s)).collect();
-    judge_energies(&setup.mechanism, &setup.masses, &setup.start, states, &all)
+    check_energies(
+        &setup.mechanism,
+        &setup.masses,
+        &setup.assembly_poses,
+        states,
+        &all,
+    )
 }
 
 #[test]
 fn val_plain_solutions_have_their_energies() {
     for setup in all() {
-        let findings = judged(&setup, &setup.states());
+        let findings = findings_for(&setup, &setup.states());
         let keys: Vec<&str> = findings.iter().map(|f| f.key.as_str()).collect();
         assert_eq!(
             keys,
             [
-                "state-inertia",
-                "state-kinetic",
+                "state-mass-matrix",
+                "state-kinetic-energy",
                 "state-lagrange",
                 "state-released"
             ]
         );
-        assert!(all_pass(&findings), "{}\n{}", setup.name, told(&findings));
+        assert!(
+            all_pass(&findings),
+            "{}\n{}",
+            setup.name,
+            describe(&findings)
+        );
     }
 }
 
@@ -51,29 +62,29 @@ fn every_action_and_reaction_counts() {
         for k in 0..states[1].tau.len() {
             let mut wrong = states.clone();
             wrong[1].tau[k] += 1e-6 * wrong[1].tau[k].abs().max(1.0);
-            let findings = judged(&setup, &wrong);
+            let findings = findings_for(&setup, &wrong);
             assert_eq!(
                 failing(&findings),
                 ["state-lagrange"],
                 "{} {k}\n{}",
                 setup.name,
-                told(&findings)
+                describe(&findings)
             );
         }
         for k in 0..states[1].reactions.len() {
-            let most = states[1]
+            let largest = states[1]
                 .reactions
                 .iter()
                 .fold(1.0_f64, |m, r| m.max(r.abs()));
             let mut wrong = states.clone();
-            wrong[1].reactions[k] += 1e-6 * most;
-            let findings = judged(&setup, &wrong);
+            wrong[1].reactions[k] += 1e-6 * largest;
+            let findings = findings_for(&setup, &wrong);
             assert_eq!(
                 failing(&findings),
                 ["state-released"],
                 "{} {k}\n{}",
                 setup.name,
-                told(&findings)
+                describe(&findings)
             );
         }
     }
@@ -82,32 +93,35 @@ fn every_action_and_reaction_counts() {
 /// Without a term of the equations: what speeds make, what accelerations make, a load.
 #[test]
 fn every_term_counts() {
-    let mut met = [0; 3];
+    let mut detected = [0; 3];
     for setup in all() {
         let states = setup.states();
-        let terms: [fn(&mut State); 3] = [
+        let terms: [fn(&mut ClaimedState); 3] = [
             |s| s.q_dot.fill(0.0),
             |s| s.q_ddot.fill(0.0),
-            |s| s.loads.truncate(s.loads.len().saturating_sub(1)),
+            |s| {
+                s.load_wrenches
+                    .truncate(s.load_wrenches.len().saturating_sub(1));
+            },
         ];
-        for (term, met) in terms.into_iter().zip(&mut met) {
+        for (term, detected) in terms.into_iter().zip(&mut detected) {
             // Actions of the whole state, held against equations without the term.
             let mut wrong = states.clone();
             term(&mut wrong[1]);
             if wrong == states {
                 continue;
             }
-            let findings = judged(&setup, &wrong);
+            let findings = findings_for(&setup, &wrong);
             let failed = failing(&findings);
-            *met += usize::from(
+            *detected += usize::from(
                 failed.contains(&"state-lagrange") || failed.contains(&"state-released"),
             );
         }
     }
     // A term may have no part in a mechanism that moves straight, or a load none in one that rests on it.
     assert!(
-        met.iter().all(|&met| met + 2 >= all().len()),
-        "{met:?} of {}",
+        detected.iter().all(|&detected| detected + 2 >= all().len()),
+        "{detected:?} of {}",
         all().len()
     );
 }
@@ -123,31 +137,31 @@ fn every_inertia_and_velocity_counts() {
             let n = states[1].q.len();
             let size = (sound[1][k / n * (n + 1)] * sound[1][k % n * (n + 1)]).sqrt();
             wrong[1][k] -= 1e-9 * size;
-            let findings = judge_energies(
+            let findings = check_energies(
                 &setup.mechanism,
                 &setup.masses,
-                &setup.start,
+                &setup.assembly_poses,
                 &states,
                 &wrong,
             );
             assert!(
-                failing(&findings).contains(&"state-inertia"),
+                failing(&findings).contains(&"state-mass-matrix"),
                 "{}\n{}",
                 setup.name,
-                told(&findings)
+                describe(&findings)
             );
         }
         let mut wrong = states.clone();
-        for velocity in &mut wrong[1].velocity {
+        for velocity in &mut wrong[1].velocities {
             *velocity = velocity.map(|v| v * (1.0 + 1e-6));
         }
-        let findings = judged(&setup, &wrong);
+        let findings = findings_for(&setup, &wrong);
         assert_eq!(
             failing(&findings),
-            ["state-kinetic"],
+            ["state-kinetic-energy"],
             "{}\n{}",
             setup.name,
-            told(&findings)
+            describe(&findings)
         );
     }
 }
@@ -156,13 +170,22 @@ fn every_inertia_and_velocity_counts() {
 fn what_is_not_claimed_fails() {
     let setup = all().remove(0);
     let states = setup.states();
-    let findings = judge_energies(&setup.mechanism, &setup.masses, &setup.start, &states, &[]);
-    assert_eq!(failing(&findings), ["state-inertia", "state-kinetic"]);
+    let findings = check_energies(
+        &setup.mechanism,
+        &setup.masses,
+        &setup.assembly_poses,
+        &states,
+        &[],
+    );
+    assert_eq!(
+        failing(&findings),
+        ["state-mass-matrix", "state-kinetic-energy"]
+    );
     let short = &setup.masses[1..];
-    assert!(!all_pass(&judge_energies(
+    assert!(!all_pass(&check_energies(
         &setup.mechanism,
         short,
-        &setup.start,
+        &setup.assembly_poses,
         &states,
         &[]
     )));

@@ -2,8 +2,8 @@
 
 use super::setup::Setup;
 use dwell_geometry::{
-    Actuator, Body, BodyId, Coordinate, Drive, Joint, JointId, JointKind, Mechanism, Relation,
-    Vec2, vec2,
+    Actuator, ActuatorKind, Body, BodyId, Coordinate, Coupling, Joint, JointId, JointKind,
+    Mechanism, Vec2, vec2,
 };
 use dwell_kinetostatics::{LoadKind, Mass};
 use dwell_laws::{Law, Polynomial};
@@ -29,11 +29,11 @@ fn pin(name: &str, bodies: [usize; 2], points: [Vec2; 2]) -> Joint {
     joint(name, bodies, points, JointKind::Revolute)
 }
 
-fn drive(name: &str, bodies: [usize; 2], drive: Drive) -> Actuator {
+fn actuator(name: &str, bodies: [usize; 2], kind: ActuatorKind) -> Actuator {
     Actuator {
         name: name.into(),
         bodies: on(bodies),
-        drive,
+        kind,
     }
 }
 
@@ -56,7 +56,7 @@ fn masses(count: usize) -> Vec<Mass> {
 
 /// The frame of a body whose `point` is at `at`.
 fn pose(point: Vec2, at: Vec2, angle: f64) -> [f64; 3] {
-    let origin = at - point.turn(Vec2::from_angle(angle));
+    let origin = at - point.rotate(Vec2::from_angle(angle));
     [origin.x, origin.y, angle]
 }
 
@@ -103,13 +103,13 @@ fn five_bar() -> Setup {
                 pin("E", [4, 0], [near, e]),
             ],
             actuators: vec![
-                drive("phi", [0, 1], Drive::Angle),
-                drive("psi", [2, 4], Drive::Angle),
+                actuator("phi", [0, 1], ActuatorKind::Angle),
+                actuator("psi", [2, 4], ActuatorKind::Angle),
             ],
             ..Mechanism::default()
         },
         masses: masses(5),
-        start: vec![
+        assembly_poses: vec![
             [0.0; 3],
             pose(near, a, crank1),
             pose(coupler[0], b, (c - b).angle()),
@@ -122,7 +122,7 @@ fn five_bar() -> Setup {
                 LoadKind::Spring {
                     bodies: on([1, 3]),
                     points,
-                    free: 0.6,
+                    free_length: 0.6,
                 },
                 40.0,
             ),
@@ -136,7 +136,7 @@ fn five_bar() -> Setup {
             (
                 LoadKind::TorsionSpring {
                     bodies: on([2, 3]),
-                    free: 0.5,
+                    free_angle: 0.5,
                 },
                 5.0,
             ),
@@ -154,7 +154,7 @@ fn boom() -> Setup {
     let raised = 0.5;
     let boom = pose(vec2(0.1, 0.0), o, raised);
     let at = |pose: [f64; 3], point: Vec2| {
-        vec2(pose[0], pose[1]) + point.turn(Vec2::from_angle(pose[2]))
+        vec2(pose[0], pose[1]) + point.rotate(Vec2::from_angle(pose[2]))
     };
     let (lug, tip) = (vec2(1.4, -0.2), vec2(3.0, 0.1));
     let lifted = at(boom, lug);
@@ -195,13 +195,13 @@ fn boom() -> Setup {
                 ),
             ],
             actuators: vec![
-                drive("lift", [2, 3], Drive::Travel(JointId(2))),
-                drive("draw", [1, 4], Drive::Length(ends)),
+                actuator("lift", [2, 3], ActuatorKind::Travel(JointId(2))),
+                actuator("draw", [1, 4], ActuatorKind::Length(ends)),
             ],
             ..Mechanism::default()
         },
         masses: masses(6),
-        start: vec![[0.0; 3], boom, barrel, rod, stick, bucket],
+        assembly_poses: vec![[0.0; 3], boom, barrel, rod, stick, bucket],
         loads: vec![
             weight(),
             (
@@ -209,11 +209,11 @@ fn boom() -> Setup {
                     body: BodyId(5),
                     point: vec2(0.3, -0.4),
                     direction: Vec2::from_angle(2.0),
-                    follows: true,
+                    body_fixed: true,
                 },
                 30.0,
             ),
-            (LoadKind::TorsionDamper { bodies: on([1, 4]) }, 3.0),
+            (LoadKind::RotationalDamper { bodies: on([1, 4]) }, 3.0),
         ],
         motions: motions(
             &[travel, length],
@@ -227,8 +227,8 @@ fn epicyclic() -> Setup {
     let o = vec2(0.3, 0.2);
     let (sun, planet, outer) = (0.5, 0.25, 1.2);
     let hub = vec2(0.1, -0.1);
-    let turned: f64 = 0.4;
-    let centre = o + Vec2::from_angle(turned) * (sun + planet);
+    let arm_angle: f64 = 0.4;
+    let centre = o + Vec2::from_angle(arm_angle) * (sun + planet);
     let rim = vec2(0.05, 0.02);
     // The rack below the ring, on a level guide: it has the ring on its left.
     let axis = vec2(1.0, 0.0);
@@ -277,13 +277,13 @@ fn epicyclic() -> Setup {
                     },
                 ),
             ],
-            actuators: vec![drive("arm", [0, 1], Drive::Angle)],
+            actuators: vec![actuator("arm", [0, 1], ActuatorKind::Angle)],
             ..Mechanism::default()
         },
         masses: masses(5),
-        start: vec![
+        assembly_poses: vec![
             [0.0; 3],
-            pose(hub, o, turned),
+            pose(hub, o, arm_angle),
             pose(rim, centre, 1.3),
             pose(rim, o, 0.0),
             // t·(P2 − P1) = 0 with the ring at no angle.
@@ -292,10 +292,10 @@ fn epicyclic() -> Setup {
         loads: vec![
             weight(),
             (LoadKind::Torque { bodies: on([2, 3]) }, 4.0),
-            (LoadKind::TorsionDamper { bodies: on([0, 2]) }, 0.6),
+            (LoadKind::RotationalDamper { bodies: on([0, 2]) }, 0.6),
         ],
         // More than a turn on, so that the planet's and the ring's turns are counted.
-        motions: motions(&[turned], &[&[1.0], &[-2.0], &[9.0], &[0.0]]),
+        motions: motions(&[arm_angle], &[&[1.0], &[-2.0], &[9.0], &[0.0]]),
     }
 }
 
@@ -304,8 +304,8 @@ fn wedge() -> Setup {
     let slope = Vec2::from_angle(0.5);
     let foot = vec2(0.1, 0.3);
     let radius = 0.3;
-    let place = pose(vec2(0.0, -0.1), vec2(0.4, 0.0), 0.0);
-    let touch = vec2(place[0], place[1]) + foot + slope * 0.7;
+    let wedge_pose = pose(vec2(0.0, -0.1), vec2(0.4, 0.0), 0.0);
+    let touch = vec2(wedge_pose[0], wedge_pose[1]) + foot + slope * 0.7;
     let centre = touch + slope.perp() * radius;
     let hub = vec2(0.05, -0.02);
     let anchor = vec2(-0.6, 1.7);
@@ -340,19 +340,19 @@ fn wedge() -> Setup {
                     },
                 ),
             ],
-            actuators: vec![drive("push", [0, 1], Drive::Travel(JointId(0)))],
+            actuators: vec![actuator("push", [0, 1], ActuatorKind::Travel(JointId(0)))],
             ..Mechanism::default()
         },
         masses: masses(3),
         // t·(P2 − P1) + r θ = 0.
-        start: vec![[0.0; 3], place, pose(hub, centre, -0.7 / radius)],
+        assembly_poses: vec![[0.0; 3], wedge_pose, pose(hub, centre, -0.7 / radius)],
         loads: vec![
             weight(),
             (
                 LoadKind::Spring {
                     bodies: on([0, 1]),
                     points: [vec2(-1.0, 0.5), vec2(0.1, 0.1)],
-                    free: 0.0,
+                    free_length: 0.0,
                 },
                 20.0,
             ),
@@ -372,29 +372,29 @@ fn cam() -> Setup {
         })
     };
     let lift = [0.4, 0.3, -0.1, 0.05];
-    let turned: f64 = 0.7;
+    let crank_angle: f64 = 0.7;
     let travel = Polynomial {
         coefficients: lift.to_vec(),
     }
-    .at(turned)[0];
+    .eval(crank_angle)[0];
     let guide = Vec2::from_angle(0.3);
     let foot = vec2(0.6, 0.4);
     let (shoe, stud) = (vec2(0.0, 0.1), vec2(0.2, -0.1));
     let slide_pose = pose(shoe, foot + guide * travel, 0.3);
     let at = |pose: [f64; 3], point: Vec2| {
-        vec2(pose[0], pose[1]) + point.turn(Vec2::from_angle(pose[2]))
+        vec2(pose[0], pose[1]) + point.rotate(Vec2::from_angle(pose[2]))
     };
     // The slot passes through the lever's pin.
     let slot = Vec2::from_angle(1.2);
     let lever = pose(hub, l, (at(slide_pose, stud) - l).angle() - 1.2);
-    let crank = pose(hub, a, turned);
+    let crank = pose(hub, a, crank_angle);
     let ends = [vec2(0.5, 0.0), vec2(0.1, 0.3)];
     let distance = (at(slide_pose, ends[1]) - at(crank, ends[0])).norm();
     let wave = [0.2, 0.8, 0.3];
     let flagged = Polynomial {
         coefficients: wave.to_vec(),
     }
-    .at(distance)[0];
+    .eval(distance)[0];
     Setup {
         name: "cam",
         mechanism: Mechanism {
@@ -409,22 +409,22 @@ fn cam() -> Setup {
                         axes: [guide, vec2(1.0, 0.0)],
                     },
                 ),
-                joint("cam", [0, 2], [Vec2::ZERO; 2], JointKind::Relation(0)),
+                joint("cam", [0, 2], [Vec2::ZERO; 2], JointKind::Coupling(0)),
                 pin("L", [3, 0], [hub, l]),
                 joint("slot", [3, 2], [hub, stud], JointKind::Slot { axis: slot }),
                 pin("F", [0, 4], [f, hub]),
-                joint("wave", [0, 4], [Vec2::ZERO; 2], JointKind::Relation(1)),
+                joint("wave", [0, 4], [Vec2::ZERO; 2], JointKind::Coupling(1)),
             ],
-            actuators: vec![drive("phi", [0, 1], Drive::Angle)],
-            relations: vec![
-                Relation {
-                    of: Coordinate::Travel(JointId(1)),
-                    by: Coordinate::Angle(on([0, 1])),
+            actuators: vec![actuator("phi", [0, 1], ActuatorKind::Angle)],
+            couplings: vec![
+                Coupling {
+                    dependent: Coordinate::Travel(JointId(1)),
+                    independent: Coordinate::Angle(on([0, 1])),
                     law: law(&lift),
                 },
-                Relation {
-                    of: Coordinate::Angle(on([0, 4])),
-                    by: Coordinate::Length {
+                Coupling {
+                    dependent: Coordinate::Angle(on([0, 4])),
+                    independent: Coordinate::Length {
                         bodies: on([1, 2]),
                         points: ends,
                     },
@@ -434,7 +434,7 @@ fn cam() -> Setup {
             ..Mechanism::default()
         },
         masses: masses(5),
-        start: vec![[0.0; 3], crank, slide_pose, lever, pose(hub, f, flagged)],
+        assembly_poses: vec![[0.0; 3], crank, slide_pose, lever, pose(hub, f, flagged)],
         loads: vec![
             weight(),
             (
@@ -447,11 +447,11 @@ fn cam() -> Setup {
             (
                 LoadKind::TorsionSpring {
                     bodies: on([0, 4]),
-                    free: 0.2,
+                    free_angle: 0.2,
                 },
                 3.0,
             ),
         ],
-        motions: motions(&[turned], &[&[0.2], &[0.5], &[-0.3], &[0.0]]),
+        motions: motions(&[crank_angle], &[&[0.2], &[0.5], &[-0.3], &[0.0]]),
     }
 }

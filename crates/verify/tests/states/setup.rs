@@ -1,36 +1,50 @@
 //! A mechanism ready to be judged, and the states and answers that a plain solution gives for it.
 
 use super::plain;
-use dwell_geometry::{BodyId, Coordinate, Drive, Mechanism, Vec2};
+use dwell_geometry::{ActuatorKind, BodyId, Coordinate, Mechanism, Vec2};
 use dwell_kinetostatics::{LoadKind, Mass};
-use dwell_verify::{Actions, Coefficients, State, Subject, SubjectError};
+use dwell_verify::{ClaimedState, Coefficients, InverseDynamics, Subject, SubjectError};
 
 /// A mechanism, where it starts, what loads it, and how it is moved.
 pub(crate) struct Setup {
     pub(crate) name: &'static str,
     pub(crate) mechanism: Mechanism,
     pub(crate) masses: Vec<Mass>,
-    pub(crate) start: Vec<[f64; 3]>,
+    pub(crate) assembly_poses: Vec<[f64; 3]>,
     pub(crate) loads: Vec<(LoadKind, f64)>,
     /// [q, q̇, q̈] of every actuator, state by state.
     pub(crate) motions: Vec<[Vec<f64>; 3]>,
 }
 
 impl Setup {
-    pub(crate) fn states(&self) -> Vec<State> {
+    pub(crate) fn states(&self) -> Vec<ClaimedState> {
         let motions = self.motions.iter().cloned();
         motions
-            .map(|m| plain::state(&self.mechanism, &self.masses, &self.start, &self.loads, m))
+            .map(|m| {
+                plain::state(
+                    &self.mechanism,
+                    &self.masses,
+                    &self.assembly_poses,
+                    &self.loads,
+                    m,
+                )
+            })
             .collect()
     }
 
-    fn unloaded(&self, q: f64, q_dot: f64, q_ddot: f64) -> State {
+    fn unloaded(&self, q: f64, q_dot: f64, q_ddot: f64) -> ClaimedState {
         self.unloaded_at([vec![q], vec![q_dot], vec![q_ddot]])
     }
 
     /// Without loads, with [q, q̇, q̈] of every actuator.
-    pub(crate) fn unloaded_at(&self, motion: [Vec<f64>; 3]) -> State {
-        plain::state(&self.mechanism, &self.masses, &self.start, &[], motion)
+    pub(crate) fn unloaded_at(&self, motion: [Vec<f64>; 3]) -> ClaimedState {
+        plain::state(
+            &self.mechanism,
+            &self.masses,
+            &self.assembly_poses,
+            &[],
+            motion,
+        )
     }
 
     /// The same standing elsewhere.
@@ -47,12 +61,12 @@ impl Setup {
             shift(joint.bodies, &mut joint.points);
         }
         for actuator in &mut self.mechanism.actuators {
-            if let Drive::Length(points) = &mut actuator.drive {
+            if let ActuatorKind::Length(points) = &mut actuator.kind {
                 shift(actuator.bodies, points);
             }
         }
-        for relation in &mut self.mechanism.relations {
-            for coordinate in [&mut relation.of, &mut relation.by] {
+        for relation in &mut self.mechanism.couplings {
+            for coordinate in [&mut relation.dependent, &mut relation.independent] {
                 if let Coordinate::Length { bodies, points } = coordinate {
                     shift(*bodies, points);
                 }
@@ -65,7 +79,7 @@ impl Setup {
                 shift(*bodies, points);
             }
         }
-        for (body, pose) in self.start.iter_mut().enumerate() {
+        for (body, pose) in self.assembly_poses.iter_mut().enumerate() {
             if body != ground.0 {
                 pose[0] += by.x;
                 pose[1] += by.y;
@@ -78,7 +92,7 @@ impl Setup {
 /// Without its loads, and with its first actuator's coordinate.
 impl Subject for Setup {
     fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
-        Ok(self.unloaded(q, 0.0, 0.0).bodies)
+        Ok(self.unloaded(q, 0.0, 0.0).poses)
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
@@ -91,9 +105,14 @@ impl Subject for Setup {
         })
     }
 
-    fn actions(&self, q: f64, q_dot: f64, q_ddot: f64) -> Result<Actions, SubjectError> {
+    fn inverse_dynamics(
+        &self,
+        q: f64,
+        q_dot: f64,
+        q_ddot: f64,
+    ) -> Result<InverseDynamics, SubjectError> {
         let state = self.unloaded(q, q_dot, q_ddot);
-        Ok(Actions {
+        Ok(InverseDynamics {
             tau: state.tau[0],
             reactions: state.reactions,
         })

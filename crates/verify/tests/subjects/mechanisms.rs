@@ -1,7 +1,9 @@
 //! The mechanisms of the tests.
 
 use super::dense::DenseSubject;
-use dwell_geometry::{Actuator, Body, BodyId, Drive, Joint, JointKind, Mechanism, Vec2, vec2};
+use dwell_geometry::{
+    Actuator, ActuatorKind, Body, BodyId, Joint, JointKind, Mechanism, Vec2, vec2,
+};
 use dwell_kinetostatics::Mass;
 use dwell_verify::{Case, Range, spread};
 use std::f64::consts::PI;
@@ -12,7 +14,7 @@ pub(crate) struct Setup {
     pub(crate) masses: Vec<Mass>,
     pub(crate) range: Range,
     pub(crate) q0: f64,
-    pub(crate) rough: Vec<[f64; 3]>,
+    pub(crate) initial_guess: Vec<[f64; 3]>,
 }
 
 impl Setup {
@@ -30,48 +32,54 @@ impl Setup {
     }
 
     pub(crate) fn subject_with(&self, masses: &[Mass]) -> DenseSubject {
-        DenseSubject::new(&self.mechanism, masses, self.range, self.q0, &self.rough)
+        DenseSubject::new(
+            &self.mechanism,
+            masses,
+            self.range,
+            self.q0,
+            &self.initial_guess,
+        )
     }
 
     /// The same mechanism standing elsewhere in the plane, with every moving body's frame shifted
     /// and turned.
-    pub(crate) fn reframed(mut self, ground: Vec2, shift: Vec2, turn: f64) -> Self {
-        let by = Vec2::from_angle(turn);
+    pub(crate) fn reframed(mut self, ground: Vec2, shift: Vec2, angle: f64) -> Self {
+        let by = Vec2::from_angle(angle);
         let fixed = self.mechanism.ground;
-        let moved = |body: usize, p: Vec2| {
+        let reframe_point = |body: usize, p: Vec2| {
             if body == fixed {
                 p + ground
             } else {
-                p.turn_back(by) + shift
+                p.rotate_inverse(by) + shift
             }
         };
         for joint in &mut self.mechanism.joints {
             for i in 0..2 {
                 let body = joint.bodies[i].0;
-                joint.points[i] = moved(body, joint.points[i]);
+                joint.points[i] = reframe_point(body, joint.points[i]);
                 if let JointKind::Prismatic { axes } = &mut joint.kind
                     && body != fixed
                 {
-                    axes[i] = axes[i].turn_back(by);
+                    axes[i] = axes[i].rotate_inverse(by);
                 }
             }
         }
         for (body, mass) in self.masses.iter_mut().enumerate() {
-            mass.center = moved(body, mass.center);
+            mass.center = reframe_point(body, mass.center);
         }
-        for (body, pose) in self.rough.iter_mut().enumerate() {
+        for (body, pose) in self.initial_guess.iter_mut().enumerate() {
             if body != fixed {
-                pose[2] += turn;
-                let arm = shift.turn(Vec2::from_angle(pose[2]));
+                pose[2] += angle;
+                let arm = shift.rotate(Vec2::from_angle(pose[2]));
                 pose[0] += ground.x - arm.x;
                 pose[1] += ground.y - arm.y;
             }
         }
         for actuator in &self.mechanism.actuators {
-            let turned = actuator
+            let angles = actuator
                 .bodies
-                .map(|b| if b.0 == fixed { 0.0 } else { turn });
-            self.q0 += turned[1] - turned[0];
+                .map(|b| if b.0 == fixed { 0.0 } else { angle });
+            self.q0 += angles[1] - angles[0];
         }
         self
     }
@@ -99,11 +107,11 @@ fn slide(name: &str, on: [usize; 2], points: [[f64; 2]; 2], angles: [f64; 2]) ->
     }
 }
 
-fn turn(name: &str, on: [usize; 2]) -> Vec<Actuator> {
+fn angle_actuator(name: &str, on: [usize; 2]) -> Vec<Actuator> {
     vec![Actuator {
         name: name.into(),
         bodies: on.map(BodyId),
-        drive: Drive::Angle,
+        kind: ActuatorKind::Angle,
     }]
 }
 
@@ -127,13 +135,13 @@ pub(crate) fn crank_rocker() -> Setup {
                 pin("C", [2, 3], [[3.5, 0.0], [3.0, 0.0]]),
                 pin("D", [0, 3], [[4.0, 0.0], [0.0, 0.0]]),
             ],
-            actuators: turn("phi", [0, 1]),
-            relations: vec![],
+            actuators: angle_actuator("phi", [0, 1]),
+            couplings: vec![],
         },
         masses: vec![Mass::default(), bar(1.0, 1.0), bar(2.0, 3.5), bar(2.0, 3.0)],
         range: Range::Full,
         q0: 0.0,
-        rough: vec![[0.0; 3], [0.0; 3], [1.0, 0.0, 0.9], [4.0, 0.0, 1.9]],
+        initial_guess: vec![[0.0; 3], [0.0; 3], [1.0, 0.0, 0.9], [4.0, 0.0, 1.9]],
     }
 }
 
@@ -152,8 +160,8 @@ pub(crate) fn single_dwell() -> Setup {
                 slide("slide", [4, 5], [[0.0, 0.0], [0.0, 0.0]], [0.0, 0.0]),
                 pin("P", [2, 5], [[0.5, 0.0], [0.0, 0.0]]),
             ],
-            actuators: turn("phi", [0, 1]),
-            relations: vec![],
+            actuators: angle_actuator("phi", [0, 1]),
+            couplings: vec![],
         },
         masses: vec![
             Mass::default(),
@@ -176,7 +184,7 @@ pub(crate) fn single_dwell() -> Setup {
         ],
         range: Range::Full,
         q0: 0.0,
-        rough: vec![
+        initial_guess: vec![
             [0.0; 3],
             [0.0; 3],
             [0.1, 0.0, 1.37],
@@ -201,8 +209,8 @@ pub(crate) fn inverted_slider_crank() -> Setup {
                 pin("A", [2, 1], [[0.0, 0.0], [0.04, 0.03]]),
                 pin("B", [1, 3], [[0.16, 0.12], [-0.03, 0.02]]),
             ],
-            actuators: turn("drive", [2, 1]),
-            relations: vec![],
+            actuators: angle_actuator("drive", [2, 1]),
+            couplings: vec![],
         },
         masses: vec![
             Mass {
@@ -224,7 +232,7 @@ pub(crate) fn inverted_slider_crank() -> Setup {
         ],
         range: Range::Full,
         q0: 0.3,
-        rough: vec![[0.1, -0.4, 0.2], [0.0, 0.0, 0.3], [0.0; 3], [0.1, 0.1, 0.2]],
+        initial_guess: vec![[0.1, -0.4, 0.2], [0.0, 0.0, 0.3], [0.0; 3], [0.1, 0.1, 0.2]],
     }
 }
 
@@ -236,8 +244,8 @@ pub(crate) fn crank_rocker_of(rocker: f64) -> Setup {
     setup.masses[3] = bar(2.0, rocker);
     // The triangle of 3, 3.5 and the rocker, by the law of cosines.
     let angle = |a: f64, b: f64, c: f64| ((a * a + b * b - c * c) / (2.0 * a * b)).acos();
-    setup.rough[2][2] = angle(3.0, 3.5, rocker);
-    setup.rough[3][2] = PI - angle(3.0, rocker, 3.5);
+    setup.initial_guess[2][2] = angle(3.0, 3.5, rocker);
+    setup.initial_guess[3][2] = PI - angle(3.0, rocker, 3.5);
     setup
 }
 
@@ -248,13 +256,13 @@ pub(crate) fn pendulum() -> Setup {
             bodies: bodies(&["bar", "ground"]),
             ground: 1,
             joints: vec![pin("A", [0, 1], [[0.0, 0.0], [2.0, 1.0]])],
-            actuators: turn("phi", [1, 0]),
-            relations: vec![],
+            actuators: angle_actuator("phi", [1, 0]),
+            couplings: vec![],
         },
         masses: vec![bar(3.0, 0.8), Mass::default()],
         range: Range::Full,
         q0: 0.0,
-        rough: vec![[2.0, 1.0, 0.0], [0.0; 3]],
+        initial_guess: vec![[2.0, 1.0, 0.0], [0.0; 3]],
     }
 }
 
@@ -273,11 +281,11 @@ pub(crate) fn flywheel() -> Setup {
 /// moving bodies, which the ground never feels. The coupler is named first.
 pub(crate) fn relative_drive() -> Setup {
     let mut setup = crank_rocker();
-    setup.mechanism.actuators = turn("beta", [2, 1]);
-    setup.range = Range::Between(-2.2, -1.0);
+    setup.mechanism.actuators = angle_actuator("beta", [2, 1]);
+    setup.range = Range::Limited(-2.2, -1.0);
     setup.q0 = -1.5;
     // Crank at an angle φ with β = φ − θ of the coupler.
-    setup.rough = vec![
+    setup.initial_guess = vec![
         [0.0; 3],
         [0.0, 0.0, -0.9],
         [0.6, -0.8, 0.8],

@@ -4,6 +4,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]
 
 pub(crate) mod dense;
-pub(crate) mod faulty;
 mod gauss;
 pub(crate) mod mechanisms;
+pub(crate) mod mutated;

@@ -1,0 +1,218 @@
+//! A motion through several charts.
+
+use super::Atlas;
+use crate::error::DynamicsError;
+use crate::ode::OdeState;
+use crate::options::Statistics;
+use crate::solve::{EventOccurrence, Solution};
+use dwell_geometry::BodyId;
+use dwell_geometry::body_states::CoordinateFunction;
+use std::f64::consts::TAU;
+
+/// A motion through one or more charts.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ContinuedMotion {
+    /// The parts of it in one chart each, in order; samples go on from one to the next.
+    pub segments: Vec<Segment>,
+    /// Where and why the chart was changed: one fewer than the legs, or as many if it ended with one.
+    pub changes: Vec<ChartChange>,
+    /// Whether an event ended it.
+    pub terminated_by_event: bool,
+    /// Why it could not go on, if it could not.
+    pub error: Option<DynamicsError>,
+}
+
+/// A part of a motion in one chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Segment {
+    /// Index in [`Atlas::charts`].
+    pub chart: usize,
+    /// The motion, in states of that chart's machine. Its `failed` is set too where another chart
+    /// then went on.
+    pub solution: Solution,
+}
+
+/// A change of chart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChartChange {
+    /// When, s.
+    pub t: f64,
+    /// From which chart, and to which.
+    pub from: usize,
+    /// To which chart.
+    pub to: usize,
+    /// Why.
+    pub reason: ChartChangeReason,
+}
+
+/// Why a chart was left.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum ChartChangeReason {
+    /// Its coordinate folds back: another was so many times as fast.
+    CoordinateFold {
+        /// How many times, lengths by the mechanism's size.
+        speed_ratio: f64,
+    },
+    /// It could not be followed any further.
+    SolutionEnds,
+    /// A change point was crossed, to the same coordinate on the branch behind.
+    CrossesChangePoint {
+        /// Index in [`Atlas::change_point_fits`].
+        fit: usize,
+    },
+}
+
+/// A coordinate along a motion: value, speed and acceleration, rad or m, per s, per s².
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CoordinateHistory {
+    /// By leg, at its steps.
+    pub steps: Vec<Vec<[f64; 3]>>,
+    /// By leg, at its samples.
+    pub samples: Vec<Vec<[f64; 3]>>,
+}
+
+impl ContinuedMotion {
+    /// Adds what one chart made of the motion; it goes on from the last leg if the chart is the same.
+    pub(super) fn append(&mut self, chart: usize, solution: Solution) {
+        let same = self.segments.len() == self.changes.len() + 1;
+        let Some(segment) = self.segments.last_mut().filter(|_| same) else {
+            self.segments.push(Segment { chart, solution });
+            return;
+        };
+        segment
+            .solution
+            .steps
+            .extend(solution.steps.into_iter().skip(1));
+        segment.solution.samples.extend(solution.samples);
+        segment
+            .solution
+            .event_occurrences
+            .extend(solution.event_occurrences);
+        segment.solution.terminated_by_event = solution.terminated_by_event;
+        segment.solution.error = solution.error;
+        segment.solution.statistics =
+            add_statistics(segment.solution.statistics, solution.statistics);
+    }
+
+    /// What happened, in order, with the leg it happened in.
+    pub fn event_occurrences(&self) -> impl Iterator<Item = (usize, &EventOccurrence)> {
+        let segments = self.segments.iter().enumerate();
+        segments.flat_map(|(i, segment)| {
+            segment
+                .solution
+                .event_occurrences
+                .iter()
+                .map(move |o| (i, o))
+        })
+    }
+
+    /// The work of all legs together.
+    pub fn statistics(&self) -> Statistics {
+        let segments = self
+            .segments
+            .iter()
+            .map(|segment| segment.solution.statistics);
+        segments.fold(Statistics::default(), add_statistics)
+    }
+
+    /// The last state, with the chart it is of.
+    pub fn last_state(&self) -> Option<(usize, &OdeState)> {
+        let segment = self.segments.last()?;
+        Some((segment.chart, segment.solution.steps.last()?))
+    }
+}
+
+impl Atlas<'_> {
+    /// The coordinate of the mechanism's own actuator.
+    pub fn actuator_coordinate(&self) -> CoordinateFunction {
+        self.candidates[0].measured
+    }
+
+    /// A coordinate along a motion. Angles have no jumps: where no chart counts their turns, they go on
+    /// from what they were; the first is in the chart's own count.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where a state cannot be evaluated.
+    pub fn coordinate_history(
+        &self,
+        motion: &ContinuedMotion,
+        measured: CoordinateFunction,
+    ) -> Result<CoordinateHistory, DynamicsError> {
+        let mut history = CoordinateHistory::default();
+        let mut last: Option<(f64, [f64; 3])> = None;
+        for Segment { chart, solution } in &motion.segments {
+            let machine = &self.charts[*chart].machine;
+            let mut workspace = machine.workspace();
+            let mut found = [Vec::new(), Vec::new()];
+            // Whole turns that this chart's count is off, if it counts.
+            let mut revolution_offset: Option<f64> = None;
+            let (steps, samples) = (&solution.steps, &solution.samples);
+            let (mut i, mut k) = (0, 0);
+            while i < steps.len() || k < samples.len() {
+                let first = match (steps.get(i), samples.get(k)) {
+                    (Some(step), Some(sample)) => step.t <= sample.t,
+                    (step, _) => step.is_some(),
+                };
+                let point = if first { &steps[i] } else { &samples[k] };
+                machine.evaluate(point.t, &point.y, &mut workspace)?;
+                if machine.fit_at(point.y.first()).is_none() {
+                    machine
+                        .model
+                        .set_accelerations(&workspace.q_ddot, &mut workspace.inner);
+                }
+                let states = workspace.inner.states();
+                let mut now = states.coordinate(measured);
+                if let (CoordinateFunction::Angle(bodies), Some((t, before))) = (measured, last) {
+                    let counts = |b: BodyId| states.body(b).angle.is_some();
+                    let near = before[0] + 0.5 * (before[1] + now[1]) * (point.t - t);
+                    let whole_revolutions = TAU * ((near - now[0]) / TAU).round();
+                    now[0] += match revolution_offset {
+                        Some(revolution_offset) => revolution_offset,
+                        None => whole_revolutions,
+                    };
+                    if bodies.into_iter().all(counts) {
+                        revolution_offset.get_or_insert(whole_revolutions);
+                    }
+                } else if last.is_none() {
+                    revolution_offset = counts_revolutions(measured, states).then_some(0.0);
+                }
+                last = Some((point.t, now));
+                if first {
+                    found[0].push(now);
+                    i += 1;
+                } else {
+                    found[1].push(now);
+                    k += 1;
+                }
+            }
+            let [steps, samples] = found;
+            history.steps.push(steps);
+            history.samples.push(samples);
+        }
+        Ok(history)
+    }
+}
+
+fn add_statistics(a: Statistics, b: Statistics) -> Statistics {
+    Statistics {
+        steps: a.steps + b.steps,
+        rejected_steps: a.rejected_steps + b.rejected_steps,
+        stiff_steps: a.stiff_steps + b.stiff_steps,
+        evaluations: a.evaluations + b.evaluations,
+        jacobians: a.jacobians + b.jacobians,
+        factorisations: a.factorisations + b.factorisations,
+    }
+}
+
+/// Whether the whole turns of an angle are counted.
+fn counts_revolutions(
+    measured: CoordinateFunction,
+    states: &dwell_geometry::body_states::BodyStates,
+) -> bool {
+    match measured {
+        CoordinateFunction::Angle(bodies) => {
+            bodies.into_iter().all(|b| states.body(b).angle.is_some())
+        }
+        _ => false,
+    }
+}

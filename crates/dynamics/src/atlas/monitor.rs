@@ -1,0 +1,224 @@
+//! Watches the steps in a chart: whether its coordinate folds, or a change point is passed.
+
+use super::{Atlas, Chart, FOLD_SPEED_RATIO, POSE_TOLERANCE};
+use crate::error::DynamicsError;
+
+use crate::machine::MachineWorkspace;
+use crate::ode::{DenseOutput, OdeState, StepControl, root_subintervals, state_at};
+use dwell_geometry::Motion;
+use dwell_geometry::body_states::BodyStates;
+use dwell_numerics::root;
+
+/// Times the ratio at which a chart is left that a good step may lead to.
+const FOLD_OVERSHOOT: f64 = 2.0;
+
+/// How a chart is left.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum ChartExit {
+    /// Its coordinate folds back.
+    CoordinateFold(CandidateSpeeds),
+    /// It ends, for whatever reason.
+    SolutionEnds(CandidateSpeeds),
+    /// It is not left: a step of so many seconds was too rough to tell a return from a fold.
+    StepTooLong(f64),
+    /// It goes on behind a change point.
+    CrossesChangePoint { crossing: usize, above: bool },
+}
+
+/// How fast the candidates move, against the present coordinate.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct CandidateSpeeds {
+    /// Candidates with how many times as fast they are, the fastest first, without the present one.
+    ratios: Vec<(usize, f64)>,
+}
+
+impl CandidateSpeeds {
+    /// How many times the fastest is as fast.
+    pub(super) fn max_ratio(&self) -> f64 {
+        self.ratios.first().map_or(0.0, |(_, ratio)| *ratio)
+    }
+
+    /// The candidates, the fastest first.
+    pub(super) fn fastest_first(&self) -> impl Iterator<Item = usize> + '_ {
+        let moving = self.ratios.iter().filter(|(_, ratio)| *ratio > 0.0);
+        moving.map(|&(candidate, _)| candidate)
+    }
+
+    /// These, if there is one that is so many times as fast.
+    pub(super) fn faster_than(self, factor: f64) -> Option<Self> {
+        (self.max_ratio() > factor).then_some(self)
+    }
+}
+
+pub(super) struct ChartMonitor<'a, 's> {
+    atlas: &'a Atlas<'s>,
+    chart: &'a Chart,
+    /// Whether its coordinate has ends at all.
+    has_limits: bool,
+    workspace: MachineWorkspace<f64>,
+    unit_motion: Motion<f64>,
+    unit_states: BodyStates,
+}
+
+impl<'a, 's> ChartMonitor<'a, 's> {
+    pub(super) fn new(atlas: &'a Atlas<'s>, index: usize) -> Self {
+        let chart = &atlas.charts[index];
+        let plan = chart.machine.model.plan();
+        Self {
+            atlas,
+            chart,
+            has_limits: plan.range().limits().is_some(),
+            workspace: chart.machine.workspace(),
+            unit_motion: plan.motion(),
+            unit_states: BodyStates::new(plan),
+        }
+    }
+
+    /// Whether the coordinate folds at a state.
+    pub(super) fn exit_at_fold(
+        &mut self,
+        at: &OdeState,
+    ) -> Result<Option<ChartExit>, DynamicsError> {
+        if !self.has_limits || self.is_in_fit_window(at) {
+            return Ok(None);
+        }
+        let speeds = self.candidate_speeds(at)?;
+        Ok(speeds
+            .faster_than(FOLD_SPEED_RATIO)
+            .map(ChartExit::CoordinateFold))
+    }
+
+    /// Looks at one step, and takes it by `step` where it is good. `left` is then how the chart is left,
+    /// from the end of the last step that was taken.
+    pub(super) fn observe(
+        &mut self,
+        before: &OdeState,
+        now: &OdeState,
+        dense: DenseOutput<'_>,
+        exit: &mut Option<ChartExit>,
+        step: impl FnOnce(DenseOutput<'_>) -> Result<StepControl, DynamicsError>,
+    ) -> Result<StepControl, DynamicsError> {
+        if !self.has_limits {
+            return step(dense);
+        }
+        if let Some(fold) = self.fold_within(before, now, dense)? {
+            // What comes after the fold is on another branch: the step is thrown away.
+            *exit = Some(fold);
+            return Ok(StepControl::Stop);
+        }
+        // An explicit method may take a step to where nothing can be evaluated; it is not good.
+        let exit_after = self.exit_after_step(now)?;
+        if let Some(ChartExit::CoordinateFold(speeds)) = &exit_after
+            && speeds.max_ratio() > FOLD_OVERSHOOT * FOLD_SPEED_RATIO
+        {
+            // The nearer the fold, the more an error of the coordinate does to all others.
+            *exit = Some(ChartExit::StepTooLong(now.t - before.t));
+            return Ok(StepControl::Stop);
+        }
+        let next = step(dense)?;
+        if next == StepControl::Continue {
+            *exit = exit_after;
+        }
+        Ok(if exit.is_some() {
+            StepControl::Stop
+        } else {
+            next
+        })
+    }
+
+    /// How the chart is left after a good step, if it is.
+    fn exit_after_step(&mut self, now: &OdeState) -> Result<Option<ChartExit>, DynamicsError> {
+        let q = now.y[0];
+        let mut windows = self.chart.machine.fit_windows.iter();
+        if let Some(window) = windows.find(|window| window.has_passed(q)) {
+            return Ok(Some(ChartExit::CrossesChangePoint {
+                crossing: window.crossing,
+                above: !window.above,
+            }));
+        }
+        self.exit_at_fold(now)
+    }
+
+    /// How far the range's next end is from a coordinate.
+    fn distance_to_limit(&self, q: f64) -> f64 {
+        let range = self.chart.machine.model.plan().range();
+        match (range.limits(), range.wrap(q)) {
+            (Some((from, to)), Ok(q)) => (q - from).min(to - q),
+            _ => f64::INFINITY,
+        }
+    }
+
+    fn is_in_fit_window(&self, at: &OdeState) -> bool {
+        self.chart.machine.fit_at(at.y.first()).is_some()
+    }
+
+    /// Whether the coordinate folds within a step: its speed changes sign where others go on. A step that is
+    /// longer than the way from there to the range's end is not believed to have returned.
+    fn fold_within(
+        &mut self,
+        before: &OdeState,
+        now: &OdeState,
+        dense: DenseOutput<'_>,
+    ) -> Result<Option<ChartExit>, DynamicsError> {
+        let mut last = before.clone();
+        for t in root_subintervals(before, now) {
+            let point = state_at(t, now, dense)?;
+            if last.y[1] * point.y[1] < 0.0 {
+                let speed = |t: f64| Ok::<_, DynamicsError>(state_at(t, now, dense)?.y[1]);
+                let zero = root::find(speed, last.t, point.t)?;
+                let at = state_at(zero.unwrap_or(point.t), now, dense)?;
+                if !self.is_in_fit_window(&at) {
+                    match self.candidate_speeds(&at) {
+                        Ok(speeds) if speeds.max_ratio() <= FOLD_SPEED_RATIO => {
+                            let distance = (at.y[0] - before.y[0])
+                                .abs()
+                                .max((at.y[0] - now.y[0]).abs());
+                            if distance > self.distance_to_limit(at.y[0]) {
+                                return Ok(Some(ChartExit::StepTooLong(now.t - before.t)));
+                            }
+                        }
+                        Ok(speeds) => return Ok(Some(ChartExit::CoordinateFold(speeds))),
+                        // The zero lies beyond the range's end, by the error of the step.
+                        Err(_) => {
+                            let speeds = self
+                                .candidate_speeds(&last)
+                                .or_else(|_| self.candidate_speeds(before))?;
+                            return Ok(Some(ChartExit::CoordinateFold(speeds)));
+                        }
+                    }
+                }
+            }
+            last = point;
+        }
+        Ok(None)
+    }
+
+    /// How fast the candidates are at a state, from the motion at unit speed.
+    pub(super) fn candidate_speeds(
+        &mut self,
+        at: &OdeState,
+    ) -> Result<CandidateSpeeds, DynamicsError> {
+        let machine = &self.chart.machine;
+        let plan = machine.model.plan();
+        machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        plan.velocities(&self.workspace.inner.pose, &[1.0], &mut self.unit_motion);
+        self.unit_states
+            .fill(plan, &self.workspace.inner.pose, &self.unit_motion);
+        let candidates = &self.atlas.candidates;
+        let present = candidates
+            .iter()
+            .find(|c| c.coordinate == self.chart.coordinate);
+        let present = present.map_or(1.0, |c| c.weight);
+        let mut ratios: Vec<(usize, f64)> = Vec::with_capacity(candidates.len());
+        for (i, candidate) in candidates.iter().enumerate() {
+            if candidate.coordinate != self.chart.coordinate {
+                let [_, speed, _] = self.unit_states.coordinate(candidate.measured);
+                let ratio = (speed * candidate.weight).abs() / present;
+                // A coordinate that others only move by rounding carries nothing.
+                ratios.push((i, if ratio > POSE_TOLERANCE { ratio } else { 0.0 }));
+            }
+        }
+        ratios.sort_by(|a, b| b.1.total_cmp(&a.1));
+        Ok(CandidateSpeeds { ratios })
+    }
+}

@@ -1,0 +1,84 @@
+//! Counted revolutions of the angles that loads depend on, in every chart.
+
+use super::{Atlas, MachineDescription};
+use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::{Body, BodyId, Coordinate, Coupling, Joint, JointKind, Mechanism, Vec2};
+use dwell_kinetostatics::{DriveKind, LoadKind, Magnitude, Signal};
+use dwell_laws::{Law, Polynomial};
+
+impl Atlas<'_> {
+    /// A mechanism in which the turns of all angles are counted whose values loads depend on, and the
+    /// angles of its bodies. Each such angle turns a massless witness.
+    pub(super) fn with_counted_revolutions(
+        &self,
+        mut mechanism: Mechanism,
+        states: &BodyStates,
+    ) -> (Mechanism, Vec<Option<f64>>) {
+        let angle = |b: usize| {
+            let state = states.body(BodyId(b));
+            Some(state.angle.unwrap_or_else(|| state.rotation.angle()))
+        };
+        let mut initial_guess: Vec<Option<f64>> = (0..mechanism.bodies.len()).map(angle).collect();
+        let ground = BodyId(mechanism.ground);
+        for bodies in load_angles(&self.description) {
+            let by = Coordinate::Angle(bodies);
+            if mechanism.actuators.iter().any(|a| a.coordinate() == by) {
+                continue;
+            }
+            let witness = BodyId(mechanism.bodies.len());
+            let name = format!("turns of {}", mechanism.body_name(bodies[1]));
+            mechanism.bodies.push(Body { name: name.clone() });
+            initial_guess.push(Some(states.angle(bodies)[0]));
+            let joint = |kind| Joint {
+                name: name.clone(),
+                bodies: [ground, witness],
+                points: [Vec2::ZERO; 2],
+                kind,
+            };
+            let relation = JointKind::Coupling(mechanism.couplings.len());
+            mechanism
+                .joints
+                .extend([joint(JointKind::Revolute), joint(relation)]);
+            mechanism.couplings.push(Coupling {
+                dependent: Coordinate::Angle([ground, witness]),
+                independent: by,
+                law: Law::Polynomial(Polynomial {
+                    coefficients: vec![0.0, 1.0],
+                }),
+            });
+        }
+        (mechanism, initial_guess)
+    }
+}
+
+/// The angles whose values, not only speeds, a load or drive depends on.
+pub(super) fn load_angles(description: &MachineDescription<'_>) -> Vec<[BodyId; 2]> {
+    let mut angles = Vec::new();
+    let mut of = |magnitude: &Magnitude| {
+        let signals = match magnitude {
+            Magnitude::Law(signal, _) => std::slice::from_ref(signal),
+            Magnitude::Expression(_, signals) => signals.as_slice(),
+            _ => &[],
+        };
+        for signal in signals {
+            if let Signal::Value(Coordinate::Angle(bodies)) = signal {
+                angles.push(*bodies);
+            }
+        }
+    };
+    for load in description.loads {
+        of(&load.magnitude);
+    }
+    for drive in description.drives {
+        match &drive.kind {
+            DriveKind::AppliedForce(magnitude) => of(magnitude),
+            DriveKind::Motor(motor) => of(&motor.voltage),
+            DriveKind::SpeedController(regulator) => of(&regulator.reference_speed),
+        }
+    }
+    angles.extend(description.loads.iter().filter_map(|load| match load.kind {
+        LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
+        _ => None,
+    }));
+    angles
+}

@@ -1,0 +1,385 @@
+//! Change points crossed on one assembly branch, such as a parallelogram passing its flat position.
+//!
+//! Dyad by dyad, ½m′/m errs there as N·eps/|sin θ|³ (N dyads, θ from the flat position), though the branch
+//! itself is smooth. So poses from both sides of a window, where that exceeds the tolerance, are fitted by
+//! polynomials orthogonal on their nodes, and within the window
+//!
+//! ```text
+//! m = Σ m v² + I ω²,  ½m′ = Σ m v·a + I ω α,  Q = Σ F·v     at q̇ = 1, q̈ = 0             (1)
+//! ```
+//!
+//! There is no multiplier in (1). Reactions that the flat position determines are fitted across it too,
+//! at the state's own speed and acceleration; of the others, which grow beyond all bounds, there is none.
+
+use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::mobility::mobility_at;
+use dwell_geometry::{Mechanism, Motion, Plan, Pose, PositionError, Reaction};
+use dwell_kinetostatics::Model;
+use dwell_numerics::Scalar;
+use dwell_numerics::polynomial_fit::{PolynomialFit, chebyshev_nodes};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Nodes of a fit on each side of the window, and its highest degree.
+const NODES: usize = 24;
+const MAX_DEGREE: usize = 20;
+/// Degree of the fit from one side that leads to the other: it need only tell the branches apart.
+const EXTRAPOLATION_DEGREE: usize = 5;
+/// Half the widest window, rad, and the tightest tolerance that one is made for.
+const MAX_HALF_WIDTH: f64 = 0.2;
+const MIN_TOLERANCE: f64 = 1e-12;
+/// A looser tolerance is no reason for a window in which nothing is known.
+const MAX_TOLERANCE: f64 = 1e-9;
+/// How far from the change point poses are fitted, rad: the farthest of the good ones is taken.
+const FIT_RADII: [f64; 5] = [0.15, 0.3, 0.5, 0.8, 1.2];
+/// Largest gap between a bridge and the plan at its ends, in first and second derivatives.
+const MAX_GAP: f64 = 1e-6;
+/// A gap below this is as good as any.
+const GAP_ROUNDING: f64 = 1e-11;
+
+/// Why a change point cannot be crossed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ChangePointFitError {
+    /// Friction depends on reactions that grow beyond all bounds there.
+    #[error("friction depends on reactions that are not determined at the change point")]
+    Friction,
+    /// Whole turns are counted in it.
+    #[error("a mechanism with gears or related coordinates is not carried through a change point")]
+    Couplings,
+    /// There is no pose next to it.
+    #[error(transparent)]
+    Position(#[from] PositionError),
+    /// What comes on the other side does not go together.
+    #[error("the branch cannot be assembled on the other side of the change point")]
+    NoContinuation,
+    /// The branch is not smooth.
+    #[error("the branch is not smooth there: its fit is {gap:.1e} off the plan")]
+    NotSmooth {
+        /// Largest gap in the derivatives of the angles.
+        gap: f64,
+    },
+}
+
+/// The fit across one change point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChangePointFit {
+    /// The change point, rad or m.
+    pub center: f64,
+    /// Half the window in which the fit takes the place of the plan, rad or m.
+    pub half_width: f64,
+    /// How far the fit is good to either side, rad or m.
+    pub fit_radius: f64,
+    /// How far it is off the plan at the window's ends, in the first two derivatives of the angles (and
+    /// travels over the mechanism's size) by the coordinate.
+    pub gap: f64,
+    /// Degrees of freedom at the change point; elsewhere there is one.
+    pub mobility: usize,
+    /// The reactions that the loads do not determine there.
+    pub indeterminate: Vec<Reaction>,
+    /// The branch before and behind, by the coordinate, with all the reactions that are shown.
+    pub(crate) branches: [Model; 2],
+    pub(crate) polynomials: PolynomialFit,
+}
+
+/// The part of the coordinate on which a machine goes by a bridge.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct FitWindow {
+    pub(crate) fit: Arc<ChangePointFit>,
+    /// Index of the crossing it belongs to, and whether the machine is that of the branch above.
+    pub(crate) crossing: usize,
+    pub(crate) above: bool,
+    /// From and to, from the change point.
+    pub(crate) bounds: [f64; 2],
+    /// After how much the branches before and behind follow each other again, rad.
+    pub(crate) period: Option<f64>,
+}
+
+impl FitWindow {
+    /// How far a coordinate is from the change point, if it is on the bridge.
+    pub(crate) fn offset_within(&self, q: f64) -> Option<f64> {
+        let x = self.offset(q);
+        (self.bounds[0]..=self.bounds[1]).contains(&x).then_some(x)
+    }
+
+    fn offset(&self, q: f64) -> f64 {
+        let x = q - self.fit.center;
+        x - self
+            .period
+            .map_or(0.0, |period| period * (x / period).round())
+    }
+
+    /// Whether a coordinate is so far behind the window that the machine of the branch there goes on.
+    pub(crate) fn has_passed(&self, q: f64) -> bool {
+        let half_width = self.fit.half_width;
+        let is_past = |x: f64| {
+            if self.above {
+                x < -half_width
+            } else {
+                x > half_width
+            }
+        };
+        self.offset_within(q).is_some_and(is_past)
+    }
+}
+
+/// Half the window for a tolerance, rad: where N·eps/|sin θ|³ exceeds it.
+pub(crate) fn half_width_for(plan: &Plan, tolerance: f64) -> f64 {
+    let groups = plan.group_methods().len() as f64;
+    let tolerance = tolerance.clamp(MIN_TOLERANCE, MAX_TOLERANCE);
+    (groups * f64::EPSILON / tolerance)
+        .cbrt()
+        .min(MAX_HALF_WIDTH)
+}
+
+/// Angles of the frames, each next to the one before, and travels of the slides.
+fn sample_pose(
+    plan: &Plan,
+    q: f64,
+    pose: &mut Pose<f64>,
+    last: Option<&Vec<f64>>,
+) -> Result<Vec<f64>, PositionError> {
+    plan.positions(&[q], pose)?;
+    let angle = |(f, rotation): (usize, &dwell_geometry::Vec2)| {
+        let angle = rotation.angle();
+        let near = last.map_or(angle, |last| last[f]);
+        angle + TAU * ((near - angle) / TAU).round()
+    };
+    let mut found: Vec<f64> = pose.rotation.iter().enumerate().map(angle).collect();
+    found.extend_from_slice(&pose.slide_travel);
+    Ok(found)
+}
+
+/// The angles of all bodies at a distance `x` behind a change point at `center`, from the poses between
+/// the distances `from` and `to` before it; `upwards` if it lies above them.
+pub(crate) fn extrapolate(
+    model: &Model,
+    center: f64,
+    upwards: bool,
+    [from, to]: [f64; 2],
+    x: f64,
+) -> Result<Vec<f64>, ChangePointFitError> {
+    let plan = model.plan();
+    let direction = if upwards { 1.0 } else { -1.0 };
+    let mut pose = plan.pose();
+    let nodes: Vec<f64> = chebyshev_nodes(from, to, NODES)
+        .map(|d| -direction * d)
+        .collect();
+    let mut samples: Vec<Vec<f64>> = Vec::new();
+    for &node in &nodes {
+        samples.push(sample_pose(plan, center + node, &mut pose, samples.last())?);
+    }
+    let fit = PolynomialFit::new(&nodes, &samples, to, EXTRAPOLATION_DEGREE);
+    let mut values = fit.workspace();
+    fit.eval(direction * x, &mut Vec::new(), &mut values);
+    let mut workspace = FitWorkspace::new(model);
+    workspace.values = values;
+    workspace.set_pose(plan, &[center + direction * x], &mut pose);
+    workspace
+        .unit_states
+        .fill(plan, &pose, &workspace.unit_motion);
+    let bodies = (0..workspace.unit_states.len()).map(dwell_geometry::BodyId);
+    Ok(bodies
+        .map(|b| workspace.unit_states.body(b).rotation.angle())
+        .collect())
+}
+
+impl ChangePointFit {
+    /// The bridge between the branch below and the one above a change point, with half its window; `unit`
+    /// is 1 for an angle and the mechanism's size for a length.
+    ///
+    /// # Errors
+    /// [`ChangePointFitError`] where the branch is not smooth enough.
+    pub(crate) fn new(
+        mechanism: &Mechanism,
+        branches: [&Model; 2],
+        center: f64,
+        [half_width, coordinate_scale]: [f64; 2],
+    ) -> Result<Self, ChangePointFitError> {
+        let available_radius = |model: &Model| match model.plan().range().limits() {
+            Some((from, to)) => 0.45 * (to - from),
+            None => f64::INFINITY,
+        };
+        let max_radius = available_radius(branches[0]).min(available_radius(branches[1]));
+        let fit_radii = FIT_RADII.map(|fit_radius| {
+            (fit_radius * coordinate_scale)
+                .max(1.5 * half_width)
+                .min(max_radius)
+        });
+        let mut fits: Vec<(f64, f64, PolynomialFit)> = Vec::with_capacity(fit_radii.len());
+        for fit_radius in fit_radii {
+            let fit = Self::polynomials(branches, center, half_width, fit_radius)?;
+            let gap = derivative_gap(&fit, branches, center, [half_width, coordinate_scale])?;
+            fits.push((gap, fit_radius, fit));
+        }
+        let min_gap = fits.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);
+        // A far reach catches steps that lead over the window.
+        let good = |gap: f64| gap <= (10.0 * min_gap).max(GAP_ROUNDING);
+        let best = fits.into_iter().rev().find(|f| good(f.0));
+        let Some((gap, fit_radius, fit)) = best.filter(|f| f.0 <= MAX_GAP) else {
+            return Err(ChangePointFitError::NotSmooth { gap: min_gap });
+        };
+        let mut built = Self {
+            center,
+            half_width,
+            fit_radius,
+            gap,
+            mobility: 1,
+            indeterminate: Vec::new(),
+            branches: branches.map(Clone::clone),
+            polynomials: fit,
+        };
+        built.analyse_center(mechanism);
+        Ok(built)
+    }
+
+    fn polynomials(
+        branches: [&Model; 2],
+        center: f64,
+        half_width: f64,
+        fit_radius: f64,
+    ) -> Result<PolynomialFit, ChangePointFitError> {
+        let mut below: Vec<f64> = chebyshev_nodes(half_width, fit_radius, NODES)
+            .map(|d| -d)
+            .collect();
+        below.reverse();
+        let above: Vec<f64> = chebyshev_nodes(half_width, fit_radius, NODES).collect();
+        let mut samples: Vec<Vec<f64>> = Vec::with_capacity(2 * NODES);
+        for (model, nodes) in branches.iter().zip([&below, &above]) {
+            let mut pose = model.plan().pose();
+            for &node in nodes {
+                let found = sample_pose(model.plan(), center + node, &mut pose, samples.last())?;
+                samples.push(found);
+            }
+        }
+        let nodes = [below, above].concat();
+        Ok(PolynomialFit::new(&nodes, &samples, fit_radius, MAX_DEGREE))
+    }
+
+    /// What moves at the change point, and which reactions are determined there.
+    fn analyse_center(&mut self, mechanism: &Mechanism) {
+        let plan = self.branches[0].plan();
+        let mut workspace = FitWorkspace::new(&self.branches[0]);
+        let mut pose = plan.pose();
+        self.polynomials
+            .eval(0.0, &mut workspace.basis_values, &mut workspace.values);
+        workspace.set_pose(plan, &[self.center], &mut pose);
+        workspace
+            .unit_states
+            .fill(plan, &pose, &workspace.unit_motion);
+        if let Some(here) = mobility_at(mechanism, &workspace.unit_states) {
+            self.mobility = here.degrees_of_freedom();
+            let all = mechanism.reactions().into_iter().zip(&here.determinate);
+            self.indeterminate = all
+                .filter(|(_, determinate)| !**determinate)
+                .map(|(r, _)| r)
+                .collect();
+        }
+    }
+}
+
+/// The largest gap between a fit and the plans at the window's ends, in first and second derivatives.
+fn derivative_gap(
+    fit: &PolynomialFit,
+    branches: [&Model; 2],
+    center: f64,
+    [half_width, coordinate_scale]: [f64; 2],
+) -> Result<f64, ChangePointFitError> {
+    let mut values = fit.workspace();
+    let mut largest = 0.0_f64;
+    for (model, direction) in branches.iter().zip([-1.0, 1.0]) {
+        let plan = model.plan();
+        let (mut pose, mut motion) = (plan.pose(), plan.motion());
+        plan.positions(&[center + direction * half_width], &mut pose)?;
+        plan.velocities(&pose, &[1.0], &mut motion);
+        plan.accelerations(&pose, &[0.0], &mut motion);
+        fit.eval(direction * half_width, &mut Vec::new(), &mut values);
+        let (frames, slides) = values.split_at(motion.angular_velocity.len());
+        let frame_derivatives = frames.iter().zip(
+            motion
+                .angular_velocity
+                .iter()
+                .zip(&motion.angular_acceleration),
+        );
+        for ([_, first, second], (velocity, acceleration)) in frame_derivatives {
+            let difference = [
+                (first - velocity) * coordinate_scale,
+                (second - acceleration) * coordinate_scale * coordinate_scale,
+            ];
+            largest = difference
+                .iter()
+                .fold(largest, |max, difference| max.max(difference.abs()));
+        }
+        let slide_derivatives = slides
+            .iter()
+            .zip(motion.slide_velocity.iter().zip(&motion.slide_acceleration));
+        for ([_, first, second], (velocity, acceleration)) in slide_derivatives {
+            let difference = [first - velocity, (second - acceleration) * coordinate_scale];
+            largest = difference
+                .iter()
+                .fold(largest, |max, difference| max.max(difference.abs()));
+        }
+    }
+    Ok(largest)
+}
+
+/// Working memory for the way across a bridge.
+#[derive(Debug, Clone)]
+pub(crate) struct FitWorkspace<T> {
+    pub(crate) basis_values: Vec<[T; 3]>,
+    /// By frame and then by slide: value and derivatives by the coordinate.
+    pub(crate) values: Vec<[T; 3]>,
+    angles: Vec<T>,
+    slides: Vec<T>,
+    /// The motion at unit speed, and the bodies in it.
+    pub(crate) unit_motion: Motion<T>,
+    pub(crate) unit_states: BodyStates<T>,
+}
+
+impl<T: Scalar> FitWorkspace<T> {
+    pub(crate) fn new(model: &Model) -> Self {
+        let plan = model.plan();
+        let unit_motion = plan.motion();
+        let (frames, slides) = (
+            unit_motion.angular_velocity.len(),
+            unit_motion.slide_velocity.len(),
+        );
+        Self {
+            basis_values: Vec::with_capacity(MAX_DEGREE + 1),
+            values: vec![[T::from_f64(0.0); 3]; frames + slides],
+            angles: vec![T::from_f64(0.0); frames],
+            slides: vec![T::from_f64(0.0); slides],
+            unit_motion,
+            unit_states: BodyStates::new(plan),
+        }
+    }
+
+    /// Sets a pose to the values.
+    pub(crate) fn set_pose(&mut self, plan: &Plan, q: &[T], pose: &mut Pose<T>) {
+        let places = self.angles.iter_mut().chain(&mut self.slides);
+        for (place, value) in places.zip(&self.values) {
+            *place = value[0];
+        }
+        plan.set_coordinates(q, &self.angles, &self.slides, pose);
+    }
+}
+
+/// Sets a motion to some derivatives by the coordinate at its speed and acceleration.
+pub(crate) fn set_motion<T: Scalar>(
+    values: &[[T; 3]],
+    [q_dot, q_ddot]: [T; 2],
+    motion: &mut Motion<T>,
+) {
+    let velocities = motion
+        .angular_velocity
+        .iter_mut()
+        .chain(&mut motion.slide_velocity);
+    let accelerations = motion
+        .angular_acceleration
+        .iter_mut()
+        .chain(&mut motion.slide_acceleration);
+    for ((velocity, acceleration), [_, first, second]) in velocities.zip(accelerations).zip(values)
+    {
+        *velocity = *first * q_dot;
+        *acceleration = *first * q_ddot + *second * q_dot * q_dot;
+    }
+}

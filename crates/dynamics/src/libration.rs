@@ -1,0 +1,285 @@
+//! A libration between two turning points a and b: dt/ds = √(m / 2g) with g = E_c / ((q − a)(b − q)).
+//!
+//! Near a turning point E_c is the difference of two large energies. It is therefore taken from the force
+//! Q = −V′, a series in cos ks of the phase (q = (a + b)/2 − h cos s):
+//!
+//! ```text
+//! Q(s) = Σ c_k cos ks
+//! E_c = ∫ Q dq = h (1 − cos s) G(s),    G = ½ Σ c_k (F_{k+1}/(k+1) − F_{k−1}/(k−1))      (1)
+//! F_m(s) = (1 − cos ms)/(1 − cos s) = (sin(ms/2) / sin(s/2))²                            (2)
+//! g = G / (h (1 + cos s))                                                                (3)
+//! ```
+//!
+//! F_{k−1}/(k−1) is −F₁ for k = 0 and zero for k = 1. The half towards b is the mirror image. The same
+//! integral places the turning points: to the rounding of Q, not of V.
+
+use crate::conservative::{ConservativeSystem, EnergyTerms};
+use crate::error::DynamicsError;
+use crate::time_density::TimeDensity;
+use dwell_numerics::fourier::{FourierSeries, MAX_POINTS, SHARP_POINTS, refine_samples};
+use dwell_numerics::panels::Panels;
+use std::f64::consts::{PI, TAU};
+
+/// Highest number of improvements of the turning points.
+const MAX_REFINEMENTS: usize = 60;
+
+/// A resolved libration.
+pub(crate) struct Libration {
+    pub(crate) turning_points: [f64; 2],
+    pub(crate) time_density: TimeDensity,
+    /// The largest kinetic energy at a point, J.
+    pub(crate) max_kinetic: f64,
+    pub(crate) points: usize,
+}
+
+impl Libration {
+    /// The libration that passes `q` with a kinetic energy (J), from approximate turning points.
+    pub(crate) fn new(
+        system: &mut dyn ConservativeSystem,
+        q: f64,
+        kinetic: f64,
+        mut turning_points: [f64; 2],
+    ) -> Result<Self, DynamicsError> {
+        for _ in 0..MAX_REFINEMENTS {
+            let sampled = SampledLibration::new(system, turning_points, |_| true)?;
+            let improved = sampled.improved_turning_points(q, kinetic);
+            let size = turning_points[0].abs().max(turning_points[1].abs());
+            let near = |a: f64, b: f64| (a - b).abs() <= 2.0 * f64::EPSILON * size;
+            let settled =
+                near(improved[0], turning_points[0]) && near(improved[1], turning_points[1]);
+            turning_points = improved;
+            if settled {
+                break;
+            }
+        }
+        let resolved =
+            |s: &SampledLibration| s.samples.len() >= SHARP_POINTS || s.time_density().is_resolved;
+        let sampled = SampledLibration::new(system, turning_points, resolved)?;
+        let (max_kinetic, points, series) = (
+            sampled.max_kinetic(),
+            sampled.samples.len(),
+            sampled.time_density(),
+        );
+        let (time_density, points) = if series.is_resolved {
+            (TimeDensity::Fourier(series), points)
+        } else {
+            let panels = sampled.piecewise_time_density(system)?;
+            let taken = points + panels.points;
+            (TimeDensity::Piecewise(panels), taken)
+        };
+        Ok(Self {
+            turning_points,
+            max_kinetic,
+            points,
+            time_density,
+        })
+    }
+
+    /// The phase on the way up.
+    pub(crate) fn phase(&self, q: f64) -> f64 {
+        let middle = if q < 0.5 * (self.turning_points[0] + self.turning_points[1]) {
+            0.0
+        } else {
+            PI
+        };
+        phase_of(q, self.turning_points).unwrap_or(middle)
+    }
+}
+
+/// A swing by what it has at equally spaced phases of the way up and down.
+struct SampledLibration {
+    turning_points: [f64; 2],
+    samples: Vec<EnergyTerms>,
+    force_series: FourierSeries,
+}
+
+impl SampledLibration {
+    fn new(
+        system: &mut dyn ConservativeSystem,
+        turning_points: [f64; 2],
+        resolved: impl Fn(&Self) -> bool,
+    ) -> Result<Self, DynamicsError> {
+        let [a, b] = turning_points;
+        let half = 0.5 * (b - a);
+        let mut sampled = Self {
+            turning_points,
+            samples: Vec::new(),
+            force_series: FourierSeries::default(),
+        };
+        loop {
+            let samples = std::mem::take(&mut sampled.samples);
+            sampled.samples = refine_samples(samples, |part| {
+                // 1 − cos s, and from the nearer end: the same on the way up and down.
+                let sine = (PI * part).sin();
+                let cosine = (PI * part).cos();
+                let q = if sine.abs() < cosine.abs() {
+                    a + 2.0 * half * sine * sine
+                } else {
+                    b - 2.0 * half * cosine * cosine
+                };
+                system.energy_terms(q)
+            })?;
+            let forces: Vec<f64> = sampled.samples.iter().map(|h| h.force).collect();
+            let size = forces.iter().fold(0.0_f64, |m, f| m.max(f.abs()));
+            sampled.force_series = FourierSeries::new(&forces, size);
+            if sampled.force_series.is_resolved && resolved(&sampled) {
+                return Ok(sampled);
+            }
+            let points = sampled.samples.len();
+            if points >= MAX_POINTS {
+                let tail = sampled.force_series.tail.max(sampled.time_density().tail);
+                return Err(DynamicsError::NotResolved { points, tail });
+            }
+        }
+    }
+
+    /// h (1 − cos s) G: the kinetic energy gained from the lower end to a phase.
+    fn kinetic_gain(&self, phase: f64) -> f64 {
+        let one = |m: f64| {
+            let sine = (0.5 * m * phase).sin();
+            2.0 * sine * sine
+        };
+        let mut sum = self.force_series.mean * one(1.0);
+        for (k, [c, _]) in self.force_series.harmonics.iter().enumerate() {
+            let k = (k + 1) as f64;
+            let below = if k > 1.0 {
+                one(k - 1.0) / (k - 1.0)
+            } else {
+                0.0
+            };
+            sum += 0.5 * c * (one(k + 1.0) / (k + 1.0) - below);
+        }
+        0.5 * (self.turning_points[1] - self.turning_points[0]) * sum
+    }
+
+    /// The turning points by a step of Newton's method on the kinetic energy there.
+    fn improved_turning_points(&self, q: f64, kinetic: f64) -> [f64; 2] {
+        let [a, b] = self.turning_points;
+        let width = b - a;
+        let phase = phase_of(q, self.turning_points).unwrap_or(if q < a { 0.0 } else { PI });
+        let from_a = self.kinetic_gain(phase);
+        let kinetic_left = [kinetic - from_a, kinetic - from_a + self.kinetic_gain(PI)];
+        let at = [
+            self.samples[0].force,
+            self.samples[self.samples.len() / 2].force,
+        ];
+        // At the lower end the force must point up, at the upper one down; else the end is too near.
+        let mut moved = [a - width, b + width];
+        if at[0] > 0.0 {
+            moved[0] = a - (kinetic_left[0] / at[0]).clamp(-width, width);
+        }
+        if at[1] < 0.0 {
+            moved[1] = b - (kinetic_left[1] / at[1]).clamp(-width, width);
+        }
+        if kinetic == 0.0 {
+            // It started at rest, from one of them.
+            let end = usize::from((q - a).abs() > (b - q).abs());
+            moved[end] = q;
+        }
+        [moved[0].min(q), moved[1].max(q)]
+    }
+
+    /// G towards an end: `phase` counted from it, `mirrored` for the upper one. `table` holds the sines
+    /// of multiples of π over the number of points.
+    fn quotient(&self, phase: usize, mirrored: bool, sines: &[f64]) -> f64 {
+        self.sum(mirrored, |m: usize| {
+            if phase == 0 {
+                return (m * m) as f64;
+            }
+            let ratio = sines[m * phase % sines.len()] / sines[phase];
+            ratio * ratio
+        })
+    }
+
+    /// G of (1) with F_m from `fejer`; `mirrored` from the upper end.
+    fn sum(&self, mirrored: bool, fejer: impl Fn(usize) -> f64) -> f64 {
+        let sign = |k: usize| if mirrored && k % 2 == 1 { -1.0 } else { 1.0 };
+        let mut sum = self.force_series.mean;
+        for (k, [c, _]) in self.force_series.harmonics.iter().enumerate() {
+            let k = k + 1;
+            let below = if k > 1 {
+                fejer(k - 1) / (k - 1) as f64
+            } else {
+                0.0
+            };
+            sum += 0.5 * sign(k) * c * (fejer(k + 1) / (k + 1) as f64 - below);
+        }
+        if mirrored { -sum } else { sum }
+    }
+
+    /// By point of the way up: g, per (3).
+    fn quotients(&self) -> Vec<f64> {
+        let n = self.samples.len();
+        let half = 0.5 * (self.turning_points[1] - self.turning_points[0]);
+        let sines: Vec<f64> = (0..2 * n)
+            .map(|i| (PI * i as f64 / n as f64).sin())
+            .collect();
+        let one = |j: usize| {
+            let mirrored = j > n / 4;
+            let phase = if mirrored { n / 2 - j } else { j };
+            let cosine = (TAU * phase as f64 / n as f64).cos();
+            self.quotient(phase, mirrored, &sines) / (half * (1.0 + cosine))
+        };
+        (0..=n / 2).map(one).collect()
+    }
+
+    /// dt/ds.
+    fn time_density(&self) -> FourierSeries {
+        let n = self.samples.len();
+        let quotients = self.quotients();
+        let values: Vec<f64> = (0..n)
+            .map(|j| {
+                let j = j.min(n - j);
+                (self.samples[j].m / (2.0 * quotients[j])).sqrt()
+            })
+            .collect();
+        let size = values.iter().sum::<f64>() / n as f64;
+        FourierSeries::new(&values, size)
+    }
+
+    /// dt/ds where equal steps do not resolve it.
+    fn piecewise_time_density(
+        &self,
+        system: &mut dyn ConservativeSystem,
+    ) -> Result<Panels, DynamicsError> {
+        let [a, b] = self.turning_points;
+        let half = 0.5 * (b - a);
+        Panels::new(|phase| {
+            // The way down is the way up.
+            let phase = if phase > PI { TAU - phase } else { phase };
+            let mirrored = phase > 0.5 * PI;
+            let from_end = if mirrored { PI - phase } else { phase };
+            let (sin, cos) = (0.5 * from_end).sin_cos();
+            let distance = 2.0 * half * sin * sin;
+            let m = system
+                .energy_terms(if mirrored { b - distance } else { a + distance })?
+                .m;
+            let quotient = self.sum(mirrored, |k| {
+                if sin == 0.0 {
+                    return (k * k) as f64;
+                }
+                let ratio = (0.5 * k as f64 * from_end).sin() / sin;
+                ratio * ratio
+            });
+            Ok((m * half * cos * cos / quotient).sqrt())
+        })
+    }
+
+    /// The largest kinetic energy, J.
+    fn max_kinetic(&self) -> f64 {
+        let n = self.samples.len();
+        let half = 0.5 * (self.turning_points[1] - self.turning_points[0]);
+        let energy = |(j, g): (usize, f64)| {
+            let sine = half * (TAU * j as f64 / n as f64).sin();
+            g * sine * sine
+        };
+        let all = self.quotients().into_iter().enumerate().map(energy);
+        all.fold(0.0, f64::max)
+    }
+}
+
+/// The phase in 0 … π at which a libration between two turning points passes `q`; none if it does not.
+pub(crate) fn phase_of(q: f64, [a, b]: [f64; 2]) -> Option<f64> {
+    let [from, to] = [q - a, b - q];
+    (from >= 0.0 && to >= 0.0).then(|| 2.0 * from.sqrt().atan2(to.sqrt()))
+}

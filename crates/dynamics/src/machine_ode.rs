@@ -1,0 +1,100 @@
+//! A machine as an ODE system, with its exact Jacobian by dual numbers.
+
+use crate::error::DynamicsError;
+use crate::machine::{Machine, MachineWorkspace};
+use crate::ode::OdeSystem;
+use dwell_numerics::{Dual, Scalar};
+
+/// A machine with the working memory to integrate it, for one thread.
+#[derive(Debug)]
+pub struct MachineOde<'m> {
+    machine: &'m Machine,
+    /// The last evaluation in plain numbers.
+    pub workspace: MachineWorkspace<f64>,
+    dual_workspace: MachineWorkspace<Dual>,
+    y: Vec<Dual>,
+    out: Vec<Dual>,
+    error_weights: Vec<f64>,
+}
+
+impl<'m> MachineOde<'m> {
+    /// A machine at its initial state, whose energies are the scale of the works.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where the start cannot be evaluated.
+    pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self, DynamicsError> {
+        let mut workspace = machine.workspace();
+        machine.evaluate(t, y, &mut workspace)?;
+        let mut error_weights = vec![1.0; machine.state_count()];
+        let scale = machine.energy_scale(&workspace);
+        error_weights[machine.work_offset()..].fill(scale);
+        let zero = vec![Dual::from_f64(0.0); machine.state_count()];
+        Ok(Self {
+            machine,
+            workspace,
+            dual_workspace: machine.workspace(),
+            y: zero.clone(),
+            out: zero,
+            error_weights,
+        })
+    }
+
+    /// The machine.
+    pub fn machine(&self) -> &'m Machine {
+        self.machine
+    }
+}
+
+impl Machine {
+    /// The scale of works, J: the kinetic energy and the work of actuators and drives over one unit of their
+    /// coordinates.
+    fn energy_scale(&self, workspace: &MachineWorkspace<f64>) -> f64 {
+        let [kinetic, _] = self.energy(workspace);
+        let forces = workspace
+            .inverse_dynamics()
+            .tau
+            .iter()
+            .chain(&workspace.drive_forces);
+        let scale = kinetic + forces.map(|f| f.abs()).sum::<f64>();
+        if scale.is_normal() { scale } else { 1.0 }
+    }
+}
+
+impl OdeSystem for MachineOde<'_> {
+    fn size(&self) -> usize {
+        self.machine.state_count()
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        self.machine.evaluate(t, y, &mut self.workspace)?;
+        self.machine.state_derivative(&self.workspace, out);
+        Ok(())
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        let n = self.size();
+        out.fill(0.0);
+        // Nothing depends on the works.
+        for j in 0..self.machine.work_offset() {
+            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
+                *dual = if i == j {
+                    Dual::variable(value)
+                } else {
+                    Dual::from_f64(value)
+                };
+            }
+            self.machine
+                .evaluate(t, &self.y, &mut self.dual_workspace)?;
+            self.machine
+                .state_derivative(&self.dual_workspace, &mut self.out);
+            for (i, rate) in self.out.iter().enumerate() {
+                out[i * n + j] = rate.d;
+            }
+        }
+        Ok(())
+    }
+
+    fn error_weight(&self, state: usize) -> f64 {
+        self.error_weights[state]
+    }
+}

@@ -1,0 +1,321 @@
+//! The class of a conservative motion of one degree of freedom (rotation, libration, asymptotic …), from its kinetic
+//! energy,
+//!
+//! ```text
+//! E_c(q) = ½ m₀ q̇₀² + V(q₀) − V(q)                               (1)
+//! ```
+//!
+//! It has a turning point where (1) falls to zero, is asymptotic where (1) just reaches zero at a maximum of V, and a
+//! rotation where (1) stays positive over a period. The coordinate is scanned in steps; the derivative −V′ at their
+//! ends shows a maximum of V within a step.
+
+use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, limits};
+use crate::error::DynamicsError;
+use crate::machine::Machine;
+use crate::ode::ReducedState;
+use dwell_numerics::root;
+use std::f64::consts::TAU;
+
+/// Steps of a period or of a limited range.
+const SCAN_STEPS: usize = 512;
+/// Revolutions that are scanned where the mechanism is not periodic.
+const MAX_REVOLUTIONS: usize = 64;
+/// First step along a length without limits, relative to 1 m + |q|, and the ratio of successive steps.
+const FIRST_STEP: f64 = 1e-4;
+const STEP_GROWTH: f64 = 1.02;
+/// Steps along it.
+const MAX_LENGTH_STEPS: usize = 2048;
+/// Energies that differ by less, relatively, count as equal.
+const ENERGY_ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Distance, rad or m, at which a limit position counts as reached: the inertia is infinite there.
+const LIMIT_TOLERANCE: f64 = 1e-9;
+
+/// The class of a conservative motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MotionClass {
+    /// The coordinate passes the highest potential and grows by a period each time.
+    Rotation {
+        /// Where the potential is highest, rad.
+        potential_maximum_at: f64,
+        /// Kinetic energy there, J.
+        kinetic_at_maximum: f64,
+        /// The angle after which everything repeats itself, rad.
+        period: f64,
+    },
+    /// The coordinate oscillates between two turning points, rad or m.
+    Libration {
+        /// The lower and the upper one.
+        turning_points: [f64; 2],
+    },
+    /// The motion approaches an unstable equilibrium, which it never reaches.
+    Asymptotic {
+        /// The equilibrium, rad or m.
+        to: f64,
+    },
+    /// The motion is at rest in an equilibrium.
+    Equilibrium,
+    /// The coordinate reaches a limit of its range.
+    ReachesLimit {
+        /// The limit, rad or m.
+        at: f64,
+    },
+    /// Neither a turning point nor a full period was found as far as the coordinate was scanned.
+    Undecided {
+        /// Where the scan ended, rad or m.
+        to: f64,
+    },
+}
+
+/// The class of the motion of a machine of one degree of freedom whose loads all have a potential.
+///
+/// # Errors
+/// [`DynamicsError::NotConservative`], or the error of an evaluation.
+pub fn motion_class(machine: &Machine, start: ReducedState) -> Result<MotionClass, DynamicsError> {
+    Ok(EnergyScan::new(&mut LoadedSystem::new(machine)?, start)?.1)
+}
+
+/// What a scan to one side finds first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum ScanResult {
+    TurningPoint(f64),
+    PotentialMaximum(f64),
+    Limit(f64),
+    /// Neither over a whole period: the place of the highest potential, and the kinetic energy there.
+    FullPeriod {
+        potential_maximum_at: f64,
+        kinetic_at_maximum: f64,
+    },
+    Undecided(f64),
+}
+
+/// The scan of the kinetic energy along the coordinate, from the start of a motion.
+pub(crate) struct EnergyScan<'a> {
+    system: &'a mut dyn ConservativeSystem,
+    pub(crate) q: f64,
+    pub(crate) initial_terms: EnergyTerms,
+    /// Kinetic energy at the start, J.
+    pub(crate) kinetic: f64,
+    /// The largest energy met so far, J: the scale of roundings.
+    energy_scale: f64,
+}
+
+impl<'a> EnergyScan<'a> {
+    /// The scan from a start, and the class of the motion.
+    pub(crate) fn new(
+        system: &'a mut dyn ConservativeSystem,
+        at: ReducedState,
+    ) -> Result<(Self, MotionClass), DynamicsError> {
+        let initial_terms = system.energy_terms(at.q)?;
+        let kinetic = 0.5 * initial_terms.m * at.q_dot * at.q_dot;
+        if at.q_dot != 0.0 && !kinetic.is_normal() {
+            return Err(DynamicsError::EnergyOutOfRange {
+                q_dot: at.q_dot,
+                energy: kinetic,
+            });
+        }
+        let mut scan = Self {
+            system,
+            q: at.q,
+            initial_terms,
+            kinetic,
+            energy_scale: kinetic.max(initial_terms.potential.abs()),
+        };
+        let class = scan.motion_class(at.q_dot)?;
+        Ok((scan, class))
+    }
+
+    fn motion_class(&mut self, q_dot: f64) -> Result<MotionClass, DynamicsError> {
+        let range_limits = limits(self.system.range(), self.q)?;
+        let period = self.system.period(self.q)?;
+        if self.kinetic == 0.0 && self.in_equilibrium(range_limits, period)? {
+            return Ok(MotionClass::Equilibrium);
+        }
+        if let (true, None, Some(period)) = (self.system.is_potential_free(), range_limits, period)
+            && self.kinetic > 0.0
+        {
+            return Ok(MotionClass::Rotation {
+                potential_maximum_at: self.q,
+                kinetic_at_maximum: self.kinetic,
+                period,
+            });
+        }
+        let direction = if q_dot == 0.0 {
+            self.initial_terms.force.signum()
+        } else {
+            q_dot.signum()
+        };
+        let first = self.scan(direction, range_limits, period)?;
+        let back = match first {
+            ScanResult::TurningPoint(_) if self.kinetic == 0.0 => ScanResult::TurningPoint(self.q),
+            ScanResult::TurningPoint(_) => self.scan(-direction, range_limits, period)?,
+            other => other,
+        };
+        Ok(match (first, back) {
+            (ScanResult::TurningPoint(one), ScanResult::TurningPoint(other)) => {
+                MotionClass::Libration {
+                    turning_points: [one.min(other), one.max(other)],
+                }
+            }
+            (_, ScanResult::PotentialMaximum(to)) => MotionClass::Asymptotic { to },
+            (_, ScanResult::Limit(at)) => MotionClass::ReachesLimit { at },
+            (
+                _,
+                ScanResult::FullPeriod {
+                    potential_maximum_at: top,
+                    kinetic_at_maximum,
+                },
+            ) => MotionClass::Rotation {
+                potential_maximum_at: top,
+                kinetic_at_maximum,
+                period: period.unwrap_or(TAU),
+            },
+            (_, ScanResult::Undecided(to) | ScanResult::TurningPoint(to)) => {
+                MotionClass::Undecided { to }
+            }
+        })
+    }
+
+    /// Whether the start is an equilibrium: the force there is below the rounding of the forces nearby.
+    fn in_equilibrium(
+        &mut self,
+        range_limits: Option<(f64, f64)>,
+        period: Option<f64>,
+    ) -> Result<bool, DynamicsError> {
+        let (from, to) = range_limits.unwrap_or((self.q, self.q + period.unwrap_or(TAU)));
+        let mut max_force = 0.0_f64;
+        for k in 1..8 {
+            let q = from + (to - from) * f64::from(k) / 8.0;
+            max_force = max_force.max(self.system.energy_terms(q)?.force.abs());
+        }
+        Ok(self.initial_terms.force.abs() <= ENERGY_ROUNDING * max_force)
+    }
+
+    /// Kinetic energy, by (1), and the force.
+    fn kinetic_and_force(&mut self, q: f64) -> Result<(f64, f64), DynamicsError> {
+        let terms = self.system.energy_terms(q)?;
+        self.energy_scale = self.energy_scale.max(terms.potential.abs());
+        let gained = self.initial_terms.potential - terms.potential;
+        Ok((self.kinetic + gained, terms.force))
+    }
+
+    /// The first step, the ratio of successive steps, and their highest number.
+    fn scan_steps(
+        &self,
+        range_limits: Option<(f64, f64)>,
+        period: Option<f64>,
+    ) -> (f64, f64, usize) {
+        match (range_limits, period) {
+            (Some((from, to)), _) => ((to - from) / SCAN_STEPS as f64, 1.0, SCAN_STEPS),
+            (None, Some(period)) => (period / SCAN_STEPS as f64, 1.0, SCAN_STEPS),
+            (None, None) if self.system.is_angle() => {
+                (TAU / SCAN_STEPS as f64, 1.0, MAX_REVOLUTIONS * SCAN_STEPS)
+            }
+            (None, None) => (
+                FIRST_STEP * (1.0 + self.q.abs()),
+                STEP_GROWTH,
+                MAX_LENGTH_STEPS,
+            ),
+        }
+    }
+
+    /// Scans to one side until a turning point, a potential maximum that cannot be passed, or a limit.
+    fn scan(
+        &mut self,
+        direction: f64,
+        range_limits: Option<(f64, f64)>,
+        period: Option<f64>,
+    ) -> Result<ScanResult, DynamicsError> {
+        let end = range_limits.map(|(from, to)| if direction > 0.0 { to } else { from });
+        let (mut step, growth, max_steps) = self.scan_steps(range_limits, period);
+        let mut before = (self.q, self.kinetic, self.initial_terms.force * direction);
+        let (mut potential_maximum_at, mut kinetic_at_maximum) = (self.q, self.kinetic);
+        for k in 1..=max_steps {
+            let mut q = before.0 + direction * step;
+            if let Some(period) = period {
+                // Roundings of steps do not add up over the period.
+                q = self.q + direction * period * k as f64 / SCAN_STEPS as f64;
+            }
+            let at_end = end.filter(|end| (q - end) * direction >= -LIMIT_TOLERANCE);
+            if let Some(end) = at_end {
+                q = end - direction * LIMIT_TOLERANCE;
+                if (q - before.0) * direction <= 0.0 {
+                    return Ok(ScanResult::Limit(end));
+                }
+            }
+            let (kinetic, force) = match (self.kinetic_and_force(q), at_end) {
+                (Err(_), Some(end)) => return Ok(ScanResult::Limit(end)),
+                (found, _) => found?,
+            };
+            let now = (q, kinetic, force * direction);
+            if let Some(maximum) = self.potential_maximum(before, now)? {
+                let (kinetic_left, _) = self.kinetic_and_force(maximum)?;
+                if kinetic_left.abs() <= ENERGY_ROUNDING * self.energy_scale {
+                    return Ok(ScanResult::PotentialMaximum(maximum));
+                }
+                if kinetic_left < 0.0 {
+                    return self
+                        .turning_point(before, maximum)
+                        .map(ScanResult::TurningPoint);
+                }
+                if kinetic_left < kinetic_at_maximum {
+                    (potential_maximum_at, kinetic_at_maximum) = (maximum, kinetic_left);
+                }
+            } else if kinetic < -ENERGY_ROUNDING * self.energy_scale
+                || (kinetic < 0.0 && at_end.is_some())
+            {
+                // A smaller deficit could be the rounding of a maximum that comes next.
+                return self.turning_point(before, q).map(ScanResult::TurningPoint);
+            }
+            if let Some(end) = at_end {
+                return Ok(ScanResult::Limit(end));
+            }
+            before = now;
+            step *= growth;
+        }
+        Ok(match period {
+            Some(_) => ScanResult::FullPeriod {
+                potential_maximum_at,
+                kinetic_at_maximum,
+            },
+            None => ScanResult::Undecided(before.0),
+        })
+    }
+
+    /// A maximum of the potential between two points (coordinate, kinetic energy, force in the direction of the scan).
+    fn potential_maximum(
+        &mut self,
+        before: (f64, f64, f64),
+        now: (f64, f64, f64),
+    ) -> Result<Option<f64>, DynamicsError> {
+        if !(before.2 < 0.0 && now.2 >= 0.0) {
+            return Ok(None);
+        }
+        root::find(|q| Ok(self.system.energy_terms(q)?.force), before.0, now.0)
+    }
+
+    /// The turning point between a point and a coordinate where the kinetic energy is negative.
+    fn turning_point(
+        &mut self,
+        before: (f64, f64, f64),
+        beyond: f64,
+    ) -> Result<f64, DynamicsError> {
+        let from = before.0;
+        if self.kinetic == 0.0 && from == self.q {
+            // From rest, the kinetic energy over the distance has the force as its limit, and no zero at the
+            // start.
+            let mut found = |q: f64| {
+                if q == from {
+                    return Ok(self.initial_terms.force);
+                }
+                Ok::<_, DynamicsError>(self.kinetic_and_force(q)?.0 / (q - from))
+            };
+            return Ok(root::find(&mut found, from, beyond)?.unwrap_or(beyond));
+        }
+        let zero = root::find(
+            |q| Ok::<_, DynamicsError>(self.kinetic_and_force(q)?.0),
+            from,
+            beyond,
+        )?;
+        Ok(zero.unwrap_or(from))
+    }
+}

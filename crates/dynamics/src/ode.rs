@@ -1,0 +1,127 @@
+//! Systems of ordinary differential equations, and what their integration hands to an observer.
+
+use crate::error::DynamicsError;
+use crate::options::Statistics;
+
+/// A time and a state.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct OdeState {
+    /// Time, s.
+    pub t: f64,
+    /// The state.
+    pub y: Vec<f64>,
+}
+
+/// Time, coordinate and speed of a motion of one freedom without drive states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReducedState {
+    /// Time, s.
+    pub t: f64,
+    /// Coordinate, rad or m.
+    pub q: f64,
+    /// Speed, rad/s or m/s.
+    pub q_dot: f64,
+}
+
+impl From<&OdeState> for ReducedState {
+    /// The first two states are the coordinate and its speed.
+    fn from(state: &OdeState) -> Self {
+        Self {
+            t: state.t,
+            q: state.y[0],
+            q_dot: state.y[1],
+        }
+    }
+}
+
+impl From<ReducedState> for OdeState {
+    fn from(ReducedState { t, q, q_dot }: ReducedState) -> Self {
+        Self {
+            t,
+            y: vec![q, q_dot],
+        }
+    }
+}
+
+/// A system of first order, ẏ = f(t, y).
+pub trait OdeSystem {
+    /// Number of states.
+    fn size(&self) -> usize;
+
+    /// f(t, y) into `out`.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where it cannot be evaluated.
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError>;
+
+    /// ∂fᵢ/∂yⱼ into `out`, row by row.
+    ///
+    /// # Errors
+    /// As [`OdeSystem::rhs`].
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError>;
+
+    /// The factor of a state in the absolute tolerance.
+    fn error_weight(&self, _state: usize) -> f64 {
+        1.0
+    }
+}
+
+/// What an observer answers after a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StepControl {
+    /// Take another step.
+    Continue,
+    /// End the integration with this step.
+    Stop,
+}
+
+/// The state at any time within the last step, by the method's interpolant.
+pub type DenseOutput<'d> = &'d mut dyn FnMut(f64, &mut [f64]) -> Result<(), DynamicsError>;
+
+/// A function called after each step with the state before it, the state after it, and the dense output
+/// between the two.
+pub type StepObserver<'w> =
+    &'w mut dyn FnMut(&OdeState, &OdeState, DenseOutput<'_>) -> Result<StepControl, DynamicsError>;
+
+/// How an integration ended, and the work it took.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Termination {
+    /// The state at the end of the last good step.
+    pub state: OdeState,
+    /// The error that ended it early, if one did.
+    pub error: Option<DynamicsError>,
+    /// The work done.
+    pub statistics: Statistics,
+}
+
+/// The parts of a step between which a change of sign is looked for.
+const ROOT_SUBINTERVALS: usize = 4;
+
+/// The ends of the subintervals of a step in which roots are looked for; the last is the step's own.
+pub(crate) fn root_subintervals(
+    before: &OdeState,
+    now: &OdeState,
+) -> impl Iterator<Item = f64> + use<> {
+    let (from, to) = (before.t, now.t);
+    (1..=ROOT_SUBINTERVALS).map(move |k| {
+        if k == ROOT_SUBINTERVALS {
+            to
+        } else {
+            from + (to - from) * k as f64 / ROOT_SUBINTERVALS as f64
+        }
+    })
+}
+
+/// The state at a time within a step that ends at `now`.
+pub(crate) fn state_at(
+    t: f64,
+    now: &OdeState,
+    dense: DenseOutput<'_>,
+) -> Result<OdeState, DynamicsError> {
+    let mut state = now.clone();
+    if t < now.t {
+        dense(t, &mut state.y)?;
+        state.t = t;
+    }
+    Ok(state)
+}

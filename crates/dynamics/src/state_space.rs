@@ -1,0 +1,124 @@
+//! The linearised motion of a machine about a state,
+//!
+//! ```text
+//! δẋ = A δx + B δu,    δz = C δx + D δu                            (1)
+//! x   coordinates and speeds of the free actuators, states of the drives
+//! u   by drive: its action, voltage or wanted speed
+//! z   the free coordinates, their speeds, the reactions of the machine's model, the drives' actions
+//! ```
+//!
+//! from dual numbers: exact to rounding.
+
+use crate::error::DynamicsError;
+use crate::machine::{Machine, MachineWorkspace};
+use dwell_numerics::{Dual, Scalar};
+use faer::Mat;
+
+/// A linearised motion. Matrices are lists of rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StateSpace {
+    /// ẋ at the state itself: zero in an equilibrium.
+    pub state_derivative: Vec<f64>,
+    /// z at the state itself.
+    pub outputs: Vec<f64>,
+    /// By state, by state.
+    pub a: Vec<Vec<f64>>,
+    /// By state, by drive.
+    pub b: Vec<Vec<f64>>,
+    /// By output, by state.
+    pub c: Vec<Vec<f64>>,
+    /// By output, by drive.
+    pub d: Vec<Vec<f64>>,
+}
+
+/// Linearises a machine about time `t` (s) and state `y`.
+///
+/// # Errors
+/// As [`Machine::evaluate`].
+pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace, DynamicsError> {
+    let (states, inputs) = (machine.work_offset(), machine.drives());
+    let mut workspace: MachineWorkspace<Dual> = machine.workspace();
+    let mut at: Vec<Dual> = y.iter().map(|&y| Dual::from_f64(y)).collect();
+    let mut rates = vec![Dual::from_f64(0.0); machine.state_count()];
+    let mut state_space = StateSpace {
+        state_derivative: Vec::new(),
+        outputs: Vec::new(),
+        a: vec![Vec::with_capacity(states); states],
+        b: vec![Vec::with_capacity(inputs); states],
+        c: Vec::new(),
+        d: Vec::new(),
+    };
+    // One more column, for the values themselves: a machine may have neither states nor inputs.
+    for column in 0..=states + inputs {
+        let of_state = column < states;
+        if of_state {
+            at[column].d = 1.0;
+        } else if let Some(input) = workspace.input_offsets.get_mut(column - states) {
+            input.d = 1.0;
+        }
+        machine.evaluate(t, &at, &mut workspace)?;
+        machine.state_derivative(&workspace, &mut rates);
+        let outputs = outputs(machine, &workspace);
+        let plain = column == states + inputs;
+        if plain {
+            state_space.state_derivative = rates[..states].iter().map(|r| r.v).collect();
+            state_space.outputs = outputs.iter().map(|z| z.v).collect();
+            break;
+        }
+        let StateSpace { a, b, c, d, .. } = &mut state_space;
+        c.resize(outputs.len(), Vec::new());
+        d.resize(outputs.len(), Vec::new());
+        let [state_rows, output_rows] = if of_state { [a, c] } else { [b, d] };
+        for (row, rate) in state_rows.iter_mut().zip(&rates) {
+            row.push(rate.d);
+        }
+        for (row, output) in output_rows.iter_mut().zip(&outputs) {
+            row.push(output.d);
+        }
+        if of_state {
+            at[column].d = 0.0;
+        } else {
+            workspace.input_offsets[column - states].d = 0.0;
+        }
+    }
+    Ok(state_space)
+}
+
+/// z of the state last evaluated.
+fn outputs(machine: &Machine, workspace: &MachineWorkspace<Dual>) -> Vec<Dual> {
+    let free = machine.free();
+    let coordinates = free.iter().map(|&i| workspace.q[i]);
+    let velocities = free.iter().map(|&i| workspace.q_dot[i]);
+    let reactions = workspace.inverse_dynamics().reactions.iter().copied();
+    let drive_forces = workspace.drive_forces.iter().copied();
+    let all = coordinates
+        .chain(velocities)
+        .chain(reactions)
+        .chain(drive_forces);
+    all.collect()
+}
+
+impl StateSpace {
+    /// The eigenvalues of A, 1/s, as real and imaginary parts, the largest real part first.
+    ///
+    /// # Errors
+    /// [`DynamicsError::NoEigenvalues`].
+    pub fn eigenvalues(&self) -> Result<Vec<[f64; 2]>, DynamicsError> {
+        let n = self.a.len();
+        let flat: Vec<f64> = self.a.iter().flatten().copied().collect();
+        eigenvalues(&flat, n)
+    }
+}
+
+/// The eigenvalues of a row-major n×n matrix, the largest real part first.
+pub(crate) fn eigenvalues(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>, DynamicsError> {
+    if !matrix.iter().all(|a| a.is_finite()) {
+        return Err(DynamicsError::NoEigenvalues);
+    }
+    let matrix = Mat::from_fn(n, n, |i, j| matrix[i * n + j]);
+    let found = matrix.eigenvalues();
+    let found = found.map_err(|_| DynamicsError::NoEigenvalues)?;
+    let mut values: Vec<[f64; 2]> = found.iter().map(|z| [z.re, z.im]).collect();
+    values.sort_by(|x, y| y[0].total_cmp(&x[0]).then(y[1].total_cmp(&x[1])));
+    Ok(values)
+}

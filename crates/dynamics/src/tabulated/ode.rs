@@ -1,0 +1,228 @@
+//! A machine's table as a system to be integrated, with its exact Jacobian: dual numbers through the pieces.
+
+use super::{LoadEffect, TabulatedCoordinate, TabulatedLoad, TabulatedMachine, TabulatedSignal};
+use crate::error::{DynamicsError, positive_inertia};
+use crate::ode::OdeSystem;
+use dwell_kinetostatics::KinetostaticsError;
+use dwell_numerics::{Dual, Scalar};
+
+/// A table with the working memory to integrate it, for one thread. Its states are those of
+/// [`MachineOde`](crate::MachineOde).
+#[derive(Debug, Clone)]
+pub struct TabulatedMachineOde<'t> {
+    machine: &'t TabulatedMachine,
+    workspace: TableWorkspace<f64>,
+    dual_workspace: TableWorkspace<Dual>,
+    y: Vec<Dual>,
+    out: Vec<Dual>,
+    /// What works are measured by.
+    energy_scale: f64,
+}
+
+/// Working memory in one kind of number.
+#[derive(Debug, Clone)]
+struct TableWorkspace<T> {
+    columns: Vec<T>,
+    arguments: Vec<T>,
+    values: Vec<f64>,
+}
+
+impl<T: Scalar> TableWorkspace<T> {
+    fn new(machine: &TabulatedMachine) -> Self {
+        let counts = machine
+            .tabulated_loads
+            .iter()
+            .map(|load| load.signals.len());
+        let max = counts.max().unwrap_or(0);
+        Self {
+            columns: vec![T::from_f64(0.0); machine.column_count],
+            arguments: vec![T::from_f64(0.0); max],
+            values: vec![0.0; max],
+        }
+    }
+}
+
+/// What a load or drive does at one state.
+struct LoadContribution<T> {
+    /// F of a load, the action of a drive.
+    force: T,
+    /// What that gives the coordinate.
+    generalised_force: T,
+    /// Of a drive with a state of its own: its place among such states, and its rate.
+    drive_state_rate: Option<(usize, T)>,
+}
+
+impl TabulatedMachine {
+    /// Number of states: q, q̇, those of the drives, the works.
+    pub fn state_count(&self) -> usize {
+        2 + self.drive_state_count + self.tabulated_loads.len()
+    }
+
+    /// The machine about to move on its table, from a state whose energies give the works their scale.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where the start cannot be evaluated.
+    pub fn ode(&self, t: f64, y: &[f64]) -> Result<TabulatedMachineOde<'_>, DynamicsError> {
+        let mut workspace = TableWorkspace::new(self);
+        let [q, q_dot] = [y[0], y[1]];
+        let [kinetic, _] = self.energy(q, q_dot)?;
+        self.columns.eval(q, &mut workspace.columns, &mut [])?;
+        let mut energy_scale = kinetic;
+        for (k, load) in self.tabulated_loads.iter().enumerate() {
+            let contribution = self.load_contribution(k, t, y, &mut workspace)?;
+            if matches!(load.effect, LoadEffect::Drive(_)) {
+                energy_scale += contribution.force.abs();
+            }
+        }
+        let zero = vec![Dual::from_f64(0.0); self.state_count()];
+        Ok(TabulatedMachineOde {
+            machine: self,
+            workspace,
+            dual_workspace: TableWorkspace::new(self),
+            y: zero.clone(),
+            out: zero,
+            energy_scale: if energy_scale.is_normal() {
+                energy_scale
+            } else {
+                1.0
+            },
+        })
+    }
+
+    /// ẏ at time `t` and state `y`.
+    fn rhs<T: Scalar>(
+        &self,
+        t: f64,
+        y: &[T],
+        workspace: &mut TableWorkspace<T>,
+        out: &mut [T],
+    ) -> Result<(), DynamicsError> {
+        let (q, q_dot) = (y[0], y[1]);
+        let [m, half_dm] = self.inertia.eval(q)?;
+        let mut force = -(half_dm * q_dot * q_dot);
+        if let Some(potential) = &self.potential {
+            let [_, half_dv] = potential.eval(q)?;
+            force += half_dv * T::from_f64(-2.0);
+        }
+        self.columns.eval(q, &mut workspace.columns, &mut [])?;
+        for k in 0..self.tabulated_loads.len() {
+            let contribution = self.load_contribution(k, t, y, workspace)?;
+            force += contribution.generalised_force;
+            out[2 + self.drive_state_count + k] = contribution.generalised_force * q_dot;
+            if let Some((place, rate)) = contribution.drive_state_rate {
+                out[2 + place] = rate;
+            }
+        }
+        positive_inertia(m.value(), q.value())?;
+        out[0] = q_dot;
+        out[1] = force / m;
+        Ok(())
+    }
+
+    /// What a load or drive does at a state of which the columns are known.
+    fn load_contribution<T: Scalar>(
+        &self,
+        k: usize,
+        t: f64,
+        y: &[T],
+        workspace: &mut TableWorkspace<T>,
+    ) -> Result<LoadContribution<T>, DynamicsError> {
+        let TabulatedLoad {
+            load,
+            magnitude,
+            signals,
+            effect,
+        } = &self.tabulated_loads[k];
+        let TableWorkspace {
+            columns,
+            arguments,
+            values,
+        } = workspace;
+        let (q_dot, w) = (y[1], columns[k]);
+        let sensed = arguments.iter_mut().zip(values.iter_mut()).zip(signals);
+        for ((argument, value), signal) in sensed {
+            *argument = signal.eval(t, y, columns);
+            *value = argument.value();
+        }
+        let count = signals.len();
+        let magnitude = magnitude.eval(&arguments[..count], &values[..count]);
+        if !magnitude.value().is_finite() {
+            let error = KinetostaticsError::MagnitudeNotFinite { load: *load };
+            return Err(DynamicsError::Load(error));
+        }
+        let stateless = |force: T| LoadContribution {
+            force,
+            generalised_force: force * w,
+            drive_state_rate: None,
+        };
+        Ok(match effect {
+            LoadEffect::Force => stateless(magnitude),
+            // w is that of one unit of resistance, −ds/dq.
+            LoadEffect::Damper => stateless(-(magnitude * w * q_dot)),
+            LoadEffect::Drive(drive) => {
+                let state = drive.state.map(|place| y[2 + place]);
+                let (drive_force, rate) = drive.eval(magnitude, w * q_dot, state);
+                LoadContribution {
+                    drive_state_rate: drive.state.map(|place| (place, rate)),
+                    ..stateless(drive_force)
+                }
+            }
+        })
+    }
+}
+
+impl TabulatedSignal {
+    fn eval<T: Scalar>(self, t: f64, y: &[T], columns: &[T]) -> T {
+        match self {
+            Self::Time => T::from_f64(t),
+            Self::Value(coordinate) => coordinate.eval(y[0], columns),
+            Self::Speed(coordinate) => coordinate.eval(y[0], columns) * y[1],
+        }
+    }
+}
+
+impl TabulatedCoordinate {
+    fn eval<T: Scalar>(self, q: T, columns: &[T]) -> T {
+        let line = T::from_f64(self.slope) * q + T::from_f64(self.offset);
+        self.column.map_or(line, |column| line + columns[column])
+    }
+}
+
+impl OdeSystem for TabulatedMachineOde<'_> {
+    fn size(&self) -> usize {
+        self.machine.state_count()
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        self.machine.rhs(t, y, &mut self.workspace, out)
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        let n = self.size();
+        out.fill(0.0);
+        // No rate depends on the works.
+        for j in 0..2 + self.machine.drive_state_count {
+            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
+                *dual = if i == j {
+                    Dual::variable(value)
+                } else {
+                    Dual::from_f64(value)
+                };
+            }
+            self.machine
+                .rhs(t, &self.y, &mut self.dual_workspace, &mut self.out)?;
+            for (i, rate) in self.out.iter().enumerate() {
+                out[i * n + j] = rate.d;
+            }
+        }
+        Ok(())
+    }
+
+    fn error_weight(&self, state: usize) -> f64 {
+        if state < 2 + self.machine.drive_state_count {
+            1.0
+        } else {
+            self.energy_scale
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Origins and angles of the bodies' frames in the ground's axes.
+
+use crate::mechanism::{BodyId, Mechanism};
+use crate::plan::{Plan, Pose};
+use crate::plane::Vec2;
+use crate::structure::frames::RotationSource;
+use dwell_numerics::Scalar;
+
+impl Plan {
+    /// The orientation (cos, sin) of a body.
+    pub fn body_rotation(&self, body: BodyId, pose: &Pose<f64>) -> Vec2 {
+        let orientation = self.frames.orientations[body.0];
+        pose.rotation[orientation.frame].rotate(orientation.offset)
+    }
+
+    /// The angle of a body's frame, rad: whole revolutions are counted where actuators turn it from the
+    /// ground or a coupling or load needs them, else it is in (−π, π].
+    pub fn body_angle(&self, body: BodyId, pose: &Pose<f64>) -> f64 {
+        let counted = self.counted_angle(body.0, pose);
+        counted.unwrap_or_else(|| self.body_rotation(body, pose).angle())
+    }
+
+    /// The angle of a body's frame with its whole revolutions, rad, where actuators turn it from the
+    /// ground or a coupling or load needs it.
+    pub fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
+        let orientation = self.frames.orientations[body];
+        let offset = orientation.offset.angle();
+        if self.revolution_counted[orientation.frame] {
+            let revolution_offset = self.revolution_offsets.get(body).copied().unwrap_or(0.0);
+            return Some(pose.angle[orientation.frame] + T::from_f64(offset + revolution_offset));
+        }
+        let angle = self.actuated_angle(orientation.frame, pose)?;
+        Some(angle + T::from_f64(offset))
+    }
+
+    /// Whether [`counted_angle`](Self::counted_angle) gives a value for this body.
+    pub fn counts_revolutions(&self, body: BodyId) -> bool {
+        let frame = self.frames.orientations[body.0].frame;
+        self.revolution_counted[frame] || self.frames.frames[frame].orientation_class == 0
+    }
+
+    /// The angle of a frame that actuators alone turn from the ground's, rad.
+    fn actuated_angle<T: Scalar>(&self, mut frame: usize, pose: &Pose<T>) -> Option<T> {
+        let mut angle = T::from_f64(0.0);
+        loop {
+            match self.frames.frames[frame].rotation_source {
+                RotationSource::Ground => return Some(angle),
+                RotationSource::Unknown => return None,
+                RotationSource::Actuated {
+                    parent,
+                    actuator,
+                    sign,
+                } => {
+                    angle += T::from_f64(sign) * pose.q[actuator];
+                    frame = parent;
+                }
+            }
+        }
+    }
+
+    /// The frame of every body, the ground's included: origin x, y (m) and
+    /// [angle](Self::body_angle), rad.
+    pub fn body_frames(&self, mechanism: &Mechanism, pose: &Pose<f64>) -> Vec<[f64; 3]> {
+        let mut joint_origins = Vec::new();
+        self.joint_origins(pose, &mut joint_origins);
+        let mut frames = vec![[0.0; 3]; mechanism.bodies.len()];
+        for (moving_body, joint_origin) in self.moving_bodies.iter().zip(&joint_origins) {
+            if moving_body.body >= frames.len() {
+                continue;
+            }
+            let rotation = self.body_rotation(BodyId(moving_body.body), pose);
+            let origin = *joint_origin - self.tree.joint_origins[moving_body.body].rotate(rotation);
+            let angle = self.body_angle(BodyId(moving_body.body), pose);
+            frames[moving_body.body] = [origin.x, origin.y, angle];
+        }
+        frames
+    }
+}

@@ -1,0 +1,269 @@
+//! From a description to a plan that is assembled, with its range, or to the error in the description.
+
+mod build;
+mod frame_vectors;
+
+use crate::assembly::initial_guess::InitialGuess;
+use crate::error::{AssemblyError, StructureError};
+use crate::mechanism::{
+    ActuatorId, ActuatorKind, BodyId, Coordinate, JointId, JointKind, Mechanism,
+};
+use crate::mobility::{Mobility, mobility};
+use crate::plan::Pose;
+use crate::plan::{AssemblyConfiguration, Plan};
+use crate::plane::{Vec2, vec2};
+
+/// Redundant constraints that stay open by less than this part of the mechanism's size were meant to be consistent;
+/// if they stay open by more, the mechanism is over-constrained.
+const NEARLY_CLOSED: f64 = 0.01;
+
+/// Gears mesh when their distance is that of their radii to this relative tolerance: a wrong radius differs by more,
+/// backlash by less.
+const MESHING_TOLERANCE: f64 = 2e-3;
+
+impl Plan {
+    /// Compiles a mechanism: finds its structure, assembles it in the assembly mode nearest to the initial guess, and
+    /// follows that branch over the range of a single actuator.
+    ///
+    /// # Errors
+    /// [`AssemblyError`] when the actuators do not determine the motion, the loops cannot be closed, or several
+    /// assembly modes are equally near to the initial guess.
+    pub fn compile(
+        mechanism: &Mechanism,
+        configuration: &AssemblyConfiguration,
+    ) -> Result<Self, AssemblyError> {
+        Self::compile_counting_revolutions(mechanism, configuration, &[])
+    }
+
+    /// [`Plan::compile`], with the whole revolutions of these bodies counted from their approximate angles, as
+    /// for couplings: needed by loads that depend on an angle.
+    ///
+    /// # Errors
+    /// As [`Plan::compile`].
+    pub fn compile_counting_revolutions(
+        mechanism: &Mechanism,
+        configuration: &AssemblyConfiguration,
+        counted_bodies: &[BodyId],
+    ) -> Result<Self, AssemblyError> {
+        check(mechanism, configuration)?;
+        if counted_bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
+            let reason = "it refers to a body that does not exist";
+            return Err(StructureError::Malformed { reason }.into());
+        }
+        let error = match Self::try_compile(mechanism, configuration, counted_bodies, false) {
+            Ok(mut plan) => {
+                if !plan.frames.redundant_pairs.is_empty() {
+                    plan.set_determinate(mechanism, mobility(mechanism, configuration).as_ref());
+                }
+                return Ok(plan);
+            }
+            Err(error) => error,
+        };
+        let by_rank = matches!(
+            error,
+            AssemblyError::Structure(
+                StructureError::OverConstrained { .. } | StructureError::UnderActuated { .. }
+            ) | AssemblyError::SingularAssembly { .. }
+        );
+        match mobility(mechanism, configuration).filter(|_| by_rank) {
+            Some(found) => {
+                Self::compile_redundant(mechanism, configuration, counted_bodies, &found, error)
+            }
+            None => Err(error),
+        }
+    }
+
+    /// Compiles a mechanism that counting or matching refused: redundant constraints are solved together; what the rank
+    /// refuses too is an error, stated by rank.
+    fn compile_redundant(
+        mechanism: &Mechanism,
+        configuration: &AssemblyConfiguration,
+        counted_bodies: &[BodyId],
+        found: &Mobility,
+        error: AssemblyError,
+    ) -> Result<Self, AssemblyError> {
+        let reactions = mechanism.reactions();
+        let mut redundant_joints: Vec<JointId> = reactions
+            .iter()
+            .zip(&found.determinate)
+            .filter(|(_, determinate)| !**determinate)
+            .map(|(r, _)| r.joint)
+            .collect();
+        redundant_joints.dedup();
+        let actuators: Vec<_> = (0..mechanism.actuators.len())
+            .filter(|a| !found.determinate[reactions.len() + a])
+            .map(ActuatorId)
+            .collect();
+        let over = matches!(
+            error,
+            AssemblyError::Structure(StructureError::OverConstrained { .. })
+        );
+        if let Some(gap) = found.gap {
+            // More actuators than degrees of freedom are not redundant joints.
+            if (1..found.actuators).contains(&found.degrees_of_freedom()) {
+                return Err(error);
+            }
+            return Err(match error {
+                AssemblyError::Structure(StructureError::OverConstrained {
+                    joints,
+                    redundant_count,
+                    ..
+                }) if !joints.is_empty() && gap < NEARLY_CLOSED * found.size => {
+                    AssemblyError::Inconsistent {
+                        joints,
+                        redundant_count,
+                        gap,
+                    }
+                }
+                other => other,
+            });
+        }
+        if !found.free_bodies.is_empty() {
+            return Err(StructureError::UnderActuated {
+                degrees_of_freedom: found.degrees_of_freedom(),
+                actuators: found.actuators,
+                bodies: found.free_bodies.clone(),
+                redundant_joints,
+            }
+            .into());
+        }
+        if !actuators.is_empty() {
+            return Err(StructureError::OverConstrained {
+                redundant_count: found.redundant_count,
+                joints: Vec::new(),
+                actuators,
+            }
+            .into());
+        }
+        if !over || found.redundant_count == 0 {
+            return Err(error);
+        }
+        let mut plan = Self::try_compile(mechanism, configuration, counted_bodies, true)?;
+        plan.set_determinate(mechanism, Some(found));
+        Ok(plan)
+    }
+
+    /// Checks that gears and racks stand at the distance of their pitch radii.
+    fn check_meshing(&self, mechanism: &Mechanism, pose: &Pose<f64>) -> Result<(), AssemblyError> {
+        let frames = self.body_frames(mechanism, pose);
+        for (j, joint) in mechanism.joints.iter().enumerate() {
+            let [one, two] = [0, 1].map(|i| {
+                let [x, y, angle] = frames[joint.bodies[i].0];
+                vec2(x, y) + joint.points[i].rotate(Vec2::from_angle(angle))
+            });
+            let rotation = Vec2::from_angle(frames[joint.bodies[0].0][2]);
+            let (distance, required) = match joint.kind {
+                JointKind::Gear { radii, internal } => {
+                    let sum = if internal {
+                        radii[0] - radii[1]
+                    } else {
+                        radii[0] + radii[1]
+                    };
+                    ((two - one).norm(), sum.abs())
+                }
+                JointKind::Rack { axis, radius } => {
+                    (axis.rotate(rotation).perp().dot(two - one), radius)
+                }
+                JointKind::Revolute
+                | JointKind::Prismatic { .. }
+                | JointKind::Slot { .. }
+                | JointKind::Weld { .. }
+                | JointKind::Rolling { .. }
+                | JointKind::Distance { .. }
+                | JointKind::Coupling(_) => continue,
+            };
+            if (distance - required).abs() > MESHING_TOLERANCE * required.abs() {
+                return Err(AssemblyError::NotMeshing {
+                    joint: JointId(j),
+                    distance,
+                    required,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn set_determinate(&mut self, mechanism: &Mechanism, found: Option<&Mobility>) {
+        let reactions = mechanism.reactions();
+        self.determinate = match found {
+            Some(found) if found.gap.is_none() => found.determinate[..reactions.len()].to_vec(),
+            // Too large for the rank: no reaction is claimed to be unique.
+            _ => vec![false; reactions.len()],
+        };
+    }
+
+    fn try_compile(
+        mechanism: &Mechanism,
+        configuration: &AssemblyConfiguration,
+        counted_bodies: &[BodyId],
+        allow_redundant: bool,
+    ) -> Result<Self, AssemblyError> {
+        let mut plan = Self::structure(mechanism, counted_bodies, allow_redundant)?;
+        plan.assembly_coordinates.clone_from(&configuration.q);
+        let pose = plan.assemble(&InitialGuess::new(mechanism, &plan.lowered, configuration))?;
+        plan.check_meshing(mechanism, &pose)?;
+        plan.follow_branch(&pose)?;
+        plan.assembly_pose = Some(Box::new(pose));
+        Ok(plan)
+    }
+}
+
+/// Refuses a description that refers to bodies, joints or coordinates that do not exist.
+fn check(
+    mechanism: &Mechanism,
+    configuration: &AssemblyConfiguration,
+) -> Result<(), StructureError> {
+    let bodies = mechanism.bodies.len();
+    let body_pairs = mechanism.joints.iter().map(|j| j.bodies);
+    let mut body_pairs = body_pairs.chain(mechanism.actuators.iter().map(|a| a.bodies));
+    let finite = |angle: &Option<f64>| angle.is_none_or(f64::is_finite);
+    let travels = |joint: JointId| {
+        let joint = mechanism.joints.get(joint.0);
+        joint.is_some_and(|j| j.kind.travel_axis().is_some())
+    };
+    let measurable = |coordinate: Coordinate| match coordinate {
+        Coordinate::Angle(pair) | Coordinate::Length { bodies: pair, .. } => {
+            pair.iter().all(|b| b.0 < bodies)
+        }
+        Coordinate::Travel(joint) => travels(joint),
+    };
+    let related = |kind: JointKind| match kind {
+        JointKind::Coupling(r) => r < mechanism.couplings.len(),
+        _ => true,
+    };
+    let reason = if mechanism.ground >= bodies
+        || !body_pairs.all(|e| e.iter().all(|b| b.0 < bodies))
+    {
+        "it refers to a body that does not exist"
+    } else if !mechanism.joints.iter().all(|j| related(j.kind))
+        || !mechanism
+            .couplings
+            .iter()
+            .all(|r| measurable(r.dependent) && measurable(r.independent))
+        || mechanism
+            .actuators
+            .iter()
+            .any(|a| matches!(a.kind, ActuatorKind::Travel(joint) if !travels(joint)))
+        || (configuration.branch_hints.iter().zip(&mechanism.joints))
+            .any(|(hint, joint)| hint.is_some() && joint.kind.branch_hint().is_none())
+    {
+        "it refers to a coordinate that does not exist"
+    } else if configuration.q.len() != mechanism.actuators.len()
+        || configuration.initial_guess.len() != bodies
+    {
+        "the assembly needs one coordinate per actuator and one entry of the initial guess per body"
+    } else if ![0, mechanism.joints.len()].contains(&configuration.branch_hints.len()) {
+        "the branch hints must have one entry per joint, or none"
+    } else if !configuration.q.iter().all(|q| q.is_finite())
+        || !configuration
+            .initial_guess
+            .iter()
+            .chain(&configuration.branch_hints)
+            .all(finite)
+    {
+        "an angle or a length is not a finite number"
+    } else {
+        return Ok(());
+    };
+    Err(StructureError::Malformed { reason })
+}

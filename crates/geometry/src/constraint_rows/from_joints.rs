@@ -1,0 +1,166 @@
+//! Which rows a joint or an actuator has.
+
+use super::ConstraintRowsError;
+use super::gear::Gear;
+use super::row::ConstraintRow;
+use super::terms::{BodyPoint, Column, ConstraintTerm};
+use crate::mechanism::{BodyId, Coordinate, Joint, JointId, JointKind, Mechanism};
+use crate::plane::{Vec2, vec2};
+
+/// Writes the rows of a mechanism.
+pub(super) struct RowWriter<'a> {
+    pub(super) mechanism: &'a Mechanism,
+    pub(super) columns: &'a [Column],
+}
+
+impl RowWriter<'_> {
+    fn body_points(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> [BodyPoint; 2] {
+        [0, 1].map(|i| BodyPoint {
+            column: self.columns[bodies[i].0],
+            point: points[i],
+        })
+    }
+
+    pub(super) fn joint(
+        &self,
+        index: usize,
+        joint: &Joint,
+    ) -> Result<Vec<ConstraintRow>, ConstraintRowsError> {
+        let points = self.body_points(joint.bodies, joint.points);
+        let columns = points.map(|e| e.column);
+        let along =
+            |axis: Vec2| ConstraintRow::single(ConstraintTerm::BodyFixedComponent(points, axis));
+        let coincide = || {
+            [vec2(1.0, 0.0), vec2(0.0, 1.0)]
+                .map(|u| ConstraintRow::single(ConstraintTerm::GroundFixedComponent(points, u)))
+        };
+        let unrolled = |axis: Vec2, radius: f64| {
+            let terms = vec![
+                (1.0, ConstraintTerm::BodyFixedComponent(points, axis)),
+                (radius, ConstraintTerm::RelativeAngle(columns)),
+            ];
+            ConstraintRow::sum(terms, 0.0)
+        };
+        Ok(match joint.kind {
+            JointKind::Revolute => coincide().into(),
+            JointKind::Prismatic {
+                axes: [first, second],
+            } => vec![
+                along(first.perp()),
+                ConstraintRow::periodic_angle(columns, first.angle() - second.angle()),
+            ],
+            JointKind::Slot { axis } => vec![along(axis.perp())],
+            JointKind::Weld { angle } => {
+                let mut rows = Vec::from(coincide());
+                rows.push(ConstraintRow::periodic_angle(columns, angle));
+                rows
+            }
+            JointKind::Gear { radii, internal } => vec![ConstraintRow::Gear(Gear::new(
+                self.mechanism,
+                joint,
+                points,
+                radii,
+                internal,
+                self.columns,
+            ))],
+            JointKind::Rack { axis, radius } => vec![unrolled(axis, radius)],
+            JointKind::Rolling { axis, radius } => vec![
+                ConstraintRow::sum(
+                    vec![(1.0, ConstraintTerm::BodyFixedComponent(points, axis.perp()))],
+                    radius,
+                ),
+                unrolled(axis, radius),
+            ],
+            JointKind::Distance { length } => {
+                vec![ConstraintRow::sum(
+                    vec![(1.0, ConstraintTerm::Distance(points))],
+                    length,
+                )]
+            }
+            JointKind::Coupling(coupling) => vec![self.coupling(index, coupling)?],
+        })
+    }
+
+    fn coupling(
+        &self,
+        joint: usize,
+        coupling: usize,
+    ) -> Result<ConstraintRow, ConstraintRowsError> {
+        let couplings = &self.mechanism.couplings;
+        let described = couplings
+            .get(coupling)
+            .ok_or(ConstraintRowsError::NoCoupling {
+                joint,
+                coupling,
+                couplings: couplings.len(),
+            })?;
+        let bodies = self.columns.len();
+        let broken = |body| ConstraintRowsError::CouplingBody {
+            coupling,
+            body,
+            bodies,
+        };
+        Ok(ConstraintRow::Coupling {
+            dependent: self.term(described.dependent, broken)?,
+            independent: self.term(described.independent, broken)?,
+            law: described.law.clone(),
+        })
+    }
+
+    /// The term of a coordinate; `broken` is the error for a body that does not exist.
+    pub(super) fn term(
+        &self,
+        coordinate: Coordinate,
+        broken: impl Fn(usize) -> ConstraintRowsError,
+    ) -> Result<ConstraintTerm, ConstraintRowsError> {
+        let check = |bodies: [BodyId; 2]| match self.missing_body(bodies) {
+            Some(body) => Err(broken(body)),
+            None => Ok(()),
+        };
+        match coordinate {
+            Coordinate::Angle(bodies) => {
+                check(bodies)?;
+                Ok(ConstraintTerm::RelativeAngle(
+                    bodies.map(|b| self.columns[b.0]),
+                ))
+            }
+            Coordinate::Travel(JointId(joint)) => {
+                let slides = self.mechanism.joints.get(joint);
+                let with_axis = slides.and_then(|j| Some((j, j.kind.travel_axis()?)));
+                let (slides, axis) = with_axis.ok_or(ConstraintRowsError::NoTravel { joint })?;
+                check(slides.bodies)?;
+                Ok(ConstraintTerm::BodyFixedComponent(
+                    self.body_points(slides.bodies, slides.points),
+                    axis,
+                ))
+            }
+            Coordinate::Length { bodies, points } => {
+                check(bodies)?;
+                Ok(ConstraintTerm::Distance(self.body_points(bodies, points)))
+            }
+        }
+    }
+
+    pub(super) fn missing_body(&self, bodies: [BodyId; 2]) -> Option<usize> {
+        bodies
+            .into_iter()
+            .map(|b| b.0)
+            .find(|&b| b >= self.columns.len())
+    }
+}
+
+/// Whether the rows of a joint depend on whole revolutions of a body.
+pub(super) fn joint_counts_revolutions(mechanism: &Mechanism, joint: &Joint) -> bool {
+    match joint.kind {
+        JointKind::Gear { .. } | JointKind::Rack { .. } | JointKind::Rolling { .. } => true,
+        JointKind::Coupling(r) => {
+            let coupling = mechanism.couplings.get(r);
+            coupling.is_some_and(|r| r.dependent.is_angle() || r.independent.is_angle())
+        }
+        JointKind::Revolute
+        | JointKind::Prismatic { .. }
+        | JointKind::Slot { .. }
+        | JointKind::Weld { .. }
+        | JointKind::Distance { .. } => false,
+    }
+}

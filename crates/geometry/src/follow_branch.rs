@@ -1,0 +1,377 @@
+//! Follows the branch of the assembly over the range of a single actuator, and stores poses along it for the groups
+//! whose positions are found by iteration.
+
+use crate::error::AssemblyError;
+use crate::plan::range::{Range, RangeLimit};
+use crate::plan::stored_poses::StoredPose;
+use crate::plan::{AssurGroup, GroupKind, PlacementMethod, Plan, Pose};
+use crate::plane::{Vec2, vec2};
+use crate::positions::{InitialIterate, STEPS_PER_REVOLUTION};
+use crate::structure::groups::Unknown;
+use dwell_numerics::{Dual, Scalar};
+use std::f64::consts::TAU;
+
+/// Revolutions after which a branch that neither ends nor closes is no longer followed.
+const MAX_REVOLUTIONS: u32 = 8;
+/// A branch ends at a change point where a determinant has fallen to this part of its largest value
+/// so far: its rounding is eps over that part, so any closer noise would decide which branch follows.
+const CHANGE_POINT_DETERMINANT: f64 = 1e-6;
+/// A change point is distinguished from a limit position by the product of the determinant and its slope: to
+/// the former it falls as the determinant itself, to the latter (a square root) it stays as it is.
+const CHANGE_POINT_PRODUCT: f64 = 1e-3;
+/// A step is taken if the tangents of all determinants stay clear of zero over so many times its
+/// length: towards a limit position, where they fall as a square root, the distance left is halved.
+const TANGENT_CLEARANCE: f64 = 4.0;
+/// Two poses are one if they differ by less: rad, or of the lengths of a group.
+const SAME_POSE: f64 = 1e-6;
+/// Where the branch cannot be followed any further, the step is halved until it is this small, rad.
+const MIN_STEP: f64 = 2e-14;
+
+impl Plan {
+    /// Follows the branch from the assembly over the range of a single actuator, in both directions, and
+    /// stores poses. With several actuators there is no range to follow.
+    pub(crate) fn follow_branch(&mut self, assembly_pose: &Pose<f64>) -> Result<(), AssemblyError> {
+        if self.actuators() != 1 {
+            self.range = Range::Unbounded;
+            return Ok(());
+        }
+        let mut ahead = vec![assembly_pose.clone()];
+        let mut up = None;
+        for revolutions in 1..=MAX_REVOLUTIONS {
+            up = self.follow_direction(&mut ahead, 1.0, 1);
+            if up.is_some() {
+                break;
+            }
+            if self.angular[0] && self.is_same_pose(assembly_pose, ahead.last()) {
+                self.store_poses(&ahead);
+                self.range = match revolutions {
+                    1 => Range::Full,
+                    revolutions => Range::Revolutions(revolutions),
+                };
+                return Ok(());
+            }
+        }
+        let mut back = vec![assembly_pose.clone()];
+        let down = self.follow_direction(&mut back, -1.0, MAX_REVOLUTIONS);
+        back.reverse();
+        back.pop();
+        back.extend(ahead);
+        self.store_poses(&back);
+        self.range_limits = [down, up];
+        let far = |pose: Option<&Pose<f64>>| pose.map_or(assembly_pose.q[0], |p| p.q[0]);
+        let (first, last) = (far(back.first()), far(back.last()));
+        let [down, up] = [down.map(|_| first), up.map(|_| last)];
+        self.range = match (down, up) {
+            (Some(from), Some(to)) if self.angular[0] => Range::Limited(from, to),
+            (Some(from), Some(to)) => Range::Stroke(from, to),
+            (None, None) if !self.groups.iter().any(|g| g.uses_stored_poses) => Range::Unbounded,
+            (None, None) => Range::Unresolved(first, last),
+            // An end on one side only: the other is as far as it was followed.
+            (from, to) => Range::Stroke(from.unwrap_or(first), to.unwrap_or(last)),
+        };
+        Ok(())
+    }
+
+    /// Follows the branch for some revolutions from the last pose and collects the poses; returns where the branch ends,
+    /// if it does: at a limit position, or at a change point, where two branches meet.
+    //
+    // Longer than 60 lines: the step length, the margins and the largest margins change together at each step.
+    fn follow_direction(
+        &self,
+        poses: &mut Vec<Pose<f64>>,
+        direction: f64,
+        revolutions: u32,
+    ) -> Option<RangeLimit> {
+        let uses_stored_poses = self.groups.iter().any(|g| g.uses_stored_poses);
+        let mut pose = poses.last()?.clone();
+        let q0 = pose.q[0];
+        let Some(mut margins) = self.determinant_margins(&pose) else {
+            return Some(RangeLimit {
+                q: q0,
+                group: 0,
+                change_point: false,
+            });
+        };
+        let size = |m: &Dual| [m.v, (m.v * m.d).abs()];
+        let mut largest: Vec<[f64; 2]> = margins.iter().map(size).collect();
+        for k in 1..=revolutions as usize * STEPS_PER_REVOLUTION {
+            let target = if self.angular[0] {
+                q0 + direction * TAU * k as f64 / STEPS_PER_REVOLUTION as f64
+            } else {
+                q0 + direction * self.continuation_step(0) * k as f64
+            };
+            let mut fine = target - pose.q[0];
+            while pose.q[0] != target {
+                let left = target - pose.q[0];
+                let next = if fine.abs() >= left.abs() {
+                    target
+                } else {
+                    pose.q[0] + fine
+                };
+                let ended = |left: &[Dual]| {
+                    let mut both = left.iter().zip(&largest);
+                    both.any(|(margin, maximum)| {
+                        let [value, product] = size(margin);
+                        value < CHANGE_POINT_DETERMINANT * maximum[0]
+                            && product < CHANGE_POINT_PRODUCT * maximum[1]
+                    })
+                };
+                let advanced = self.advance(&pose, &margins, next);
+                let at_change_point = advanced.as_ref().is_some_and(|(_, left)| ended(left));
+                match advanced.filter(|_| !at_change_point) {
+                    Some((reached, left)) => {
+                        for (maximum, margin) in largest.iter_mut().zip(&left) {
+                            let [value, product] = size(margin);
+                            *maximum = [maximum[0].max(value), maximum[1].max(product)];
+                        }
+                        if !uses_stored_poses && poses.len() > 1 {
+                            // Only the ends are wanted.
+                            poses.pop();
+                        }
+                        poses.push(reached.clone());
+                        pose = reached;
+                        margins = left;
+                        fine *= 2.0;
+                    }
+                    None => {
+                        fine = (next - pose.q[0]) * 0.5;
+                        let unit = if self.angular[0] { 1.0 } else { self.size };
+                        if fine.abs() < MIN_STEP * (unit + pose.q[0].abs()) {
+                            let relative_margin = |g: &usize| margins[*g].v / largest[*g][0];
+                            let group = (0..margins.len())
+                                .min_by(|a, b| relative_margin(a).total_cmp(&relative_margin(b)))
+                                .unwrap_or(0);
+                            let margin = &margins[group];
+                            let change_point = at_change_point
+                                || size(margin)[1] < CHANGE_POINT_PRODUCT * largest[group][1];
+                            // Where the determinant crosses zero, the last step is Newton's.
+                            let left = if change_point {
+                                -margin.v / margin.d
+                            } else {
+                                0.0
+                            };
+                            let is_near =
+                                left * direction > 0.0 && left.abs() < self.continuation_step(0);
+                            return Some(RangeLimit {
+                                q: pose.q[0] + if is_near { left } else { 0.0 },
+                                group,
+                                change_point,
+                            });
+                        }
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// By group, the size of its determinant, with its derivative by the coordinate: how far the
+    /// group is from where its branch ends. None where it has ended.
+    fn determinant_margins(&self, at: &Pose<f64>) -> Option<Vec<Dual>> {
+        let mut pose: Pose<Dual> = self.pose();
+        for (value, rotation) in pose.rotation.iter_mut().zip(&at.rotation) {
+            *value = rotation.cast();
+        }
+        for (value, &angle) in pose.angle.iter_mut().zip(&at.angle) {
+            *value = Dual::from_f64(angle);
+        }
+        for (value, travel) in pose.slide_travel.iter_mut().zip(&at.slide_travel) {
+            *value = Dual::from_f64(*travel);
+        }
+        let q = [Dual::variable(at.q[0])];
+        self.positions_from(&q, &mut pose, InitialIterate::CurrentPose)
+            .ok()?;
+        let margin = |(g, assur): (usize, &AssurGroup)| {
+            let determinant = match &assur.kind {
+                GroupKind::RrrDyad(_) | GroupKind::GuidedPoint(_) => {
+                    Dual::from_f64(1.0) / pose.inverse_determinant[g]
+                }
+                GroupKind::Factored(factored_group) => factored_group.determinant(&pose),
+            };
+            if determinant.v < 0.0 {
+                -determinant
+            } else {
+                determinant
+            }
+        };
+        Some(self.groups.iter().enumerate().map(margin).collect())
+    }
+
+    /// The pose at `q` on the same branch as a nearby pose, with its margins, if it is certain to be
+    /// the same branch. Where the tangent of a margin, from either end, reaches zero within the step,
+    /// two branches may meet in between: a parallelogram's margin falls to zero and rises again on
+    /// the other branch, with the same sign at both ends.
+    fn advance(
+        &self,
+        from: &Pose<f64>,
+        margins: &[Dual],
+        q: f64,
+    ) -> Option<(Pose<f64>, Vec<Dual>)> {
+        let pose = self.corrected_pose(from, q)?;
+        let clearance = TANGENT_CLEARANCE * (q - from.q[0]);
+        let new_margins = self.determinant_margins(&pose)?;
+        let clear =
+            |(a, b): (&Dual, &Dual)| a.v + a.d * clearance > 0.0 && b.v - b.d * clearance > 0.0;
+        margins
+            .iter()
+            .zip(&new_margins)
+            .all(clear)
+            .then_some((pose, new_margins))
+    }
+
+    /// The pose at `q` near another one, if every correction is small beside its prediction.
+    fn corrected_pose(&self, from: &Pose<f64>, q: f64) -> Option<Pose<f64>> {
+        let mut pose = from.clone();
+        self.predict_unknowns(from, q - from.q[0], &mut pose);
+        let predicted = pose.clone();
+        self.positions_from(&[q], &mut pose, InitialIterate::CurrentPose)
+            .ok()?;
+        for (g, assur) in self.groups.iter().enumerate() {
+            let GroupKind::Factored(factored_group) = &assur.kind else {
+                continue;
+            };
+            if self
+                .factor_jacobian(g, factored_group, &mut pose)
+                .ok()?
+                .determinant_sign
+                * factored_group.branch
+                <= 0.0
+            {
+                return None;
+            }
+            if factored_group.method != PlacementMethod::Newton {
+                continue;
+            }
+            for &unknown in &assur.group.unknowns {
+                // A correction as large as the step itself may have led to another branch.
+                let (moved, corrected) = match unknown {
+                    Unknown::ClassAngle(c) => {
+                        let f = self.class_frame(c);
+                        let angle_between = |a: Vec2, b: Vec2| a.cross(b).atan2(a.dot(b)).abs();
+                        (
+                            angle_between(from.rotation[f], predicted.rotation[f]),
+                            angle_between(predicted.rotation[f], pose.rotation[f]),
+                        )
+                    }
+                    Unknown::SlideTravel(s) => (
+                        (predicted.slide_travel[s] - from.slide_travel[s]).abs() / assur.size,
+                        (pose.slide_travel[s] - predicted.slide_travel[s]).abs() / assur.size,
+                    ),
+                };
+                if corrected > 0.25 * moved.max(0.02) {
+                    return None;
+                }
+            }
+        }
+        Some(pose)
+    }
+
+    /// First-order prediction of the Newton groups' unknowns.
+    fn predict_unknowns(&self, from: &Pose<f64>, step: f64, pose: &mut Pose<f64>) {
+        let mut motion = self.motion();
+        self.velocities(from, &[1.0], &mut motion);
+        for assur in &self.groups {
+            if !matches!(&assur.kind, GroupKind::Factored(s) if s.method == PlacementMethod::Newton)
+            {
+                continue;
+            }
+            for &unknown in &assur.group.unknowns {
+                match unknown {
+                    Unknown::ClassAngle(c) if self.revolution_counted[self.class_frame(c)] => {
+                        let f = self.class_frame(c);
+                        self.set_class_angle(
+                            c,
+                            from.angle[f] + motion.angular_velocity[f] * step,
+                            pose,
+                        );
+                    }
+                    Unknown::ClassAngle(c) => {
+                        let f = self.class_frame(c);
+                        let by = Vec2::from_angle(motion.angular_velocity[f] * step);
+                        pose.rotation[f] = from.rotation[f].rotate(by);
+                    }
+                    Unknown::SlideTravel(s) => {
+                        pose.slide_travel[s] =
+                            from.slide_travel[s] + motion.slide_velocity[s] * step;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether a pose is the start again.
+    fn is_same_pose(&self, start: &Pose<f64>, end: Option<&Pose<f64>>) -> bool {
+        let Some(end) = end else {
+            return false;
+        };
+        let is_same = |assur: &AssurGroup| {
+            assur.group.unknowns.iter().all(|&u| match u {
+                Unknown::ClassAngle(c) => {
+                    let f = self.class_frame(c);
+                    (start.rotation[f] - end.rotation[f]).norm() < SAME_POSE
+                }
+                Unknown::SlideTravel(s) => {
+                    (start.slide_travel[s] - end.slide_travel[s]).abs() < SAME_POSE * assur.size
+                }
+            })
+        };
+        self.groups.iter().all(is_same)
+    }
+
+    fn store_poses(&mut self, poses: &[Pose<f64>]) {
+        let mut motion = self.motion();
+        let mut all: Vec<Vec<StoredPose>> = vec![Vec::new(); self.groups.len()];
+        let mut gains: Vec<Vec<f64>> = vec![Vec::new(); self.groups.len()];
+        if !self.groups.iter().any(|g| g.uses_stored_poses) {
+            return;
+        }
+        for pose in poses {
+            self.velocities(pose, &[1.0], &mut motion);
+            for (assur, stored_poses) in self.groups.iter().zip(&mut all) {
+                if !assur.uses_stored_poses {
+                    continue;
+                }
+                let mut stored_pose = StoredPose {
+                    q: pose.q[0],
+                    ..StoredPose::default()
+                };
+                for &unknown in &assur.group.unknowns {
+                    let (value, slope) = match unknown {
+                        Unknown::ClassAngle(c) => {
+                            let f = self.class_frame(c);
+                            let counted = self.revolution_counted[f];
+                            let angle = vec2(pose.angle[f], 0.0);
+                            let value = if counted { angle } else { pose.rotation[f] };
+                            (value, motion.angular_velocity[f])
+                        }
+                        Unknown::SlideTravel(s) => {
+                            (vec2(pose.slide_travel[s], 0.0), motion.slide_velocity[s])
+                        }
+                    };
+                    stored_pose.values.push(value);
+                    stored_pose.slopes.push(slope);
+                }
+                stored_poses.push(stored_pose);
+            }
+        }
+        for ((stored_poses, gains), assur) in all.iter_mut().zip(&mut gains).zip(&self.groups) {
+            if let (Some(first), Some(last)) = (stored_poses.first(), stored_poses.last()) {
+                let first_and_last = first.values.iter().zip(&last.values);
+                let counted = |u: &Unknown| match *u {
+                    Unknown::ClassAngle(c) => self.revolution_counted[self.class_frame(c)],
+                    Unknown::SlideTravel(_) => false,
+                };
+                *gains = first_and_last
+                    .zip(&assur.group.unknowns)
+                    .map(|((a, b), u)| if counted(u) { b.x - a.x } else { 0.0 })
+                    .collect();
+            }
+        }
+        for ((assur, list), gains) in self.groups.iter_mut().zip(all).zip(gains) {
+            assur.stored_poses = crate::plan::stored_poses::StoredPoses {
+                poses: list,
+                gain_per_period: gains,
+            };
+        }
+    }
+}

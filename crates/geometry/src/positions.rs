@@ -1,0 +1,337 @@
+//! Positions: from the actuators' coordinates to the orientation of every body, group by group.
+
+mod closed_forms;
+mod construct;
+mod factored_group;
+
+use crate::error::PositionError;
+use crate::plan::{ActuatedFrame, GroupKind, PlacementMethod, Plan, Pose, Step};
+use crate::plane::{Vec2, vec2};
+use crate::structure::groups::Unknown;
+use crate::structure::tree::FrameVector;
+use closed_forms::{guided_point_positions, rrr_dyad_positions};
+use dwell_numerics::{Scalar, lu};
+use std::f64::consts::TAU;
+
+/// Steps per revolution of an actuator where a branch is followed. A group's pose changes little over 3°,
+/// so that Newton's method needs two or three iterations; where it changes faster, steps are halved.
+pub(crate) const STEPS_PER_REVOLUTION: usize = 120;
+
+/// Largest number of steps from the assembly: no mechanism is driven a thousand revolutions away
+/// from where it was assembled, but a careless number may ask for it.
+const MAX_PATH_STEPS: f64 = 120_000.0;
+
+/// Where Newton's method starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum InitialIterate {
+    /// From the nearest stored pose, so that the pose depends on the coordinate alone.
+    StoredPose,
+    /// From the values in the pose (while the branch is being followed).
+    CurrentPose,
+}
+
+impl Plan {
+    /// Computes the positions at the coordinates `q` (rad or m). The pose depends on `q` alone.
+    ///
+    /// # Errors
+    /// [`PositionError`] when a group cannot close there, is singular, or `q` is out of range.
+    #[inline(always)]
+    pub fn positions<T: Scalar>(&self, q: &[T], pose: &mut Pose<T>) -> Result<(), PositionError> {
+        if T::LANES > 1 && !self.supports_lanes() {
+            return Err(PositionError::LanesDiverge { q: q[0].value() });
+        }
+        // Outside its range a closed form may close again, but on a branch that cannot be reached.
+        if self.range.limits().is_some() {
+            let lanes = (0..T::LANES).map(|lane| q[0].lane(lane));
+            for q in lanes.filter(|q| q.is_finite()) {
+                self.range.wrap(q)?;
+            }
+        }
+        if self.actuators() > 1 && self.groups.iter().any(|g| g.uses_stored_poses && !g.pruned) {
+            return self.positions_continued(q, pose);
+        }
+        self.positions_from(q, pose, InitialIterate::StoredPose)
+    }
+
+    /// Whether every group has a closed form whose decisions can be checked in every lane: no iteration, no counted
+    /// revolutions, no coupling by a law.
+    pub fn supports_lanes(&self) -> bool {
+        self.groups.iter().filter(|g| !g.pruned).all(|assur| {
+            let straight = match &assur.kind {
+                GroupKind::RrrDyad(_) | GroupKind::GuidedPoint(_) => true,
+                GroupKind::Factored(factored_group) => {
+                    factored_group.method != PlacementMethod::Newton
+                        && !factored_group.is_overdetermined()
+                        && !lu::uses_faer(factored_group.columns)
+                }
+            };
+            let of = &assur.group.couplings;
+            straight
+                && !assur.counts_revolutions
+                && of.iter().all(|&r| self.couplings[r].law.is_none())
+        })
+    }
+
+    /// Whether every group is a dyad or a guided body, whose closed forms are inlined into an evaluation. The
+    /// others have functions of their own.
+    pub fn is_dyadic(&self) -> bool {
+        let mut groups = self.groups.iter().filter(|g| !g.pruned);
+        groups.all(|g| matches!(g.kind, GroupKind::RrrDyad(_) | GroupKind::GuidedPoint(_)))
+    }
+
+    /// Follows the straight path from the assembly to `q`: with several actuators there are no stored poses to start
+    /// from.
+    #[inline(never)]
+    fn positions_continued<T: Scalar>(
+        &self,
+        q: &[T],
+        pose: &mut Pose<T>,
+    ) -> Result<(), PositionError> {
+        let Some(assembly_pose) = &self.assembly_pose else {
+            return self.positions_from(q, pose, InitialIterate::CurrentPose);
+        };
+        for (value, rotation) in pose.rotation.iter_mut().zip(&assembly_pose.rotation) {
+            *value = rotation.cast();
+        }
+        for (value, &angle) in pose.angle.iter_mut().zip(&assembly_pose.angle) {
+            *value = T::from_f64(angle);
+        }
+        for (value, &travel) in pose
+            .slide_travel
+            .iter_mut()
+            .zip(&assembly_pose.slide_travel)
+        {
+            *value = T::from_f64(travel);
+        }
+        let mut steps = 1.0_f64;
+        for (i, (to, from)) in q.iter().zip(&self.assembly_coordinates).enumerate() {
+            steps = steps.max(
+                ((to.value() - from) / self.continuation_step(i))
+                    .abs()
+                    .ceil(),
+            );
+        }
+        let mut coordinates = std::mem::take(&mut pose.path_coordinates);
+        let mut result = Ok(());
+        for k in 1..=steps.min(MAX_PATH_STEPS) as usize {
+            let fraction = k as f64 / steps;
+            for ((on, &to), &from) in coordinates
+                .iter_mut()
+                .zip(q)
+                .zip(&self.assembly_coordinates)
+            {
+                *on = if fraction < 1.0 {
+                    T::from_f64(from + (to.value() - from) * fraction)
+                } else {
+                    to
+                };
+            }
+            result = self.positions_from(&coordinates, pose, InitialIterate::CurrentPose);
+            if result.is_err() {
+                break;
+            }
+        }
+        pose.path_coordinates = coordinates;
+        result?;
+        self.check_branch(pose)
+    }
+
+    /// A step of an actuator over which a pose changes little, rad or m.
+    pub(crate) fn continuation_step(&self, actuator: usize) -> f64 {
+        if self.angular[actuator] {
+            TAU / STEPS_PER_REVOLUTION as f64
+        } else if self.size > 0.0 {
+            self.size * TAU / STEPS_PER_REVOLUTION as f64
+        } else {
+            1.0
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn positions_from<T: Scalar>(
+        &self,
+        q: &[T],
+        pose: &mut Pose<T>,
+        initial_iterate: InitialIterate,
+    ) -> Result<(), PositionError> {
+        for (coordinate, &value) in pose.q.iter_mut().zip(q) {
+            for q in (0..T::LANES).map(|lane| value.lane(lane)) {
+                if !q.is_finite() {
+                    return Err(PositionError::NotFinite { q });
+                }
+            }
+            *coordinate = value;
+        }
+        self.run_steps(&self.steps, pose, initial_iterate)
+    }
+
+    /// Runs the steps after the group before, this group's solution included: at assembly, when all groups before it are
+    /// solved.
+    pub(crate) fn group_positions(
+        &self,
+        group: usize,
+        pose: &mut Pose<f64>,
+    ) -> Result<(), PositionError> {
+        let steps = &self.steps[self.first_step(group)..=self.solve_steps[group]];
+        self.run_steps(steps, pose, InitialIterate::CurrentPose)
+    }
+
+    /// Runs the steps between the group before and this one.
+    pub(crate) fn positions_before(
+        &self,
+        group: usize,
+        pose: &mut Pose<f64>,
+    ) -> Result<(), PositionError> {
+        let steps = &self.steps[self.first_step(group)..self.solve_steps[group]];
+        self.run_steps(steps, pose, InitialIterate::CurrentPose)
+    }
+
+    /// The step after the group before.
+    fn first_step(&self, group: usize) -> usize {
+        let before = group.checked_sub(1);
+        before.map_or(0, |before| self.solve_steps[before] + 1)
+    }
+
+    #[inline(always)]
+    fn run_steps<T: Scalar>(
+        &self,
+        steps: &[Step],
+        pose: &mut Pose<T>,
+        initial_iterate: InitialIterate,
+    ) -> Result<(), PositionError> {
+        for step in steps {
+            match step {
+                Step::SetSlide(slide, actuator) => pose.slide_travel[*slide] = pose.q[*actuator],
+                Step::RotateFrame(actuated) => rotate_frame(actuated, pose),
+                Step::RotateVector(vector, FrameVector { frame, local }) => {
+                    pose.vector[*vector] = local.cast::<T>().rotate(pose.rotation[*frame]);
+                }
+                Step::SolveGroup(g) => {
+                    match &self.groups[*g].kind {
+                        GroupKind::RrrDyad(dyad) => {
+                            rrr_dyad_positions(dyad, &self.frame_vectors, *g, pose)?;
+                        }
+                        GroupKind::GuidedPoint(guided) => guided_point_positions(guided, *g, pose)?,
+                        GroupKind::Factored(factored_group) => {
+                            self.factored_positions(*g, factored_group, pose, initial_iterate)?;
+                        }
+                    }
+                    if self.groups[*g].counts_revolutions {
+                        self.count_revolutions(*g, pose, initial_iterate)?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Counts the whole revolutions of a group's classes where a coupling or a load needs them: the number that is
+    /// nearest to the stored angle, or to the last one while a branch is followed.
+    #[inline(never)]
+    fn count_revolutions<T: Scalar>(
+        &self,
+        group: usize,
+        pose: &mut Pose<T>,
+        initial_iterate: InitialIterate,
+    ) -> Result<(), PositionError> {
+        let assur = &self.groups[group];
+        if matches!(&assur.kind, GroupKind::Factored(s) if matches!(s.method, PlacementMethod::Newton | PlacementMethod::GearTrain))
+        {
+            return Ok(());
+        }
+        let nearest = match initial_iterate {
+            InitialIterate::StoredPose if assur.uses_stored_poses => {
+                Some(assur.stored_poses.nearest(pose.q[0].value(), self.range)?)
+            }
+            _ => None,
+        };
+        for (i, &unknown) in assur.group.unknowns.iter().enumerate() {
+            let Unknown::ClassAngle(class) = unknown else {
+                continue;
+            };
+            let class_frame = self.class_frame(class);
+            if !self.revolution_counted[class_frame] {
+                continue;
+            }
+            let expected = match (self.carrier_phases.get(&class_frame), nearest) {
+                (Some(&(carrier, phase)), _) => pose.angle[carrier].value() + phase,
+                (None, Some(nearest)) => assur.stored_poses.predict(nearest, i),
+                (None, None) => pose.angle[class_frame].value(),
+            };
+            let angle = pose.rotation[class_frame]
+                .y
+                .atan2(pose.rotation[class_frame].x);
+            let revolutions = ((expected - angle.value()) / TAU).round();
+            pose.angle[class_frame] = angle + T::from_revolutions(revolutions);
+        }
+        Ok(())
+    }
+
+    /// Sets a pose from the coordinates, the angles of all frames (rad) and the travels of all slides
+    /// (m), from any source. It holds no factors: states of bodies can be taken from it, but no velocities
+    /// or multipliers.
+    pub fn set_coordinates<T: Scalar>(
+        &self,
+        q: &[T],
+        angles: &[T],
+        slides: &[T],
+        pose: &mut Pose<T>,
+    ) {
+        pose.q.copy_from_slice(q);
+        pose.angle.copy_from_slice(angles);
+        pose.slide_travel.copy_from_slice(slides);
+        for (rotation, angle) in pose.rotation.iter_mut().zip(angles) {
+            let (sin, cos) = angle.sin_cos();
+            *rotation = vec2(cos, sin);
+        }
+        for (vector, FrameVector { frame, local }) in
+            pose.vector.iter_mut().zip(&self.frame_vectors)
+        {
+            *vector = local.cast::<T>().rotate(pose.rotation[*frame]);
+        }
+    }
+
+    /// The frame whose angle is a class's unknown.
+    pub fn class_frame(&self, class: usize) -> usize {
+        self.class_frames[class]
+    }
+
+    /// The joint origin of each moving body in ground axes, in their order, m.
+    pub fn joint_origins<T: Scalar>(&self, pose: &Pose<T>, joint_origins: &mut Vec<Vec2<T>>) {
+        joint_origins.clear();
+        for (moving_body, tree_joint) in self.moving_bodies.iter().zip(&self.tree.joints) {
+            let mut joint_origin = match moving_body.parent {
+                Some(parent) => joint_origins[parent],
+                None => self.ground_origin().cast(),
+            };
+            joint_origin += match moving_body.joint_vector {
+                Some(vector) => pose.vector[vector],
+                None => tree_joint.joint_vector.local.cast(),
+            };
+            if let Some((slide, direction)) = moving_body.slide {
+                joint_origin += pose.vector[direction] * pose.slide_travel[slide];
+            }
+            joint_origins.push(joint_origin);
+        }
+    }
+
+    fn ground_origin(&self) -> Vec2 {
+        self.tree.joint_origins[self.lowered.ground]
+    }
+}
+
+/// Rotates a frame by its actuator's coordinate.
+#[inline(always)]
+pub(crate) fn rotate_frame<T: Scalar>(actuated: &ActuatedFrame, pose: &mut Pose<T>) {
+    let (sin, cos) = pose.q[actuated.actuator].sin_cos();
+    let by = vec2(cos, if actuated.sign < 0.0 { -sin } else { sin });
+    pose.rotation[actuated.frame] = if actuated.parent == 0 {
+        by
+    } else {
+        pose.rotation[actuated.parent].rotate(by)
+    };
+    if actuated.revolution_counted {
+        pose.angle[actuated.frame] =
+            pose.angle[actuated.parent] + T::from_f64(actuated.sign) * pose.q[actuated.actuator];
+    }
+}

@@ -1,0 +1,212 @@
+//! Groups whose positions are constructions: the triangle of a dyad, a line that meets a circle, gears
+//! on their carriers. Velocities, accelerations and multipliers come from the factors of their Jacobian.
+
+use super::closed_forms::{checked_sqrt, singular_tolerance};
+use crate::error::PositionError;
+use crate::plan::{FactoredGroup, LoopClosure, PlacementMethod, Plan, Pose};
+use crate::plane::Vec2;
+use crate::structure::groups::{Group, Unknown};
+use dwell_numerics::{FactorOutcome, Scalar, lu};
+
+impl Plan {
+    /// The positions of a dyad of one loop in closed form.
+    pub(crate) fn construct<T: Scalar>(
+        &self,
+        group: usize,
+        factored_group: &FactoredGroup,
+        pose: &mut Pose<T>,
+    ) -> Result<(), PositionError> {
+        let closure = &self.loop_closures[self.groups[group].group.loops[0]];
+        // With its classes at angle zero, the vectors of each are in that class's own frame.
+        for &unknown in &self.groups[group].group.unknowns {
+            match unknown {
+                Unknown::ClassAngle(class) => {
+                    pose.rotation[self.class_frame(class)] = Vec2::IDENTITY.cast();
+                }
+                Unknown::SlideTravel(slide) => pose.slide_travel[slide] = T::from_f64(0.0),
+            }
+        }
+        self.rotate_group(group, pose);
+        let class_of = |frame: usize| self.frames.frames[frame].orientation_class;
+        let branch = T::from_f64(factored_group.root_sign);
+        match factored_group.method {
+            PlacementMethod::Triangle(one, two) => {
+                let w1 = partial_gap(closure, pose, |f| class_of(f) == one);
+                let w2 = partial_gap(closure, pose, |f| class_of(f) == two);
+                let known = closure.fixed.cast()
+                    + partial_gap(closure, pose, |f| class_of(f) != one && class_of(f) != two);
+                let [first, second] = triangle(known, w1, w2, branch, (group, pose))?;
+                pose.rotation[self.class_frame(one)] = rotation_between(w1, first);
+                pose.rotation[self.class_frame(two)] = rotation_between(w2, second);
+            }
+            PlacementMethod::LineCircle(class, slide) => {
+                let class_part = partial_gap(closure, pose, |f| class_of(f) == class);
+                let known =
+                    closure.fixed.cast() + partial_gap(closure, pose, |f| class_of(f) != class);
+                let Some(&(_, along, frame)) = closure.slides.iter().find(|s| s.0 == slide) else {
+                    return Ok(());
+                };
+                let along = pose.vector[along];
+                // |R w| = |D + s u|, or |D| = |w + s u|: where a line meets a circle.
+                let direction_rotates = class_of(frame) == class;
+                let (from, radius) = if direction_rotates {
+                    (class_part, known)
+                } else {
+                    (known, class_part)
+                };
+                let offset = from.cross(along);
+                let square = radius.dot(radius);
+                let missing = || offset.value().abs() - square.value().sqrt();
+                let q = pose.q[0].value();
+                let size = |l| square.lane(l).max(offset.lane(l) * offset.lane(l));
+                let half_chord =
+                    branch * checked_sqrt(square - offset * offset, size, group, q, missing)?;
+                let travel = half_chord - from.dot(along);
+                pose.slide_travel[slide] = travel;
+                let reached = from + along * travel;
+                pose.rotation[self.class_frame(class)] = if direction_rotates {
+                    rotation_between(reached, -known)
+                } else {
+                    rotation_between(class_part, -reached)
+                };
+            }
+            PlacementMethod::PointOnLine(class) => {
+                let class_part = partial_gap(closure, pose, |f| class_of(f) == class);
+                let known =
+                    closure.fixed.cast() + partial_gap(closure, pose, |f| class_of(f) != class);
+                let Some((axis, frame)) = closure.axis else {
+                    return Ok(());
+                };
+                let along = pose.vector[axis];
+                let normal = along.perp();
+                // The vector that turns against one that is known, and where it must get to along
+                // the normal.
+                let line_rotates = class_of(frame) == class;
+                let (kappa, square) = if line_rotates {
+                    (-normal.dot(class_part), known.dot(known))
+                } else {
+                    (-normal.dot(known), class_part.dot(class_part))
+                };
+                let missing = || kappa.value().abs() - square.value().sqrt();
+                let q = pose.q[0].value();
+                let size = |l| square.lane(l).max(kappa.lane(l) * kappa.lane(l));
+                let half_chord =
+                    branch * checked_sqrt(square - kappa * kappa, size, group, q, missing)?;
+                pose.rotation[self.class_frame(class)] = if line_rotates {
+                    rotation_between(normal, known * kappa + known.perp() * half_chord)
+                } else {
+                    rotation_between(class_part, normal * kappa - along * half_chord)
+                };
+            }
+            PlacementMethod::Newton | PlacementMethod::Linear | PlacementMethod::GearTrain => {}
+        }
+        Ok(())
+    }
+
+    /// The positions of gears, from equations in which each line of centres turns with its carrier; leaves
+    /// the factors of the real Jacobian in the pose.
+    pub(crate) fn gear_train_positions<T: Scalar>(
+        &self,
+        group: usize,
+        factored_group: &FactoredGroup,
+        pose: &mut Pose<T>,
+    ) -> Result<FactorOutcome, PositionError> {
+        let Group {
+            unknowns, loops, ..
+        } = &self.groups[group].group;
+        for &unknown in unknowns {
+            if let Unknown::ClassAngle(class) = unknown {
+                self.set_class_angle(class, T::from_f64(0.0), pose);
+            }
+        }
+        self.rotate_group(group, pose);
+        self.residual(group, pose);
+        self.assemble_jacobian(group, factored_group, pose);
+        let n = factored_group.columns;
+        for (row, &l) in loops.iter().enumerate() {
+            let Some((_, line_frame)) = self.loop_closures[l].axis else {
+                continue;
+            };
+            let Some(&(carrier, phase)) = self.carrier_phases.get(&line_frame) else {
+                continue;
+            };
+            pose.workspace[row] = pose.angle[line_frame] - pose.angle[carrier] - T::from_f64(phase);
+            for (column, &unknown) in unknowns.iter().enumerate() {
+                let of = |frame: usize| {
+                    let class = self.frames.frames[frame].orientation_class;
+                    f64::from(u8::from(unknown == Unknown::ClassAngle(class)))
+                };
+                let entry = &mut pose.lu[factored_group.lu_offset + row * n + column];
+                *entry = T::from_f64(of(line_frame) - of(carrier));
+            }
+        }
+        let outcome = lu::factor(
+            &mut pose.lu[factored_group.lu_offset..factored_group.lu_offset + n * n],
+            &mut pose.pivots[factored_group.pivots_offset..factored_group.pivots_offset + n],
+        );
+        if outcome.pivot_ratio <= singular_tolerance::<T>() {
+            return Err(PositionError::Singular {
+                group,
+                q: pose.q.first().map_or(0.0, |q| q.value()),
+                relative_determinant: outcome.pivot_ratio,
+            });
+        }
+        self.apply_newton_step(group, factored_group, pose);
+        self.rotate_group(group, pose);
+        self.factor_jacobian(group, factored_group, pose)
+    }
+}
+
+/// The part of a loop whose frames are picked: its vectors and its slides.
+fn partial_gap<T: Scalar>(
+    closure: &LoopClosure,
+    pose: &Pose<T>,
+    pick: impl Fn(usize) -> bool,
+) -> Vec2<T> {
+    let mut sum = Vec2::zero();
+    for &(vector, frame) in &closure.vectors {
+        if pick(frame) {
+            sum += pose.vector[vector];
+        }
+    }
+    for &(slide, vector, frame) in &closure.slides {
+        if pick(frame) {
+            sum += pose.vector[vector] * pose.slide_travel[slide];
+        }
+    }
+    sum
+}
+
+/// The rotation that takes the direction of one vector to that of another.
+fn rotation_between<T: Scalar>(from: Vec2<T>, to: Vec2<T>) -> Vec2<T> {
+    let by = to.rotate_inverse(from);
+    by * (T::from_f64(1.0) / by.dot(by).sqrt())
+}
+
+/// Two vectors of the lengths of `w1` and `w2` that close a triangle with `known`.
+fn triangle<T: Scalar>(
+    known: Vec2<T>,
+    w1: Vec2<T>,
+    w2: Vec2<T>,
+    branch: T,
+    (group, pose): (usize, &Pose<T>),
+) -> Result<[Vec2<T>; 2], PositionError> {
+    let (half, square) = (T::from_f64(0.5), known.dot(known));
+    let [one, two] = [w1.dot(w1).sqrt(), w2.dot(w2).sqrt()];
+    let (sum, gap) = (one + two, one - two);
+    let rest = (sum * sum - square) * (square - gap * gap);
+    let missing = || {
+        let distance = square.value().sqrt();
+        (distance - sum.value()).max(gap.value().abs() - distance)
+    };
+    let q = pose.q[0].value();
+    let size = |lane| square.lane(lane) * square.lane(lane);
+    let double_area = checked_sqrt(rest, size, group, q, missing)? * half * branch;
+    let across = known.perp() * double_area;
+    let square_difference = -(gap * sum);
+    let inverse = T::from_f64(1.0) / square;
+    Ok([
+        (known * (half * (square_difference - square)) + across) * inverse,
+        (known * (half * (-square_difference - square)) - across) * inverse,
+    ])
+}

@@ -1,0 +1,292 @@
+//! A coupling between angles and travels: Φ = Σ dependent − law(Σ independent) − constant. Its angles are counted
+//! over whole revolutions, so the frames it names carry a number beside their direction.
+
+use crate::structure::frames::Frames;
+use crate::structure::lower::{LinearTerms, Lowered, LoweredCoordinate, LoweredCoupling, Owner};
+use crate::structure::tree::Tree;
+use dwell_laws::Law;
+use dwell_numerics::Scalar;
+
+/// A sum of frames' angles and slides' travels with factors, and a constant.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LinearForm {
+    /// Frames, with the factor of each angle.
+    pub angles: Vec<(usize, f64)>,
+    /// Slides, with the factor of each travel.
+    pub slides: Vec<(usize, f64)>,
+    /// What is added, rad or m.
+    pub constant: f64,
+}
+
+/// A coupling in terms of frames and slides.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CouplingEquation {
+    /// What it comes from.
+    pub owner: Owner,
+    /// The sum on its left, less its constant.
+    pub dependent: LinearForm,
+    /// The law and its argument, where there is one.
+    pub law: Option<(Law, LinearForm)>,
+    /// Whether its constant is to be set at assembly.
+    pub constant_from_assembly: bool,
+    /// Whether it is in rad rather than in m.
+    pub angular: bool,
+}
+
+impl LinearForm {
+    fn new(sum: &LinearTerms, frames: &Frames, tree: &Tree) -> Self {
+        let mut form = Self::default();
+        for &(coordinate, factor) in sum {
+            match coordinate {
+                LoweredCoordinate::Angle(body) => {
+                    let orientation = frames.orientations[body];
+                    form.constant += factor * orientation.offset.angle();
+                    if orientation.frame != 0 {
+                        add(&mut form.angles, orientation.frame, factor);
+                    }
+                }
+                LoweredCoordinate::Travel(pair) => {
+                    if let Some(slide) = tree.slide_of_pair(pair) {
+                        add(&mut form.slides, slide, factor);
+                    }
+                }
+            }
+        }
+        form.angles.retain(|t| t.1 != 0.0);
+        form.slides.retain(|t| t.1 != 0.0);
+        form
+    }
+
+    fn value<T: Scalar>(&self, angle: &[T], slide: &[T]) -> T {
+        let mut sum = T::from_f64(self.constant);
+        for &(f, factor) in &self.angles {
+            sum += T::from_f64(factor) * angle[f];
+        }
+        for &(s, factor) in &self.slides {
+            sum += T::from_f64(factor) * slide[s];
+        }
+        sum
+    }
+
+    /// Its rate, from the rates of frames and slides (velocities or accelerations).
+    fn rate<T: Scalar>(&self, angular_rate: &[T], slide: &[T]) -> T {
+        let mut sum = T::from_f64(0.0);
+        for &(f, factor) in &self.angles {
+            sum += T::from_f64(factor) * angular_rate[f];
+        }
+        for &(s, factor) in &self.slides {
+            sum += T::from_f64(factor) * slide[s];
+        }
+        sum
+    }
+
+    fn class_factor(&self, frames: &Frames, class: usize) -> f64 {
+        let angles = self.angles.iter();
+        angles
+            .filter(|(f, _)| frames.frames[*f].orientation_class == class)
+            .map(|(_, factor)| factor)
+            .sum()
+    }
+
+    fn slide_factor(&self, slide: usize) -> f64 {
+        let slides = self.slides.iter();
+        slides
+            .filter(|(s, _)| *s == slide)
+            .map(|(_, factor)| factor)
+            .sum()
+    }
+}
+
+fn add(list: &mut Vec<(usize, f64)>, index: usize, factor: f64) {
+    match list.iter_mut().find(|(i, _)| *i == index) {
+        Some((_, sum)) => *sum += factor,
+        None => list.push((index, factor)),
+    }
+}
+
+impl CouplingEquation {
+    pub(crate) fn all(lowered: &Lowered, frames: &Frames, tree: &Tree) -> Vec<Self> {
+        let compile = |lowered_coupling: &LoweredCoupling| Self {
+            owner: lowered_coupling.owner,
+            dependent: LinearForm::new(&lowered_coupling.dependent, frames, tree),
+            law: lowered_coupling.law.as_ref().map(|(law, independent)| {
+                (law.clone(), LinearForm::new(independent, frames, tree))
+            }),
+            constant_from_assembly: lowered_coupling.constant_from_assembly,
+            angular: lowered_coupling.angular,
+        };
+        lowered.couplings.iter().map(compile).collect()
+    }
+
+    /// Both sums.
+    fn forms(&self) -> impl Iterator<Item = &LinearForm> {
+        std::iter::once(&self.dependent).chain(self.law.iter().map(|(_, independent)| independent))
+    }
+
+    /// The classes whose turning changes it, without the ground's.
+    pub(crate) fn classes(&self, frames: &Frames) -> Vec<usize> {
+        let mut classes: Vec<usize> = self
+            .forms()
+            .flat_map(|form| {
+                let class = |&(f, _): &(usize, f64)| frames.frames[f].orientation_class;
+                let of: Vec<usize> = form.angles.iter().map(class).collect();
+                of.into_iter()
+                    .filter(|&c| c > 0 && form.class_factor(frames, c) != 0.0)
+            })
+            .collect();
+        classes.sort_unstable();
+        classes.dedup();
+        classes
+    }
+
+    /// Every frame it names.
+    pub(crate) fn frames(&self) -> impl Iterator<Item = usize> {
+        self.forms()
+            .flat_map(|form| form.angles.iter().map(|t| t.0))
+    }
+
+    /// The slides it names.
+    pub(crate) fn slides(&self) -> Vec<usize> {
+        let mut slides: Vec<usize> = self
+            .forms()
+            .flat_map(|form| form.slides.iter().map(|t| t.0))
+            .collect();
+        slides.sort_unstable();
+        slides.dedup();
+        slides
+    }
+
+    /// Whether the law, if any, is of nothing that depends on these classes and slides.
+    pub(crate) fn linear_in(
+        &self,
+        frames: &Frames,
+        class: impl Fn(usize) -> bool,
+        slide: impl Fn(usize) -> bool,
+    ) -> bool {
+        self.law.as_ref().is_none_or(|(_, independent)| {
+            !independent
+                .angles
+                .iter()
+                .any(|&(f, _)| class(frames.frames[f].orientation_class))
+                && !independent.slides.iter().any(|&(s, _)| slide(s))
+        })
+    }
+
+    /// Φ at counted angles and travels.
+    pub(crate) fn value<T: Scalar>(&self, angle: &[T], slide: &[T]) -> T {
+        let mut value = self.dependent.value(angle, slide);
+        if let Some((law, independent)) = &self.law {
+            value -= independent.value(angle, slide).compose(&law_derivatives(
+                law,
+                independent,
+                angle,
+                slide,
+            ));
+        }
+        value
+    }
+
+    /// The slope of the law, and its own derivative: 0 where there is no law.
+    fn slopes<T: Scalar>(&self, angle: &[T], slide: &[T]) -> (T, T) {
+        let Some((law, independent)) = &self.law else {
+            return (T::from_f64(0.0), T::from_f64(0.0));
+        };
+        let x = independent.value(angle, slide);
+        let [_, d, dd, ddd] = law_derivatives(law, independent, angle, slide);
+        (
+            x.compose(&[d, dd, ddd, 0.0]),
+            x.compose(&[dd, ddd, 0.0, 0.0]),
+        )
+    }
+
+    /// The slope of the law: 0 where there is none.
+    pub(crate) fn slope<T: Scalar>(&self, angle: &[T], slide: &[T]) -> T {
+        self.slopes(angle, slide).0
+    }
+
+    /// Φ̇.
+    pub(crate) fn rate<T: Scalar>(
+        &self,
+        angle: &[T],
+        slide: &[T],
+        angular_rate: &[T],
+        slide_rate: &[T],
+    ) -> T {
+        let mut rate = self.dependent.rate(angular_rate, slide_rate);
+        if let Some((_, independent)) = &self.law {
+            rate -= self.slopes(angle, slide).0 * independent.rate(angular_rate, slide_rate);
+        }
+        rate
+    }
+
+    /// Φ̈ from velocities and accelerations of frames and slides.
+    pub(crate) fn acceleration<T: Scalar>(
+        &self,
+        angle: &[T],
+        slide: &[T],
+        velocity: (&[T], &[T]),
+        acceleration: (&[T], &[T]),
+    ) -> T {
+        let mut value = self.dependent.rate(acceleration.0, acceleration.1);
+        if let Some((_, independent)) = &self.law {
+            let (slope, bend) = self.slopes(angle, slide);
+            let rate = independent.rate(velocity.0, velocity.1);
+            value -= slope * independent.rate(acceleration.0, acceleration.1) + bend * rate * rate;
+        }
+        value
+    }
+
+    /// ∂Φ/∂ of each frame's angle and each slide's travel it names, to `add_angle` and `add_travel`.
+    pub(crate) fn for_each_derivative<T: Scalar>(
+        &self,
+        angle: &[T],
+        travel: &[T],
+        mut add_angle: impl FnMut(usize, T),
+        mut add_travel: impl FnMut(usize, T),
+    ) {
+        let minus_slope = -self.slopes(angle, travel).0;
+        for (form, factor_of_form) in self.forms().zip([T::from_f64(1.0), minus_slope]) {
+            for &(f, factor) in &form.angles {
+                add_angle(f, factor_of_form * T::from_f64(factor));
+            }
+            for &(s, factor) in &form.slides {
+                add_travel(s, factor_of_form * T::from_f64(factor));
+            }
+        }
+    }
+
+    /// ∂Φ/∂ of a class's angle.
+    pub(crate) fn class_derivative<T: Scalar>(
+        &self,
+        frames: &Frames,
+        class: usize,
+        angle: &[T],
+        slide: &[T],
+    ) -> T {
+        let mut value = T::from_f64(self.dependent.class_factor(frames, class));
+        if let Some((_, independent)) = &self.law {
+            value -=
+                self.slopes(angle, slide).0 * T::from_f64(independent.class_factor(frames, class));
+        }
+        value
+    }
+
+    /// ∂Φ/∂ of a slide's travel.
+    pub(crate) fn slide_derivative<T: Scalar>(&self, one: usize, angle: &[T], slide: &[T]) -> T {
+        let mut value = T::from_f64(self.dependent.slide_factor(one));
+        if let Some((_, independent)) = &self.law {
+            value -= self.slopes(angle, slide).0 * T::from_f64(independent.slide_factor(one));
+        }
+        value
+    }
+}
+
+/// The law and its derivatives at the value of its argument.
+fn law_derivatives<T: Scalar>(
+    law: &Law,
+    independent: &LinearForm,
+    angle: &[T],
+    slide: &[T],
+) -> [f64; 4] {
+    law.eval(independent.value(angle, slide).value())
+}

@@ -1,0 +1,297 @@
+//! Which bodies have a common orientation. Bodies joined by a prismatic joint keep their angle to one another;
+//! an angular actuator prescribes it. So orientations need fewer unknowns than there are bodies: one per
+//! *class* of bodies whose relative angles are known once the actuators' coordinates are.
+
+use crate::error::StructureError;
+use crate::mechanism::ActuatorId;
+use crate::plane::Vec2;
+use crate::structure::lower::{ActuatedCoordinate, KinematicPair, Lowered, Owner, PairKind};
+
+/// What determines the rotation of a frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RotationSource {
+    /// The ground's frame: it does not rotate.
+    Ground,
+    /// The first frame of a class: its angle is an unknown.
+    Unknown,
+    /// Rotated from another frame by an actuator's coordinate, times `sign`.
+    Actuated {
+        /// The frame it is turned from (a smaller index).
+        parent: usize,
+        /// The actuator whose coordinate turns it.
+        actuator: usize,
+        /// +1 or −1.
+        sign: f64,
+    },
+}
+
+/// A frame: an orientation that one or more bodies share, up to constant offsets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Frame {
+    /// What determines its rotation.
+    pub rotation_source: RotationSource,
+    /// Its class; class 0 is the ground's, where every angle is known.
+    pub orientation_class: usize,
+}
+
+/// Orientation of a body: its frame's rotation times a constant one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Orientation {
+    /// Index of the frame.
+    pub frame: usize,
+    /// Constant rotation (cos, sin) from the frame to the body.
+    pub offset: Vec2,
+}
+
+/// What fixes the angle between two bodies of one class.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AngularConstraintSource {
+    /// A slide or a weld, by its moment: index of the pair.
+    Pair(usize),
+    /// An angular actuator, by its action.
+    Actuator(ActuatorId),
+}
+
+/// A body whose angle to another one is fixed or prescribed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AngularConstraint {
+    /// The body.
+    pub body: usize,
+    /// The other body, which comes earlier.
+    pub reference_body: usize,
+    /// What fixes or prescribes the angle.
+    pub source: AngularConstraintSource,
+    /// Whether `body` is the first-named of the two.
+    pub body_is_first: bool,
+}
+
+/// The orientations of all bodies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frames {
+    /// All frames; frame 0 is the ground's, an actuated frame comes after the one it is turned from.
+    pub frames: Vec<Frame>,
+    /// Each body's orientation, by body.
+    pub orientations: Vec<Orientation>,
+    /// The angular constraints, outwards from each class's first body.
+    pub angular_constraints: Vec<AngularConstraint>,
+    /// Pairs that fix an angle which others fix already: their moments are not determinate.
+    pub redundant_pairs: Vec<usize>,
+    /// Number of classes, the ground's included.
+    pub orientation_classes: usize,
+    /// The bodies of each class.
+    pub class_bodies: Vec<Vec<usize>>,
+}
+
+/// Two chains of axes give one angle to this rounding, rad.
+const SAME_ANGLE: f64 = 1e-9;
+
+impl Frames {
+    /// Finds the frames and classes of a mechanism.
+    ///
+    /// # Errors
+    /// [`StructureError::OverConstrained`] when a slide, a weld or an actuator fixes an angle
+    /// that others fix already, unless it is a slide or a weld that fixes the same angle.
+    pub(crate) fn find(lowered: &Lowered) -> Result<Self, StructureError> {
+        let n = lowered.bodies;
+        let mut neighbours: Vec<Vec<(usize, AngularConstraintSource, bool)>> = vec![Vec::new(); n];
+        let mut connect = |bodies: [usize; 2], source: AngularConstraintSource| {
+            neighbours[bodies[0]].push((bodies[1], source, false));
+            neighbours[bodies[1]].push((bodies[0], source, true));
+        };
+        for (i, coordinate) in lowered.actuated_coordinates.iter().enumerate() {
+            if let ActuatedCoordinate::Angle(bodies) = *coordinate {
+                connect(bodies, AngularConstraintSource::Actuator(ActuatorId(i)));
+            }
+        }
+        for (b, pair) in lowered.pairs.iter().enumerate() {
+            if pair.kind != PairKind::Revolute {
+                connect(pair.bodies, AngularConstraintSource::Pair(b));
+            }
+        }
+
+        let ground_orientation = Orientation {
+            frame: 0,
+            offset: Vec2::IDENTITY,
+        };
+        let mut found = Self {
+            frames: vec![Frame {
+                rotation_source: RotationSource::Ground,
+                orientation_class: 0,
+            }],
+            orientations: vec![ground_orientation; n],
+            angular_constraints: Vec::new(),
+            redundant_pairs: Vec::new(),
+            orientation_classes: 1,
+            class_bodies: Vec::new(),
+        };
+        let mut reached = vec![false; n];
+        let mut visited = VisitedConstraints::new(lowered);
+        for first_body in std::iter::once(lowered.ground).chain(0..n) {
+            if reached[first_body] {
+                continue;
+            }
+            reached[first_body] = true;
+            if first_body != lowered.ground {
+                found.orientations[first_body].frame = found.frames.len();
+                found.frames.push(Frame {
+                    rotation_source: RotationSource::Unknown,
+                    orientation_class: found.orientation_classes,
+                });
+                found.orientation_classes += 1;
+            }
+            let mut queue = vec![first_body];
+            while let Some(body) = queue.pop() {
+                for &(other, source, other_is_first) in &neighbours[body] {
+                    if !visited.is_first_visit(source) {
+                        continue;
+                    }
+                    if reached[other] {
+                        found.add_redundant(
+                            lowered,
+                            body,
+                            other,
+                            source,
+                            other_is_first,
+                            &mut visited,
+                        );
+                        continue;
+                    }
+                    reached[other] = true;
+                    found.orientations[other] = found.constrained_orientation(
+                        lowered,
+                        found.orientations[body],
+                        source,
+                        other_is_first,
+                    );
+                    found.angular_constraints.push(AngularConstraint {
+                        body: other,
+                        reference_body: body,
+                        source,
+                        body_is_first: other_is_first,
+                    });
+                    queue.push(other);
+                }
+            }
+        }
+        visited.finish()?;
+        found.class_bodies = vec![Vec::new(); found.orientation_classes];
+        for (body, orientation) in found.orientations.iter().enumerate() {
+            found.class_bodies[found.frames[orientation.frame].orientation_class].push(body);
+        }
+        Ok(found)
+    }
+
+    /// The orientation of a body that `source` ties to a body of orientation `reference`.
+    fn constrained_orientation(
+        &mut self,
+        lowered: &Lowered,
+        reference: Orientation,
+        source: AngularConstraintSource,
+        is_first: bool,
+    ) -> Orientation {
+        match source {
+            AngularConstraintSource::Pair(b) => Orientation {
+                frame: reference.frame,
+                offset: offset_across(&lowered.pairs[b], reference.offset, is_first),
+            },
+            AngularConstraintSource::Actuator(a) => {
+                let class = self.frames[reference.frame].orientation_class;
+                self.frames.push(Frame {
+                    rotation_source: RotationSource::Actuated {
+                        parent: reference.frame,
+                        actuator: a.0,
+                        sign: if is_first { -1.0 } else { 1.0 },
+                    },
+                    orientation_class: class,
+                });
+                Orientation {
+                    frame: self.frames.len() - 1,
+                    offset: reference.offset,
+                }
+            }
+        }
+    }
+
+    /// Notes a constraint between two bodies whose angle is fixed already.
+    fn add_redundant(
+        &mut self,
+        lowered: &Lowered,
+        body: usize,
+        other: usize,
+        source: AngularConstraintSource,
+        other_is_first: bool,
+        visited: &mut VisitedConstraints,
+    ) {
+        let (orientation, other_orientation) = (self.orientations[body], self.orientations[other]);
+        if let AngularConstraintSource::Pair(b) = source
+            && orientation.frame == other_orientation.frame
+        {
+            let required = offset_across(&lowered.pairs[b], orientation.offset, other_is_first);
+            if (required - other_orientation.offset).norm() < SAME_ANGLE {
+                self.redundant_pairs.push(b);
+                return;
+            }
+        }
+        visited.conflicting.push(match source {
+            AngularConstraintSource::Pair(b) => lowered.pairs[b].owner,
+            AngularConstraintSource::Actuator(a) => Owner::Actuator(a),
+        });
+    }
+}
+
+/// The constant rotation of the other body of a pair, from that of one of them.
+fn offset_across(pair: &KinematicPair, offset: Vec2, other_is_first: bool) -> Vec2 {
+    match pair.kind {
+        PairKind::Revolute => offset,
+        // Both axes point the same way: θ₁ + α₁ = θ₂ + α₂.
+        PairKind::Prismatic { axes, .. } => {
+            let (other, axis) = if other_is_first {
+                (axes[0], axes[1])
+            } else {
+                (axes[1], axes[0])
+            };
+            offset.rotate(axis).rotate_inverse(other)
+        }
+        PairKind::Rigid(angle) if other_is_first => offset.rotate_inverse(angle),
+        PairKind::Rigid(angle) => offset.rotate(angle),
+    }
+}
+
+/// The constraints visited so far, and the owners of those that contradict others.
+struct VisitedConstraints {
+    pairs: Vec<bool>,
+    actuators: Vec<bool>,
+    conflicting: Vec<Owner>,
+}
+
+impl VisitedConstraints {
+    fn new(lowered: &Lowered) -> Self {
+        Self {
+            pairs: vec![false; lowered.pairs.len()],
+            actuators: vec![false; lowered.actuated_coordinates.len()],
+            conflicting: Vec::new(),
+        }
+    }
+
+    /// Whether the constraint is visited for the first time.
+    fn is_first_visit(&mut self, source: AngularConstraintSource) -> bool {
+        let visited = match source {
+            AngularConstraintSource::Pair(b) => &mut self.pairs[b],
+            AngularConstraintSource::Actuator(a) => &mut self.actuators[a.0],
+        };
+        !std::mem::replace(visited, true)
+    }
+
+    fn finish(self) -> Result<(), StructureError> {
+        if self.conflicting.is_empty() {
+            return Ok(());
+        }
+        let redundant_count = self.conflicting.len();
+        let (joints, actuators) = Lowered::owners(self.conflicting);
+        Err(StructureError::OverConstrained {
+            redundant_count,
+            joints,
+            actuators,
+        })
+    }
+}

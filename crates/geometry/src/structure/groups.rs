@@ -1,0 +1,385 @@
+//! The order in which a mechanism is solved. Each equation is matched with one unknown it can
+//! determine; equations that need each other's unknowns form a *group* (an Assur group), solved
+//! together, after the groups it depends on. Matching and components are iterative: a chain of
+//! ten thousand loops must not overflow the stack.
+
+use crate::error::StructureError;
+use crate::structure::coupling::CouplingEquation;
+use crate::structure::frames::Frames;
+use crate::structure::lower::Lowered;
+use crate::structure::tree::{LoopJoint, Tree};
+use std::collections::VecDeque;
+
+/// An unknown of the position problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Unknown {
+    /// The angle of a class of bodies (never class 0).
+    ClassAngle(usize),
+    /// The travel of a slide that nothing drives.
+    SlideTravel(usize),
+}
+
+/// Unknowns that are solved together, and the equations that determine them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Group {
+    /// The unknowns.
+    pub unknowns: Vec<Unknown>,
+    /// Indices of the loops.
+    pub loops: Vec<usize>,
+    /// Indices of the couplings.
+    pub couplings: Vec<usize>,
+    /// Number of equations: more than unknowns where some are redundant.
+    pub rows: usize,
+}
+
+/// An equation, or one of a loop's two.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Equation {
+    Loop(usize),
+    Coupling(usize),
+}
+
+const UNMATCHED: usize = usize::MAX;
+
+/// The parts from which the order is found.
+pub(crate) struct PositionProblem<'a> {
+    pub(crate) lowered: &'a Lowered,
+    pub(crate) frames: &'a Frames,
+    pub(crate) tree: &'a Tree,
+    pub(crate) loops: &'a [LoopJoint],
+    pub(crate) couplings: &'a [CouplingEquation],
+    /// By slide: the actuator that drives it.
+    pub(crate) actuated_slides: &'a [Option<usize>],
+}
+
+/// Orders the equations into groups. With `allow_redundant`, equations without an unknown of their own
+/// are taken as redundant to those they depend on, and are solved together with them.
+///
+/// # Errors
+/// [`StructureError::UnderActuated`] and [`StructureError::OverConstrained`] when unknowns and
+/// equations do not match one to one.
+pub(crate) fn order_groups(
+    problem: &PositionProblem<'_>,
+    allow_redundant: bool,
+) -> Result<Vec<Group>, StructureError> {
+    let (equations, dependencies, evaluated_with) = problem.equations();
+    let classes = problem.frames.orientation_classes - 1;
+    let unknowns = classes + problem.tree.slide_pairs.len();
+    let (of_equation, of_unknown) = match_equations(&dependencies, unknowns);
+    let is_actuated = |u: usize| u >= classes && problem.actuated_slides[u - classes].is_some();
+    let undetermined: Vec<usize> = (0..unknowns)
+        .filter(|&u| of_unknown[u] == UNMATCHED && !is_actuated(u))
+        .collect();
+    let redundant: Vec<usize> = (0..equations.len())
+        .filter(|&e| of_equation[e] == UNMATCHED)
+        .collect();
+    if !redundant.is_empty() && !allow_redundant {
+        let owners = redundant.iter().map(|&e| match equations[e] {
+            Equation::Loop(l) => problem.lowered.pairs[problem.loops[l].pair].owner,
+            Equation::Coupling(r) => problem.couplings[r].owner,
+        });
+        let (joints, actuators) = Lowered::owners(owners);
+        return Err(StructureError::OverConstrained {
+            redundant_count: redundant.len(),
+            joints,
+            actuators,
+        });
+    }
+    if !undetermined.is_empty() {
+        let bodies = undetermined.iter().flat_map(|&u| problem.bodies_of(u));
+        return Err(StructureError::UnderActuated {
+            degrees_of_freedom: problem.lowered.actuated_coordinates.len() + undetermined.len(),
+            actuators: problem.lowered.actuated_coordinates.len(),
+            bodies: problem.lowered.mechanism_bodies(bodies),
+            redundant_joints: Vec::new(),
+        });
+    }
+    // Classes with which an equation is evaluated come before it, even if it does not depend on them.
+    let mut before = dependencies.clone();
+    for (before, evaluated_with) in before.iter_mut().zip(evaluated_with) {
+        before.extend(evaluated_with);
+    }
+    let groups = strong_components(&of_equation, &before, &of_unknown);
+    let groups = absorb_redundant(groups, &redundant, &dependencies, &of_unknown);
+    let as_unknown = |u: usize| {
+        if u < classes {
+            Unknown::ClassAngle(u + 1)
+        } else {
+            Unknown::SlideTravel(u - classes)
+        }
+    };
+    let group = |members: Vec<usize>| {
+        let rows = members.len();
+        let mut unknowns: Vec<Unknown> = members
+            .iter()
+            .filter(|&&e| of_equation[e] != UNMATCHED)
+            .map(|&e| as_unknown(of_equation[e]))
+            .collect();
+        unknowns.sort_unstable();
+        let (mut loops, mut couplings) = (Vec::new(), Vec::new());
+        for e in members {
+            match equations[e] {
+                Equation::Loop(l) => loops.push(l),
+                Equation::Coupling(r) => couplings.push(r),
+            }
+        }
+        loops.sort_unstable();
+        loops.dedup();
+        couplings.sort_unstable();
+        Group {
+            unknowns,
+            loops,
+            couplings,
+            rows,
+        }
+    };
+    Ok(groups.into_iter().map(group).collect())
+}
+
+impl PositionProblem<'_> {
+    /// Every equation; the unknowns it depends on: classes first (class c is number c − 1), then
+    /// slides; and the classes with which it is evaluated, though their angle cancels.
+    fn equations(&self) -> (Vec<Equation>, Vec<Vec<usize>>, Vec<Vec<usize>>) {
+        let (mut equations, mut dependencies, mut evaluated_with) =
+            (Vec::new(), Vec::new(), Vec::new());
+        for (l, one) in self.loops.iter().enumerate() {
+            let (unknowns, cancelled) = self.unknowns_of(one);
+            // Two equations for a loop, one where it closes along a normal only.
+            if one.axis.is_none() {
+                equations.push(Equation::Loop(l));
+                dependencies.push(unknowns.clone());
+                evaluated_with.push(Vec::new());
+            }
+            equations.push(Equation::Loop(l));
+            dependencies.push(unknowns);
+            evaluated_with.push(cancelled);
+        }
+        for (r, coupling) in self.couplings.iter().enumerate() {
+            equations.push(Equation::Coupling(r));
+            let classes: Vec<usize> = coupling
+                .classes(self.frames)
+                .iter()
+                .map(|c| c - 1)
+                .collect();
+            let named = coupling
+                .frames()
+                .map(|f| self.frames.frames[f].orientation_class);
+            let named = named.filter(|&c| c > 0).map(|c| c - 1);
+            evaluated_with.push(named.filter(|c| !classes.contains(c)).collect());
+            let slides = coupling.slides().into_iter();
+            let slides = slides.filter(|&s| self.actuated_slides[s].is_none());
+            let slides = slides.map(|s| self.frames.orientation_classes - 1 + s);
+            dependencies.push(classes.into_iter().chain(slides).collect());
+        }
+        (equations, dependencies, evaluated_with)
+    }
+
+    fn unknowns_of(&self, one: &LoopJoint) -> (Vec<usize>, Vec<usize>) {
+        let class = |frame: usize| self.frames.frames[frame].orientation_class;
+        let rotating = one.vectors.iter().map(|a| a.frame);
+        let sliding = one.slides.iter().map(|(_, a)| a.frame);
+        let mut found: Vec<usize> = rotating
+            .chain(sliding)
+            .chain(one.axis.iter().map(|a| a.frame))
+            .map(class)
+            .filter(|&c| c > 0)
+            .map(|c| c - 1)
+            .collect();
+        found.sort_unstable();
+        found.dedup();
+        // A common rotation does not change the distance from the axis: a loop of one class alone cannot determine
+        // its angle.
+        let all_one_class = one.axis.is_some_and(|axis| {
+            let same = |frame: usize| class(frame) == class(axis.frame);
+            one.vectors.iter().all(|a| same(a.frame))
+                && one.slides.iter().all(|(_, a)| same(a.frame))
+        });
+        let mut cancelled = Vec::new();
+        if all_one_class {
+            std::mem::swap(&mut found, &mut cancelled);
+        }
+        let slides = one.slides.iter().map(|&(s, _)| s);
+        found.extend(
+            slides
+                .filter(|&s| self.actuated_slides[s].is_none())
+                .map(|s| self.frames.orientation_classes - 1 + s),
+        );
+        (found, cancelled)
+    }
+
+    /// The bodies whose position depends on an unknown.
+    fn bodies_of(&self, u: usize) -> Vec<usize> {
+        let classes = self.frames.orientation_classes - 1;
+        if u < classes {
+            self.frames.class_bodies[u + 1].clone()
+        } else {
+            bodies_of_slide(self.tree, u - classes)
+        }
+    }
+}
+
+/// The bodies that a slide connects with their parents.
+pub(crate) fn bodies_of_slide(tree: &Tree, slide: usize) -> Vec<usize> {
+    let tree_joints = tree.joints.iter();
+    tree_joints
+        .filter(|c| c.slide.is_some_and(|(s, _)| s == slide))
+        .map(|c| c.body)
+        .collect()
+}
+
+/// Adds each redundant equation to the group of everything that it depends on.
+fn absorb_redundant(
+    groups: Vec<Vec<usize>>,
+    redundant: &[usize],
+    dependencies: &[Vec<usize>],
+    of_unknown: &[usize],
+) -> Vec<Vec<usize>> {
+    if redundant.is_empty() {
+        return groups;
+    }
+    // By equation: the redundant equation whose group it joins.
+    let mut joins = vec![UNMATCHED; dependencies.len()];
+    for &start in redundant {
+        let mut reached = vec![start];
+        let mut queue = vec![start];
+        let mut visited = vec![false; dependencies.len()];
+        visited[start] = true;
+        while let Some(e) = queue.pop() {
+            for other in dependencies[e].iter().map(|&u| of_unknown[u]) {
+                if !std::mem::replace(&mut visited[other], true) {
+                    reached.push(other);
+                    queue.push(other);
+                }
+            }
+        }
+        let others: Vec<usize> = reached.iter().map(|&e| joins[e]).collect();
+        for join in &mut joins {
+            if *join != UNMATCHED && others.contains(join) {
+                *join = start;
+            }
+        }
+        for e in reached {
+            joins[e] = start;
+        }
+    }
+    // The whole depends on nothing outside it, so it can come where its first part does.
+    let mut order: Vec<Vec<usize>> = Vec::new();
+    let mut position: Vec<Option<usize>> = vec![None; dependencies.len()];
+    for group in groups {
+        match joins[group[0]] {
+            UNMATCHED => order.push(group),
+            join => match position[join] {
+                Some(at) => order[at].extend(group),
+                None => {
+                    position[join] = Some(order.len());
+                    order.push(group);
+                }
+            },
+        }
+    }
+    for &e in redundant {
+        match position[joins[e]] {
+            Some(at) => order[at].push(e),
+            // An equation that depends on no unknown at all: a group of its own.
+            None => {
+                position[joins[e]] = Some(order.len());
+                order.push(vec![e]);
+            }
+        }
+    }
+    order
+}
+
+/// Matches equations with unknowns, by augmenting paths found breadth first.
+fn match_equations(dependencies: &[Vec<usize>], unknowns: usize) -> (Vec<usize>, Vec<usize>) {
+    let mut of_equation = vec![UNMATCHED; dependencies.len()];
+    let mut of_unknown = vec![UNMATCHED; unknowns];
+    let mut visited = vec![UNMATCHED; unknowns];
+    let mut from = vec![UNMATCHED; unknowns];
+    let mut queue = VecDeque::new();
+    for start in 0..dependencies.len() {
+        queue.clear();
+        queue.push_back(start);
+        let mut end = UNMATCHED;
+        'search: while let Some(e) = queue.pop_front() {
+            for &u in &dependencies[e] {
+                if visited[u] == start {
+                    continue;
+                }
+                visited[u] = start;
+                from[u] = e;
+                if of_unknown[u] == UNMATCHED {
+                    end = u;
+                    break 'search;
+                }
+                queue.push_back(of_unknown[u]);
+            }
+        }
+        while end != UNMATCHED {
+            let e = from[end];
+            let next = of_equation[e];
+            of_equation[e] = end;
+            of_unknown[end] = e;
+            end = next;
+        }
+    }
+    (of_equation, of_unknown)
+}
+
+/// Strongly connected components of "this equation needs the unknown that one determines",
+/// dependencies first (Tarjan 1972, with the recursion on an explicit stack).
+fn strong_components(
+    of_equation: &[usize],
+    dependencies: &[Vec<usize>],
+    of_unknown: &[usize],
+) -> Vec<Vec<usize>> {
+    let n = dependencies.len();
+    let mut index = vec![UNMATCHED; n];
+    let mut low = vec![0; n];
+    let mut on_stack = vec![false; n];
+    let mut stack = Vec::new();
+    let mut path: Vec<(usize, usize)> = Vec::new();
+    let mut next = 0;
+    let mut groups = Vec::new();
+    for root in 0..n {
+        if index[root] != UNMATCHED || of_equation[root] == UNMATCHED {
+            continue;
+        }
+        path.push((root, 0));
+        while let Some(&mut (e, ref mut step)) = path.last_mut() {
+            if *step == 0 && index[e] == UNMATCHED {
+                index[e] = next;
+                low[e] = next;
+                next += 1;
+                stack.push(e);
+                on_stack[e] = true;
+            }
+            if let Some(&u) = dependencies[e].get(*step) {
+                *step += 1;
+                let other = of_unknown[u];
+                if index[other] == UNMATCHED {
+                    path.push((other, 0));
+                } else if on_stack[other] {
+                    low[e] = low[e].min(index[other]);
+                }
+                continue;
+            }
+            path.pop();
+            if let Some(&(caller, _)) = path.last() {
+                low[caller] = low[caller].min(low[e]);
+            }
+            if low[e] == index[e] {
+                let mut group = Vec::new();
+                while let Some(member) = stack.pop() {
+                    on_stack[member] = false;
+                    group.push(member);
+                    if member == e {
+                        break;
+                    }
+                }
+                groups.push(group);
+            }
+        }
+    }
+    groups
+}

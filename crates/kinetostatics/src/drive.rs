@@ -1,0 +1,98 @@
+//! The plain data of drives: an applied force, a direct-current motor, a speed controller.
+//!
+//! A drive is a load along a coordinate s whose magnitude ([`Magnitude::External`]) is computed by the
+//! equation of motion, since it may have a state of its own:
+//!
+//! ```text
+//! applied force      τ = F(t, …)
+//! motor              L di/dt = u − R i − k N ṡ,    τ = N k i − N² J s̈              (1)
+//! speed controller   τ = P e + I ∫e dt,    e = w − ṡ,    limited to ± limit          (2)
+//! ```
+//!
+//! Without inductance the current of (1) follows the voltage at once, so that the motor's torque falls
+//! linearly with its speed. A controller at its limit stops integrating an error that would drive it further
+//! beyond (anti-windup).
+
+use crate::load::{Load, LoadKind, Magnitude};
+use dwell_geometry::{Coordinate, Mechanism};
+
+/// What drives a coordinate s: an actuator's or any other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drive {
+    /// The name used in tables.
+    pub name: String,
+    /// The coordinate s.
+    pub coordinate: Coordinate,
+    /// The kind of drive, with its data.
+    pub kind: DriveKind,
+}
+
+impl Drive {
+    /// The load by which it acts on the mechanism.
+    ///
+    /// # Errors
+    /// A message if the mechanism does not have its coordinate.
+    pub fn load(&self, mechanism: &Mechanism) -> Result<Load, &'static str> {
+        let kind = LoadKind::along(mechanism, self.coordinate);
+        Ok(Load {
+            name: self.name.clone(),
+            kind: kind.ok_or(Self::UNKNOWN_COORDINATE)?,
+            magnitude: Magnitude::External(self.kind.input().signals().to_vec()),
+        })
+    }
+
+    /// The message of a drive whose coordinate the mechanism does not have.
+    pub const UNKNOWN_COORDINATE: &'static str = "it drives a coordinate that is not there";
+}
+
+/// The kind of a drive.
+#[derive(Debug, Clone, PartialEq)]
+pub enum DriveKind {
+    /// A given couple or force on the coordinate, N·m or N.
+    AppliedForce(Magnitude),
+    /// A direct-current motor behind a gear.
+    Motor(Motor),
+    /// A proportional-integral controller of the coordinate's speed.
+    SpeedController(SpeedController),
+}
+
+impl DriveKind {
+    /// Its input: the force, the voltage or the reference speed.
+    pub fn input(&self) -> &Magnitude {
+        match self {
+            Self::AppliedForce(magnitude) => magnitude,
+            Self::Motor(motor) => &motor.voltage,
+            Self::SpeedController(controller) => &controller.reference_speed,
+        }
+    }
+}
+
+/// A direct-current motor behind a gear, eq. (1).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motor {
+    /// Voltage u, V.
+    pub voltage: Magnitude,
+    /// Torque constant k, N·m/A = V·s/rad.
+    pub torque_constant: f64,
+    /// Resistance R, Ω.
+    pub resistance: f64,
+    /// Inductance L, H; zero: the current follows at once.
+    pub inductance: f64,
+    /// Revolutions of the motor per revolution of the coordinate, N (rad/m for a length).
+    pub gear_ratio: f64,
+    /// Moment of inertia of the rotor, J, kg m².
+    pub rotor_inertia: f64,
+}
+
+/// A proportional-integral speed controller, eq. (2).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpeedController {
+    /// The reference speed w, rad/s or m/s.
+    pub reference_speed: Magnitude,
+    /// P, N·m·s/rad or N·s/m.
+    pub proportional_gain: f64,
+    /// I, N·m/rad or N/m.
+    pub integral_gain: f64,
+    /// Largest force, N·m or N.
+    pub limit: f64,
+}

@@ -1,0 +1,313 @@
+//! The loads of a model: checked, and evaluated at a state of motion.
+
+use super::signal::{SignalWorkspace, compile_signals};
+use super::wrench::load_ends;
+use super::{
+    AppliedWrench, CompiledSignal, ForceSource, Load, LoadKind, LoadState, Magnitude,
+    find_couple_points,
+};
+use crate::error::{KinetostaticsError, LoadError};
+use crate::mass::Mass;
+use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::{BodyId, Mechanism, Plan, PositionError, Vec2};
+use dwell_numerics::Scalar;
+
+/// The loads of a model.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct CompiledLoads {
+    pub(crate) loads: Vec<Load>,
+    /// By load: what its magnitude depends on.
+    pub(crate) compiled_signals: Vec<Vec<CompiledSignal>>,
+    /// By load: where a couple between two bodies acts on each.
+    couple_points: Vec<[Vec2; 2]>,
+    /// The bodies that have weight, with mass and centre.
+    weighted_bodies: Vec<(BodyId, Mass)>,
+}
+
+impl CompiledLoads {
+    pub(crate) fn compile(
+        mechanism: &Mechanism,
+        plan: &Plan,
+        masses: &[Mass],
+        loads: Vec<Load>,
+    ) -> Result<Self, LoadError> {
+        let mut signals = Vec::with_capacity(loads.len());
+        for (i, load) in loads.iter().enumerate() {
+            let wrong = |what| LoadError { load: i, what };
+            validate_load(mechanism, load).map_err(wrong)?;
+            signals.push(compile_signals(mechanism, &load.magnitude).map_err(wrong)?);
+        }
+        let couple_points = loads.iter().map(|load| match load.kind {
+            LoadKind::Torque { bodies }
+            | LoadKind::TorsionSpring { bodies, .. }
+            | LoadKind::RotationalDamper { bodies } => find_couple_points(mechanism, plan, bodies),
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => [Vec2::ZERO; 2],
+        });
+        let couple_points = couple_points.collect();
+        let weight = |body: BodyId| {
+            let mass = masses.get(body.0).copied()?;
+            (mass.mass > 0.0).then_some((body, mass))
+        };
+        let weighted_bodies = plan
+            .moving_bodies()
+            .iter()
+            .filter_map(|c| weight(BodyId(c.body)));
+        Ok(Self {
+            loads,
+            compiled_signals: signals,
+            couple_points,
+            weighted_bodies: weighted_bodies.collect(),
+        })
+    }
+
+    pub(crate) fn state<T: Scalar>(&self, plan: &Plan) -> LoadState<T> {
+        let bodies = plan.frames().orientations.len();
+        let wrench_counts = self.loads.iter().map(|load| match load.kind {
+            LoadKind::Gravity { .. } => self.weighted_bodies.len(),
+            LoadKind::Force { .. } => 1,
+            LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => 2,
+        });
+        LoadState {
+            magnitude: vec![T::from_f64(0.0); self.loads.len()],
+            wrenches: Vec::with_capacity(wrench_counts.sum()),
+            gravity: Vec2::zero(),
+            force: vec![Vec2::zero(); bodies],
+            moment: vec![T::from_f64(0.0); bodies],
+            subtree_force: vec![Vec2::zero(); plan.moving_bodies().len()],
+            signal_workspace: SignalWorkspace::new(
+                self.compiled_signals
+                    .iter()
+                    .map(Vec::len)
+                    .max()
+                    .unwrap_or(0),
+            ),
+        }
+    }
+
+    /// The magnitudes at time `t` (s). Friction is zero until its reactions are known; an external magnitude
+    /// keeps its value.
+    pub(crate) fn update_magnitudes<T: Scalar>(
+        &self,
+        t: f64,
+        states: &BodyStates<T>,
+        out: &mut LoadState<T>,
+    ) -> Result<(), KinetostaticsError> {
+        if T::LANES > 1 && !self.loads.is_empty() {
+            // Laws, dry friction and slack springs decide by one value.
+            return Err(PositionError::LanesDiverge { q: f64::NAN }.into());
+        }
+        for (i, load) in self.loads.iter().enumerate() {
+            if matches!(load.magnitude, Magnitude::External(_)) {
+                continue;
+            }
+            let magnitude = load.magnitude.eval_at_state(
+                t,
+                &self.compiled_signals[i],
+                states,
+                &mut out.signal_workspace,
+            );
+            if !magnitude.value().is_finite() {
+                return Err(KinetostaticsError::MagnitudeNotFinite { load: i });
+            }
+            out.magnitude[i] = magnitude;
+        }
+        Ok(())
+    }
+
+    /// The wrenches of all loads at the magnitudes in `out`.
+    pub(crate) fn update_wrenches<T: Scalar>(
+        &self,
+        states: &BodyStates<T>,
+        out: &mut LoadState<T>,
+    ) -> Result<(), KinetostaticsError> {
+        out.wrenches.clear();
+        out.gravity = Vec2::zero();
+        for (i, load) in self.loads.iter().enumerate() {
+            self.add_wrenches(i, load.kind, out.magnitude[i], states, out)?;
+        }
+        out.sum_by_body();
+        Ok(())
+    }
+
+    /// The wrenches of one load alone at magnitude one; of a damper, at one unit of resistance.
+    pub(crate) fn unit_wrenches<T: Scalar>(
+        &self,
+        load: usize,
+        states: &BodyStates<T>,
+        out: &mut LoadState<T>,
+    ) -> Result<(), KinetostaticsError> {
+        out.wrenches.clear();
+        out.gravity = Vec2::zero();
+        let (kind, sign) = match self.loads[load].kind {
+            LoadKind::RotationalDamper { bodies } => (LoadKind::Torque { bodies }, -1.0),
+            LoadKind::SlideDamper(guide) => (LoadKind::SlideForce(guide), -1.0),
+            LoadKind::Damper { bodies, points } => {
+                (LoadKind::PointToPointForce { bodies, points }, -1.0)
+            }
+            kind @ (LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)) => (kind, 1.0),
+        };
+        self.add_wrenches(load, kind, T::from_f64(sign), states, out)?;
+        out.sum_by_body();
+        Ok(())
+    }
+
+    fn add_wrenches<T: Scalar>(
+        &self,
+        i: usize,
+        kind: LoadKind,
+        f: T,
+        states: &BodyStates<T>,
+        out: &mut LoadState<T>,
+    ) -> Result<(), KinetostaticsError> {
+        if let LoadKind::Gravity { direction } = kind {
+            let pull = direction.cast() * f;
+            out.gravity += pull;
+            for &(body, Mass { mass, center, .. }) in &self.weighted_bodies {
+                out.wrenches.push(AppliedWrench {
+                    source: ForceSource::Load(i),
+                    body,
+                    force: pull * T::from_f64(mass),
+                    moment_arm: states.body(body).moment_arm(center),
+                    couple: T::from_f64(0.0),
+                });
+            }
+            return Ok(());
+        }
+        let [first, second] = load_ends(kind, f, states, self.couple_points[i])
+            .ok_or(KinetostaticsError::NoDirection { load: i })?
+            .map(|end| {
+                end.map(|(body, force, moment_arm, couple)| AppliedWrench {
+                    source: ForceSource::Load(i),
+                    body,
+                    force,
+                    moment_arm,
+                    couple,
+                })
+            });
+        out.wrenches.extend(first.into_iter().chain(second));
+        Ok(())
+    }
+
+    /// The potential energy of a load, J, where it has one.
+    pub(crate) fn potential_energy(&self, load: usize, states: &BodyStates) -> Option<f64> {
+        let Load {
+            kind,
+            magnitude: Magnitude::Constant(f),
+            ..
+        } = self.loads.get(load)?
+        else {
+            return None;
+        };
+        match *kind {
+            LoadKind::Gravity { direction } => {
+                let heights = self.weighted_bodies.iter().map(|&(body, mass)| {
+                    mass.mass * states.point(body, mass.center).position.dot(direction)
+                });
+                Some(-f * heights.sum::<f64>())
+            }
+            LoadKind::Force {
+                body,
+                point,
+                direction,
+                body_fixed: false,
+            } => Some(-f * states.point(body, point).position.dot(direction)),
+            LoadKind::Spring {
+                bodies,
+                points,
+                free_length: free,
+            } => {
+                let stretch = states.separation(bodies, points).length - free;
+                Some(0.5 * f * stretch * stretch)
+            }
+            LoadKind::TorsionSpring {
+                bodies,
+                free_angle: free,
+            } => {
+                let twist = states.angle(bodies)[0] - free;
+                Some(0.5 * f * twist * twist)
+            }
+            LoadKind::Force {
+                body_fixed: true, ..
+            }
+            | LoadKind::Torque { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => None,
+        }
+    }
+}
+
+/// Refuses a load that does not fit the mechanism.
+fn validate_load(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str> {
+    let there = |bodies: &[BodyId]| bodies.iter().all(|b| b.0 < mechanism.bodies.len());
+    // A unit vector to rounding, from any way of normalising it.
+    let unit = |v: Vec2| (v.norm() - 1.0).abs() < 1e-9;
+    let finite = |points: &[Vec2]| points.iter().all(|p| p.is_finite());
+    let (bodies, sound): (&[BodyId], bool) = match &load.kind {
+        LoadKind::Gravity { direction } => (&[], unit(*direction)),
+        LoadKind::Force {
+            body,
+            point,
+            direction,
+            ..
+        } => (
+            std::slice::from_ref(body),
+            unit(*direction) && point.is_finite(),
+        ),
+        LoadKind::Torque { bodies } | LoadKind::RotationalDamper { bodies } => (bodies, true),
+        LoadKind::Spring {
+            bodies,
+            points,
+            free_length: free,
+        } => (bodies, finite(points) && free.is_finite() && *free >= 0.0),
+        LoadKind::TorsionSpring {
+            bodies,
+            free_angle: free,
+        } => (bodies, free.is_finite()),
+        LoadKind::Damper { bodies, points } | LoadKind::PointToPointForce { bodies, points } => {
+            (bodies, finite(points))
+        }
+        LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
+            (&guide.bodies, finite(&guide.points) && unit(guide.axis))
+        }
+    };
+    if !there(bodies) {
+        return Err("it acts on a body that does not exist");
+    }
+    if !sound {
+        return Err(
+            "its points and free value must be finite, its direction a unit vector, its free length not negative",
+        );
+    }
+    match load.magnitude {
+        Magnitude::Constant(value) if !value.is_finite() => {
+            Err("its magnitude is not a finite number")
+        }
+        Magnitude::Friction(friction) => friction.validate(mechanism, load.kind),
+        Magnitude::Constant(_)
+        | Magnitude::Law(..)
+        | Magnitude::Expression(..)
+        | Magnitude::External(_) => Ok(()),
+    }
+}

@@ -1,0 +1,90 @@
+//! The friction of a joint, as a magnitude of a load.
+
+use super::LoadKind;
+use dwell_geometry::{Component, JointId, JointKind, Mechanism, Reaction};
+
+/// Coulomb friction in a joint, regularised around zero speed. The load must be a [`LoadKind::Torque`] on the bodies of
+/// a revolute joint or a [`LoadKind::SlideForce`] on those of a prismatic joint or slot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Friction {
+    /// The joint.
+    pub joint: JointId,
+    /// Coefficient of friction µ.
+    pub coefficient: f64,
+    /// The surfaces in contact, with their size.
+    pub contact: FrictionContact,
+    /// Speed ω₀ or v₀ below which the friction fades, rad/s or m/s.
+    pub regularization_speed: f64,
+}
+
+/// The surfaces of a joint that rub on each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FrictionContact {
+    /// The pin of a revolute joint: the couple −µ r |R| tanh(ω/ω₀) on the second body.
+    Pin {
+        /// Radius r, m.
+        radius: f64,
+    },
+    /// The guide of a prismatic joint or slot: the force −µ N tanh(v/v₀) along it, N the sum of the forces that press
+    /// on its ends.
+    Guide {
+        /// Distance of its ends, m; zero where it presses at one point.
+        length: f64,
+    },
+}
+
+impl Friction {
+    /// Why it does not fit a load of this kind in this mechanism.
+    pub(super) fn validate(
+        &self,
+        mechanism: &Mechanism,
+        kind: LoadKind,
+    ) -> Result<(), &'static str> {
+        let Some(joint) = mechanism.joints.get(self.joint.0) else {
+            return Err("its joint does not exist");
+        };
+        let (FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size }) =
+            self.contact;
+        let regularized = self.regularization_speed > 0.0;
+        if !(regularized
+            && [self.coefficient, size]
+                .iter()
+                .all(|n| n.is_finite() && *n >= 0.0))
+        {
+            return Err(
+                "its coefficient of friction and its size must be finite and not negative, its speed positive",
+            );
+        }
+        // Coulomb friction acts on no other pairs of a joint and a load.
+        let fits = match self.contact {
+            FrictionContact::Pin { .. } => {
+                let bodies = joint.bodies;
+                joint.kind == JointKind::Revolute && kind == LoadKind::Torque { bodies }
+            }
+            FrictionContact::Guide { .. } => {
+                let slides = matches!(
+                    joint.kind,
+                    JointKind::Prismatic { .. } | JointKind::Slot { .. }
+                );
+                slides && matches!(kind, LoadKind::SlideForce(g) if g.bodies == joint.bodies)
+            }
+        };
+        if fits {
+            Ok(())
+        } else {
+            Err("its joint is no revolute joint, prismatic joint or slot between its bodies")
+        }
+    }
+
+    /// The reactions it depends on.
+    pub(crate) fn required_reactions(&self, mechanism: &Mechanism) -> Vec<Reaction> {
+        let joint = self.joint;
+        let presses_at_ends =
+            matches!(self.contact, FrictionContact::Guide { length } if length > 0.0);
+        let components = mechanism.components(joint).iter();
+        components
+            .filter(|c| **c != Component::Moment || presses_at_ends)
+            .map(|&component| Reaction { joint, component })
+            .collect()
+    }
+}

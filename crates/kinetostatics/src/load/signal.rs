@@ -1,0 +1,111 @@
+//! The signals that magnitudes depend on, and magnitudes as laws and expressions of them.
+
+use super::{Magnitude, Signal};
+use dwell_geometry::Mechanism;
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use dwell_laws::Expression;
+use dwell_numerics::Scalar;
+
+/// A [`Signal`] of a certain mechanism, ready to be evaluated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CompiledSignal {
+    /// Time, s.
+    Time,
+    /// A coordinate, rad or m.
+    Value(CoordinateFunction),
+    /// Its speed, rad/s or m/s.
+    Velocity(CoordinateFunction),
+}
+
+impl CompiledSignal {
+    fn eval<T: Scalar>(self, t: f64, states: &BodyStates<T>) -> T {
+        match self {
+            Self::Time => T::from_f64(t),
+            Self::Value(measured) => states.coordinate(measured)[0],
+            Self::Velocity(measured) => states.coordinate(measured)[1],
+        }
+    }
+}
+
+impl Magnitude {
+    /// The magnitude at time `t` (s) and these states of the bodies.
+    pub(crate) fn eval_at_state<T: Scalar>(
+        &self,
+        t: f64,
+        signals: &[CompiledSignal],
+        states: &BodyStates<T>,
+        workspace: &mut SignalWorkspace<T>,
+    ) -> T {
+        let SignalWorkspace { numbers, values } = workspace;
+        let slots = numbers.iter_mut().zip(values.iter_mut()).zip(signals);
+        for ((number, value), signal) in slots {
+            *number = signal.eval(t, states);
+            *value = number.value();
+        }
+        self.eval(&numbers[..signals.len()], &values[..signals.len()])
+    }
+
+    /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction and external
+    /// magnitudes are zero.
+    pub fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
+        match (self, numbers) {
+            (Self::Constant(value), _) => T::from_f64(*value),
+            (Self::Law(_, law), &[x, ..]) => x.compose(&law.eval(x.value())),
+            (Self::Law(..), []) => T::from_f64(f64::NAN),
+            (Self::Expression(expression, _), numbers) => {
+                eval_expression(expression, numbers, values)
+            }
+            (Self::Friction(_) | Self::External(_), _) => T::from_f64(0.0),
+        }
+    }
+}
+
+/// Working memory for the signals of one magnitude.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct SignalWorkspace<T> {
+    numbers: Vec<T>,
+    values: Vec<f64>,
+}
+
+impl<T: Scalar> SignalWorkspace<T> {
+    pub(crate) fn new(max_signals: usize) -> Self {
+        Self {
+            numbers: vec![T::from_f64(0.0); max_signals],
+            values: vec![0.0; max_signals],
+        }
+    }
+}
+
+/// An expression in any kind of number: its value, plus its gradient times what each variable holds beside its
+/// plain value. That is exact to first order, as a dual number is.
+fn eval_expression<T: Scalar>(expression: &Expression, numbers: &[T], values: &[f64]) -> T {
+    let mut sum = T::from_f64(expression.eval(values));
+    if T::HAS_DERIVATIVES {
+        for (i, &number) in numbers.iter().enumerate() {
+            let rest = number - T::from_f64(values[i]);
+            sum += rest * T::from_f64(expression.derivatives_wrt(values, i)[1]);
+        }
+    }
+    sum
+}
+
+/// The signals of a magnitude.
+pub(crate) fn compile_signals(
+    mechanism: &Mechanism,
+    magnitude: &Magnitude,
+) -> Result<Vec<CompiledSignal>, &'static str> {
+    let signals = magnitude.signals();
+    if let Magnitude::Expression(expression, _) = magnitude
+        && expression.variables().len() > signals.len()
+    {
+        return Err("its expression has more variables than signals");
+    }
+    let unknown = "its magnitude depends on a coordinate that the mechanism does not have";
+    let find = |coordinate| CoordinateFunction::find(mechanism, coordinate).ok_or(unknown);
+    let compile = |signal: &Signal| match *signal {
+        Signal::Time => Ok(CompiledSignal::Time),
+        Signal::Value(coordinate) => find(coordinate).map(CompiledSignal::Value),
+        Signal::Velocity(coordinate) => find(coordinate).map(CompiledSignal::Velocity),
+    };
+    signals.iter().map(compile).collect()
+}

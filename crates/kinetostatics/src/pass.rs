@@ -1,0 +1,51 @@
+//! Recursive inverse dynamics without loads or with them: the accelerations of all bodies, their inertia forces
+//! carried down the spanning tree, the multipliers of the groups, and from these the actuators' actions and the
+//! reactions.
+//!
+//! A pass knows a [`PassModel`] and no more: what a model computes with it is in [`crate::model`].
+
+mod acceleration;
+mod bodies;
+mod recursive_pass;
+mod result;
+mod sources;
+
+pub(crate) use acceleration::{AtRest, GivenMotion, UnitAcceleration, UnitMotions};
+pub(crate) use bodies::{AcceleratedBody, InertialBody};
+pub(crate) use recursive_pass::RecursivePass;
+pub use result::InverseDynamics;
+pub(crate) use sources::ReactionSources;
+
+use crate::mass::Mass;
+use dwell_geometry::{Mechanism, Plan};
+
+/// What a pass reads of a model: the plan, the inertia of the bodies, and where the reactions come from.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PassModel {
+    pub(crate) plan: Plan,
+    pub(crate) inertial_bodies: Vec<InertialBody>,
+    /// The bodies whose origins move and that carry mass, each after the one that carries it.
+    pub(crate) accelerated_bodies: Vec<AcceleratedBody>,
+    /// By frame: moment of inertia of its bodies about their origins, kg m².
+    frame_inertia: Vec<f64>,
+    pub(crate) reaction_sources: ReactionSources,
+}
+
+impl PassModel {
+    /// A pass without reactions, for one mass per body.
+    pub(crate) fn new(mechanism: &Mechanism, plan: Plan, masses: &[Mass]) -> Self {
+        let origin_moves = bodies::moving_origins(&plan);
+        let inertial_bodies = bodies::inertial_bodies(&plan, &origin_moves, masses);
+        let mut frame_inertia = vec![0.0; plan.frames().frames.len()];
+        for body in &inertial_bodies {
+            frame_inertia[body.frame] += body.inertia_about_joint;
+        }
+        Self {
+            accelerated_bodies: bodies::accelerated_bodies(&plan, &origin_moves, &inertial_bodies),
+            inertial_bodies,
+            frame_inertia,
+            reaction_sources: ReactionSources::compile(mechanism, &plan, &[]),
+            plan,
+        }
+    }
+}

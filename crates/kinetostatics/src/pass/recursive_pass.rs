@@ -1,0 +1,424 @@
+//! `N` passes side by side at one pose: from the accelerations of every frame to inertia forces, multipliers,
+//! actuator actions and reactions. All of them share the pose and its factors.
+
+use super::PassModel;
+use super::acceleration::AccelerationInput;
+use crate::load::LoadState;
+use dwell_geometry::{ForceBalance, Pose, Vec2};
+use dwell_numerics::{Scalar, map_array};
+
+/// The results of `N` passes, and their working memory.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct RecursivePass<T, const N: usize> {
+    /// By accelerated body: acceleration of its origin, m/s².
+    origin_acceleration: Vec<[Vec2<T>; N]>,
+    /// By accelerated body: m a of it and of all that it carries, N.
+    inertia_force: Vec<[Vec2<T>; N]>,
+    pub(crate) balance: ForceBalance<T, N>,
+    /// By moving body: the force that the joint that carries it exerts on it, N.
+    pub(crate) joint_forces: Vec<[Vec2<T>; N]>,
+    /// By body: the couple that prismatic joints and actuators must exert on it, N·m.
+    pub(crate) joint_moments: Vec<[T; N]>,
+}
+
+#[inline(always)]
+#[track_caller]
+fn add<V: std::ops::AddAssign, const N: usize>(sum: &mut [V; N], more: [V; N]) {
+    for (sum, more) in sum.iter_mut().zip(more) {
+        *sum += more;
+    }
+}
+
+#[inline(always)]
+#[track_caller]
+fn subtract<V: std::ops::SubAssign + Copy, const N: usize>(sum: &mut [V; N], less: V) {
+    for sum in sum {
+        *sum -= less;
+    }
+}
+
+impl<T: Scalar, const N: usize> RecursivePass<T, N> {
+    pub(crate) fn new(model: &PassModel) -> Self {
+        let bodies = model.plan.moving_bodies().len();
+        let accelerated = model.accelerated_bodies.len();
+        let vector = [Vec2::zero(); N];
+        Self {
+            origin_acceleration: vec![vector; accelerated],
+            inertia_force: vec![vector; accelerated],
+            balance: model.plan.force_balance(),
+            joint_forces: vec![vector; bodies],
+            joint_moments: vec![[T::from_f64(0.0); N]; bodies + 1],
+        }
+    }
+
+    /// Inertia forces, then multipliers, then (where requested reactions need them) the forces and moments in the
+    /// joints of the tree.
+    #[inline(always)]
+    pub(crate) fn evaluate(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        accelerations: impl AccelerationInput<T, N>,
+    ) {
+        self.evaluate_with(model, pose, accelerations, None);
+    }
+
+    /// As [`RecursivePass::evaluate`], with the loads' forces and moments on every body.
+    // Not inlined, so that an evaluation without loads does not contain it.
+    #[inline(never)]
+    pub(crate) fn evaluate_loaded(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        accelerations: impl AccelerationInput<T, N>,
+        loads: &mut LoadState<T>,
+    ) {
+        self.evaluate_with(model, pose, accelerations, Some(loads));
+    }
+
+    #[inline(always)]
+    fn evaluate_with(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        accelerations: impl AccelerationInput<T, N>,
+        mut loads: Option<&mut LoadState<T>>,
+    ) {
+        self.forward_pass(model, pose, accelerations);
+        if model.reaction_sources.needs_joint_forces {
+            self.store_inertia_forces(model, pose, accelerations);
+        }
+        self.backward_pass(model, pose);
+        if let Some(loads) = loads.as_deref_mut() {
+            self.propagate_loads(model, pose, loads);
+        }
+        model.plan.multipliers(pose, &mut self.balance);
+        if model.reaction_sources.needs_joint_forces {
+            self.accumulate_joint_forces(model, pose);
+        }
+        if model.reaction_sources.needs_joint_moments {
+            self.accumulate_joint_moments(model, pose, accelerations);
+            if let Some(loads) = loads {
+                for (couple, &moment) in self.joint_moments.iter_mut().zip(&loads.moment) {
+                    subtract(couple, moment);
+                }
+            }
+            self.transfer_joint_moments(model);
+        }
+    }
+
+    /// Accelerations of the origins, and each body's own inertia force and its moment about its
+    /// origin: Σ m r×a = I α + (Σ m r)×(the origin's acceleration).
+    #[inline(always)]
+    pub(crate) fn forward_pass(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        accelerations: impl AccelerationInput<T, N>,
+    ) {
+        let moments = self.balance.moment.iter_mut().zip(&model.frame_inertia);
+        for (frame, (moment, &inertia)) in moments.enumerate() {
+            *moment = map_array(accelerations.angular_acceleration(frame), |rate| {
+                rate * T::from_f64(inertia)
+            });
+        }
+        for (i, accelerated) in model.accelerated_bodies.iter().enumerate() {
+            let mut acceleration = match accelerated.parent {
+                Some(parent) => self.origin_acceleration[parent],
+                None => [Vec2::zero(); N],
+            };
+            if let Some((vector, frame)) = accelerated.joint_vector {
+                add(
+                    &mut acceleration,
+                    accelerations.vector_acceleration(frame, pose.vector[vector]),
+                );
+            }
+            if let Some((slide, direction)) = accelerated.slide {
+                let along = pose.vector[direction];
+                add(
+                    &mut acceleration,
+                    accelerations.slide_acceleration(slide, accelerated.frame, along),
+                );
+                add(
+                    &mut acceleration,
+                    accelerations
+                        .vector_acceleration(accelerated.frame, along * pose.slide_travel[slide]),
+                );
+            }
+            let mut force = map_array(acceleration, |a| a * T::from_f64(accelerated.mass));
+            if let Some(first_moment) = accelerated.first_moment {
+                let first_moment = first_moment.cast().rotate(pose.rotation[accelerated.frame]);
+                add(
+                    &mut force,
+                    accelerations.vector_acceleration(accelerated.frame, first_moment),
+                );
+                add(
+                    &mut self.balance.moment[accelerated.frame],
+                    map_array(acceleration, |a| first_moment.cross(a)),
+                );
+            }
+            self.origin_acceleration[i] = acceleration;
+            self.inertia_force[i] = force;
+        }
+    }
+
+    /// Carries the inertia forces down the tree: moments on the frames, forces along the slides.
+    #[inline(always)]
+    pub(crate) fn backward_pass(&mut self, model: &PassModel, pose: &Pose<T>) {
+        let ForceBalance {
+            moment,
+            slide_force,
+            ..
+        } = &mut self.balance;
+        slide_force.fill([T::from_f64(0.0); N]);
+        for (i, accelerated) in model.accelerated_bodies.iter().enumerate().rev() {
+            let force = self.inertia_force[i];
+            if let Some(parent) = accelerated.parent {
+                add(&mut self.inertia_force[parent], force);
+            }
+            if let Some((vector, frame)) = accelerated.joint_vector {
+                let vector = pose.vector[vector];
+                add(&mut moment[frame], map_array(force, |f| vector.cross(f)));
+            }
+            if let Some((slide, direction)) = accelerated.slide {
+                let along = pose.vector[direction];
+                let offset = along * pose.slide_travel[slide];
+                slide_force[slide] = map_array(force, |f| along.dot(f));
+                add(
+                    &mut moment[accelerated.frame],
+                    map_array(force, |f| offset.cross(f)),
+                );
+            }
+        }
+    }
+
+    /// Subtracts the loads from what the mechanism must balance, from the outermost body inwards: moments from
+    /// those on the frames, forces from those on the slides, and (where needed) the load on each body from what
+    /// its joint must exert on it. This includes bodies without mass and bodies at rest.
+    #[inline(never)]
+    fn propagate_loads(&mut self, model: &PassModel, pose: &Pose<T>, loads: &mut LoadState<T>) {
+        let moving_bodies = model.plan.moving_bodies();
+        for (i, body) in moving_bodies.iter().enumerate() {
+            let force = loads.force[body.body];
+            loads.subtree_force[i] = force;
+            subtract(
+                &mut self.balance.moment[body.frame],
+                loads.moment[body.body],
+            );
+            if model.reaction_sources.needs_joint_forces {
+                subtract(&mut self.joint_forces[i], force);
+            }
+        }
+        for (i, body) in moving_bodies.iter().enumerate().rev() {
+            let force = loads.subtree_force[i];
+            if let Some(parent) = body.parent {
+                loads.subtree_force[parent] += force;
+            }
+            if let Some(vector) = body.joint_vector {
+                let moment = pose.vector[vector].cross(force);
+                subtract(&mut self.balance.moment[body.parent_frame], moment);
+            }
+            if let Some((slide, direction)) = body.slide {
+                let along = pose.vector[direction];
+                subtract(&mut self.balance.slide_force[slide], along.dot(force));
+                let offset = along * pose.slide_travel[slide];
+                subtract(&mut self.balance.moment[body.frame], offset.cross(force));
+            }
+        }
+    }
+
+    // The rest is for reactions in the tree's joints, and only for the bodies that the requested ones depend on.
+
+    /// Stores each body's own inertia force: the first part of what its joint must exert on it.
+    #[inline(always)]
+    pub(crate) fn store_inertia_forces(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        accelerations: impl AccelerationInput<T, N>,
+    ) {
+        let needed = &model.reaction_sources.joint_force_needed;
+        self.joint_forces.fill([Vec2::zero(); N]);
+        for (accelerated, force) in model.accelerated_bodies.iter().zip(&self.inertia_force) {
+            self.joint_forces[accelerated.moving_body] = *force;
+        }
+        for body in &model.inertial_bodies {
+            if let (true, true, Some(first_moment)) = (
+                body.fixed_origin,
+                needed[body.moving_body],
+                body.first_moment,
+            ) {
+                let first_moment = first_moment.cast().rotate(pose.rotation[body.frame]);
+                self.joint_forces[body.moving_body] =
+                    accelerations.vector_acceleration(body.frame, first_moment);
+            }
+        }
+    }
+
+    /// The force that each joint of the tree exerts on the body it carries, where that is needed: the inertia
+    /// forces of all bodies that it carries, less the forces of the loop joints on them.
+    #[inline(always)]
+    pub(crate) fn accumulate_joint_forces(&mut self, model: &PassModel, pose: &Pose<T>) {
+        let sources = &model.reaction_sources;
+        for (c, ends) in sources.loop_joint_ends.iter().enumerate() {
+            for (end, sign) in ends.iter().zip([1.0, -1.0]) {
+                if let (true, Some(body)) = (sources.end_force_needed(end), end.moving_body) {
+                    let force = self.loop_joint_force(model, pose, c);
+                    add(
+                        &mut self.joint_forces[body],
+                        map_array(force, |f| f * T::from_f64(sign)),
+                    );
+                }
+            }
+        }
+        for (i, body) in model.plan.moving_bodies().iter().enumerate().rev() {
+            if let Some(parent) = body.parent
+                && sources.joint_force_needed[parent]
+            {
+                let force = self.joint_forces[i];
+                add(&mut self.joint_forces[parent], force);
+            }
+        }
+    }
+
+    /// The force of a loop joint's first body on its second, in ground axes.
+    #[inline(always)]
+    pub(crate) fn loop_joint_force(
+        &self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        closure: usize,
+    ) -> [Vec2<T>; N] {
+        let multiplier = self.balance.loop_multiplier[closure];
+        match model.plan.loop_closures()[closure].axis {
+            None => multiplier,
+            Some((axis, _)) => {
+                let normal = pose.vector[axis].perp();
+                map_array(multiplier, |m| normal * m.x)
+            }
+        }
+    }
+
+    /// The couples that prismatic joints and actuators exert, where they are needed: each body's moment balance
+    /// about its origin, before [`Self::transfer_joint_moments`].
+    #[inline(always)]
+    pub(crate) fn accumulate_joint_moments(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        accelerations: impl AccelerationInput<T, N>,
+    ) {
+        self.joint_moments.fill([T::from_f64(0.0); N]);
+        let sources = &model.reaction_sources;
+        let moving_bodies = model.plan.moving_bodies();
+        for body in model
+            .inertial_bodies
+            .iter()
+            .filter(|m| sources.joint_moment_needed[m.body])
+        {
+            let angular_acceleration = accelerations.angular_acceleration(body.frame);
+            self.joint_moments[body.body] = map_array(angular_acceleration, |a| {
+                a * T::from_f64(body.inertia_about_joint)
+            });
+        }
+        for (accelerated, &acceleration) in model
+            .accelerated_bodies
+            .iter()
+            .zip(&self.origin_acceleration)
+        {
+            let body = moving_bodies[accelerated.moving_body].body;
+            if let (true, Some(first_moment)) =
+                (sources.joint_moment_needed[body], accelerated.first_moment)
+            {
+                let first_moment = first_moment.cast().rotate(pose.rotation[accelerated.frame]);
+                add(
+                    &mut self.joint_moments[body],
+                    map_array(acceleration, |a| first_moment.cross(a)),
+                );
+            }
+        }
+        for (c, ends) in sources.loop_joint_ends.iter().enumerate() {
+            for (end, sign) in ends.iter().zip([1.0, -1.0]) {
+                if !sources.joint_moment_needed[end.body] {
+                    continue;
+                }
+                let mut moment_arm = match end.moment_arm {
+                    Some(moment_arm) => moment_arm.cast().rotate(pose.rotation[end.frame]),
+                    None => Vec2::zero(),
+                };
+                if let (true, Some((axis, _))) = (sign > 0.0, model.plan.loop_closures()[c].axis) {
+                    // The force acts at the second body's point on both.
+                    moment_arm += pose.vector[axis] * pose.closure_travel[c];
+                }
+                let force = self.loop_joint_force(model, pose, c);
+                let moment = map_array(force, |f| moment_arm.cross(f) * T::from_f64(sign));
+                add(&mut self.joint_moments[end.body], moment);
+            }
+        }
+        for r in 0..model.plan.couplings() {
+            let multiplier = self.balance.coupling_multiplier[r];
+            model
+                .plan
+                .coupling_angle_derivatives(r, pose, |body, factor| {
+                    add(
+                        &mut self.joint_moments[body],
+                        map_array(multiplier, |m| -(factor * m)),
+                    );
+                });
+        }
+        for (i, body) in moving_bodies.iter().enumerate() {
+            let force = self.joint_forces[i];
+            let parent = sources.parent_body[i];
+            if let (true, Some(moment_arm)) =
+                (sources.joint_moment_needed[parent], body.joint_vector)
+            {
+                let moment_arm = pose.vector[moment_arm];
+                add(
+                    &mut self.joint_moments[parent],
+                    map_array(force, |f| moment_arm.cross(f)),
+                );
+            }
+            if let Some((slide, direction)) = body.slide {
+                // The force acts at the second body's point: the origin of the body itself, or
+                // the joint's point on the one that carries it.
+                let on = if sources.child_is_second[i] {
+                    parent
+                } else {
+                    body.body
+                };
+                if sources.joint_moment_needed[on] {
+                    let offset = pose.vector[direction] * pose.slide_travel[slide];
+                    add(
+                        &mut self.joint_moments[on],
+                        map_array(force, |f| offset.cross(f)),
+                    );
+                }
+            }
+        }
+    }
+
+    /// Transfers each couple to the body against which the constrained body is held.
+    #[inline(always)]
+    pub(crate) fn transfer_joint_moments(&mut self, model: &PassModel) {
+        for constraint in model.plan.frames().angular_constraints.iter().rev() {
+            let couple = self.joint_moments[constraint.body];
+            add(&mut self.joint_moments[constraint.reference_body], couple);
+        }
+    }
+
+    /// An actuator's action on its second body: the sum of the moments on the frames that it turns.
+    #[inline(always)]
+    pub(crate) fn tau(&self, model: &PassModel, actuator: usize) -> [T; N] {
+        if let Some(slide) = model.reaction_sources.actuated_slides[actuator] {
+            return self.balance.slide_force[slide];
+        }
+        let mut sum = [T::from_f64(0.0); N];
+        for &(frame, sign) in &model.reaction_sources.actuated_frames[actuator] {
+            add(
+                &mut sum,
+                map_array(self.balance.moment[frame], |m| m * T::from_f64(sign)),
+            );
+        }
+        sum
+    }
+}

@@ -1,0 +1,31 @@
+//! What a pass finds.
+
+use super::{PassModel, RecursivePass};
+use dwell_geometry::Pose;
+use dwell_numerics::Scalar;
+
+/// The actuators' actions and the requested reactions in one state of motion.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct InverseDynamics<T> {
+    /// By actuator: its action on its second body, N·m; of a length, N, positive when it pushes apart.
+    pub tau: Vec<T>,
+    /// By requested reaction: N or N·m.
+    pub reactions: Vec<T>,
+}
+
+impl<T: Scalar> InverseDynamics<T> {
+    /// Copies them from a pass.
+    pub(crate) fn read_from(
+        &mut self,
+        model: &PassModel,
+        pose: &Pose<T>,
+        pass: &RecursivePass<T, 1>,
+    ) {
+        for (i, tau) in self.tau.iter_mut().enumerate() {
+            *tau = pass.tau(model, i)[0];
+        }
+        for (k, value) in self.reactions.iter_mut().enumerate() {
+            *value = pass.reaction(model, pose, k)[0];
+        }
+    }
+}

@@ -1,0 +1,268 @@
+//! Where each requested reaction comes from: the force in a kinematic pair (a loop joint's multiplier, or the
+//! force in a joint of the tree), the couple that holds two bodies at an angle, or a coupling's multiplier.
+
+use super::{PassModel, RecursivePass};
+use dwell_geometry::frames::{AngularConstraintSource, RotationSource};
+use dwell_geometry::lower::PairKind;
+use dwell_geometry::plan::PairRole;
+use dwell_geometry::{Component, JointKind, Mechanism, Plan, Pose, Reaction, Vec2, vec2};
+use dwell_numerics::{Scalar, map_array};
+
+/// One end of a loop joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LoopJointEnd {
+    pub(crate) body: usize,
+    /// Its index among the moving bodies; none for the ground.
+    pub(crate) moving_body: Option<usize>,
+    pub(crate) frame: usize,
+    /// From the body's origin to the pair's point, in its frame, m; none where they coincide.
+    pub(crate) moment_arm: Option<Vec2>,
+}
+
+/// A direction along which a force is requested.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum ForceDirection {
+    /// The ground's x or y axis, times a sign.
+    X(f64),
+    Y(f64),
+    /// A constant vector in a frame.
+    Frame(usize, Vec2),
+}
+
+impl ForceDirection {
+    /// The component of some forces.
+    #[inline(always)]
+    fn component<T: Scalar, const N: usize>(self, forces: &[Vec2<T>; N], pose: &Pose<T>) -> [T; N] {
+        let direction = match self {
+            Self::X(sign) => vec2(T::from_f64(sign), T::from_f64(0.0)),
+            Self::Y(sign) => vec2(T::from_f64(0.0), T::from_f64(sign)),
+            Self::Frame(frame, local) => local.cast().rotate(pose.rotation[frame]),
+        };
+        map_array(*forces, |force| force.dot(direction))
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum ReactionSource {
+    /// The multiplier of a loop closure that constrains its normal only.
+    Normal(usize),
+    /// A component of the force in a loop joint, by closure.
+    LoopJoint(usize, ForceDirection),
+    /// A component of the force of a tree's joint on the moving body that it carries.
+    TreeJoint(usize, ForceDirection),
+    /// The couple that holds a body at an angle, times a sign.
+    AngularConstraint { body: usize, sign: f64 },
+    /// The multiplier of a coupling.
+    Coupling(usize),
+    /// Constrained by other pairs already: this one exerts nothing.
+    Redundant,
+}
+
+/// The sources of the requested reactions, and the forces and couples that they depend on.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct ReactionSources {
+    sources: Vec<ReactionSource>,
+    pub(crate) needs_joint_forces: bool,
+    pub(crate) needs_joint_moments: bool,
+    /// By moving body: whether the force of its joint is needed. By body: whether its couple is.
+    pub(crate) joint_force_needed: Vec<bool>,
+    pub(crate) joint_moment_needed: Vec<bool>,
+    /// By closure: its two ends.
+    pub(crate) loop_joint_ends: Vec<[LoopJointEnd; 2]>,
+    /// By moving body: the body that carries it.
+    pub(crate) parent_body: Vec<usize>,
+    /// By moving body: whether it is the second body of the joint that carries it.
+    pub(crate) child_is_second: Vec<bool>,
+    /// By actuator: the frames that its coordinate turns, with the sign.
+    pub(crate) actuated_frames: Vec<Vec<(usize, f64)>>,
+    /// By actuator: the slide it drives.
+    pub(crate) actuated_slides: Vec<Option<usize>>,
+}
+
+impl ReactionSources {
+    pub(crate) fn compile(mechanism: &Mechanism, plan: &Plan, reactions: &[Reaction]) -> Self {
+        let tree = plan.tree();
+        let loop_joint_ends = plan.loop_closures().iter().map(|closure| {
+            let pair = &plan.pairs()[closure.pair];
+            [0, 1].map(|i| {
+                let body = pair.bodies[i];
+                let vector = tree.vector_to(plan.frames(), body, pair.points[i]);
+                LoopJointEnd {
+                    body,
+                    moving_body: tree.joint_of_body[body],
+                    frame: vector.frame,
+                    moment_arm: (vector.local != Vec2::ZERO).then_some(vector.local),
+                }
+            })
+        });
+        let second = |c: &dwell_geometry::tree::TreeJoint| plan.pairs()[c.pair].bodies[1] == c.body;
+        let mut found = Self {
+            loop_joint_ends: loop_joint_ends.collect(),
+            parent_body: tree.joints.iter().map(|c| c.parent).collect(),
+            child_is_second: tree.joints.iter().map(second).collect(),
+            actuated_frames: find_actuated_frames(plan),
+            actuated_slides: (0..plan.actuators())
+                .map(|a| plan.slide_of_actuator(a))
+                .collect(),
+            ..Self::default()
+        };
+        for &reaction in reactions {
+            let source = found.source_of(mechanism, plan, reaction);
+            found.sources.push(source);
+        }
+        found.mark_needed(plan);
+        found
+    }
+
+    /// Finds the bodies from whose forces and couples the requested ones are summed.
+    fn mark_needed(&mut self, plan: &Plan) {
+        let carried = plan.moving_bodies();
+        let mut force_needed = vec![false; carried.len()];
+        let mut moment_needed = vec![false; carried.len() + 1];
+        for source in &self.sources {
+            match *source {
+                ReactionSource::TreeJoint(carried, _) => force_needed[carried] = true,
+                ReactionSource::AngularConstraint { body, .. } => moment_needed[body] = true,
+                _ => {}
+            }
+        }
+        // A couple is transferred to the reference body, which is further inwards.
+        for constraint in &plan.frames().angular_constraints {
+            moment_needed[constraint.body] |= moment_needed[constraint.reference_body];
+        }
+        // A couple depends on the forces of the joints at its body; a force on those of all bodies that its body carries.
+        for (i, body) in carried.iter().enumerate() {
+            let joint = [body.body, self.parent_body[i]];
+            force_needed[i] |= joint.iter().any(|&body| moment_needed[body]);
+            force_needed[i] |= body.parent.is_some_and(|parent| force_needed[parent]);
+        }
+        self.needs_joint_forces = force_needed.contains(&true);
+        self.needs_joint_moments = moment_needed.contains(&true);
+        (self.joint_force_needed, self.joint_moment_needed) = (force_needed, moment_needed);
+    }
+
+    /// Whether the force of the joint that carries a loop joint's end is needed.
+    pub(crate) fn end_force_needed(&self, end: &LoopJointEnd) -> bool {
+        end.moving_body
+            .is_some_and(|moving_body| self.joint_force_needed[moving_body])
+    }
+
+    fn source_of(&self, mechanism: &Mechanism, plan: &Plan, reaction: Reaction) -> ReactionSource {
+        let Reaction { joint, component } = reaction;
+        let (pair, coupling) = plan.joint_parts(joint);
+        let kind = mechanism.joints[joint.0].kind;
+        match (component, pair, coupling) {
+            (Component::Tooth | Component::Tangent | Component::Force, _, Some(coupling)) => {
+                ReactionSource::Coupling(coupling)
+            }
+            (Component::Moment, _, Some(coupling)) if matches!(kind, JointKind::Coupling(_)) => {
+                ReactionSource::Coupling(coupling)
+            }
+            (Component::Moment, Some(pair), _) => angular_constraint_moment(plan, pair),
+            (_, Some(pair), _) => self.pair_force(plan, pair, component),
+            _ => ReactionSource::Redundant,
+        }
+    }
+
+    /// A component of the force in a kinematic pair.
+    fn pair_force(&self, plan: &Plan, pair: usize, component: Component) -> ReactionSource {
+        let kinematic_pair = &plan.pairs()[pair];
+        let in_frame = |body: usize, local: Vec2| {
+            let attitude = plan.frames().orientations[body];
+            ForceDirection::Frame(attitude.frame, local.rotate(attitude.offset))
+        };
+        let direction = match (component, kinematic_pair.kind) {
+            (Component::Y, _) => ForceDirection::Y(1.0),
+            (Component::Normal, PairKind::Prismatic { axes, .. }) => {
+                in_frame(kinematic_pair.bodies[0], axes[0].perp())
+            }
+            // The line of a distance is the x axis of its second body.
+            (Component::Axial, _) => in_frame(kinematic_pair.bodies[1], Vec2::IDENTITY),
+            _ => ForceDirection::X(1.0),
+        };
+        let closure = match plan.pair_role(pair) {
+            PairRole::LoopJoint(closure) => closure,
+            PairRole::TreeJoint(moving_body) => {
+                return self.tree_joint_force(moving_body, direction);
+            }
+        };
+        if plan.loop_closures()[closure].axis.is_some() {
+            ReactionSource::Normal(closure)
+        } else {
+            ReactionSource::LoopJoint(closure, direction)
+        }
+    }
+
+    /// A component of the force on a moving body, as the action of its joint's first body.
+    fn tree_joint_force(&self, moving_body: usize, direction: ForceDirection) -> ReactionSource {
+        let sign = if self.child_is_second[moving_body] {
+            1.0
+        } else {
+            -1.0
+        };
+        let signed = match direction {
+            ForceDirection::X(_) => ForceDirection::X(sign),
+            ForceDirection::Y(_) => ForceDirection::Y(sign),
+            ForceDirection::Frame(frame, local) => ForceDirection::Frame(frame, local * sign),
+        };
+        ReactionSource::TreeJoint(moving_body, signed)
+    }
+}
+
+/// The couple in a pair that holds an angle.
+fn angular_constraint_moment(plan: &Plan, pair: usize) -> ReactionSource {
+    let source = AngularConstraintSource::Pair(pair);
+    let constraint = plan
+        .frames()
+        .angular_constraints
+        .iter()
+        .find(|h| h.source == source);
+    constraint.map_or(ReactionSource::Redundant, |constraint| {
+        ReactionSource::AngularConstraint {
+            body: constraint.body,
+            sign: if constraint.body_is_first { -1.0 } else { 1.0 },
+        }
+    })
+}
+
+/// By actuator, the frames it turns, directly or through others.
+fn find_actuated_frames(plan: &Plan) -> Vec<Vec<(usize, f64)>> {
+    let frames = &plan.frames().frames;
+    let mut actuated = vec![Vec::new(); plan.actuators()];
+    for f in 0..frames.len() {
+        let mut at = f;
+        while let RotationSource::Actuated {
+            parent,
+            actuator,
+            sign,
+        } = frames[at].rotation_source
+        {
+            actuated[actuator].push((f, sign));
+            at = parent;
+        }
+    }
+    actuated
+}
+
+impl<T: Scalar, const N: usize> RecursivePass<T, N> {
+    /// The `k`th requested reaction in each pass, N or N·m.
+    #[inline(always)]
+    pub(crate) fn reaction(&self, model: &PassModel, pose: &Pose<T>, k: usize) -> [T; N] {
+        match model.reaction_sources.sources[k] {
+            ReactionSource::Normal(closure) => {
+                map_array(self.balance.loop_multiplier[closure], |m| m.x)
+            }
+            ReactionSource::LoopJoint(closure, direction) => {
+                direction.component(&self.balance.loop_multiplier[closure], pose)
+            }
+            ReactionSource::TreeJoint(moving_body, direction) => {
+                direction.component(&self.joint_forces[moving_body], pose)
+            }
+            ReactionSource::AngularConstraint { body, sign } => {
+                map_array(self.joint_moments[body], |c| c * T::from_f64(sign))
+            }
+            ReactionSource::Coupling(coupling) => self.balance.coupling_multiplier[coupling],
+            ReactionSource::Redundant => [T::from_f64(0.0); N],
+        }
+    }
+}

@@ -1,0 +1,258 @@
+//! The reduced model at many coordinates: several poses side by side in each thread, blocks of them on all
+//! threads. Every value is that of a single evaluation, to the last bit.
+
+use super::{Coefficients, ExactModel};
+use crate::model::{Model, Workspace};
+use dwell_geometry::PositionError;
+use dwell_numerics::{Lanes, Scalar};
+use std::ops::Range;
+
+/// Poses side by side: two registers of the plainest x86-64, one where there is AVX2.
+pub(crate) const LANES: usize = 4;
+/// Fewest coordinates that one thread does at a time: the working memory it takes is small beside them.
+const MIN_BLOCK: usize = 1024;
+/// Blocks for each thread, so that none waits long for the last one.
+const BLOCKS_PER_THREAD: usize = 4;
+
+/// The coefficients at many coordinates, each kind in one piece.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Batch {
+    /// By coordinate: m, kg m².
+    pub m: Vec<f64>,
+    /// By coordinate: ½m′, kg m².
+    pub half_dm: Vec<f64>,
+    /// a of all reactions at the first coordinate, then at the second, kg m or kg m².
+    pub a: Vec<f64>,
+    /// b in the same order, kg m or kg m².
+    pub b: Vec<f64>,
+    /// Where there is no pose: the index of the coordinate, and the reason. The values there are NaN.
+    pub errors: Vec<(usize, PositionError)>,
+}
+
+impl Batch {
+    /// The coefficients at the `i`th coordinate; NaN where there is no pose.
+    pub fn coefficients(&self, i: usize) -> Coefficients {
+        let reactions = self.a.len() / self.m.len().max(1);
+        let one = |of: &[f64]| of.get(i).copied().unwrap_or(f64::NAN);
+        let all = |of: &[f64]| {
+            of.iter()
+                .skip(i * reactions)
+                .take(reactions)
+                .copied()
+                .collect()
+        };
+        Coefficients {
+            m: one(&self.m),
+            half_dm: one(&self.half_dm),
+            a: all(&self.a),
+            b: all(&self.b),
+        }
+    }
+}
+
+/// A part of a batch to be filled, with the index of its first coordinate.
+pub(crate) struct BatchSlice<'a> {
+    first: usize,
+    q: &'a [f64],
+    m: &'a mut [f64],
+    half_dm: &'a mut [f64],
+    a: &'a mut [f64],
+    b: &'a mut [f64],
+}
+
+impl<'a> BatchSlice<'a> {
+    fn split_at(self, at: usize, reactions: usize) -> [Self; 2] {
+        let (q0, q1) = self.q.split_at(at);
+        let (m0, m1) = self.m.split_at_mut(at);
+        let (half_dm0, half_dm1) = self.half_dm.split_at_mut(at);
+        let (a0, a1) = self.a.split_at_mut(at * reactions);
+        let (b0, b1) = self.b.split_at_mut(at * reactions);
+        let part = |first, q, m, half_dm, a, b| Self {
+            first,
+            q,
+            m,
+            half_dm,
+            a,
+            b,
+        };
+        [
+            part(self.first, q0, m0, half_dm0, a0, b0),
+            part(self.first + at, q1, m1, half_dm1, a1, b1),
+        ]
+    }
+}
+
+/// [`LANES`] plain numbers side by side.
+pub(crate) trait LaneScalar: Scalar {
+    fn from_array(numbers: [f64; LANES]) -> Self;
+    fn to_array(self) -> [f64; LANES];
+}
+
+impl LaneScalar for Lanes<LANES> {
+    #[inline(always)]
+    fn from_array(numbers: [f64; LANES]) -> Self {
+        Self(numbers)
+    }
+
+    #[inline(always)]
+    fn to_array(self) -> [f64; LANES] {
+        self.0
+    }
+}
+
+/// Working memory with a buffer for the results.
+struct ReductionWorkspace<T>(Workspace<T>, Coefficients<T>);
+
+impl<T: Scalar> ReductionWorkspace<T> {
+    fn new(model: &Model) -> Self {
+        Self(model.workspace(), model.coefficient_buffer())
+    }
+}
+
+impl ExactModel {
+    /// All coefficients at many coordinates `q` (rad or m), on all threads; `out` is resized, and keeps
+    /// its storage from one batch to the next. Where there is no pose, [`Batch::errors`] says so.
+    pub fn reduce_batch(&self, q: &[f64], out: &mut Batch) {
+        self.model().reduce_batch(q, out);
+    }
+
+    /// m and ½m′ alone at many coordinates, as [`ExactModel::reduce_batch`] does.
+    pub fn inertia_batch(&self, q: &[f64], out: &mut Batch) {
+        self.inertia_model().reduce_batch(q, out);
+    }
+}
+
+impl Model {
+    fn reduce_batch(&self, q: &[f64], out: &mut Batch) {
+        let each = q.len() * self.reactions().len();
+        for (values, count) in [
+            (&mut out.m, q.len()),
+            (&mut out.half_dm, q.len()),
+            (&mut out.a, each),
+            (&mut out.b, each),
+        ] {
+            values.clear();
+            values.resize(count, f64::NAN);
+        }
+        let slice = BatchSlice {
+            first: 0,
+            q,
+            m: &mut out.m,
+            half_dm: &mut out.half_dm,
+            a: &mut out.a,
+            b: &mut out.b,
+        };
+        let blocks = match rayon::current_num_threads() {
+            1 => 1,
+            threads => BLOCKS_PER_THREAD * threads,
+        };
+        out.errors = self.reduce_in_parallel(slice, MIN_BLOCK.max(q.len().div_ceil(blocks)));
+    }
+
+    /// Divides the batch in halves among the threads, down to a block.
+    fn reduce_in_parallel(
+        &self,
+        slice: BatchSlice<'_>,
+        block: usize,
+    ) -> Vec<(usize, PositionError)> {
+        let blocks = slice.q.len().div_ceil(block);
+        if blocks < 2 {
+            return self.reduce_simd(slice);
+        }
+        let [one, two] = slice.split_at(blocks / 2 * block, self.reactions().len());
+        let (mut errors, more) = rayon::join(
+            || self.reduce_in_parallel(one, block),
+            || self.reduce_in_parallel(two, block),
+        );
+        errors.extend(more);
+        errors
+    }
+
+    /// In the widest registers that the processor has.
+    fn reduce_simd(&self, slice: BatchSlice<'_>) -> Vec<(usize, PositionError)> {
+        #[cfg(target_arch = "x86_64")]
+        let slice = match super::avx2::reduce(self, slice) {
+            Ok(errors) => return errors,
+            Err(slice) => slice,
+        };
+        self.reduce_block::<Lanes<LANES>>(slice)
+    }
+
+    /// Four poses at a time; one by one those that are left over or whose computations diverge.
+    #[inline(always)]
+    pub(crate) fn reduce_block<S: LaneScalar>(
+        &self,
+        mut slice: BatchSlice<'_>,
+    ) -> Vec<(usize, PositionError)> {
+        // For several poses at once, and for one where they diverge; few blocks need both.
+        let mut lanes: Option<ReductionWorkspace<S>> = None;
+        let in_lanes = self.plan().supports_lanes();
+        let mut scalar = None;
+        let mut errors = Vec::new();
+        let mut at = 0;
+        while at < slice.q.len() {
+            let together = in_lanes && {
+                let workspace = lanes.get_or_insert_with(|| ReductionWorkspace::new(self));
+                self.reduce_lanes(&mut slice, at, workspace)
+            };
+            let next = slice.q.len().min(at + LANES);
+            if !together {
+                let workspace = scalar.get_or_insert_with(|| ReductionWorkspace::new(self));
+                self.reduce_scalar(&mut slice, at..next, workspace, &mut errors);
+            }
+            at = next;
+        }
+        errors
+    }
+
+    /// As many poses as there are lanes from the `at`th on; false if their computations diverge.
+    #[inline(always)]
+    fn reduce_lanes<S: LaneScalar>(
+        &self,
+        slice: &mut BatchSlice<'_>,
+        at: usize,
+        workspace: &mut ReductionWorkspace<S>,
+    ) -> bool {
+        let Some(&q) = slice.q[at..].first_chunk() else {
+            return false;
+        };
+        let ReductionWorkspace(model_workspace, out) = workspace;
+        if self.reduce(S::from_array(q), model_workspace, out).is_err() {
+            return false;
+        }
+        slice.m[at..at + LANES].copy_from_slice(&out.m.to_array());
+        slice.half_dm[at..at + LANES].copy_from_slice(&out.half_dm.to_array());
+        let reactions = out.a.len();
+        for (values, to) in [(&out.a, &mut *slice.a), (&out.b, &mut *slice.b)] {
+            for (k, value) in values.iter().enumerate() {
+                for (lane, value) in value.to_array().into_iter().enumerate() {
+                    to[(at + lane) * reactions + k] = value;
+                }
+            }
+        }
+        true
+    }
+
+    // Not for wider registers: alone, a pose has no use for them.
+    #[inline(never)]
+    fn reduce_scalar(
+        &self,
+        slice: &mut BatchSlice<'_>,
+        indices: Range<usize>,
+        workspace: &mut ReductionWorkspace<f64>,
+        errors: &mut Vec<(usize, PositionError)>,
+    ) {
+        let ReductionWorkspace(model_workspace, out) = workspace;
+        let reactions = out.a.len();
+        for i in indices {
+            match self.reduce(slice.q[i], model_workspace, out) {
+                Ok(()) => {
+                    (slice.m[i], slice.half_dm[i]) = (out.m, out.half_dm);
+                    slice.a[i * reactions..][..reactions].copy_from_slice(&out.a);
+                    slice.b[i * reactions..][..reactions].copy_from_slice(&out.b);
+                }
+                Err(error) => errors.push((slice.first + i, error)),
+            }
+        }
+    }
+}

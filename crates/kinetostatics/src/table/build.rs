@@ -1,0 +1,231 @@
+//! Builds the parts of tables: curves from their slopes and columns side by side, over one domain and to one
+//! accuracy.
+
+use super::bound;
+use super::piecewise::{Grid, IntegratedCurve, PiecewiseColumns};
+use super::sizing::{self, RowSampler, Sizing};
+use super::{Bound, TableDomain, TableError, TableQuantity};
+use crate::reduced::Inertia;
+use dwell_geometry::Range;
+use dwell_numerics::Dual;
+use std::f64::consts::TAU;
+
+/// Part of a limited range that is left out at each end, if no domain is given: the inertia grows as one
+/// over the distance to a limit position, and everything is measured by its largest value.
+const END_MARGIN: f64 = 0.02;
+/// A coefficient that a whole turn changes by more than this part of its scale does not come back.
+const PERIODICITY_TOLERANCE: f64 = 1e-9;
+/// Where they are compared, in parts of a period.
+const PERIODICITY_POINTS: [f64; 5] = [0.0, 0.131, 0.292, 0.583, 0.877];
+
+/// A function with exact derivatives, from which an [`IntegratedCurve`] is built.
+pub trait SlopeSampler {
+    /// The function, half its slope and half its second derivative at a coordinate.
+    ///
+    /// # Errors
+    /// [`TableError::Exact`] where it has no value.
+    fn sample(&mut self, q: f64) -> Result<Inertia, TableError>;
+
+    /// The function and half its slope at many coordinates.
+    ///
+    /// # Errors
+    /// [`TableError::Exact`] where it has no value.
+    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>, TableError> {
+        let both = |&q: &f64| self.sample(q).map(|at| [at.m, at.half_dm]);
+        q.iter().map(both).collect()
+    }
+}
+
+/// Functions with exact derivatives at a coordinate, from which [`PiecewiseColumns`] are built.
+pub type ColumnSampler<'a> = dyn FnMut(f64, &mut [Dual]) -> Result<(), TableError> + 'a;
+
+/// Builds parts of one table, and records their error bounds.
+#[derive(Debug)]
+pub struct TableBuilder {
+    grid: Grid,
+    accuracy: f64,
+    bounds: Vec<Bound>,
+}
+
+impl TableBuilder {
+    /// For tables over a domain within a range, to an accuracy.
+    ///
+    /// # Errors
+    /// [`TableError`] when there is nothing to reach over, or the accuracy cannot be kept.
+    pub fn new(range: Range, domain: TableDomain, accuracy: f64) -> Result<Self, TableError> {
+        if !(1e-14..=1e-2).contains(&accuracy) {
+            return Err(TableError::Accuracy { accuracy });
+        }
+        Ok(Self {
+            grid: domain_grid(range, domain)?,
+            accuracy,
+            bounds: Vec::new(),
+        })
+    }
+
+    /// The domain of the tables, rad or m.
+    pub fn domain(&self) -> [f64; 2] {
+        let Grid { from, length, .. } = self.grid;
+        [from, from + length]
+    }
+
+    /// The period, rad, if there is one.
+    pub fn period(&self) -> Option<f64> {
+        (self.grid.revolutions > 0).then_some(self.grid.length)
+    }
+
+    /// A curve: a function and half its slope.
+    ///
+    /// # Errors
+    /// [`TableError`] when it does not come back after a turn, or the accuracy cannot be reached.
+    pub fn curve(
+        &mut self,
+        quantities: [TableQuantity; 2],
+        sampler: &mut dyn SlopeSampler,
+    ) -> Result<IntegratedCurve, TableError> {
+        // The function over a radian of a turn, or as much of an extent, is of the kind of its half slope.
+        let per_revolution = TAU / self.grid.length;
+        let scale = |largest: &[f64]| {
+            let weighted = [largest[0], largest[1] / per_revolution];
+            let slope = sizing::scales(&weighted, &|_, _| true)[1];
+            vec![weighted[0], slope * per_revolution]
+        };
+        let mut values = |q: &[f64]| {
+            Ok(sampler
+                .sample_many(q)?
+                .into_iter()
+                .map(|at| at.to_vec())
+                .collect())
+        };
+        let sizing = self.size(&quantities, &scale, &mut values)?;
+        let made = bound::build_to_accuracy::<dyn SlopeSampler, IntegratedCurve>(
+            self.grid,
+            &quantities,
+            &sizing,
+            self.accuracy,
+            sampler,
+        )?;
+        Ok(self.record_bounds(&quantities, &sizing, made))
+    }
+
+    /// Columns side by side; `same_kind` compares the kinds of two quantities.
+    ///
+    /// # Errors
+    /// As [`TableBuilder::curve`].
+    pub fn columns(
+        &mut self,
+        quantities: &[TableQuantity],
+        same_kind: &dyn Fn(TableQuantity, TableQuantity) -> bool,
+        sampler: &mut ColumnSampler<'_>,
+    ) -> Result<PiecewiseColumns, TableError> {
+        if quantities.is_empty() {
+            return Ok(PiecewiseColumns::empty(self.grid));
+        }
+        let scale = |largest: &[f64]| {
+            sizing::scales(largest, &|i, j| same_kind(quantities[i], quantities[j]))
+        };
+        let mut here = vec![Dual::default(); quantities.len()];
+        let mut values = |q: &[f64]| {
+            let mut row = |&q: &f64| {
+                sampler(q, &mut here)?;
+                Ok(here.iter().map(|here| here.v).collect())
+            };
+            q.iter().map(&mut row).collect()
+        };
+        let sizing = self.size(quantities, &scale, &mut values)?;
+        let made = bound::build_to_accuracy::<ColumnSampler<'_>, PiecewiseColumns>(
+            self.grid,
+            quantities,
+            &sizing,
+            self.accuracy,
+            sampler,
+        )?;
+        Ok(self.record_bounds(quantities, &sizing, made))
+    }
+
+    /// The error bounds, in the order in which the parts were built.
+    pub fn bounds(self) -> Vec<Bound> {
+        self.bounds
+    }
+
+    fn size(
+        &self,
+        quantities: &[TableQuantity],
+        scale: &dyn Fn(&[f64]) -> Vec<f64>,
+        values: &mut RowSampler<'_>,
+    ) -> Result<Sizing, TableError> {
+        if self.grid.revolutions > 0 {
+            require_periodic(self.grid, quantities, scale, values)?;
+        }
+        sizing::estimate_sizing(self.grid, quantities.len(), self.accuracy, scale, values)
+    }
+
+    /// Records the error bounds of a part.
+    fn record_bounds<P>(
+        &mut self,
+        quantities: &[TableQuantity],
+        sizing: &Sizing,
+        (piecewise, errors): (P, Vec<f64>),
+    ) -> P {
+        let known = quantities.iter().zip(&sizing.scales).zip(errors);
+        self.bounds
+            .extend(known.map(|((&quantity, &scale), error)| Bound {
+                quantity,
+                scale,
+                error,
+            }));
+        piecewise
+    }
+}
+
+/// The domain as a grid of one cell.
+fn domain_grid(range: Range, domain: TableDomain) -> Result<Grid, TableError> {
+    let (from, to) = match (domain, range.period(), range.limits()) {
+        (TableDomain::Full, Some(period), _) => {
+            let revolutions = (period / TAU).round() as u32;
+            return Ok(Grid::new(0.0, period, revolutions, 1));
+        }
+        (TableDomain::Full, None, None) => return Err(TableError::Unbounded),
+        (TableDomain::Full, None, Some((from, to))) => {
+            let margin = END_MARGIN * (to - from);
+            (from + margin, to - margin)
+        }
+        (TableDomain::Between(from, to), _, limits) => {
+            let inside = limits.is_none_or(|(lowest, highest)| lowest <= from && to <= highest);
+            if !(inside && from < to && (to - from).is_finite()) {
+                return Err(TableError::Domain { from, to });
+            }
+            (from, to)
+        }
+    };
+    Ok(Grid::new(from, to - from, 0, 1))
+}
+
+/// Refuses coefficients that are not the same a period later.
+fn require_periodic(
+    grid: Grid,
+    quantities: &[TableQuantity],
+    scale: &dyn Fn(&[f64]) -> Vec<f64>,
+    values: &mut RowSampler<'_>,
+) -> Result<(), TableError> {
+    let here = PERIODICITY_POINTS.map(|part| grid.from + part * grid.length);
+    let later = here.map(|q| q + grid.length);
+    let (here, later) = (values(&here)?, values(&later)?);
+    let max = |k: usize, of: &dyn Fn(f64, f64) -> f64| {
+        let pairs = here.iter().zip(&later);
+        pairs.fold(0.0_f64, |max, (here, later)| max.max(of(here[k], later[k])))
+    };
+    let largest: Vec<f64> = (0..quantities.len())
+        .map(|k| max(k, &|here, _| here.abs()))
+        .collect();
+    let difference = |k: usize| max(k, &|here, later| (here - later).abs());
+    let scales = scale(&largest);
+    let aperiodic =
+        (0..quantities.len()).find(|&k| difference(k) > PERIODICITY_TOLERANCE * scales[k]);
+    match aperiodic {
+        Some(k) => Err(TableError::NotPeriodic {
+            what: quantities[k],
+        }),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,433 @@
+//! Pieces of a table: equal cells, each with one polynomial about its middle. Finding the cell and
+//! evaluating it cost the same everywhere.
+//!
+//! A piece is Hermite's polynomial through values and slopes at [`NODES`] places of its cell, the ends
+//! among them, so that neighbours meet in value and slope. Of m only ½m′ is interpolated; m is its
+//! integral, and continuous, and so it is with V and ½V′. What a motion gains on the table where it leaves
+//! a cell it has therefore lost where it came in: energy cannot drift.
+
+use super::TableError;
+use super::build::{ColumnSampler, SlopeSampler};
+use crate::reduced::Inertia;
+use dwell_geometry::PositionError;
+use dwell_numerics::{Dual, Scalar};
+use std::f64::consts::TAU;
+
+/// Places of a cell where a function and its slope are taken from the exact model.
+pub(super) const NODES: usize = 4;
+/// Coefficients of a piece: its degree is one less.
+pub(super) const TERMS: usize = 2 * NODES;
+/// The zeros of (1 − x²) P₃′(x), Gauss's and Lobatto's places: between them the error is nearly even.
+const LOBATTO_NODES: [f64; NODES] = [-1.0, -0.447_213_595_499_957_9, 0.447_213_595_499_957_9, 1.0];
+/// Near the middles between places, where a piece is furthest off.
+pub(super) const BETWEEN_NODES: [f64; NODES - 1] = [-0.76, 0.0, 0.76];
+/// Turns that can be taken off without a rounding: 2π is split after 30 bits, and a machine may take 8 turns.
+const MAX_REVOLUTIONS: f64 = 1_048_576.0;
+/// 2π to 30 bits, and the rest of it.
+const TAU_COARSE: f64 = 6.283_185_306_936_502_5;
+const TAU_FINE: f64 = 2.430_840_202_602_477e-10;
+
+/// Added to a number below 2^31 it leaves no room for a fraction, and the whole part in the last bits: a
+/// rounding to the nearest without a call.
+const ROUND_TO_NEAREST: f64 = 6_755_399_441_055_744.0;
+
+/// Splits a count of cells, at least zero, into a cell and where in it from −1 to 1.
+#[inline]
+fn cell_and_offset(part: f64) -> (usize, f64) {
+    let middle = part - 0.5;
+    let cell = middle + ROUND_TO_NEAREST;
+    (
+        cell.to_bits() as u32 as usize,
+        2.0 * (middle - (cell - ROUND_TO_NEAREST)),
+    )
+}
+
+/// Equal cells over an extent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Grid {
+    /// Where it begins, rad or m; zero of a full turn.
+    pub(super) from: f64,
+    pub(super) length: f64,
+    /// Turns after which everything comes back; zero if that never happens.
+    pub(super) revolutions: u32,
+    pub(super) cells: usize,
+    per_period: f64,
+    coarse: f64,
+    fine: f64,
+    per_cell: f64,
+    /// The largest number below that of the cells.
+    last: f64,
+    /// Parts of a cell by which a rounding may leave the extent: of a coordinate of many turns, those of
+    /// the turns it has.
+    rounding_margin: f64,
+}
+
+impl Grid {
+    pub(super) fn new(from: f64, length: f64, revolutions: u32, cells: usize) -> Self {
+        let count = f64::from(revolutions);
+        let (per_period, coarse, fine) = match revolutions {
+            0 => (0.0, 0.0, 0.0),
+            _ => (1.0 / (TAU * count), TAU_COARSE * count, TAU_FINE * count),
+        };
+        Self {
+            from,
+            length,
+            revolutions,
+            cells,
+            per_period,
+            coarse,
+            fine,
+            per_cell: cells as f64 / length,
+            last: (cells as f64).next_down(),
+            rounding_margin: if revolutions > 0 { 1e-3 } else { 1e-9 },
+        }
+    }
+
+    /// The same extent in other cells.
+    pub(super) fn with_cells(self, cells: usize) -> Self {
+        Self::new(self.from, self.length, self.revolutions, cells)
+    }
+
+    /// Half the width of a cell.
+    pub(super) fn half(&self) -> f64 {
+        0.5 * self.length / self.cells as f64
+    }
+
+    /// The coordinate at `x` from −1 to 1 of a cell; both cells at an end find the same number.
+    pub(super) fn coordinate(&self, cell: usize, x: f64) -> f64 {
+        let part = cell as f64 + 0.5 * (x + 1.0);
+        let part = if self.revolutions > 0 && part >= self.cells as f64 {
+            0.0
+        } else {
+            part
+        };
+        self.from + self.length * (part / self.cells as f64)
+    }
+
+    /// The cell of a coordinate, and where in it from −1 to 1.
+    #[inline]
+    pub(super) fn locate(&self, q: f64) -> Result<(usize, f64), PositionError> {
+        let part = (q - self.from) * self.per_cell;
+        if part >= 0.0 && part < self.cells as f64 {
+            Ok(cell_and_offset(part))
+        } else {
+            self.locate_wrapped(q)
+        }
+    }
+
+    /// The same of a coordinate in any kind of number.
+    #[inline]
+    fn locate_scalar<T: Scalar>(&self, q: T) -> Result<(usize, T), PositionError> {
+        let (cell, x) = self.locate(q.value())?;
+        // The place in a cell as a function of q: its slope is all that is left of it.
+        let x = q.compose(&[x, 2.0 * self.per_cell, 0.0, 0.0]);
+        Ok((cell, x))
+    }
+
+    /// The same for a coordinate that lies turns away, or at the very end, or nowhere.
+    #[inline]
+    fn locate_wrapped(&self, q: f64) -> Result<(usize, f64), PositionError> {
+        let periods = (q * self.per_period - 0.5 + ROUND_TO_NEAREST) - ROUND_TO_NEAREST;
+        let part =
+            (((q - periods * self.coarse) - periods * self.fine) - self.from) * self.per_cell;
+        let cells = self.cells as f64;
+        let inside = part >= -self.rounding_margin && part <= cells + self.rounding_margin;
+        if !(inside && periods.abs() < MAX_REVOLUTIONS) {
+            return Err(self.out_of_range(q));
+        }
+        // A rounding beyond an end is still in the cell at the end.
+        let (cell, x) = cell_and_offset(part.clamp(0.0, self.last));
+        Ok((cell, x + 2.0 * (part - part.clamp(0.0, self.last))))
+    }
+
+    #[cold]
+    fn out_of_range(&self, q: f64) -> PositionError {
+        if !q.is_finite() {
+            return PositionError::NotFinite { q };
+        }
+        let limit = MAX_REVOLUTIONS * TAU;
+        let (from, to) = match self.revolutions {
+            0 => (self.from, self.from + self.length),
+            _ => (-limit, limit),
+        };
+        PositionError::OutOfRange { q, from, to }
+    }
+}
+
+/// The coefficients, of rising powers of x, of Hermite's polynomial through `[value, slope]` (by x) at
+/// [`LOBATTO_NODES`]. Newton's divided differences: what neighbours have in common is taken off first, so
+/// rounding is that of the differences.
+fn hermite(data: &[[f64; 2]; NODES]) -> [f64; TERMS] {
+    let node = |i: usize| LOBATTO_NODES[i / 2];
+    let mut difference = [0.0; TERMS];
+    for (i, d) in difference.iter_mut().enumerate() {
+        *d = data[i / 2][0];
+    }
+    for order in 1..TERMS {
+        for i in (order..TERMS).rev() {
+            difference[i] = if order == 1 && i % 2 == 1 {
+                data[i / 2][1]
+            } else {
+                (difference[i] - difference[i - 1]) / (node(i) - node(i - order))
+            };
+        }
+    }
+    // From Newton's products to powers, the last factor first.
+    let mut powers = [0.0; TERMS];
+    for i in (0..TERMS).rev() {
+        for j in (1..TERMS).rev() {
+            powers[j] = powers[j - 1] - node(i) * powers[j];
+        }
+        powers[0] = difference[i] - node(i) * powers[0];
+    }
+    powers
+}
+
+/// Coefficients of a function and half its slope side by side, of rising powers.
+type CellCoefficients = [[f64; 2]; TERMS + 1];
+
+/// A function of the coordinate put together from half its slope: m from ½m′, V from ½V′.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IntegratedCurve {
+    pub(super) grid: Grid,
+    cells: Vec<CellCoefficients>,
+}
+
+/// The function at the middle of a cell and the coefficients of half its slope: all that a cell is made
+/// from.
+pub(super) type CellData = (f64, [f64; TERMS]);
+
+impl IntegratedCurve {
+    pub(super) fn new(grid: Grid, sampler: &mut dyn SlopeSampler) -> Result<Self, TableError> {
+        let half = grid.half();
+        let mut slopes: Vec<[f64; TERMS]> = Vec::with_capacity(grid.cells);
+        // By cell: the function at all places but the first, which the cell before has.
+        let mut known = Vec::with_capacity(grid.cells);
+        let first = sampler.sample(grid.coordinate(0, LOBATTO_NODES[0]))?;
+        let mut left = first;
+        for cell in 0..grid.cells {
+            let mut at = [left; NODES];
+            for (at, &x) in at.iter_mut().zip(&LOBATTO_NODES).skip(1) {
+                let q = grid.coordinate(cell, x);
+                // A turn ends where it began.
+                let again = grid.revolutions > 0 && q == grid.from;
+                *at = if again { first } else { sampler.sample(q)? };
+            }
+            left = at[NODES - 1];
+            known.push(at.map(|at| at.m));
+            slopes.push(hermite(&at.map(|at| [at.half_dm, at.half_ddm * half])));
+        }
+        if grid.revolutions > 0 {
+            // What a whole turn would gain is truncation and rounding: its mean is taken out.
+            let gain: f64 = slopes
+                .iter()
+                .map(|g| integrate_slope(g, half, [-1.0, 1.0]))
+                .sum();
+            for slope in &mut slopes {
+                slope[0] -= gain / (2.0 * grid.length);
+            }
+        }
+        // From middle to middle, so that the ends meet; then all of it to the mean of what is known.
+        let mut middle = Vec::with_capacity(grid.cells);
+        let (mut m, mut shift) = (0.0, 0.0);
+        for (cell, slope) in slopes.iter().enumerate() {
+            if let Some(before) = cell.checked_sub(1).and_then(|b| slopes.get(b)) {
+                m += integrate_slope(before, half, [0.0, 1.0])
+                    + integrate_slope(slope, half, [-1.0, 0.0]);
+            }
+            middle.push(m);
+            for (known, &x) in known[cell].iter().zip(&LOBATTO_NODES).skip(1) {
+                shift += known - (m + integrate_slope(slope, half, [0.0, x]));
+            }
+        }
+        let shift = shift / ((NODES - 1) * grid.cells) as f64;
+        let cell_data = middle
+            .iter()
+            .zip(&slopes)
+            .map(|(m, slope)| (m + shift, *slope));
+        Ok(Self::from_cell_data(grid, cell_data))
+    }
+
+    /// The cells from m in their middles and ½m′.
+    pub(super) fn from_cell_data(grid: Grid, cell_data: impl Iterator<Item = CellData>) -> Self {
+        let half = grid.half();
+        let cell = |(m, slope): CellData| {
+            let mut cell = [[0.0; 2]; TERMS + 1];
+            cell[0][0] = m;
+            for (j, g) in slope.iter().enumerate() {
+                cell[j][1] = *g;
+                cell[j + 1][0] = 2.0 * half * g / (j + 1) as f64;
+            }
+            cell
+        };
+        Self {
+            grid,
+            cells: cell_data.map(cell).collect(),
+        }
+    }
+
+    pub(super) fn cell_data(&self) -> impl Iterator<Item = CellData> {
+        self.cells.iter().map(|cell| {
+            let mut slope = [0.0; TERMS];
+            for (s, pair) in slope.iter_mut().zip(cell) {
+                *s = pair[1];
+            }
+            (cell[0][0], slope)
+        })
+    }
+
+    /// The function and half its slope at `q` (rad or m).
+    ///
+    /// # Errors
+    /// [`PositionError`] outside the table.
+    #[inline]
+    pub fn eval<T: Scalar>(&self, q: T) -> Result<[T; 2], PositionError> {
+        let (cell, x) = self.grid.locate_scalar(q)?;
+        Ok(eval_cell(&self.cells[cell], x))
+    }
+
+    /// The same with half the second derivative.
+    ///
+    /// # Errors
+    /// [`PositionError`] outside the table.
+    #[inline]
+    pub fn derivatives(&self, q: f64) -> Result<Inertia, PositionError> {
+        let (cell, x) = self.grid.locate(q)?;
+        let cell = &self.cells[cell];
+        let [m, half_dm] = eval_cell(cell, x);
+        let powers = (1..TERMS).rev();
+        let slope = powers.fold(0.0, |sum, j| sum * x + j as f64 * cell[j][1]);
+        Ok(Inertia {
+            m,
+            half_dm,
+            half_ddm: slope / self.grid.half(),
+        })
+    }
+
+    /// How many cells it has.
+    pub fn cells(&self) -> usize {
+        self.grid.cells
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        std::mem::size_of_val(self.cells.as_slice())
+    }
+}
+
+/// What m gains between two places of a cell of which ½m′ is known.
+fn integrate_slope(slope: &[f64; TERMS], half: f64, [from, to]: [f64; 2]) -> f64 {
+    let integral = |x: f64| {
+        let terms = slope.iter().enumerate().rev();
+        terms.fold(0.0, |sum, (j, g)| (sum + g / (j + 1) as f64) * x)
+    };
+    2.0 * half * (integral(to) - integral(from))
+}
+
+/// Both polynomials at once, in pairs of terms (Estrin): the pairs do not wait for each other.
+#[inline]
+fn eval_cell<T: Scalar>(c: &CellCoefficients, x: T) -> [T; 2] {
+    let lift = |[a, b]: [f64; 2]| [T::from_f64(a), T::from_f64(b)];
+    let add = |a: [T; 2], b: [T; 2], x: T| [a[0] + b[0] * x, a[1] + b[1] * x];
+    let line = |i: usize| add(lift(c[i]), lift(c[i + 1]), x);
+    let (x2, x4) = (x * x, (x * x) * (x * x));
+    let low = add(line(0), line(2), x2);
+    let high = add(line(4), line(6), x2);
+    add(low, add(high, lift(c[8]), x4), x4)
+}
+
+/// Any number of functions of the coordinate, side by side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PiecewiseColumns {
+    pub(super) grid: Grid,
+    pub(super) width: usize,
+    /// By cell, by falling power, by column.
+    pub(super) terms: Vec<f64>,
+}
+
+impl PiecewiseColumns {
+    pub(super) fn empty(grid: Grid) -> Self {
+        Self {
+            grid,
+            width: 0,
+            terms: Vec::new(),
+        }
+    }
+
+    pub(super) fn new(
+        grid: Grid,
+        width: usize,
+        sampler: &mut ColumnSampler<'_>,
+    ) -> Result<Self, TableError> {
+        let mut terms = Vec::with_capacity(grid.cells * TERMS * width);
+        let half = grid.half();
+        let mut nodes = vec![vec![Dual::default(); width]; NODES];
+        sampler(grid.coordinate(0, LOBATTO_NODES[0]), &mut nodes[NODES - 1])?;
+        for cell in 0..grid.cells {
+            // A cell begins where the one before ended.
+            nodes.swap(0, NODES - 1);
+            for (node, &x) in nodes.iter_mut().zip(&LOBATTO_NODES).skip(1) {
+                sampler(grid.coordinate(cell, x), node)?;
+            }
+            let offset = terms.len();
+            terms.resize(offset + TERMS * width, 0.0);
+            for column in 0..width {
+                let mut data = [[0.0; 2]; NODES];
+                for (data, node) in data.iter_mut().zip(&nodes) {
+                    *data = [node[column].v, node[column].d * half];
+                }
+                for (j, term) in hermite(&data).into_iter().enumerate() {
+                    terms[offset + (TERMS - 1 - j) * width + column] = term;
+                }
+            }
+        }
+        Ok(Self { grid, width, terms })
+    }
+
+    /// All columns at `q` (rad or m), the first `left.len()` of them to `left`, the others to `right`.
+    ///
+    /// # Errors
+    /// [`PositionError`] outside the table.
+    #[inline]
+    pub fn eval<T: Scalar>(
+        &self,
+        q: T,
+        left: &mut [T],
+        right: &mut [T],
+    ) -> Result<(), PositionError> {
+        let (cell, x) = self.grid.locate_scalar(q)?;
+        let size = TERMS * self.width;
+        if size == 0 {
+            return Ok(());
+        }
+        left.fill(T::from_f64(0.0));
+        right.fill(T::from_f64(0.0));
+        for row in self.terms[cell * size..][..size].chunks_exact(self.width) {
+            let (first, second) = row.split_at(left.len().min(row.len()));
+            horner(left, first, x);
+            horner(right, second, x);
+        }
+        Ok(())
+    }
+
+    /// How many cells they have; none where there are no columns.
+    pub fn cells(&self) -> usize {
+        match self.width {
+            0 => 0,
+            _ => self.grid.cells,
+        }
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        std::mem::size_of_val(self.terms.as_slice())
+    }
+}
+
+/// One step of Horner's scheme, of several polynomials side by side.
+#[inline]
+fn horner<T: Scalar>(sums: &mut [T], terms: &[f64], x: T) {
+    for (sum, &term) in sums.iter_mut().zip(terms) {
+        *sum = *sum * x + T::from_f64(term);
+    }
+}

@@ -1,0 +1,153 @@
+//! Fourier series of smooth periodic functions through their values at equally spaced points. The trapezoidal
+//! rule gains digits as fast as the Fourier coefficients decay, so the number of points is doubled until they have
+//! decayed to rounding.
+
+use std::f64::consts::TAU;
+
+/// Number of points to begin with.
+pub const MIN_POINTS: usize = 32;
+/// Number of points beyond which a function counts as not resolved.
+pub const MAX_POINTS: usize = 8192;
+/// Number of points from which on a function that is still not resolved counts as sharp: panels suit it better.
+pub const SHARP_POINTS: usize = 2048;
+/// Coefficients below this part of the largest are rounding.
+const COEFFICIENT_ROUNDING: f64 = 1e-16;
+/// Coefficients below this part, of which the last quarter is not below this part of the quarter before,
+/// are rounding too, of values that carry more of it. (Those of a smooth function fall by 100 there.)
+const NOISY_TAIL: f64 = 1e-8;
+const FLATNESS: f64 = 0.25;
+
+/// A function of a phase s from 0 to 2π: c₀ + Σ c_k cos ks + s_k sin ks.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FourierSeries {
+    /// c₀, the mean over a period.
+    pub mean: f64,
+    /// (c_k, s_k) for k = 1, 2, …
+    pub harmonics: Vec<[f64; 2]>,
+    /// The largest of the last coefficients as a part of `size`.
+    pub tail: f64,
+    /// Whether the last coefficients are rounding.
+    pub is_resolved: bool,
+}
+
+impl FourierSeries {
+    /// The series through values at equally spaced phases; coefficients are small or large beside
+    /// `size`.
+    pub fn new(values: &[f64], size: f64) -> Self {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let mut harmonics = fourier_coefficients(values);
+        let largest = |of: &[[f64; 2]]| of.iter().flatten().fold(0.0_f64, |m, c| m.max(c.abs()));
+        let count = harmonics.len();
+        let tail = largest(&harmonics[count - 4..]);
+        let tail = if tail == 0.0 { 0.0 } else { tail / size };
+        let sum = |of: &[[f64; 2]]| of.iter().flatten().map(|c| c.abs()).sum::<f64>();
+        let [half, rest] = [count / 2, count - count / 4];
+        let is_flat = sum(&harmonics[rest..]) > FLATNESS * sum(&harmonics[half..rest]);
+        let is_rounding = count >= MIN_POINTS && tail < NOISY_TAIL && is_flat;
+        let kept = |[c, s]: &[f64; 2]| c.abs().max(s.abs()) > COEFFICIENT_ROUNDING.max(tail) * size;
+        let last = harmonics.iter().rposition(kept);
+        harmonics.truncate(last.map_or(0, |l| l + 1));
+        Self {
+            mean,
+            harmonics,
+            tail,
+            // Sixteen roundings of a point remain in a coefficient.
+            is_resolved: tail < 16.0 * COEFFICIENT_ROUNDING || is_rounding,
+        }
+    }
+
+    /// Its value and its integral from zero at a phase.
+    pub fn eval(&self, phase: f64) -> [f64; 2] {
+        let (sin, cos) = phase.sin_cos();
+        let (mut c, mut s) = (1.0, 0.0);
+        let mut sums = [self.mean, self.mean * phase];
+        for (k, [ck, sk]) in self.harmonics.iter().enumerate() {
+            (c, s) = (c * cos - s * sin, s * cos + c * sin);
+            sums[0] += ck * c + sk * s;
+            sums[1] += (ck * s + sk * (1.0 - c)) / (k + 1) as f64;
+        }
+        sums
+    }
+}
+
+/// Samples at twice as many equally spaced parts (0 … 1) of a period as `known` holds, which are kept; without
+/// any, the samples at [`MIN_POINTS`] parts.
+///
+/// # Errors
+/// The first error of `at`.
+pub fn refine_samples<V, E>(
+    known: Vec<V>,
+    mut at: impl FnMut(f64) -> Result<V, E>,
+) -> Result<Vec<V>, E> {
+    if known.is_empty() {
+        return (0..MIN_POINTS)
+            .map(|k| at(k as f64 / MIN_POINTS as f64))
+            .collect();
+    }
+    let points = known.len();
+    let mut finer = Vec::with_capacity(2 * points);
+    for (k, value) in known.into_iter().enumerate() {
+        finer.push(value);
+        finer.push(at((k as f64 + 0.5) / points as f64)?);
+    }
+    Ok(finer)
+}
+
+/// Fourier coefficients (c_k, s_k), k = 1 … below half the number of points, which is a power of two (Cooley and
+/// Tukey 1965).
+fn fourier_coefficients(values: &[f64]) -> Vec<[f64; 2]> {
+    let n = values.len();
+    let bits = n.trailing_zeros();
+    let bit_reversed = |i: usize| i.reverse_bits() >> (usize::BITS - bits);
+    let mut sums: Vec<[f64; 2]> = (0..n).map(|i| [values[bit_reversed(i)], 0.0]).collect();
+    let table: Vec<(f64, f64)> = (0..n / 2)
+        .map(|i| (TAU * i as f64 / n as f64).sin_cos())
+        .collect();
+    let mut half = 1;
+    while half < n {
+        for block in sums.chunks_exact_mut(2 * half) {
+            let (low, high) = block.split_at_mut(half);
+            for (k, (a, b)) in low.iter_mut().zip(high).enumerate() {
+                let (sin, cos) = table[k * (n / (2 * half))];
+                let rotated = [b[0] * cos - b[1] * sin, b[0] * sin + b[1] * cos];
+                *b = [a[0] - rotated[0], a[1] - rotated[1]];
+                *a = [a[0] + rotated[0], a[1] + rotated[1]];
+            }
+        }
+        half *= 2;
+    }
+    sums.truncate(n / 2);
+    sums.drain(1..)
+        .map(|sum| sum.map(|s| 2.0 * s / n as f64))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A function with known coefficients, at a count of points that holds all of them.
+    #[test]
+    fn harmonics_are_those_of_the_function() {
+        let of = |k: usize| [1.0 / (1.0 + k as f64), (k as f64).sin()];
+        for n in [32, 64, 256] {
+            let value = |i: usize| {
+                let phase = TAU * i as f64 / n as f64;
+                let terms = (1..n / 2).map(|k| {
+                    let (sin, cos) = (k as f64 * phase).sin_cos();
+                    of(k)[0] * cos + of(k)[1] * sin
+                });
+                0.3 + terms.sum::<f64>()
+            };
+            let values: Vec<f64> = (0..n).map(value).collect();
+            for (k, found) in fourier_coefficients(&values).iter().enumerate() {
+                let [c, s] = of(k + 1);
+                // The phases of the test are rounded at some hundred radians.
+                assert!(
+                    (found[0] - c).abs() < 1e-13 && (found[1] - s).abs() < 1e-13,
+                    "{n} {k}"
+                );
+            }
+        }
+    }
+}

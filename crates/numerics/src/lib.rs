@@ -1,0 +1,40 @@
+//! Number types, small dense algebra, series and root finding that know nothing of mechanisms. Code written once for any
+//! [`Scalar`] is evaluated in plain numbers, exact derivatives, twice the digits, or several values at once.
+//!
+//! ```
+//! use dwell_numerics::{Dual, DoubleDouble, Scalar};
+//!
+//! /// The distance of the piston from the crank's centre, for a crank of length 1 and a rod of length 3.
+//! fn piston<T: Scalar>(crank_angle: T) -> T {
+//!     let (sin, cos) = crank_angle.sin_cos();
+//!     cos + (T::from_f64(9.0) - sin * sin).sqrt()
+//! }
+//!
+//! let exact = piston(Dual::variable(0.5)); // the value and d/dq
+//! let difference = (piston(0.5 + 1e-6) - piston(0.5 - 1e-6)) / 2e-6;
+//! assert!((exact.d - difference).abs() < 1e-9);
+//!
+//! let rounding = piston(DoubleDouble::from_f64(0.5)) - DoubleDouble::from_f64(piston(0.5));
+//! assert!(rounding.value().abs() < 1e-15);
+//! ```
+
+pub mod double_double;
+pub mod dual;
+pub mod factor_outcome;
+mod float;
+pub mod fourier;
+pub mod lanes;
+pub mod lu;
+mod lu_faer;
+pub mod panels;
+pub mod polynomial_fit;
+pub mod qr;
+pub mod root;
+pub mod scalar;
+pub mod sin_cos;
+
+pub use double_double::DoubleDouble;
+pub use dual::Dual;
+pub use factor_outcome::FactorOutcome;
+pub use lanes::Lanes;
+pub use scalar::{Scalar, map_array, uniform};

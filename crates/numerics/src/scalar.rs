@@ -1,0 +1,77 @@
+//! The number types that generic code is evaluated in: plain `f64`, [`Dual`](crate::Dual) for exact derivatives with
+//! respect to a coordinate, `f32` and [`DoubleDouble`](crate::DoubleDouble) to measure what rounding does.
+
+use std::f64::consts::TAU;
+use std::fmt::Debug;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// A number that positions, velocities, accelerations and reactions can be computed in.
+pub trait Scalar:
+    Copy
+    + Debug
+    + Default
+    + Send
+    + Sync
+    + 'static
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+    + AddAssign
+    + SubAssign
+{
+    /// Whether such a number carries derivatives.
+    const HAS_DERIVATIVES: bool;
+    /// The distance from one to the next larger number.
+    const EPSILON: f64;
+    /// A constant.
+    fn from_f64(value: f64) -> Self;
+    /// The value alone, on which every decision (pivot, convergence, limit) is made.
+    fn value(self) -> f64;
+    /// How many values such a number holds side by side.
+    const LANES: usize = 1;
+    /// The value in one of them.
+    #[inline]
+    fn lane(self, _lane: usize) -> f64 {
+        self.value()
+    }
+    /// Square root.
+    fn sqrt(self) -> Self;
+    /// Sine and cosine together.
+    fn sin_cos(self) -> (Self, Self);
+    /// The angle of (x, y) = (`other`, `self`) from the x axis, in (−π, π].
+    fn atan2(self, other: Self) -> Self;
+    /// The angle of whole revolutions, rad.
+    #[inline]
+    fn from_revolutions(count: f64) -> Self {
+        Self::from_f64(TAU * count)
+    }
+    /// The numbers as a slice of `f64`, if that is their type: for libraries that know no other.
+    fn as_f64_slice_mut(_numbers: &mut [Self]) -> Option<&mut [f64]> {
+        None
+    }
+    /// A function of this number, from its value and first three derivatives at
+    /// [`value`](Self::value).
+    fn compose(self, derivatives: &[f64; 4]) -> Self;
+}
+
+/// A function of each element of an array. (That of the standard library is not always inlined.)
+#[inline(always)]
+pub fn map_array<A: Copy, B: Copy, const N: usize>(of: [A; N], f: impl Fn(A) -> B) -> [B; N] {
+    let mut out = [f(of[0]); N];
+    for n in 1..N {
+        out[n] = f(of[n]);
+    }
+    out
+}
+
+/// The result of a test of each lane; none where lanes disagree, so that the values must be evaluated one by one.
+/// Every decision in generic code is made by this.
+#[inline(always)]
+pub fn uniform<T: Scalar>(test: impl Fn(usize) -> bool) -> Option<bool> {
+    let first = test(0);
+    (1..T::LANES)
+        .all(|lane| test(lane) == first)
+        .then_some(first)
+}

@@ -1,0 +1,155 @@
+//! The numbers of a scene by their path, such as `crank.inertia`: asking for one, and the same
+//! scene with one of them changed.
+
+use crate::diagnostics::Span;
+use crate::error::SceneError;
+use crate::number_paths::{BodyField, BodyNumber, no_number};
+use crate::scene::Scene;
+use crate::spans::SceneLocation;
+use miette::NamedSource;
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+impl Scene {
+    /// The path of every number that [`value`](Self::value) and [`with_value`](Self::with_value)
+    /// know, in the order of the file: `crank.mass`, `crank.inertia`, `crank.center[0]` (when it is
+    /// written as [x, y]), `crank.points.B[1]`. Only what the file writes down has a path. The
+    /// ground has its points alone, since its mass has no effect.
+    pub fn number_paths(&self) -> Vec<String> {
+        self.body_numbers.iter().map(|n| self.path_of(n)).collect()
+    }
+
+    /// The number at `path`, in the scene's own unit.
+    /// Beside those of [`number_paths`](Self::number_paths) these are all that the sections of joints, loads, frictions, drives and
+    /// motions write, by their keys: `loads.brake.damping`, `motion.initial-velocity.phi`, `joints.guide.axis[0]`.
+    ///
+    /// # Errors
+    /// [`SceneError`] when the path leads nowhere.
+    pub fn value(&self, path: &str) -> Result<f64, SceneError> {
+        self.find_number(path).map(|(value, _)| value)
+    }
+
+    /// The current path of a number whose keys were renamed since `path` was written; none where `path` is current or leads nowhere.
+    pub fn renamed_path(&self, path: &str) -> Option<&str> {
+        let mut numbers = self.section_numbers.iter();
+        let number = numbers.find(|n| n.former_path == path && n.path != path)?;
+        Some(&number.path)
+    }
+
+    /// The unit of the number at `path`, such as `mm` or `kg m2`; empty if there is no such number.
+    pub fn unit_of(&self, path: &str) -> &str {
+        match self.body_number(path).map(|n| n.field) {
+            None => "",
+            Some(BodyField::Mass) => &self.units.mass.name,
+            Some(BodyField::Inertia) => &self.units.inertia.name,
+            Some(BodyField::Center(_) | BodyField::Point(..)) => &self.units.length.name,
+        }
+    }
+
+    /// A length, m, or an angle, rad, as the file would write it: in the scene's unit, and that unit.
+    pub fn to_scene_unit(&self, si: f64, is_angle: bool) -> (f64, &str) {
+        let unit = self.units.coordinate_unit(is_angle);
+        (unit.to_scene_unit(si), &unit.name)
+    }
+
+    /// A length or an angle in the scene's unit, as one of SI: m or rad.
+    pub fn to_si(&self, written: f64, is_angle: bool) -> f64 {
+        self.units.coordinate_unit(is_angle).to_si(written)
+    }
+
+    /// The same scene with the number at `path` replaced by `value`, in the scene's own unit.
+    ///
+    /// The number is replaced in the text and the text read again: whatever follows from the
+    /// number follows here too, and a message about it shows the number it is about.
+    ///
+    /// # Errors
+    /// As [`with_values`](Self::with_values).
+    pub fn with_value(&self, path: &str, value: f64) -> Result<Self, SceneError> {
+        self.with_values(&[(path, value)])
+    }
+
+    /// The same with several numbers replaced at once; the text is read again but once.
+    ///
+    /// # Errors
+    /// [`SceneError`] when a path leads nowhere or is named twice, a value is not finite, or the scene makes
+    /// no sense with these numbers.
+    pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
+        let mut changes = Vec::with_capacity(values.len());
+        for &(path, value) in values {
+            let (_, span) = self.find_number(path)?;
+            if !value.is_finite() {
+                let message = format!("{value} is not a value for `{path}`: it is not finite");
+                let label = (span.clone(), "this number".to_owned());
+                return Err(SceneError::with_labels(
+                    &self.source,
+                    message,
+                    None,
+                    [label],
+                ));
+            }
+            changes.push((span, path, value));
+        }
+        changes.sort_by_key(|(span, ..)| span.start);
+        if let Some(duplicate) = changes.windows(2).find(|two| two[0].0 == two[1].0) {
+            let message = format!("`{}` is given two values", duplicate[0].1);
+            let label = (duplicate[0].0.clone(), "one number".to_owned());
+            return Err(SceneError::with_labels(
+                &self.source,
+                message,
+                None,
+                [label],
+            ));
+        }
+        let old = self.source.inner();
+        let (mut text, mut from) = (String::with_capacity(old.len() + 24 * changes.len()), 0);
+        for (span, _, value) in changes {
+            // The spans come from this very text; still, no slicing that could fail.
+            text += old.get(from..span.start).unwrap_or_default();
+            let _ = write!(text, "{value:?}");
+            from = span.end;
+        }
+        text += old.get(from..).unwrap_or_default();
+        let source = Arc::new(NamedSource::new(self.source.name(), text));
+        Self::build(self.name.clone(), &source)
+    }
+
+    /// Where the number at `path` is written: itself, or the point it belongs to.
+    pub fn location_of(&self, path: &str) -> SceneLocation {
+        match self.body_number(path).map(|n| (n.field, n.body)) {
+            None => SceneLocation::Whole,
+            Some((BodyField::Mass, body)) => SceneLocation::Mass(body),
+            Some((BodyField::Inertia, body)) => SceneLocation::Inertia(body),
+            Some((BodyField::Center(_), body)) => SceneLocation::Center(body),
+            Some((BodyField::Point(k, _), body)) => SceneLocation::Point(body, k),
+        }
+    }
+
+    fn body_number(&self, path: &str) -> Option<&BodyNumber> {
+        // The body first: a large scene has many numbers, and few of them need their path spelt.
+        let body = path.split('.').next()?;
+        self.body_numbers
+            .iter()
+            .find(|n| self.mechanism.body_name(n.body) == body && self.path_of(n) == path)
+    }
+
+    /// The number at a path and where it is written; of a body that is called as a section is, before the section's.
+    fn find_number(&self, path: &str) -> Result<(f64, &Span), SceneError> {
+        if let Some(number) = self.body_number(path) {
+            return Ok((number.value, &number.span));
+        }
+        let mut numbers = self.section_numbers.iter();
+        let found = numbers.find(|n| n.path == path || n.former_path == path);
+        found.map(|n| (n.value, &n.span)).ok_or_else(|| {
+            let mut all = self.number_paths();
+            all.extend(self.section_numbers.iter().map(|n| n.path.clone()));
+            let (message, help) = no_number(path, &all);
+            SceneError::without_labels(message, Some(help))
+        })
+    }
+
+    fn path_of(&self, number: &BodyNumber) -> String {
+        let body = number.body.0;
+        let point = |k: usize| self.points[body][k].0.as_str();
+        number.path(&self.mechanism.bodies[body].name, point)
+    }
+}

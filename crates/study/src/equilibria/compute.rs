@@ -1,0 +1,164 @@
+//! Finds equilibria and tabulates them.
+
+use crate::explain::StudyError;
+use crate::models::SceneMachine;
+use dwell_dynamics::{
+    Equilibrium, Stability, equilibria as equilibria_over, equilibrium_near,
+    static_force_and_potential,
+};
+use dwell_findings::{Column, Table};
+use dwell_scene::Scene;
+use std::f64::consts::TAU;
+
+/// Static force (N·m or N) and potential (J) over the coordinate.
+pub struct StaticCurves {
+    pub(crate) q: Vec<f64>,
+    pub(crate) force_and_potential: Vec<[f64; 2]>,
+}
+
+/// Fraction of a range left out at each end, where the configuration is singular.
+const MARGIN: f64 = 1e-3;
+/// Lower end of the search interval, in periods before the start: not opposite the start, where an
+/// equilibrium is likely.
+const CUT_FRACTION: f64 = 0.47;
+/// Positions of the force in the figure.
+const POSITIONS: usize = 360;
+/// A real or imaginary part below this fraction of the eigenvalue's modulus is rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// Equilibria, and the interval of the only coordinate that was searched for all of them.
+pub(crate) type FoundEquilibria = (Vec<Equilibrium>, Option<[f64; 2]>);
+
+/// Finds the equilibria.
+pub(crate) fn find_equilibria(
+    scene_machine: &SceneMachine<'_>,
+) -> Result<FoundEquilibria, StudyError> {
+    scene_machine.require_autonomous("an equilibrium")?;
+    let interval = search_interval(scene_machine);
+    let found = match interval {
+        Some(interval) => equilibria_over(&scene_machine.machine, interval),
+        None => equilibrium_near(&scene_machine.machine, &scene_machine.initial_state())
+            .map(|only| vec![only]),
+    };
+    Ok((found.map_err(|e| scene_machine.explain(&e))?, interval))
+}
+
+/// The range of the only coordinate of the mechanism; if it is unlimited, one period around the start.
+fn search_interval(scene_machine: &SceneMachine<'_>) -> Option<[f64; 2]> {
+    let plan = scene_machine.machine.model().plan();
+    if plan.actuators() != 1 {
+        return None;
+    }
+    let range = plan.range();
+    if let Some((from, to)) = range.limits() {
+        let margin = MARGIN * (to - from);
+        return Some([from + margin, to - margin]);
+    }
+    let period = match range.period() {
+        Some(period) => period,
+        None if plan.is_angle(0) => TAU,
+        None => return None,
+    };
+    let from = scene_machine.initial_state()[0] - CUT_FRACTION * period;
+    Some([from, from + period])
+}
+
+/// One row per equilibrium.
+fn equilibrium_table(scene_machine: &SceneMachine<'_>, found: &[Equilibrium]) -> Table {
+    let start = scene_machine.initial_state();
+    let free = scene_machine.machine.free().len();
+    let states: Vec<Column> = scene_machine.state_columns();
+    let mut columns: Vec<Column> = states[..free].to_vec();
+    let deflection = |c: &Column| Column::new(format!("{}.deflection", c.name), c.unit.clone());
+    columns.extend(states[..free].iter().map(deflection));
+    columns.extend_from_slice(&states[2 * free..]);
+    columns.push(Column::new("stability", ""));
+    columns.push(Column::new("max_real_eigenvalue", "1/s"));
+    let modes = found.iter().map(|e| e.modes().len()).max().unwrap_or(0);
+    for k in 1..=modes {
+        columns.push(Column::new(format!("mode{k}.angular_frequency"), "rad/s"));
+        columns.push(Column::new(format!("mode{k}.frequency"), "Hz"));
+        columns.push(Column::new(format!("mode{k}.damping_ratio"), ""));
+    }
+    let row = |e: &Equilibrium| {
+        let mut row = e.y[..free].to_vec();
+        row.extend(e.y[..free].iter().zip(&start).map(|(q, start)| q - start));
+        row.extend_from_slice(&e.y[2 * free..scene_machine.machine.work_offset()]);
+        row.push(match e.stability {
+            Stability::Asymptotic => 1.0,
+            Stability::Centre => 0.0,
+            Stability::Unstable => -1.0,
+            Stability::Undecided => f64::NAN,
+        });
+        row.push(
+            e.eigenvalues
+                .first()
+                .map_or(f64::NAN, |z| without_rounding(*z)[0]),
+        );
+        for mode in e.modes() {
+            let damping = without_rounding([mode.damping_ratio, 1.0])[0];
+            row.extend([
+                mode.angular_frequency,
+                mode.angular_frequency / TAU,
+                damping,
+            ]);
+        }
+        row.resize(columns.len(), f64::NAN);
+        row
+    };
+    let rows = found.iter().map(row).collect();
+    Table { columns, rows }
+}
+
+/// An eigenvalue without rounding.
+pub(crate) fn without_rounding([re, im]: [f64; 2]) -> [f64; 2] {
+    let threshold = ROUNDING * re.hypot(im);
+    [re, im].map(|part| if part.abs() <= threshold { 0.0 } else { part })
+}
+
+/// The equilibria of a scene with their table, and the static force around them.
+pub struct EquilibriaResults<'a> {
+    pub(crate) scene_machine: SceneMachine<'a>,
+    /// The equilibria.
+    pub found: Vec<Equilibrium>,
+    /// The interval that was searched for all equilibria, if there is a single coordinate.
+    pub interval: Option<[f64; 2]>,
+    /// One row per equilibrium.
+    pub table: Table,
+    /// Static force and potential over the interval; and at the equilibria.
+    pub curves: Option<(StaticCurves, Vec<[f64; 2]>)>,
+}
+
+/// Computes the equilibria of a scene.
+///
+/// # Errors
+/// As [`equilibria`](crate::equilibria()).
+pub fn compute_equilibria(scene: &Scene) -> Result<EquilibriaResults<'_>, StudyError> {
+    let scene_machine = SceneMachine::new(scene)?;
+    let (found, interval) = find_equilibria(&scene_machine)?;
+    let table = equilibrium_table(&scene_machine, &found);
+    let curves = match interval {
+        None => None,
+        Some([from, to]) => {
+            let at = |k: usize| from + (to - from) * k as f64 / POSITIONS as f64;
+            let q: Vec<f64> = (0..=POSITIONS).map(at).collect();
+            let force_and_potential = static_force_and_potential(&scene_machine.machine, &q)
+                .map_err(|e| scene_machine.explain(&e))?;
+            let marked: Vec<f64> = found.iter().map(|e| e.y[0]).collect();
+            let marked = static_force_and_potential(&scene_machine.machine, &marked)
+                .map_err(|e| scene_machine.explain(&e))?;
+            let curves = StaticCurves {
+                q,
+                force_and_potential,
+            };
+            Some((curves, marked))
+        }
+    };
+    Ok(EquilibriaResults {
+        scene_machine,
+        found,
+        interval,
+        table,
+        curves,
+    })
+}

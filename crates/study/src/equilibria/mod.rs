@@ -1,0 +1,13 @@
+//! `dwell equilibria`: the equilibria of a machine, their stability and eigenvalues.
+
+pub mod compute;
+#[cfg(feature = "output")]
+pub(crate) mod document;
+#[cfg(feature = "output")]
+mod figures;
+#[cfg(feature = "output")]
+mod output;
+
+pub use compute::compute_equilibria;
+#[cfg(feature = "output")]
+pub use output::equilibria;

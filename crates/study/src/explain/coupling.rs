@@ -1,0 +1,61 @@
+//! Coupling functions that are not finite.
+
+use crate::explain::StudyError;
+use crate::number_format::number;
+use dwell_geometry::{JointId, JointKind, Mechanism};
+use dwell_laws::Law;
+use dwell_scene::{Scene, SceneLocation};
+
+/// The couplings of a mechanism: joint, function, and the independent coordinate.
+pub(crate) fn couplings(
+    mechanism: &Mechanism,
+) -> impl Iterator<Item = (JointId, &Law, dwell_geometry::Coordinate)> {
+    let joints = mechanism.joints.iter().enumerate();
+    joints.filter_map(|(j, joint)| {
+        let JointKind::Coupling(k) = joint.kind else {
+            return None;
+        };
+        let coupling = mechanism.couplings.get(k)?;
+        Some((JointId(j), &coupling.law, coupling.independent))
+    })
+}
+
+/// The first coupling of an actuator coordinate whose function has no finite value or derivative at
+/// `q` (rad or m): joint, value of the variable, and what is not finite.
+pub(crate) fn non_finite_coupling(
+    mechanism: &Mechanism,
+    q: &[f64],
+) -> Option<(JointId, f64, &'static str)> {
+    couplings(mechanism).find_map(|(joint, law, variable)| {
+        let actuator = mechanism
+            .actuators
+            .iter()
+            .position(|a| a.coordinate() == variable);
+        let x = *q.get(actuator?)?;
+        let order = law.eval(x)[..3].iter().position(|d| !d.is_finite())?;
+        Some((joint, x, ["value", "slope", "curvature"][order]))
+    })
+}
+
+/// The error of a coupling function whose `what` (value, slope, curvature) is not finite at `x`.
+pub(crate) fn non_finite_coupling_error(
+    scene: &Scene,
+    (joint, x, what): (JointId, f64, &str),
+    position: &str,
+) -> StudyError {
+    let label = format!("no finite {what} at x = {}", number(x));
+    scene
+        .error(
+            format!(
+                "the function of coupling `{}` has no finite {what} at x = {}, {position}",
+                scene.mechanism.joints[joint.0].name,
+                number(x)
+            ),
+            Some(
+                "a coupling function needs a finite value and two finite derivatives everywhere"
+                    .to_owned(),
+            ),
+            &[(SceneLocation::CouplingLaw(joint), label)],
+        )
+        .into()
+}

@@ -1,0 +1,21 @@
+//! Errors with their locations in the scene file. Below all analyses: nothing here depends on any of them.
+
+mod assembly;
+mod assembly_modes;
+mod coupling;
+mod labels;
+mod motion;
+mod study_error;
+mod sweep_error;
+
+pub(crate) use assembly::not_one_actuator;
+pub use assembly::{explain_machine, explain_model};
+pub(crate) use assembly_modes::explain_ambiguous;
+pub(crate) use coupling::{couplings, non_finite_coupling, non_finite_coupling_error};
+pub(crate) use labels::{
+    Labels, body_labels, body_names, body_names_or_mechanism, initial_state_location, joint_labels,
+    joint_names, start_labels,
+};
+pub use motion::{explain_motion, explain_position};
+pub use study_error::StudyError;
+pub use sweep_error::SweepError;

@@ -1,0 +1,13 @@
+//! Computes the free motion of a scene.
+
+mod accuracy;
+mod difference;
+mod error_estimate;
+mod problem;
+mod segmented_motion;
+mod tables;
+
+pub(crate) use difference::Difference;
+pub use problem::FreeMotionProblem;
+pub(crate) use segmented_motion::ComputedMotion;
+pub use segmented_motion::SegmentedMotion;

@@ -1,0 +1,66 @@
+//! A free motion as a sequence of segments.
+
+use dwell_dynamics::atlas::Chart;
+use dwell_dynamics::{DynamicsError, EventOccurrence, OdeState, Solution, Statistics};
+
+/// A computed motion and its description.
+pub(crate) struct ComputedMotion {
+    pub(crate) motion: SegmentedMotion,
+    /// The method, for captions and the summary.
+    pub(crate) method_text: String,
+    /// Further lines of the summary.
+    pub(crate) remarks: String,
+    /// The required accuracy and the estimated error, if an accuracy was required.
+    pub(crate) accuracy: Option<[f64; 2]>,
+}
+
+/// A free motion as a sequence of segments, each in one chart.
+pub struct SegmentedMotion {
+    /// Empty if the mechanism's own coordinate is used throughout.
+    pub charts: Vec<Chart>,
+    /// By segment: its chart and its solution.
+    pub segments: Vec<(usize, Solution)>,
+    /// By segment and sample: the only actuator's coordinate with two derivatives.
+    pub(crate) actuator_coordinates: Vec<Vec<[f64; 3]>>,
+    /// Lines of the summary about chart changes and change points.
+    pub(crate) chart_changes: Vec<String>,
+    /// Why it ended early, if it did.
+    pub failure: Option<DynamicsError>,
+    pub(crate) statistics: Statistics,
+}
+
+impl SegmentedMotion {
+    /// A motion in the mechanism's own coordinates.
+    pub(crate) fn single_segment(solution: Solution) -> Self {
+        Self {
+            charts: Vec::new(),
+            actuator_coordinates: Vec::new(),
+            chart_changes: Vec::new(),
+            failure: solution.error.clone(),
+            statistics: solution.statistics,
+            segments: vec![(0, solution)],
+        }
+    }
+
+    /// The events that happened, each with the chart of its segment.
+    pub fn occurrences(&self) -> impl Iterator<Item = (usize, &EventOccurrence)> {
+        self.segments
+            .iter()
+            .flat_map(|(chart, solution)| solution.event_occurrences.iter().map(|o| (*chart, o)))
+    }
+
+    /// The time at which it ends, s.
+    pub fn end_time(&self) -> f64 {
+        let last = self
+            .segments
+            .last()
+            .and_then(|(_, solution)| solution.steps.last());
+        last.map_or(0.0, |state| state.t)
+    }
+
+    pub(crate) fn steps(&self) -> impl Iterator<Item = (usize, &OdeState)> {
+        self.segments
+            .iter()
+            .flat_map(|(chart, solution)| solution.steps.iter().map(|p| (*chart, p)))
+    }
+}

@@ -1,0 +1,10 @@
+//! `dwell simulate`: the free motion of a machine in time, under its loads and drives.
+
+pub mod compute;
+#[cfg(feature = "output")]
+mod document;
+#[cfg(feature = "output")]
+mod output;
+
+#[cfg(feature = "output")]
+pub use output::{simulate, simulate_to_accuracy};

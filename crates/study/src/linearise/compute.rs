@@ -1,0 +1,143 @@
+//! The operating point, and names and units of states, inputs and outputs.
+
+use crate::equilibria::compute::find_equilibria;
+use crate::explain::StudyError;
+use crate::models::{SceneMachine, indeterminate_reactions};
+use dwell_dynamics::{
+    DynamicsError, Equilibrium, Machine, StateSpace, linearise as linearise_about,
+};
+use dwell_findings::Column;
+use dwell_geometry::Reaction;
+use dwell_kinetostatics::DriveKind;
+use dwell_scene::Scene;
+
+/// The operating point of a linearisation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OperatingPoint {
+    /// The equilibrium nearest to the start.
+    Equilibrium,
+    /// The initial state of the motion.
+    InitialState,
+}
+
+/// The equilibrium nearest to the start.
+fn nearest_equilibrium(scene_machine: &SceneMachine<'_>) -> Result<Equilibrium, StudyError> {
+    let (found, _) = find_equilibria(scene_machine)?;
+    let start = scene_machine.initial_state()[0];
+    let distance = |e: &Equilibrium| (e.y[0] - start).abs();
+    let nearest = found
+        .into_iter()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    nearest.ok_or_else(|| {
+        scene_machine.explain(&DynamicsError::NoEquilibrium {
+            what: "the static force has no zero in the range",
+        })
+    })
+}
+
+/// A matrix: its name, what its rows and its columns stand for, its rows.
+type NamedMatrix<'a> = (&'static str, &'a [Column], &'a [Column], &'a [Vec<f64>]);
+
+/// Names and units of states, inputs and outputs.
+pub struct StateSpaceNames {
+    /// Names and units of the states.
+    pub states: Vec<Column>,
+    /// Of the inputs.
+    pub inputs: Vec<Column>,
+    /// Of the outputs.
+    pub outputs: Vec<Column>,
+}
+
+impl StateSpaceNames {
+    pub(crate) fn new(scene_machine: &SceneMachine<'_>, machine: &Machine) -> Self {
+        let scene = scene_machine.scene;
+        let states = scene_machine.state_columns();
+        let force = |angle: bool| if angle { "N m" } else { "N" };
+        let input = |drive: &dwell_kinetostatics::Drive| {
+            let angle = drive.coordinate.is_angle();
+            let (what, unit) = match drive.kind {
+                DriveKind::AppliedForce(_) => ("applied_force", force(angle)),
+                DriveKind::Motor(_) => ("voltage", "V"),
+                DriveKind::SpeedController(_) => ("set_speed", if angle { "rad/s" } else { "m/s" }),
+            };
+            Column::new(format!("{}.{what}", drive.name), unit)
+        };
+        let mut outputs = states[..2 * machine.free().len()].to_vec();
+        let reaction =
+            |&r: &Reaction| Column::new(scene.mechanism.reaction_name(r), r.component.unit());
+        outputs.extend(machine.model().reactions().iter().map(reaction));
+        let drive_force = |drive: &dwell_kinetostatics::Drive| {
+            let unit = force(drive.coordinate.is_angle());
+            Column::new(format!("{}.actuator_force", drive.name), unit)
+        };
+        outputs.extend(scene.drives.iter().map(drive_force));
+        Self {
+            inputs: scene.drives.iter().map(input).collect(),
+            states,
+            outputs,
+        }
+    }
+
+    /// The four matrices with the names of their rows and columns.
+    pub(crate) fn matrices<'a>(&'a self, linear: &'a StateSpace) -> [NamedMatrix<'a>; 4] {
+        [
+            ("A", &self.states, &self.states, &linear.a),
+            ("B", &self.states, &self.inputs, &linear.b),
+            ("C", &self.outputs, &self.states, &linear.c),
+            ("D", &self.outputs, &self.inputs, &linear.d),
+        ]
+    }
+}
+
+/// The linearised motion of a scene.
+pub struct LinearisedMotion<'a> {
+    pub(crate) scene_machine: SceneMachine<'a>,
+    /// The state about which it is linearised.
+    pub state: Vec<f64>,
+    /// The equilibrium there, if it was asked for.
+    pub equilibrium: Option<Equilibrium>,
+    /// The matrices.
+    pub linear: StateSpace,
+    /// The eigenvalues of A, 1/s.
+    pub eigenvalues: Vec<[f64; 2]>,
+    /// Names and units of states, inputs and outputs.
+    pub names: StateSpaceNames,
+    /// Requested reactions that are statically indeterminate, and so no outputs.
+    pub omitted: Vec<Reaction>,
+}
+
+/// Linearises the motion of a scene about a state.
+///
+/// # Errors
+/// As [`linearise`](crate::linearise()).
+pub fn compute_linearisation(
+    scene: &Scene,
+    point: OperatingPoint,
+) -> Result<LinearisedMotion<'_>, StudyError> {
+    let scene_machine = SceneMachine::new(scene)?;
+    let indeterminate = indeterminate_reactions(scene, scene_machine.machine.model().plan());
+    let requested = scene.requests.reactions.iter().copied();
+    let (omitted, reactions): (Vec<Reaction>, Vec<Reaction>) =
+        requested.partition(|reaction| indeterminate.contains(reaction));
+    let machine = scene_machine.machine_with_reactions(&reactions)?;
+    let (state, equilibrium) = match point {
+        OperatingPoint::InitialState => (scene_machine.initial_state(), None),
+        OperatingPoint::Equilibrium => {
+            let equilibrium = nearest_equilibrium(&scene_machine)?;
+            (equilibrium.y.clone(), Some(equilibrium))
+        }
+    };
+    let explain = |e: DynamicsError| scene_machine.explain(&e);
+    let linear = linearise_about(&machine, 0.0, &state).map_err(explain)?;
+    let eigenvalues = linear.eigenvalues().map_err(explain)?;
+    let names = StateSpaceNames::new(&scene_machine, &machine);
+    Ok(LinearisedMotion {
+        scene_machine,
+        state,
+        equilibrium,
+        linear,
+        eigenvalues,
+        names,
+        omitted,
+    })
+}

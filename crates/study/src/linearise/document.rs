@@ -1,0 +1,158 @@
+//! State-space matrices as text and arrays.
+
+use crate::equilibria::document::{describe_eigenvalues, describe_equilibrium};
+use crate::linearise::compute::{LinearisedMotion, StateSpaceNames};
+use crate::models::indeterminate_note;
+use crate::number_format::number;
+use crate::output::provenance_line;
+use dwell_dynamics::StateSpace;
+use dwell_report::{Array, Block, Column, Document};
+use dwell_scene::Scene;
+use std::fmt::Write as _;
+
+fn column_list(columns: &[Column]) -> String {
+    let one = |c: &Column| format!("{} ({})", c.name, c.unit);
+    match columns {
+        [] => "none".to_owned(),
+        some => some.iter().map(one).collect::<Vec<_>>().join(", "),
+    }
+}
+
+/// The label of a matrix row: in A and B the time derivative of a state.
+fn row_name(matrix: &str, column: &Column) -> String {
+    if matrix == "A" || matrix == "B" {
+        format!("d({})/dt [{}/s]", column.name, column.unit)
+    } else {
+        format!("{} [{}]", column.name, column.unit)
+    }
+}
+
+/// The printed summary.
+pub(crate) fn summary(motion: &LinearisedMotion<'_>) -> String {
+    let (scene, names) = (motion.scene_machine.scene, &motion.names);
+    let mut summary = format!("{}: linearised ", scene.title);
+    match &motion.equilibrium {
+        Some(equilibrium) => {
+            summary += "about its equilibrium\n";
+            summary += &describe_equilibrium(&motion.scene_machine, equilibrium);
+        }
+        None => {
+            summary += "about the initial state\n";
+            if motion
+                .linear
+                .state_derivative
+                .iter()
+                .any(|rate| rate.abs() > 0.0)
+            {
+                summary += "  not an equilibrium: the state derivative is not zero there\n";
+            }
+            summary += &describe_eigenvalues(&motion.eigenvalues);
+        }
+    }
+    // Writing to a string cannot fail.
+    let _ = writeln!(
+        summary,
+        "  states: {}\n  inputs: {}\n  outputs: {}",
+        column_list(&names.states),
+        column_list(&names.inputs),
+        column_list(&names.outputs)
+    );
+    let omitted = motion.omitted.iter();
+    summary + &indeterminate_note(omitted.map(|&r| scene.mechanism.reaction_name(r)))
+}
+
+pub(crate) fn arrays(
+    names: &StateSpaceNames,
+    linear: &StateSpace,
+    state: &[f64],
+) -> Vec<(&'static str, Array)> {
+    let matrix = |(name, _, columns, rows): (&'static str, _, &[Column], &[Vec<f64>])| {
+        let rows = rows.to_vec();
+        let columns = columns.len();
+        (name, Array::Matrix { columns, rows })
+    };
+    let mut arrays: Vec<_> = names.matrices(linear).map(matrix).into();
+    let mut row = |name, values: &[f64]| {
+        let array = Array::Matrix {
+            columns: values.len(),
+            rows: vec![values.to_vec()],
+        };
+        arrays.push((name, array));
+    };
+    row("state", &state[..names.states.len()]);
+    row("rates", &linear.state_derivative);
+    row("output", &linear.outputs);
+    let text_array = |of: fn(&Column) -> &String, columns: &[Column]| {
+        Array::Strings(columns.iter().map(|c| of(c).clone()).collect())
+    };
+    for (name, units, columns) in [
+        ("states", "state_units", &names.states),
+        ("inputs", "input_units", &names.inputs),
+        ("outputs", "output_units", &names.outputs),
+    ] {
+        arrays.push((name, text_array(|c| &c.name, columns)));
+        arrays.push((units, text_array(|c| &c.unit, columns)));
+    }
+    arrays
+}
+
+/// CSV with one line per row of each matrix.
+pub(crate) fn csv(names: &StateSpaceNames, linear: &StateSpace) -> String {
+    let mut text = String::new();
+    for (name, rows, columns, matrix) in names.matrices(linear) {
+        // Names of a scene hold neither commas nor quotes.
+        let _ = write!(text, "matrix,row");
+        for column in columns {
+            let _ = write!(text, ",{} [{}]", column.name, column.unit);
+        }
+        text.push('\n');
+        for (row, values) in rows.iter().zip(matrix) {
+            let _ = write!(text, "{name},{}", row_name(name, row));
+            for value in values {
+                let _ = write!(text, ",{value:?}");
+            }
+            text.push('\n');
+        }
+    }
+    text
+}
+
+pub(crate) fn document(
+    names: &StateSpaceNames,
+    scene: &Scene,
+    linear: &StateSpace,
+    state: &[f64],
+) -> String {
+    let mut blocks = vec![Block::Text(
+        "δẋ = A δx + B δu and δz = C δx + D δu, of the states x, the inputs u and the outputs z, \
+         about the state below."
+            .to_owned(),
+    )];
+    let states = names.states.iter().zip(state).zip(&linear.state_derivative);
+    blocks.push(Block::Table {
+        header: ["state", "unit", "x", "ẋ"].map(str::to_owned).into(),
+        rows: states
+            .map(|((c, x), rate)| vec![c.name.clone(), c.unit.clone(), number(*x), number(*rate)])
+            .collect(),
+    });
+    for (name, rows, columns, matrix) in names.matrices(linear) {
+        blocks.push(Block::Heading(name.to_owned()));
+        if columns.is_empty() {
+            blocks.push(Block::Text("No inputs.".to_owned()));
+            continue;
+        }
+        let label = |c: &Column| format!("{} [{}]", c.name, c.unit);
+        let header = std::iter::once(String::new()).chain(columns.iter().map(label));
+        let row = |(c, values): (&Column, &Vec<f64>)| {
+            let cells = values.iter().map(|v| number(*v));
+            std::iter::once(row_name(name, c)).chain(cells).collect()
+        };
+        blocks.push(Block::Table {
+            header: header.collect(),
+            rows: rows.iter().zip(matrix).map(row).collect(),
+        });
+    }
+    blocks.push(Block::Text(provenance_line(scene)));
+    let title = format!("{}: linearised motion", scene.title);
+    Document { title, blocks }.markdown()
+}

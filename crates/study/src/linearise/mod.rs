@@ -1,0 +1,11 @@
+//! `dwell linearise`: small motions about an equilibrium or the initial state, as state-space matrices A, B, C and D.
+
+pub mod compute;
+#[cfg(feature = "output")]
+mod document;
+#[cfg(feature = "output")]
+mod output;
+
+pub use compute::{OperatingPoint, compute_linearisation};
+#[cfg(feature = "output")]
+pub use output::linearise;

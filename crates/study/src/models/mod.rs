@@ -1,0 +1,17 @@
+//! The compiled models of a scene, which the analyses share.
+
+mod compile;
+mod prepared_scene;
+mod scene_machine;
+mod solver_settings;
+
+pub use compile::{
+    build_machine, compile_model, indeterminate_reactions, loaded_model, reduced_model,
+};
+pub(crate) use compile::{
+    determinate_model, loaded_determinate_model, requested_reaction_bodies, with_loads,
+};
+pub use prepared_scene::PreparedScene;
+pub(crate) use prepared_scene::indeterminate_note;
+pub(crate) use scene_machine::SceneMachine;
+pub use solver_settings::{PRESETS, SolverSettings};

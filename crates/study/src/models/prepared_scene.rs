@@ -1,0 +1,125 @@
+//! A scene with the exact reduced model of what it requests.
+
+use crate::explain::{StudyError, not_one_actuator};
+use crate::models::{determinate_model, indeterminate_reactions, requested_reaction_bodies};
+use dwell_dynamics::ReducedState;
+use dwell_geometry::{ActuatorId, Reaction};
+use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
+use dwell_scene::{Scene, SceneLocation};
+use std::f64::consts::TAU;
+
+/// A scene and the reduced model of what it requests.
+#[derive(Debug)]
+pub struct PreparedScene<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// The model, with the requested statically determinate reactions in the order of the scene.
+    pub model: ExactModel,
+}
+
+impl<'a> PreparedScene<'a> {
+    /// Compiles what a scene requests.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] when the mechanism cannot be put together or does not have one
+    /// degree of freedom.
+    pub fn new(scene: &'a Scene) -> Result<Self, StudyError> {
+        Self::from_model(scene, determinate_model(scene)?)
+    }
+
+    fn from_model(scene: &'a Scene, model: Model) -> Result<Self, StudyError> {
+        let model = ExactModel::new(model).ok_or_else(|| not_one_actuator(scene))?;
+        Ok(Self { scene, model })
+    }
+
+    /// Compiles what a scene requests, without the groups that affect neither inertia nor a requested
+    /// reaction. For analyses of a driven angle that ignore loads.
+    ///
+    /// # Errors
+    /// As [`PreparedScene::new`]; where a length is driven, or (for a period, which they would change)
+    /// where there are loads.
+    pub fn for_driven_angle(scene: &'a Scene, for_period: bool) -> Result<Self, StudyError> {
+        let model = determinate_model(scene)?;
+        let pruned = model.pruned_for(&requested_reaction_bodies(scene));
+        let prepared_scene = Self::from_model(scene, pruned)?;
+        let label = |place, word: &str| [(place, word.to_owned())];
+        if !prepared_scene.model.model().plan().is_angle(0) {
+            return Err(scene
+                .error(
+                    "the reduced model is available for driven angles only".to_owned(),
+                    Some(
+                        "use `dwell simulate` or `dwell kinetostatics`, which support driven lengths, or drive an angle".to_owned(),
+                    ),
+                    &label(SceneLocation::Actuator(ActuatorId(0)), "drives a length"),
+                )
+                .into());
+        }
+        if for_period && !scene.loads.is_empty() {
+            return Err(scene
+                .error(
+                    "calibration needs the period of a motion without loads".to_owned(),
+                    Some("remove the loads, or try values with `dwell simulate`".to_owned()),
+                    &label(SceneLocation::Load(0), "this load would be ignored"),
+                )
+                .into());
+        }
+        Ok(prepared_scene)
+    }
+
+    /// The name of the coordinate.
+    pub fn coordinate_name(&self) -> &str {
+        &self.scene.mechanism.actuators[0].name
+    }
+
+    /// Names and units (of a force or a moment) of the reactions of the model.
+    pub fn reaction_units(&self) -> Vec<(String, &'static str)> {
+        let mechanism = &self.scene.mechanism;
+        let named = |&r: &Reaction| (mechanism.reaction_name(r), r.component.unit());
+        let reactions = self.model.model().reactions();
+        reactions.iter().map(named).collect()
+    }
+
+    /// The summary's line about the requested reactions that are statically indeterminate.
+    pub(crate) fn indeterminate_text(&self) -> String {
+        let indeterminate = indeterminate_reactions(self.scene, self.model.model().plan());
+        let requested = self.scene.requests.reactions.iter();
+        let names = requested.filter(|r| indeterminate.contains(r));
+        indeterminate_note(names.map(|&r| self.scene.mechanism.reaction_name(r)))
+    }
+
+    /// The initial state of the free motion, if the scene has one.
+    pub fn initial_state(&self) -> Option<ReducedState> {
+        let spec = self.scene.motion.as_ref()?;
+        Some(ReducedState {
+            t: 0.0,
+            q: spec.initial_coordinates[0],
+            q_dot: spec.initial_velocities[0],
+        })
+    }
+
+    /// `count` + 1 equally spaced coordinates over the range, rad: over a turn from 0, or between
+    /// the limit positions, of which a thousandth is left out where everything grows.
+    pub fn range_positions(&self, count: usize) -> Vec<f64> {
+        let (from, to) = match self.model.range().limits() {
+            None => (0.0, TAU),
+            Some((from, to)) => {
+                let margin = 1e-3 * (to - from);
+                (from + margin, to - margin)
+            }
+        };
+        let at = |i: usize| from + (to - from) * i as f64 / count as f64;
+        (0..=count).map(at).collect()
+    }
+}
+
+/// The line of a summary that names the statically indeterminate reactions; empty if there are none.
+pub(crate) fn indeterminate_note(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "  statically indeterminate (redundant constraints share the load), so in no table: {}\n",
+        names.join(", ")
+    )
+}

@@ -1,0 +1,139 @@
+//! Captions, labels and limits that figures share.
+
+use crate::models::PreparedScene;
+use crate::number_format::count;
+use dwell_geometry::Range;
+use dwell_kinetostatics::ReducedModel;
+use dwell_report::{Figure, Series};
+use dwell_scene::Scene;
+
+/// Maximum number of reaction figures if none is requested by name.
+pub(crate) const MAX_REACTION_FIGURES: usize = 8;
+
+/// The number of reaction figures to draw, of `figures` possible ones, and a note if some are left out.
+/// Reactions requested by name are all drawn.
+pub(crate) fn reaction_figure_count(scene: &Scene, figures: usize) -> (usize, Option<String>) {
+    let named = scene.requests.reactions.len() < scene.mechanism.reactions().len();
+    if named || figures <= MAX_REACTION_FIGURES {
+        return (figures, None);
+    }
+    let note = format!(
+        "of {figures} reaction figures only the first {MAX_REACTION_FIGURES} are drawn: select reactions with `reactions` \
+         in [requests]"
+    );
+    (MAX_REACTION_FIGURES, Some(note))
+}
+
+/// Adds a note to the caption of the last figure.
+pub(crate) fn add_note(figures: &mut [Figure], note: Option<&str>) {
+    if let (Some(last), Some(note)) = (figures.last_mut(), note) {
+        last.caption += &format!(" Note: {note}.");
+    }
+}
+
+/// The caption of a figure over the range, which explains why curves may leave it.
+pub(crate) fn range_caption(prepared: &PreparedScene<'_>, text: &str) -> String {
+    let limits = match prepared.model.model().plan().range_limits() {
+        [None, None] => "",
+        [Some(_), Some(_)] => {
+            " Towards the limit positions at both ends all quantities grow without bound."
+        }
+        _ => " Towards the limit position all quantities grow without bound.",
+    };
+    caption(prepared, &format!("{text}{limits}"))
+}
+
+/// The caption of a figure: the scene's title and the text. The provenance is added when it is drawn.
+pub fn caption(prepared: &PreparedScene<'_>, text: &str) -> String {
+    scene_caption(prepared.scene, text)
+}
+
+/// The same from a scene.
+pub fn scene_caption(scene: &Scene, text: &str) -> String {
+    format!("{}. {text}", scene.title.trim_end_matches('.'))
+}
+
+/// The provenance of the reduced model.
+pub(crate) fn reduced_provenance(positions: usize) -> String {
+    format!(
+        "reduced model by unit runs, at {}",
+        count(positions, "position")
+    )
+}
+
+/// A coordinate's name as a symbol, where it is the name of a Greek letter.
+pub fn symbol(name: &str) -> String {
+    const GREEK: [(&str, &str); 8] = [
+        ("alpha", "α"),
+        ("beta", "β"),
+        ("gamma", "γ"),
+        ("phi", "φ"),
+        ("psi", "ψ"),
+        ("theta", "θ"),
+        ("omega", "ω"),
+        ("delta", "δ"),
+    ];
+    let found = GREEK.iter().find(|(latin, _)| *latin == name);
+    found.map_or(name, |(_, greek)| greek).to_owned()
+}
+
+/// The label of the axis of the independent coordinate.
+pub fn coordinate_label(prepared: &PreparedScene<'_>) -> String {
+    let bodies = prepared.scene.mechanism.actuators[0].bodies;
+    let mechanism = &prepared.scene.mechanism;
+    // The angle of the body that turns; from another than the ground, both are named.
+    let body = mechanism.body_name(bodies[1]);
+    let symbol = symbol(prepared.coordinate_name());
+    if bodies[0].0 == mechanism.ground {
+        format!("{body} angle {symbol}")
+    } else {
+        format!(
+            "angle {symbol} of {body} from {}",
+            mechanism.body_name(bodies[0])
+        )
+    }
+}
+
+/// The vertical extent of the curves. Towards a limit position they grow without bound, so there the extent
+/// is that of the inner nine tenths of the range.
+pub(crate) fn inner_range(prepared: &PreparedScene<'_>, curves: &[Series]) -> Option<[f64; 2]> {
+    if prepared.model.range() == Range::Full {
+        return None;
+    }
+    let inner = |c: &Series| {
+        let n = c.points.len();
+        c.points[n / 20..n - n / 20].to_vec()
+    };
+    let (low, high) = curves
+        .iter()
+        .flat_map(inner)
+        .fold((f64::MAX, f64::MIN), |(a, b), [_, v]| (a.min(v), b.max(v)));
+    let margin = 0.08 * (high - low);
+    (high > low).then_some([low - margin, high + margin])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn named_reactions_are_all_drawn_and_too_many_others_are_not() {
+        let scene = |requests: &str| {
+            let text = format!(
+                "[bodies.ground]\npoints = {{ A = [0, 0] }}\n[bodies.crank]\npoints = {{ A = [0, 0] }}\n\
+                 [joints]\nA = {{ revolute = [\"ground.A\", \"crank.A\"] }}\n[actuators]\n\
+                 phi = {{ angle = [\"ground\", \"crank\"] }}\n{requests}"
+            );
+            Scene::parse("crank.toml", &text).expect("a scene")
+        };
+        assert_eq!(
+            reaction_figure_count(&scene(""), MAX_REACTION_FIGURES),
+            (MAX_REACTION_FIGURES, None)
+        );
+        let (pages, note) = reaction_figure_count(&scene(""), 176);
+        assert_eq!(pages, MAX_REACTION_FIGURES);
+        assert!(note.expect("a note").starts_with("of 176 reaction figures"));
+        let named = scene("[requests]\nreactions = [\"A.x\"]");
+        assert_eq!(reaction_figure_count(&named, 176), (176, None));
+    }
+}

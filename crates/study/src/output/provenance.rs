@@ -1,0 +1,70 @@
+//! Provenance of results: version, scene and method, without dates and host names.
+
+use dwell_report::{Animation, Figure, ReportError, png};
+use dwell_scene::Scene;
+
+/// Digits of a hash in figures; documents have all of them.
+const SHORT_HASH: usize = 12;
+
+/// Version, scene and the hash of its text.
+pub fn provenance_line(scene: &Scene) -> String {
+    line(scene, &scene.hash())
+}
+
+fn line(scene: &Scene, hash: &str) -> String {
+    let version = env!("CARGO_PKG_VERSION");
+    format!("Dwell {version} · scene {} (sha256 {hash})", scene.name)
+}
+
+/// The same with a short hash, and the method.
+fn signature(scene: &Scene, method_text: &str) -> String {
+    let line = line(scene, &scene.hash()[..SHORT_HASH]);
+    if method_text.is_empty() {
+        line
+    } else {
+        format!("{line} · {method_text}")
+    }
+}
+
+/// Draws a figure of a scene. Every figure is drawn here, so that each carries its provenance; its `provenance` field
+/// holds the method and tolerance.
+pub fn signed_png(scene: &Scene, figure: &Figure) -> Result<Vec<u8>, ReportError> {
+    png(&Figure {
+        provenance: signature(scene, &figure.provenance),
+        ..figure.clone()
+    })
+}
+
+/// The same for an animation.
+pub(crate) fn signed_gif(scene: &Scene, animation: Animation) -> Result<Vec<u8>, ReportError> {
+    Animation {
+        provenance: signature(scene, &animation.provenance),
+        ..animation
+    }
+    .gif()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_signature_names_version_scene_hash_and_method_and_nothing_that_changes() {
+        let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.crank]\npoints = { A = [0, 0] }\n\
+                    [joints]\nA = { revolute = [\"ground.A\", \"crank.A\"] }\n[actuators]\n\
+                    phi = { angle = [\"ground\", \"crank\"] }\n";
+        let scene = Scene::parse("folder/crank.toml", text).expect("a scene");
+        let hash = scene.hash();
+        let version = env!("CARGO_PKG_VERSION");
+        assert_eq!(
+            signature(&scene, "BDF, tolerance 1e-10"),
+            format!(
+                "Dwell {version} · scene crank (sha256 {}) · BDF, tolerance 1e-10",
+                &hash[..12]
+            )
+        );
+        assert!(provenance_line(&scene).ends_with(&format!("(sha256 {hash})")));
+        let elsewhere = Scene::parse("/another/place/crank.toml", text).expect("a scene");
+        assert_eq!(signature(&elsewhere, ""), signature(&scene, ""));
+    }
+}

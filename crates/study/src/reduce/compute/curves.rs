@@ -1,0 +1,179 @@
+//! Reduced coefficients over the range, and their rounding errors.
+
+use crate::explain::{StudyError, explain_position};
+use crate::models::PreparedScene;
+use crate::reduce::compute::UnitLoadCurves;
+use dwell_findings::{Column, Table};
+use dwell_kinetostatics::{Batch, Coefficients};
+use dwell_scene::Scene;
+use rayon::prelude::*;
+
+/// Intervals of the table: half a degree over a revolution.
+const POSITIONS: usize = 720;
+
+/// The reduced coefficients over the range.
+#[derive(Debug, Clone)]
+pub struct ReducedCurves {
+    /// Coordinates, rad.
+    pub q: Vec<f64>,
+    /// The coefficients at each.
+    pub coefficients: Vec<Coefficients>,
+}
+
+/// Estimated rounding errors over the range, relative to the largest value of each coefficient.
+#[derive(Debug, Clone)]
+pub struct RoundingErrors {
+    /// By position: the largest of all coefficients.
+    pub(crate) rows: Vec<f64>,
+    /// Over all positions: of m, of ½m′, of every a and b.
+    pub(crate) max_errors: [f64; 3],
+}
+
+impl RoundingErrors {
+    /// Evaluates the curves again in 32-digit arithmetic.
+    pub(crate) fn new(
+        prepared: &PreparedScene<'_>,
+        curves: &ReducedCurves,
+    ) -> Result<Self, StudyError> {
+        let model = prepared.model.model();
+        let flat = |at: &Coefficients| -> Vec<f64> {
+            let rest = at.a.iter().chain(&at.b).copied();
+            [at.m, at.half_dm].into_iter().chain(rest).collect()
+        };
+        let mut scales = vec![0.0_f64; 2 + 2 * model.reactions().len()];
+        for at in &curves.coefficients {
+            for (scale, value) in scales.iter_mut().zip(flat(at)) {
+                *scale = scale.max(value.abs());
+            }
+        }
+        let relative_errors = |(&q, at): (&f64, &Coefficients)| {
+            let (mut workspace, mut errors) = (model.workspace(), model.coefficient_buffer());
+            model
+                .reduction_rounding_errors(q, at, &mut workspace, &mut errors)
+                .map_err(|e| explain_position(prepared.scene, model.plan(), &e))?;
+            let parts = flat(&errors).into_iter().zip(&scales);
+            let relative =
+                |(error, &scale): (f64, &f64)| if error > 0.0 { error / scale } else { 0.0 };
+            Ok(parts.map(relative).collect())
+        };
+        let all: Vec<Vec<f64>> = curves
+            .q
+            .par_iter()
+            .zip(&curves.coefficients)
+            .map(relative_errors)
+            .collect::<Result<_, StudyError>>()?;
+        let largest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
+        let max_of = |pick: &dyn Fn(&Vec<f64>) -> f64| all.iter().map(pick).fold(0.0, f64::max);
+        Ok(Self {
+            rows: all.iter().map(|row| largest(row)).collect(),
+            max_errors: [
+                max_of(&|row| row[0]),
+                max_of(&|row| row[1]),
+                max_of(&|row| largest(&row[2..])),
+            ],
+        })
+    }
+}
+
+impl ReducedCurves {
+    /// Evaluates the model over its range.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] where a position cannot be reached.
+    pub fn new(prepared: &PreparedScene<'_>) -> Result<Self, StudyError> {
+        let model = &prepared.model;
+        let q = prepared.range_positions(POSITIONS);
+        let mut batch = Batch::default();
+        model.reduce_batch(&q, &mut batch);
+        if let Some((_, error)) = batch.errors.first() {
+            return Err(explain_position(
+                prepared.scene,
+                model.model().plan(),
+                error,
+            ));
+        }
+        let at = (0..q.len()).map(|i| batch.coefficients(i)).collect();
+        Ok(Self {
+            q,
+            coefficients: at,
+        })
+    }
+
+    /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
+    pub fn table(&self, prepared: &PreparedScene<'_>) -> Table {
+        let mut columns = vec![
+            Column::new(prepared.coordinate_name(), "rad"),
+            Column::new("m", "kg m2"),
+            Column::new("half_dm", "kg m2/rad"),
+        ];
+        for (name, unit) in prepared.reaction_units() {
+            let unit = coefficient_unit(unit);
+            columns.push(Column::new(format!("{name}.a"), unit));
+            columns.push(Column::new(format!("{name}.b"), unit));
+        }
+        let row = |(q, at): (&f64, &Coefficients)| {
+            let mut row = vec![*q, at.m, at.half_dm];
+            for (a, b) in at.a.iter().zip(&at.b) {
+                row.extend([*a, *b]);
+            }
+            row
+        };
+        Table {
+            columns,
+            rows: self.q.iter().zip(&self.coefficients).map(row).collect(),
+        }
+    }
+}
+
+/// Unit of a and b for a reaction in N or N m: per rad/s² and per (rad/s)².
+pub(crate) fn coefficient_unit(unit: &str) -> &'static str {
+    if unit == "N" { "kg m" } else { "kg m2" }
+}
+
+/// The reduced parameters of a scene over its range.
+pub struct Reduction<'a> {
+    /// The scene and its model.
+    pub prepared: PreparedScene<'a>,
+    /// The coefficients.
+    pub curves: ReducedCurves,
+    /// The unit-load response, if there are loads.
+    pub unit_loads: Option<UnitLoadCurves>,
+    /// Estimated rounding errors of the coefficients.
+    pub errors: RoundingErrors,
+}
+
+/// Computes the reduced parameters of a scene over its range.
+///
+/// # Errors
+/// [`StudyError`] when the mechanism cannot be assembled, or a position of the range cannot be evaluated.
+pub fn compute_reduction(scene: &Scene) -> Result<Reduction<'_>, StudyError> {
+    let prepared = PreparedScene::for_driven_angle(scene, false)?;
+    let curves = ReducedCurves::new(&prepared)?;
+    let unit_loads = UnitLoadCurves::new(&prepared, &curves.q)?;
+    let errors = RoundingErrors::new(&prepared, &curves)?;
+    Ok(Reduction {
+        prepared,
+        curves,
+        unit_loads,
+        errors,
+    })
+}
+
+impl Reduction<'_> {
+    /// Coordinate, m, ½m′, a and b of each requested reaction; V, w and c of the loads; relative rounding error.
+    pub fn table(&self) -> Table {
+        let mut table = self.curves.table(&self.prepared);
+        let unit_loads = self
+            .unit_loads
+            .iter()
+            .flat_map(|l| l.columns(&self.prepared));
+        let errors = (Column::new("relative_error", ""), self.errors.rows.clone());
+        for (column, values) in unit_loads.chain([errors]) {
+            table.columns.push(column);
+            for (row, value) in table.rows.iter_mut().zip(values) {
+                row.push(value);
+            }
+        }
+        table
+    }
+}

@@ -1,0 +1,10 @@
+//! Computes the reduced parameters over the range, the unit-load response and the interpolation table.
+
+mod curves;
+mod table;
+mod unit_load_curves;
+
+pub(crate) use curves::RoundingErrors;
+pub use curves::{ReducedCurves, Reduction, compute_reduction};
+pub use table::{TableRequest, Tabulation, tabulate};
+pub(crate) use unit_load_curves::{UnitLoadCurves, units};

@@ -1,0 +1,194 @@
+//! `dwell reduce --table-accuracy`: the whole reduced model as an interpolation table, usable without the mechanism.
+
+use crate::explain::{StudyError, explain_motion, not_one_actuator};
+use crate::models::{PreparedScene, loaded_determinate_model};
+use crate::number_format::number;
+use dwell_geometry::{Plan, Range};
+use dwell_kinetostatics::table::Labels;
+use dwell_kinetostatics::{ExactModel, TableDomain, TableError, TableQuantity, TabulatedModel};
+use dwell_scene::{Scene, SceneLocation};
+use std::f64::consts::TAU;
+
+/// The requested table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TableRequest {
+    /// Relative to the largest value of each coefficient.
+    pub accuracy: f64,
+    /// Interval in the scene's unit; `None` for a full period, or the range without 2 % at each end.
+    pub interval: Option<(f64, f64)>,
+    /// Whether a missing table is an error; otherwise the exactly evaluated rows suffice.
+    pub required: bool,
+}
+
+/// A table as text, with the lines of the summary about it.
+pub struct Tabulation {
+    /// Lines of the summary.
+    pub summary: String,
+    /// The table; `None` if none could be built and none was required.
+    pub text: Option<String>,
+}
+
+/// Builds a table of m, ½m′, a and b of the requested reactions, and w and c of the loads, each to the required
+/// accuracy relative to its largest value.
+pub fn tabulate(
+    prepared_scene: &PreparedScene<'_>,
+    request: &TableRequest,
+) -> Result<Tabulation, StudyError> {
+    let scene = prepared_scene.scene;
+    let exact =
+        ExactModel::new(loaded_determinate_model(scene)?).ok_or_else(|| not_one_actuator(scene))?;
+    let plan = exact.model().plan();
+    // Without a period the curves cover one revolution, and so does the table.
+    let si = |written: f64| scene.to_si(written, plan.is_angle(0));
+    let extent = match (request.interval, plan.range()) {
+        (Some((from, to)), _) => TableDomain::Between(si(from), si(to)),
+        (None, Range::Unbounded) => TableDomain::Between(0.0, TAU),
+        (None, _) => TableDomain::Full,
+    };
+    let labels = Labels {
+        scene: scene.hash(),
+        coordinate: prepared_scene.coordinate_name().to_owned(),
+        reactions: prepared_scene
+            .reaction_units()
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect(),
+        loads: scene.loads.iter().map(|load| load.name.clone()).collect(),
+    };
+    let error_of = |e: TableError| explain_table_error(scene, plan, &labels, &e);
+    let table = match TabulatedModel::new(&exact, request.accuracy, extent) {
+        Ok(table) => table,
+        Err(error) if request.required => return Err(error_of(error)),
+        Err(error) => {
+            let summary = format!(
+                "  accuracy {:e}: all rows evaluated exactly; no table for values between them: {}\n",
+                request.accuracy,
+                error_of(error)
+            );
+            return Ok(Tabulation {
+                summary,
+                text: None,
+            });
+        }
+    };
+    let mut summary = String::new();
+    if !request.required {
+        summary += &format!(
+            "  accuracy {:e}: all rows evaluated exactly (cheaper than building a table); use the table between rows\n",
+            request.accuracy
+        );
+    }
+    let text = table.to_text(&labels).map_err(|e| {
+        let error = scene.error(e.to_string(), None, &[]);
+        StudyError::from(error)
+    })?;
+    summary += &describe_table(scene, &table);
+    Ok(Tabulation {
+        summary,
+        text: Some(text),
+    })
+}
+
+/// Domain, cells, memory and error bound.
+fn describe_table(scene: &Scene, table: &TabulatedModel) -> String {
+    let [from, to] = table.domain();
+    let kind = match table.revolutions() {
+        Some(1) => "over a full revolution".to_owned(),
+        Some(revolutions) => format!("over a period of {revolutions} revolutions"),
+        None => interval_text(scene, from, to),
+    };
+    let counts = table
+        .cells()
+        .into_iter()
+        .zip(["m and ½m′", "a and b", "w and c"]);
+    let cells: Vec<String> = counts
+        .filter(|(cells, _)| *cells > 0)
+        .map(|(cells, of)| format!("{cells} of {of}"))
+        .collect();
+    let [inertia, all] = table.bytes().map(|bytes| bytes.div_ceil(1024));
+    format!(
+        "  table {kind}: cells {}; {inertia} kB for m and ½m′, {all} kB in all; error at most {:.1e} of the largest value of each\n",
+        cells.join(", "),
+        table.max_bound()
+    )
+}
+
+/// An interval in the scene's unit.
+fn interval_text(scene: &Scene, from: f64, to: f64) -> String {
+    let [(from, unit), (to, _)] = [from, to].map(|q| scene.to_scene_unit(q, true));
+    format!("from {} to {} {unit}", number(from), number(to))
+}
+
+/// Explains a table's error with names and locations of the scene.
+fn explain_table_error(
+    scene: &Scene,
+    plan: &Plan,
+    labels: &Labels,
+    error: &TableError,
+) -> StudyError {
+    let (message, help) = match *error {
+        TableError::Exact(e) => return explain_motion(scene, plan, &e.into()),
+        TableError::NotReached {
+            what,
+            reached,
+            accuracy,
+        } => (
+            format!(
+                "no table of accuracy {accuracy:e}: {} is known to {reached:.1e} of its largest value only",
+                coefficient_name(what, labels)
+            ),
+            "require less accuracy; next to change points and limit positions the model itself loses digits",
+        ),
+        TableError::NotPeriodic { what } => (
+            format!(
+                "no table: {} is not periodic over a revolution",
+                coefficient_name(what, labels)
+            ),
+            "a load that depends on the number of revolutions needs an interval: give --from and --to",
+        ),
+        TableError::NotSmooth { .. } => (
+            error.to_string(),
+            "require less accuracy, or a smaller part of the range with --from and --to, away from limit positions",
+        ),
+        TableError::Domain { from, to } => {
+            let reason = match plan.range().limits() {
+                Some((lower, upper)) if from < to => {
+                    format!("the range is {}", interval_text(scene, lower, upper))
+                }
+                _ => "its end must be beyond its beginning".to_owned(),
+            };
+            (
+                format!("no table {}: {reason}", interval_text(scene, from, to)),
+                "give --from and --to within the range, in the scene's unit of angles",
+            )
+        }
+        other => (
+            other.to_string(),
+            "require less accuracy, such as --table-accuracy 1e-9",
+        ),
+    };
+    let labels = [(
+        SceneLocation::Actuator(dwell_geometry::ActuatorId(0)),
+        "over this coordinate".to_owned(),
+    )];
+    scene.error(message, Some(help.to_owned()), &labels).into()
+}
+
+/// The name of a coefficient, with the names of the scene.
+fn coefficient_name(entry: TableQuantity, labels: &Labels) -> String {
+    let name = |of: &[String], i: usize| of.get(i).cloned().unwrap_or_default();
+    let (reactions, loads) = (&labels.reactions, &labels.loads);
+    match entry {
+        TableQuantity::A { reaction } => format!("a of {}", name(reactions, reaction)),
+        TableQuantity::B { reaction } => format!("b of {}", name(reactions, reaction)),
+        TableQuantity::W { load } => format!("w of {}", name(loads, load)),
+        TableQuantity::C { load, reaction } => {
+            format!(
+                "c of {} and {}",
+                name(reactions, reaction),
+                name(loads, load)
+            )
+        }
+        _ => entry.to_string(),
+    }
+}

@@ -1,0 +1,98 @@
+//! Unit-load response over the range: generalised force and reactions per unit of each load.
+//!
+//! ```text
+//! m q̈ + ½m′ q̇² = Σ w_ℓ F_ℓ,    R_k = a_k q̈ + b_k q̇² + Σ c_kℓ F_ℓ
+//! ```
+//!
+//! F is the magnitude that the scene gives; for a damper or friction, the force or moment itself.
+
+use crate::explain::{StudyError, explain_motion};
+use crate::models::{PreparedScene, loaded_determinate_model};
+use dwell_findings::Column;
+use dwell_kinetostatics::{KinetostaticsError, Load, LoadKind};
+
+/// The unit-load response of every load over the range.
+pub struct UnitLoadCurves {
+    pub(crate) loads: Vec<Load>,
+    /// By position and load: w, then c of each reaction.
+    pub(crate) rows: Vec<Vec<Vec<f64>>>,
+    /// By position: the potential of all conservative loads, J.
+    pub(crate) potential: Vec<f64>,
+    pub(crate) conservative: bool,
+}
+
+/// Unit of w and of c (of a force and of a moment) for a load.
+pub(crate) fn units(kind: LoadKind) -> [&'static str; 3] {
+    match kind {
+        LoadKind::Gravity { .. } => ["kg m", "kg", "kg m"],
+        LoadKind::Spring { .. } => ["m2", "m", "m2"],
+        LoadKind::TorsionSpring { .. } => ["rad", "rad/m", "rad"],
+        LoadKind::Torque { .. } | LoadKind::RotationalDamper { .. } => ["", "1/m", ""],
+        LoadKind::Force { .. }
+        | LoadKind::Damper { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::SlideForce(_)
+        | LoadKind::SlideDamper(_) => ["m", "", "m"],
+    }
+}
+
+impl UnitLoadCurves {
+    /// The unit-load response at the coordinates `q` (rad); `None` without loads.
+    pub(crate) fn new(prepared: &PreparedScene<'_>, q: &[f64]) -> Result<Option<Self>, StudyError> {
+        let scene = prepared.scene;
+        if scene.loads.is_empty() {
+            return Ok(None);
+        }
+        let model = loaded_determinate_model(scene)?;
+        let explain = |e: KinetostaticsError| explain_motion(scene, model.plan(), &e.into());
+        let mut workspace = model.workspace();
+        let mut inverse_dynamics = model.result_buffer();
+        let mut curves = Self {
+            loads: scene.loads.clone(),
+            rows: Vec::with_capacity(q.len()),
+            potential: Vec::with_capacity(q.len()),
+            conservative: (0..scene.loads.len()).any(|l| model.is_conservative(l)),
+        };
+        for &q in q {
+            model
+                .set_state(0.0, &[q], &[1.0], &mut workspace)
+                .map_err(explain)?;
+            let mut row = Vec::with_capacity(curves.loads.len());
+            for load in 0..curves.loads.len() {
+                let response =
+                    model.unit_load_response(load, &mut workspace, &mut inverse_dynamics);
+                response.map_err(explain)?;
+                let mut values = vec![-inverse_dynamics.tau[0]];
+                values.extend(&inverse_dynamics.reactions);
+                row.push(values);
+            }
+            curves.rows.push(row);
+            let potentials =
+                (0..curves.loads.len()).filter_map(|l| model.potential_energy(l, &workspace));
+            curves.potential.push(potentials.sum());
+        }
+        Ok(Some(curves))
+    }
+
+    /// The columns and their values: V, w of each load, c of each reaction and load.
+    pub(crate) fn columns(&self, prepared: &PreparedScene<'_>) -> Vec<(Column, Vec<f64>)> {
+        let mut all = Vec::new();
+        if self.conservative {
+            all.push((Column::new("V", "J"), self.potential.clone()));
+        }
+        let value = |load: usize, k: usize| self.rows.iter().map(|row| row[load][k]).collect();
+        for (l, load) in self.loads.iter().enumerate() {
+            let [unit, ..] = units(load.kind);
+            all.push((Column::new(format!("{}.w", load.name), unit), value(l, 0)));
+        }
+        for (k, (name, of)) in prepared.reaction_units().into_iter().enumerate() {
+            for (l, load) in self.loads.iter().enumerate() {
+                let [_, force, moment] = units(load.kind);
+                let unit = if of == "N" { force } else { moment };
+                let name = format!("{name}.c.{}", load.name);
+                all.push((Column::new(name, unit), value(l, k + 1)));
+            }
+        }
+        all
+    }
+}

@@ -1,0 +1,13 @@
+//! `dwell reduce`: the reduced parameters over the range.
+
+pub mod compute;
+#[cfg(feature = "output")]
+mod document;
+#[cfg(feature = "output")]
+pub mod figures;
+#[cfg(feature = "output")]
+mod output;
+
+pub use compute::{TableRequest, compute_reduction};
+#[cfg(feature = "output")]
+pub use output::reduce;

@@ -1,0 +1,247 @@
+//! An axis of a sweep: one number of the scene over a grid, a list, or at random.
+
+use crate::explain::SweepError;
+use crate::sweep::compute::{normal, uniform};
+use dwell_scene::Scene;
+
+/// Maximum number of values of a grid.
+const MAX_VALUES: u64 = 1_000_000;
+const FORMS: &str = "write PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD), PATH~uniform(FROM,TO), \
+                     PATH±TOLERANCE or PATH±PERCENT%";
+
+/// A number of the scene and how it varies, in the scene's own unit.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Axis {
+    pub(crate) path: String,
+    pub(crate) unit: String,
+    pub(crate) kind: VariationKind,
+}
+
+/// How a number varies.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum VariationKind {
+    /// Equally spaced values, both ends included.
+    Grid { from: f64, to: f64, count: u64 },
+    /// A list of values.
+    Listed(Vec<f64>),
+    /// Normally distributed.
+    Normal { mean: f64, deviation: f64 },
+    /// Uniformly distributed between two values.
+    Uniform { from: f64, to: f64 },
+}
+
+impl Axis {
+    /// Reads an axis: a path of the scene, and how its number varies.
+    ///
+    /// # Errors
+    /// [`SweepError::Axis`].
+    pub(crate) fn parse(scene: &Scene, given: &str) -> Result<Self, SweepError> {
+        let refuse = |reason: String, help: &str| SweepError::Axis {
+            given: given.to_owned(),
+            reason,
+            help: help.to_owned(),
+        };
+        let separators = ["=", "~", "±", "+-"];
+        let split = separators
+            .iter()
+            .filter_map(|s| Some((given.find(s)?, *s)))
+            .min_by_key(|(at, _)| *at);
+        let Some((at, separator)) = split else {
+            return Err(refuse("does not define a variation".to_owned(), FORMS));
+        };
+        let (path, variation) = (given[..at].trim(), given[at + separator.len()..].trim());
+        let nominal = scene
+            .value(path)
+            .map_err(|e| refuse(e.message, &e.help.unwrap_or_default()))?;
+        let number = |text: &str| -> Result<f64, SweepError> {
+            let value: f64 = text
+                .trim()
+                .parse()
+                .map_err(|_| refuse(format!("`{}` is not a number", text.trim()), FORMS))?;
+            if value.is_finite() {
+                Ok(value)
+            } else {
+                Err(refuse(format!("{value} is not finite"), FORMS))
+            }
+        };
+        let kind = match separator {
+            "=" if variation.contains(':') => grid(variation, &number, &refuse)?,
+            "=" => {
+                VariationKind::Listed(variation.split(',').map(number).collect::<Result<_, _>>()?)
+            }
+            "~" => random(variation, &number, &refuse)?,
+            _ => tolerance(nominal, variation, &number, &refuse)?,
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            unit: scene.unit_of(path).to_owned(),
+            kind,
+        })
+    }
+
+    /// Whether it is random.
+    pub(crate) fn is_random(&self) -> bool {
+        matches!(
+            self.kind,
+            VariationKind::Normal { .. } | VariationKind::Uniform { .. }
+        )
+    }
+
+    /// Number of values; 1 if it is random.
+    pub(crate) fn count(&self) -> u64 {
+        match &self.kind {
+            VariationKind::Grid { count, .. } => *count,
+            VariationKind::Listed(values) => values.len() as u64,
+            VariationKind::Normal { .. } | VariationKind::Uniform { .. } => 1,
+        }
+    }
+
+    /// Its value: the one at `index`, or if it is random that of a `sample` of axis `number`.
+    pub(crate) fn value(&self, index: u64, (seed, number, sample): (u64, u32, u64)) -> f64 {
+        match &self.kind {
+            // Exact at the end.
+            VariationKind::Grid { to, count, .. } if index + 1 == *count => *to,
+            VariationKind::Grid { from, to, count } => {
+                from + (to - from) * index as f64 / (count - 1) as f64
+            }
+            // The index is below the count.
+            VariationKind::Listed(values) => {
+                values.get(index as usize).copied().unwrap_or(f64::NAN)
+            }
+            VariationKind::Normal { mean, deviation } => {
+                mean + deviation * normal(seed, number, sample)
+            }
+            VariationKind::Uniform { from, to } => {
+                let [fraction, _] = uniform(seed, number, sample);
+                from * (1.0 - fraction) + to * fraction
+            }
+        }
+    }
+
+    /// Its heading in tables.
+    pub(crate) fn heading(&self) -> String {
+        heading(&self.path, &self.unit)
+    }
+
+    /// The axis with all digits, as the store records it.
+    pub(crate) fn to_exact_text(&self) -> String {
+        let path = &self.path;
+        match &self.kind {
+            VariationKind::Grid { from, to, count } => format!("{path}={from:?}:{to:?}:{count}"),
+            VariationKind::Listed(values) => {
+                let values: Vec<String> = values.iter().map(|v| format!("{v:?}")).collect();
+                format!("{path}={}", values.join(","))
+            }
+            VariationKind::Normal { mean, deviation } => {
+                format!("{path}~normal({mean:?},{deviation:?})")
+            }
+            VariationKind::Uniform { from, to } => format!("{path}~uniform({from:?},{to:?})"),
+        }
+    }
+}
+
+/// `name [unit]`.
+pub(crate) fn heading(name: &str, unit: &str) -> String {
+    match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    }
+}
+
+type Number<'a> = &'a dyn Fn(&str) -> Result<f64, SweepError>;
+
+type Refuse<'a> = &'a dyn Fn(String, &str) -> SweepError;
+
+/// `FROM:TO:COUNT`, the ends among them.
+fn grid(
+    variation: &str,
+    number: Number<'_>,
+    refuse: Refuse<'_>,
+) -> Result<VariationKind, SweepError> {
+    let parts: Vec<&str> = variation.split(':').collect();
+    let [from, to, count] = parts.as_slice() else {
+        let reason = format!("`{variation}` is not FROM:TO:COUNT");
+        return Err(refuse(reason, FORMS));
+    };
+    let (from, to) = (number(from)?, number(to)?);
+    let count: u64 = count.trim().parse().map_err(|_| {
+        let reason = format!("`{}` is not a count of values", count.trim());
+        refuse(reason, "a whole number of 2 or more, the ends among them")
+    })?;
+    if !(2..=MAX_VALUES).contains(&count) {
+        return Err(refuse(
+            format!("{count} values from {from} to {to}"),
+            "a grid has from 2 to a million values, the ends among them; a single one is written PATH=VALUE",
+        ));
+    }
+    if from == to {
+        let reason = format!("the range from {from} to {to} is empty");
+        return Err(refuse(reason, "a single value is written PATH=VALUE"));
+    }
+    Ok(VariationKind::Grid { from, to, count })
+}
+
+/// `normal(MEAN,SD)` or `uniform(FROM,TO)`.
+fn random(
+    variation: &str,
+    number: Number<'_>,
+    refuse: Refuse<'_>,
+) -> Result<VariationKind, SweepError> {
+    let inner = variation
+        .strip_suffix(')')
+        .and_then(|variation| variation.split_once('('));
+    let known = |name: &str| matches!(name, "normal" | "uniform");
+    let Some((name, inner)) = inner.filter(|(name, _)| known(name.trim())) else {
+        return Err(refuse(
+            format!("`{variation}` is not a distribution"),
+            "use normal(MEAN,SD) or uniform(FROM,TO)",
+        ));
+    };
+    let parts: Vec<&str> = inner.split(',').collect();
+    let [first, second] = parts.as_slice() else {
+        return Err(refuse(
+            format!("`{variation}` does not have two numbers"),
+            FORMS,
+        ));
+    };
+    let (first, second) = (number(first)?, number(second)?);
+    match name.trim() {
+        "normal" if second <= 0.0 => Err(refuse(
+            format!("a standard deviation of {second} is not above zero"),
+            FORMS,
+        )),
+        "normal" => Ok(VariationKind::Normal {
+            mean: first,
+            deviation: second,
+        }),
+        _ if first >= second => Err(refuse(
+            format!("the range from {first} to {second} is empty"),
+            "give the smaller end first",
+        )),
+        _ => Ok(VariationKind::Uniform {
+            from: first,
+            to: second,
+        }),
+    }
+}
+
+/// Uniform within a tolerance of the scene's value, in its unit or in percent of it.
+fn tolerance(
+    nominal: f64,
+    variation: &str,
+    number: Number<'_>,
+    refuse: Refuse<'_>,
+) -> Result<VariationKind, SweepError> {
+    let width = match variation.strip_suffix('%') {
+        Some(percent) => number(percent)? / 100.0 * nominal.abs(),
+        None => number(variation)?,
+    };
+    if width <= 0.0 {
+        let help = "a tolerance is above zero; a percentage needs a value that is not zero";
+        return Err(refuse(format!("a tolerance of {width}"), help));
+    }
+    Ok(VariationKind::Uniform {
+        from: nominal - width,
+        to: nominal + width,
+    })
+}

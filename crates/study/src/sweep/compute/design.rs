@@ -1,0 +1,121 @@
+//! The design of a sweep: the input values of each point. They depend on the design and on the index
+//! alone, so that any thread, shard or run may compute any point.
+
+use crate::explain::SweepError;
+use crate::sweep::compute::Axis;
+use dwell_scene::Scene;
+
+/// Maximum number of points, all of which are in memory at export.
+const MAX_POINTS: u64 = 20_000_000;
+
+/// The points of a sweep: every combination of listed values, the first axis varying slowest, and for each the
+/// same random samples, so that combinations compare without noise.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Design {
+    pub(crate) axes: Vec<Axis>,
+    /// 1 if nothing is random.
+    pub(crate) samples: u64,
+    pub(crate) seed: u64,
+    pub(crate) points: u64,
+}
+
+impl Design {
+    /// # Errors
+    /// [`SweepError::Axis`] or [`SweepError::Design`].
+    pub(crate) fn new(
+        scene: &Scene,
+        vary: &[String],
+        samples: Option<u64>,
+        seed: u64,
+    ) -> Result<Self, SweepError> {
+        let design = |message: &str| Err(SweepError::Design(message.to_owned()));
+        let axes: Vec<Axis> = vary
+            .iter()
+            .map(|given| Axis::parse(scene, given))
+            .collect::<Result<_, _>>()?;
+        if axes.is_empty() {
+            return design("no axis: give one or more --vary PATH=FROM:TO:COUNT");
+        }
+        for (k, axis) in axes.iter().enumerate() {
+            if axes[..k].iter().any(|before| before.path == axis.path) {
+                return design(&format!("`{}` is varied twice", axis.path));
+            }
+        }
+        let random = axes.iter().any(Axis::is_random);
+        let samples = match (random, samples) {
+            (true, None) => {
+                return design("random axes need a number of samples: give --samples");
+            }
+            (true, Some(0)) => return design("--samples must be at least 1"),
+            (false, Some(_)) => {
+                return design("--samples needs a random axis");
+            }
+            (_, samples) => samples.unwrap_or(1),
+        };
+        let mut counts = axes.iter().map(Axis::count);
+        let points = counts.try_fold(samples, u64::checked_mul);
+        match points {
+            Some(points) if points <= MAX_POINTS => Ok(Self {
+                axes,
+                samples,
+                seed,
+                points,
+            }),
+            _ => design(&format!(
+                "more than {MAX_POINTS} points: use fewer values or samples, or several studies"
+            )),
+        }
+    }
+
+    /// Whether an axis is random.
+    pub(crate) fn is_random(&self) -> bool {
+        self.axes.iter().any(Axis::is_random)
+    }
+
+    /// The values of point `k`, by axis, in the scene's units.
+    pub(crate) fn values(&self, k: u64) -> Vec<f64> {
+        let sample = k % self.samples;
+        let mut rest = k / self.samples;
+        let mut values = vec![0.0; self.axes.len()];
+        for (number, (axis, value)) in self.axes.iter().zip(&mut values).enumerate().rev() {
+            *value = axis.value(rest % axis.count(), (self.seed, number as u32, sample));
+            rest /= axis.count();
+        }
+        values
+    }
+}
+
+/// A part of a study: point k belongs to part k mod `of` + 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// Number of the part, from 1.
+    pub part: u64,
+    /// Number of parts.
+    pub of: u64,
+}
+
+impl Shard {
+    /// Whether it contains a point.
+    pub(crate) fn contains(self, k: u64) -> bool {
+        k % self.of == self.part - 1
+    }
+}
+
+impl std::str::FromStr for Shard {
+    type Err = SweepError;
+
+    fn from_str(text: &str) -> Result<Self, SweepError> {
+        let read = || {
+            let (part, of) = text.split_once('/')?;
+            let (part, of) = (part.trim().parse().ok()?, of.trim().parse().ok()?);
+            (1..=of).contains(&part).then_some(Self { part, of })
+        };
+        read().ok_or_else(|| SweepError::Shard(text.to_owned()))
+    }
+}
+
+impl std::fmt::Display for Shard {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}/{}", self.part, self.of)
+    }
+}

@@ -1,0 +1,14 @@
+//! Computes the points of a parameter sweep.
+
+mod axis;
+mod design;
+mod point;
+mod random;
+mod spread;
+
+pub(crate) use axis::{Axis, heading};
+pub(crate) use design::Design;
+pub use design::Shard;
+pub(crate) use point::{PointResult, RequestedQuantities, SweepQuantity};
+pub(crate) use random::{normal, uniform};
+pub(crate) use spread::Spread;

@@ -1,0 +1,62 @@
+//! Mean, standard deviation and quantiles of a sample.
+
+/// The distribution of a result.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Spread {
+    pub(crate) min: f64,
+    pub(crate) max: f64,
+    pub(crate) mean: f64,
+    /// Standard deviation with n − 1 in the denominator; `None` for a single value.
+    pub(crate) deviation: Option<f64>,
+    /// The 2.5 % and 97.5 % quantiles.
+    pub(crate) quantiles: [f64; 2],
+}
+
+impl Spread {
+    /// Of the finite values; `None` if there are none.
+    pub(crate) fn of(values: impl Iterator<Item = f64>) -> Option<Self> {
+        let mut sorted: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let (min, max) = (*sorted.first()?, *sorted.last()?);
+        let count = sorted.len() as f64;
+        // Relative to the minimum, so that a small spread keeps its digits.
+        let mean = min + sorted.iter().map(|v| v - min).sum::<f64>() / count;
+        let squares: f64 = sorted.iter().map(|v| (v - mean).powi(2)).sum();
+        Some(Self {
+            min,
+            max,
+            mean,
+            deviation: (sorted.len() > 1).then(|| (squares / (count - 1.0)).sqrt()),
+            quantiles: [0.025, 0.975].map(|probability| quantile(&sorted, probability)),
+        })
+    }
+}
+
+/// The quantile of sorted values, linearly between them (type 7 of Hyndman and Fan, 1996).
+fn quantile(sorted: &[f64], probability: f64) -> f64 {
+    let position = probability * (sorted.len() - 1) as f64;
+    let below = position.floor() as usize;
+    let [low, high] = [below, below + 1].map(|k| sorted[k.min(sorted.len() - 1)]);
+    low + (position - below as f64) * (high - low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_known_sample_has_its_known_spread() {
+        let values = (0..=40).rev().map(f64::from).chain([f64::NAN]);
+        let spread = Spread::of(values).expect("values");
+        assert_eq!([spread.min, spread.mean, spread.max], [0.0, 20.0, 40.0]);
+        assert_eq!(spread.quantiles, [1.0, 39.0]);
+        // Σ (k − 20)² over 0 … 40 is 2 · 20 · 21 · 41 / 6 = 5740, over n − 1 = 40; one rounding of a root.
+        let deviation = spread.deviation.expect("two values");
+        assert!((deviation - 143.5_f64.sqrt()).abs() < 1e-14);
+        assert_eq!(Spread::of([f64::NAN].into_iter()), None);
+        assert_eq!(
+            Spread::of([2.0].into_iter()).and_then(|s| s.deviation),
+            None
+        );
+    }
+}

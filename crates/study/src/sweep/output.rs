@@ -1,0 +1,241 @@
+//! `dwell sweep`: results of many variants of a scene, stored in a file as they are computed.
+//!
+//! ```text
+//! --vary … ── Axis ── Design: point k → values ─┐            (rayon, any order)
+//! scene, --result ── Wanted ──────────────────────┴→ Found ── channel ── Store (one writer)
+//!                                                                        └→ Table, figures, summary
+//! ```
+
+use super::export;
+use crate::explain::{StudyError, SweepError};
+use crate::output::Outcome;
+use crate::progress::{Progress, Step};
+use crate::sweep::compute::{Axis, Design, RequestedQuantities, Shard};
+use crate::sweep::store::{Row, SCENE_TEXT, SHARD, Store, StudyIdentity};
+use dwell_report::TableFormat;
+use dwell_scene::Scene;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::sync_channel;
+
+/// Rows queued for the writer before the workers wait.
+const QUEUE_LENGTH: usize = 4096;
+/// Maximum number of input and result columns: SQLite's default limit is 2000 in all.
+const MAX_COLUMNS: usize = 1900;
+/// The shard entry of a file that holds the whole study.
+const WHOLE_STUDY: &str = "all";
+
+/// The definition of a parameter sweep.
+#[derive(Debug, Clone, Copy)]
+pub struct ParameterSweep<'a> {
+    /// What varies: `PATH=FROM:TO:COUNT`, `PATH=A,B,C`, `PATH~normal(MEAN,SD)`, `PATH~uniform(FROM,TO)`,
+    /// `PATH±TOLERANCE`, `PATH±PERCENT%`, each in the scene's unit.
+    pub vary: &'a [String],
+    /// Number of random samples.
+    pub samples: Option<u64>,
+    /// Random seed.
+    pub seed: u64,
+    /// Result columns to compute, by name or prefix; empty for all.
+    pub requests: &'a [String],
+    /// The shard to compute; `None` for the whole study.
+    pub shard: Option<Shard>,
+    /// Compute nothing; export the stored rows in this format.
+    pub export: Option<TableFormat>,
+    /// The output folder.
+    pub folder: &'a Path,
+}
+
+/// A validated sweep, ready to compute.
+pub(crate) struct PreparedSweep<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) design: Design,
+    pub(crate) requested: RequestedQuantities,
+    pub(crate) study: StudyIdentity,
+    pub(crate) inputs: Vec<String>,
+    pub(crate) results: Vec<String>,
+}
+
+impl<'a> PreparedSweep<'a> {
+    fn new(scene: &'a Scene, sweep: &ParameterSweep<'_>) -> Result<Self, StudyError> {
+        let design = Design::new(scene, sweep.vary, sweep.samples, sweep.seed)?;
+        let requested = RequestedQuantities::new(scene, sweep.requests)?;
+        let inputs: Vec<String> = design.axes.iter().map(Axis::heading).collect();
+        let results: Vec<String> = requested.quantities.iter().map(|q| q.heading()).collect();
+        let columns = inputs.len() + results.len();
+        if columns > MAX_COLUMNS {
+            return Err(SweepError::Design(format!(
+                "{columns} columns exceed what a file can hold: select results with --result"
+            ))
+            .into());
+        }
+        if let Some(shard) = sweep.shard
+            && sweep.export.is_some()
+        {
+            return Err(SweepError::Design(format!(
+                "an export gathers all shards: leave --shard {shard} out"
+            ))
+            .into());
+        }
+        let exact: Vec<String> = design.axes.iter().map(Axis::to_exact_text).collect();
+        let shard = sweep
+            .shard
+            .map_or(WHOLE_STUDY.to_owned(), |s| s.to_string());
+        // A study without random axes has no seed.
+        let seed = match design.is_random() {
+            true => design.seed.to_string(),
+            false => "none".to_owned(),
+        };
+        let study = vec![
+            ("scene", scene.name.clone()),
+            ("scene_sha256", scene.hash()),
+            ("axes", exact.join("; ")),
+            ("samples", design.samples.to_string()),
+            ("seed", seed),
+            ("results", results.join("; ")),
+            ("points", design.points.to_string()),
+            ("dwell", env!("CARGO_PKG_VERSION").to_owned()),
+            (SHARD, shard),
+            (SCENE_TEXT, scene.source.inner().clone()),
+        ];
+        Ok(Self {
+            scene,
+            design,
+            requested,
+            study,
+            inputs,
+            results,
+        })
+    }
+
+    fn open(&self, path: &Path, shard: Option<&str>) -> Result<Store, SweepError> {
+        let mut study = self.study.clone();
+        if let Some(shard) = shard {
+            let of = study.iter_mut().filter(|(key, _)| *key == SHARD);
+            of.for_each(|(_, value)| shard.clone_into(value));
+        }
+        Store::open(path, &study, [&self.inputs, &self.results])
+    }
+
+    /// Computes one point.
+    fn row(&self, index: u64) -> Row {
+        let inputs = self.design.values(index);
+        let paths = self.design.axes.iter().map(|axis| axis.path.as_str());
+        let values: Vec<(&str, f64)> = paths.zip(inputs.iter().copied()).collect();
+        let result = self.requested.evaluate(self.scene, &values);
+        Row {
+            index,
+            inputs,
+            result,
+        }
+    }
+}
+
+/// Sweeps a scene: computes the points that its file in the folder does not hold yet, and writes tables and
+/// figures once the study is complete. Rows of shard files in the folder are imported first.
+///
+/// # Errors
+/// [`StudyError`] where the sweep is invalid, the unchanged scene cannot be assembled, or the file holds another
+/// study or cannot be written. A point that cannot be computed is no error: its row holds the message.
+pub fn sweep(
+    scene: &Scene,
+    sweep: &ParameterSweep<'_>,
+    progress: Progress<'_>,
+) -> Result<Outcome, StudyError> {
+    let prepared_sweep = PreparedSweep::new(scene, sweep)?;
+    fs::create_dir_all(sweep.folder).map_err(|e| SweepError::Store {
+        path: sweep.folder.to_owned(),
+        reason: format!("the folder cannot be created: {e}"),
+    })?;
+    let name = match sweep.shard {
+        None => format!("{}-sweep.sqlite", scene.name),
+        Some(Shard { part, of }) => format!("{}-sweep-{part}-of-{of}.sqlite", scene.name),
+    };
+    let path = sweep.folder.join(name);
+    let mut store = prepared_sweep.open(&path, None)?;
+    let mut existing: BTreeSet<u64> = store.indices()?.into_iter().collect();
+    let existing_count = existing.len();
+    if sweep.shard.is_none() {
+        for (path, shard) in shard_files(scene, sweep.folder) {
+            let rows = prepared_sweep.open(&path, Some(&shard))?.rows()?;
+            let new = rows.into_iter().filter(|row| existing.insert(row.index));
+            let new: Vec<Row> = new.collect();
+            write_from(&mut store, |sender| {
+                new.into_iter().try_for_each(|row| sender.send(row).ok())
+            })?;
+        }
+    }
+    let is_in_shard = |k: &u64| sweep.shard.is_none_or(|shard| shard.contains(*k));
+    let all = || (0..prepared_sweep.design.points).filter(is_in_shard);
+    let imported = existing.len() - existing_count;
+    let mut computed = 0;
+    if sweep.export.is_none() {
+        let pending: Vec<u64> = all().filter(|k| !existing.contains(k)).collect();
+        compute(&prepared_sweep, &mut store, &pending, progress)?;
+        computed = pending.len();
+    }
+    let rows = store.rows()?;
+    let counts = export::Counts {
+        existing: existing_count,
+        imported,
+        computed,
+        missing: all().count().saturating_sub(rows.len()),
+    };
+    export::report_sweep(&prepared_sweep, sweep, &path, &rows, counts)
+}
+
+/// Computes points on all cores; a single writer stores them as they arrive.
+fn compute(
+    prepared: &PreparedSweep<'_>,
+    store: &mut Store,
+    pending: &[u64],
+    progress: Progress<'_>,
+) -> Result<(), StudyError> {
+    write_from(store, |sender| {
+        pending.par_iter().try_for_each_with(sender, |sender, &k| {
+            // If the writer has failed, nothing more is computed.
+            sender.send(prepared.row(k)).ok()?;
+            progress(Step {
+                total: pending.len(),
+                done: "points",
+            });
+            Some(())
+        })
+    })
+}
+
+/// Writes what another thread sends.
+fn write_from(
+    store: &mut Store,
+    work: impl FnOnce(std::sync::mpsc::SyncSender<Row>) -> Option<()> + Send,
+) -> Result<(), StudyError> {
+    let (sender, receiver) = sync_channel(QUEUE_LENGTH);
+    std::thread::scope(|scope| {
+        scope.spawn(move || work(sender));
+        let written = store.write_rows(&receiver);
+        // Senders then see that the channel is closed.
+        drop(receiver);
+        Ok(written?)
+    })
+}
+
+/// The files of shards of this scene in a folder, each with its part: `1/3`.
+fn shard_files(scene: &Scene, folder: &Path) -> Vec<(PathBuf, String)> {
+    let Ok(entries) = fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let part = |path: &Path| -> Option<String> {
+        let name = path.file_name()?.to_str()?;
+        let name = name.strip_prefix(&format!("{}-sweep-", scene.name))?;
+        let (part, of) = name.strip_suffix(".sqlite")?.split_once("-of-")?;
+        let shard: Shard = format!("{part}/{of}").parse().ok()?;
+        Some(shard.to_string())
+    };
+    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let mut files: Vec<(PathBuf, String)> = paths
+        .filter_map(|path| part(&path).map(|shard| (path, shard)))
+        .collect();
+    files.sort();
+    files
+}

@@ -1,0 +1,116 @@
+//! Closed forms of a scene, and their comparison with the exact model.
+
+use crate::explain::{StudyError, body_names_or_mechanism, joint_labels, not_one_actuator};
+use crate::models::{indeterminate_reactions, reduced_model};
+use crate::symbolic::closed_form_check::ClosedFormCheck;
+use dwell_findings::Finding;
+use dwell_geometry::Reaction;
+use dwell_kinetostatics::ExactModel;
+use dwell_scene::Scene;
+use dwell_symbolic::{ClosedForm, Symbolic, SymbolicError};
+
+/// The closed forms of a scene and all its reactions, compared with the exact model at 24 positions; no findings
+/// if it is not made of dyads or has several actuators.
+///
+/// # Errors
+/// [`StudyError`] when the mechanism cannot be put together.
+pub fn symbolic_findings(scene: &Scene) -> Result<Vec<Finding>, StudyError> {
+    if scene.mechanism.actuators.len() != 1 {
+        return Ok(Vec::new());
+    }
+    let exact = full_reduced_model(scene)?;
+    let plan = exact.model().plan();
+    let Ok(symbolic) = Symbolic::new(&scene.mechanism, &scene.masses, plan) else {
+        return Ok(Vec::new());
+    };
+    let mut check = ClosedFormCheck::new(scene, &exact);
+    let reactions = scene.mechanism.reactions();
+    let determinate = (0..reactions.len()).filter(|&k| plan.is_determinate(k));
+    for k in determinate {
+        let form = symbolic.closed_form(Some(reactions[k]));
+        let form = form.map_err(|e| explain_symbolic(scene, &e))?;
+        check.compare(&form, Some(reactions[k]));
+    }
+    Ok(check.findings())
+}
+
+/// The exact model with every reaction.
+fn full_reduced_model(scene: &Scene) -> Result<ExactModel, StudyError> {
+    if scene.mechanism.actuators.len() != 1 {
+        return Err(not_one_actuator(scene));
+    }
+    reduced_model(scene, &scene.mechanism.reactions())
+}
+
+fn find_reaction(scene: &Scene, name: &str) -> Result<Reaction, StudyError> {
+    let all = scene.mechanism.reactions();
+    let names = |r: &Reaction| scene.mechanism.reaction_name(*r);
+    all.iter()
+        .find(|r| names(r) == name)
+        .copied()
+        .ok_or_else(|| {
+            let list: Vec<String> = all.iter().map(names).collect();
+            let help = format!("the reactions are {}", list.join(", "));
+            let message = format!("there is no reaction `{name}`");
+            scene.error(message, Some(help), &[]).into()
+        })
+}
+
+fn explain_symbolic(scene: &Scene, error: &SymbolicError) -> StudyError {
+    match error {
+        SymbolicError::ActuatorCount(_) => not_one_actuator(scene),
+        SymbolicError::Group {
+            bodies,
+            joints,
+            what,
+            ..
+        } => scene
+            .error(
+                format!(
+                    "there is no closed form for the position of {}: {what}",
+                    body_names_or_mechanism(&scene.mechanism, bodies)
+                ),
+                Some(
+                    "closed forms exist for mechanisms made of dyads only; `dwell reduce` computes the \
+                     same quantities of any mechanism with one degree of freedom"
+                        .to_owned(),
+                ),
+                &joint_labels(joints, "closes the group"),
+            )
+            .into(),
+        SymbolicError::Reaction(reaction) => scene
+            .error(
+                format!(
+                    "`{}` is statically indeterminate",
+                    scene.mechanism.reaction_name(*reaction)
+                ),
+                Some("redundant constraints share the load: name another reaction".to_owned()),
+                &joint_labels(&[reaction.joint], "redundant"),
+            )
+            .into(),
+        SymbolicError::Position(place) => scene.error(place.to_string(), None, &[]).into(),
+    }
+}
+
+/// Closed forms of a scene, and their comparison with the exact model.
+pub fn compute_closed_form(
+    scene: &Scene,
+    reaction: Option<&str>,
+) -> Result<(ClosedForm, Vec<Finding>), StudyError> {
+    let exact = full_reduced_model(scene)?;
+    let plan = exact.model().plan();
+    let reaction = match reaction {
+        Some(name) => Some(find_reaction(scene, name)?),
+        None => {
+            let indeterminate = indeterminate_reactions(scene, plan);
+            let mut requested = scene.requests.reactions.iter();
+            requested.find(|r| !indeterminate.contains(r)).copied()
+        }
+    };
+    let explain = |e: SymbolicError| explain_symbolic(scene, &e);
+    let symbolic = Symbolic::new(&scene.mechanism, &scene.masses, plan).map_err(explain)?;
+    let form = symbolic.closed_form(reaction).map_err(explain)?;
+    let mut check = ClosedFormCheck::new(scene, &exact);
+    check.compare(&form, reaction);
+    Ok((form, check.findings()))
+}

@@ -1,0 +1,110 @@
+//! Faults that end a trajectory although the mechanism can be assembled: a load's table is exceeded, or a
+//! coupling function is discontinuous between two positions.
+
+use crate::explain::couplings;
+use dwell_geometry::JointId;
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use dwell_kinetostatics::{Magnitude, Signal};
+use dwell_laws::{Law, Spline};
+use dwell_scene::Scene;
+
+/// Why a trajectory ends although the mechanism can be assembled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum TrajectoryFault {
+    /// The table of a load does not cover this value of its argument.
+    OffTable { load: usize, value: f64 },
+    /// A coupling function is discontinuous between two neighbouring values of its variable.
+    Discontinuity { joint: JointId, between: [f64; 2] },
+}
+
+/// The table of a load and its argument.
+struct MonitoredTable<'a> {
+    load: usize,
+    spline: &'a Spline,
+    /// `None`: time. Otherwise the coordinate, and 0 for its value or 1 for its speed.
+    argument: Option<(CoordinateFunction, usize)>,
+}
+
+/// A coupling function, with its variable at the position before.
+struct MonitoredCoupling<'a> {
+    joint: JointId,
+    law: &'a Law,
+    variable: CoordinateFunction,
+    previous: Option<f64>,
+}
+
+/// Checks one position after another.
+pub(crate) struct TrajectoryMonitor<'a> {
+    tables: Vec<MonitoredTable<'a>>,
+    couplings: Vec<MonitoredCoupling<'a>>,
+}
+
+/// The table of a load and its argument, if it has one.
+pub(crate) fn table_of(magnitude: &Magnitude) -> Option<(Signal, &Spline)> {
+    match magnitude {
+        Magnitude::Law(signal, Law::Spline(spline)) => Some((*signal, spline)),
+        _ => None,
+    }
+}
+
+impl<'a> TrajectoryMonitor<'a> {
+    pub(crate) fn new(scene: &'a Scene) -> Self {
+        let mechanism = &scene.mechanism;
+        let table = |(load, magnitude): (usize, &'a Magnitude)| {
+            let (signal, spline) = table_of(magnitude)?;
+            let argument = match signal {
+                Signal::Time => None,
+                Signal::Value(c) => Some((CoordinateFunction::find(mechanism, c)?, 0)),
+                Signal::Velocity(c) => Some((CoordinateFunction::find(mechanism, c)?, 1)),
+            };
+            Some(MonitoredTable {
+                load,
+                spline,
+                argument,
+            })
+        };
+        let magnitudes = scene.loads.iter().map(|l| &l.magnitude).enumerate();
+        let coupling = |(joint, law, variable)| {
+            Some(MonitoredCoupling {
+                joint,
+                law,
+                variable: CoordinateFunction::find(mechanism, variable)?,
+                previous: None,
+            })
+        };
+        Self {
+            tables: magnitudes.filter_map(table).collect(),
+            couplings: couplings(mechanism).filter_map(coupling).collect(),
+        }
+    }
+
+    /// The first load whose table does not cover the state of the bodies at time `t` (s).
+    pub(crate) fn off_table(&self, t: f64, states: &BodyStates) -> Option<TrajectoryFault> {
+        self.tables.iter().find_map(|table| {
+            let value = match table.argument {
+                None => t,
+                Some((measured, order)) => states.coordinate(measured)[order],
+            };
+            let [first, last] = table.spline.range();
+            // Angles and lengths computed from the pose carry a few roundings.
+            let tolerance = RANGE_TOLERANCE * (last - first);
+            let inside = value >= first - tolerance && value <= last + tolerance;
+            let load = table.load;
+            (!inside).then_some(TrajectoryFault::OffTable { load, value })
+        })
+    }
+
+    /// The first coupling whose function is discontinuous since the position before.
+    pub(crate) fn discontinuity(&mut self, states: &BodyStates) -> Option<TrajectoryFault> {
+        self.couplings.iter_mut().find_map(|coupling| {
+            let now = states.coordinate(coupling.variable)[0];
+            let previous = coupling.previous.replace(now)?;
+            let between = coupling.law.discontinuity(previous, now)?;
+            let joint = coupling.joint;
+            Some(TrajectoryFault::Discontinuity { joint, between })
+        })
+    }
+}
+
+/// Fraction of a table's range by which a value may exceed it.
+const RANGE_TOLERANCE: f64 = 1e-12;

@@ -1,0 +1,77 @@
+//! Rounding error of a trajectory analysis: some positions are evaluated again in 32-digit arithmetic.
+
+use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
+use dwell_numerics::DoubleDouble;
+use dwell_scene::Scene;
+
+/// Number of positions that are evaluated again, along the whole trajectory.
+const POSITIONS: usize = 48;
+
+/// Estimated errors of actuator forces and reactions, separately for forces and moments.
+pub(crate) struct RoundingError {
+    stride: usize,
+    workspace: Workspace<DoubleDouble>,
+    errors: InverseDynamics<f64>,
+    /// By actuator and by reaction: whether it is a force.
+    is_force: [Vec<bool>; 2],
+    /// The largest error and the largest value, of moments and of forces.
+    maxima: [[f64; 2]; 2],
+}
+
+impl RoundingError {
+    /// For a trajectory of `points` positions.
+    pub(crate) fn new(scene: &Scene, model: &Model, points: usize) -> Self {
+        let actuators = scene.mechanism.actuators.iter();
+        let reactions = model.reactions().iter();
+        Self {
+            stride: points.div_ceil(POSITIONS).max(1),
+            workspace: model.workspace(),
+            errors: model.result_buffer(),
+            is_force: [
+                actuators.map(|a| !a.coordinate().is_angle()).collect(),
+                reactions.map(|r| r.component.unit() == "N").collect(),
+            ],
+            maxima: [[0.0; 2]; 2],
+        }
+    }
+
+    /// Adds position `k`, at (t, q, q̇, q̈), if it is one of those evaluated again.
+    pub(crate) fn add_position(
+        &mut self,
+        k: usize,
+        model: &Model,
+        t: f64,
+        at: [&[f64]; 3],
+        inverse_dynamics: &InverseDynamics<f64>,
+    ) {
+        if !k.is_multiple_of(self.stride) {
+            return;
+        }
+        let done = model.kinetostatics_rounding_errors(
+            t,
+            at,
+            inverse_dynamics,
+            &mut self.workspace,
+            &mut self.errors,
+        );
+        // Next to a limit position there may be a pose in double precision and none in 32 digits.
+        if done.is_err() {
+            return;
+        }
+        let errors = [&self.errors.tau, &self.errors.reactions];
+        let values = [&inverse_dynamics.tau, &inverse_dynamics.reactions];
+        for ((errors, values), forces) in errors.into_iter().zip(values).zip(&self.is_force) {
+            for ((error, value), &force) in errors.iter().zip(values).zip(forces) {
+                let [max_error, max_value] = &mut self.maxima[usize::from(force)];
+                *max_error = max_error.max(*error);
+                *max_value = max_value.max(value.abs());
+            }
+        }
+    }
+
+    /// The largest error, relative to the largest value of its unit.
+    pub(crate) fn max_relative(&self) -> f64 {
+        let relative = |[error, value]: [f64; 2]| if error > 0.0 { error / value } else { 0.0 };
+        self.maxima.map(relative).into_iter().fold(0.0, f64::max)
+    }
+}

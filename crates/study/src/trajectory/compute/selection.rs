@@ -1,0 +1,104 @@
+//! The columns that a scene requests.
+
+use crate::explain::StudyError;
+use crate::former_names;
+use crate::trajectory::compute::{Column, ColumnQuantity, Columns, is_prefix_of};
+use dwell_kinetostatics::Model;
+use dwell_scene::{Scene, SceneLocation, choices};
+
+/// Rejects requested names that select no column, and returns a line for each former name.
+///
+/// # Errors
+/// [`StudyError::Scene`] at the first of them.
+pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, StudyError> {
+    let Some(variables) = &scene.requests.variables else {
+        return Ok(String::new());
+    };
+    let columns = Columns::all(scene, model, true);
+    let mut notes = String::new();
+    for (k, name) in variables.iter().enumerate() {
+        if columns.iter().any(|c| c.matches(name)) {
+            let renamed = columns.iter().filter(|c| c.matches_former(name));
+            let current: Vec<&str> = renamed.map(|c| c.name.as_str()).collect();
+            if !current.is_empty() {
+                notes += &former_names::note(name, &current);
+            }
+            continue;
+        }
+        if let Some(error) = indeterminate_error(scene, model, k, name) {
+            return Err(error);
+        }
+        let labels = [(SceneLocation::Variable(k), "unknown column".to_owned())];
+        return Err(scene
+            .error(
+                format!("there is no column `{name}`"),
+                Some(suggestion(name, &columns)),
+                &labels,
+            )
+            .into());
+    }
+    Ok(notes)
+}
+
+/// The error of a request for a statically indeterminate reaction.
+fn indeterminate_error(scene: &Scene, model: &Model, k: usize, name: &str) -> Option<StudyError> {
+    let mechanism = &scene.mechanism;
+    let joint = name.split('.').next();
+    let of_joint = |(r, reaction): (usize, &dwell_geometry::Reaction)| {
+        let named = Some(mechanism.joints[reaction.joint.0].name.as_str()) == joint;
+        named && !model.plan().is_determinate(r)
+    };
+    model
+        .reactions()
+        .iter()
+        .enumerate()
+        .find(|&r| of_joint(r))?;
+    let labels = [(SceneLocation::Variable(k), "indeterminate".to_owned())];
+    let error = scene.error(
+        format!("`{name}` is statically indeterminate: redundant constraints share the load"),
+        Some("`dwell check` lists such reactions; remove one of the redundant joints".to_owned()),
+        &labels,
+    );
+    Some(error.into())
+}
+
+/// Names that may have been meant: columns and their prefixes; otherwise those with the same first word,
+/// or all first words.
+fn suggestion(name: &str, columns: &[Column]) -> String {
+    let mut names: Vec<&str> = Vec::new();
+    for column in columns {
+        let ends = column.name.match_indices('.').map(|(at, _)| at);
+        for end in ends.chain([column.name.len()]) {
+            let prefix = &column.name[..end];
+            if !names.contains(&prefix) {
+                names.push(prefix);
+            }
+        }
+    }
+    let first = name.split('.').next().unwrap_or(name);
+    let mut below: Vec<&str> = names.clone();
+    below.retain(|n| *n != first && is_prefix_of(first, n));
+    if below.is_empty() {
+        names.sort_by_key(|n| n.contains('.'));
+        choices(name, "columns", names.into_iter())
+    } else {
+        choices(name, &format!("columns of `{first}`"), below.into_iter())
+    }
+}
+
+/// Whether a scene requests a column by name.
+pub(crate) fn is_requested(scene: &Scene, column: &Column) -> bool {
+    let names = scene.requests.variables.iter().flatten();
+    names.into_iter().any(|n| column.matches(n))
+}
+
+/// The indices of the columns of the tables: time, actuator coordinates and those requested.
+pub(crate) fn selected_columns(scene: &Scene, columns: &[Column]) -> Vec<usize> {
+    let is_selected = |column: &Column| match (&scene.requests.variables, column.quantity) {
+        (None, _) | (_, ColumnQuantity::Time | ColumnQuantity::ActuatorCoordinate(_, 0)) => true,
+        (Some(_), _) => is_requested(scene, column),
+    };
+    (0..columns.len())
+        .filter(|&k| is_selected(&columns[k]))
+        .collect()
+}

@@ -1,0 +1,179 @@
+//! Angles, paths and travels, with their speeds and accelerations.
+
+use crate::trajectory::compute::{Analysis, ColumnQuantity};
+use crate::trajectory::figures::{FigureContext, MAX_BODIES, MAX_CURVES};
+use dwell_geometry::BodyId;
+use dwell_report::{Chart, Figure, Mark};
+
+impl FigureContext<'_> {
+    pub(crate) fn angles(&self) -> Option<Figure> {
+        let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
+        let angle = |body: BodyId, order: usize| {
+            let columns = &self.results.columns;
+            columns
+                .iter()
+                .position(|c| c.quantity == ColumnQuantity::BodyAngle(body, order))
+        };
+        let rotates = |body: &BodyId| {
+            let Some(k) = angle(*body, 0) else {
+                return false;
+            };
+            let start = self.results.rows.first().map_or(0.0, |row| row[k]);
+            // A translating body rotates by rounding only.
+            self.results
+                .rows
+                .iter()
+                .any(|row| (row[k] - start).abs() > 1e-9)
+        };
+        let all: Vec<BodyId> = bodies.filter(rotates).collect();
+        let is_requested = |body: &BodyId| {
+            let orders = (0..3).filter_map(|order| angle(*body, order));
+            orders
+                .into_iter()
+                .any(|k| self.is_requested(&self.results.columns[k]))
+        };
+        let all = self.distinct_bodies(&all, angle);
+        let requested: Vec<BodyId> = all.iter().copied().filter(is_requested).collect();
+        let shown = if requested.is_empty() {
+            &all[..all.len().min(MAX_BODIES)]
+        } else {
+            &requested[..requested.len().min(MAX_CURVES)]
+        };
+        let chart = |order: usize, suffix: &str, label: &str| {
+            let indices: Vec<usize> = shown.iter().filter_map(|b| angle(*b, order)).collect();
+            (!indices.is_empty()).then(|| self.chart("", label, &self.labelled(&indices, suffix)))
+        };
+        let charts: Vec<Chart> = [
+            chart(0, ".angle", "angle"),
+            chart(1, ".angular_velocity", "angular velocity"),
+            chart(2, ".angular_acceleration", "angular acceleration"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect();
+        let left_out = all.len() - shown.len();
+        let text = match left_out {
+            0 => "Angles of the bodies from the ground, with their speeds and accelerations."
+                .to_owned(),
+            n => format!("Angles of the bodies from the ground; {n} more are in the table."),
+        };
+        (!charts.is_empty()).then(|| {
+            let title = "Angles".to_owned();
+            self.figure("angles".to_owned(), title, &text, vec![charts.into()])
+        })
+    }
+
+    /// The bodies without those that rotate exactly as an earlier one.
+    fn distinct_bodies(
+        &self,
+        bodies: &[BodyId],
+        angle: impl Fn(BodyId, usize) -> Option<usize>,
+    ) -> Vec<BodyId> {
+        let mut distinct: Vec<BodyId> = Vec::new();
+        for &body in bodies {
+            let same = |other: &BodyId| {
+                let both = angle(body, 0).zip(angle(*other, 0));
+                let mut rows = self.results.rows.iter();
+                both.is_some_and(|(a, b)| rows.all(|row| (row[a] - row[b]).abs() < 1e-9))
+            };
+            if !distinct.iter().any(same) {
+                distinct.push(body);
+            }
+        }
+        distinct
+    }
+
+    pub(crate) fn paths(&self) -> Vec<Figure> {
+        let one = |path: &dwell_scene::PathPoint| {
+            let labels = ["position", "velocity", "acceleration"];
+            let chart = |order: usize| {
+                let indices = self.columns_where(|c| {
+                    matches!(c.quantity, ColumnQuantity::PointCoordinate(b, at, k)
+                        if b == path.body && at == path.at && k / 2 == order)
+                });
+                let names = ["x", "y"].map(str::to_owned);
+                // Two names of one point are drawn once.
+                let curves: Vec<_> = names.into_iter().zip(indices.iter().copied()).collect();
+                (!curves.is_empty()).then(|| self.chart("", labels[order], &curves))
+            };
+            let charts: Vec<Chart> = (0..3).filter_map(chart).collect();
+            let body = self.scene.mechanism.body_name(path.body);
+            let point = format!("{body}.{}", path.name);
+            let text = "Components in the ground's axes.";
+            let name = format!("path-{body}-{}", path.name);
+            self.figure(name, format!("Point {point}"), text, vec![charts.into()])
+        };
+        self.scene.requests.paths.iter().map(one).collect()
+    }
+
+    /// Lengths and travels: of actuators, named coordinates and joints.
+    pub(crate) fn lengths(&self) -> Option<Figure> {
+        let of_order = |order: usize, unit: &str| {
+            self.columns_where(|c| {
+                let (ColumnQuantity::ActuatorCoordinate(_, o) | ColumnQuantity::Measured(_, o)) =
+                    c.quantity
+                else {
+                    return false;
+                };
+                o == order && c.unit == unit
+            })
+        };
+        // A travel that also has a coordinate name is drawn once.
+        let mut kept: Vec<(String, usize)> = Vec::new();
+        for (name, k) in self.labelled(&of_order(0, "m"), "") {
+            let rows = &self.results.rows;
+            let is_known = kept
+                .iter()
+                .any(|(_, other)| rows.iter().all(|row| row[k] == row[*other]));
+            if !is_known && kept.len() < MAX_BODIES {
+                kept.push((name, k));
+            }
+        }
+        let charts: Vec<Chart> = [
+            (0, "m", "travel", ""),
+            (1, "m/s", "velocity", ".velocity"),
+            (2, "m/s2", "acceleration", ".acceleration"),
+        ]
+        .into_iter()
+        .filter_map(|(order, unit, label, suffix)| {
+            let mut curves = self.labelled(&of_order(order, unit), suffix);
+            curves.retain(|(name, _)| kept.iter().any(|(k, _)| k == name));
+            (!curves.is_empty()).then(|| self.chart("", label, &curves))
+        })
+        .collect();
+        (!charts.is_empty()).then(|| {
+            let text = "Travels of joints and lengths, with their speeds and accelerations.";
+            let title = "Travels and lengths".to_owned();
+            self.figure("travels".to_owned(), title, text, vec![charts.into()])
+        })
+    }
+
+    pub(crate) fn transmission(&self) -> Option<Figure> {
+        let mut indices =
+            self.columns_where(|c| matches!(c.quantity, ColumnQuantity::TransmissionAngle(_)));
+        indices.truncate(MAX_CURVES);
+        if indices.is_empty() || self.analysis != Analysis::Kinematics {
+            return None;
+        }
+        let chart = self.chart(
+            "",
+            "transmission angle",
+            &self.labelled(&indices, ".transmission_angle"),
+        );
+        let chart = Chart {
+            marks: vec![Mark::Horizontal {
+                at: 90.0,
+                label: "optimum".to_owned(),
+            }],
+            ..chart
+        };
+        let text = "The angle between the two bodies of a dyad at their pin, or between a rod and the normal of its slide.";
+        let title = "Transmission angles".to_owned();
+        Some(self.figure(
+            "transmission-angles".to_owned(),
+            title,
+            text,
+            vec![chart.into()],
+        ))
+    }
+}

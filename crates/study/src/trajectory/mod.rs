@@ -1,0 +1,16 @@
+//! `dwell kinematics`, `dwell statics`, `dwell kinetostatics`: a mechanism along a prescribed motion or a
+//! coordinate sweep.
+
+pub mod compute;
+#[cfg(feature = "output")]
+mod document;
+#[cfg(feature = "output")]
+mod figures;
+#[cfg(feature = "output")]
+mod output;
+
+pub use compute::Analysis;
+#[cfg(feature = "output")]
+pub(crate) use output::evaluate_and_report;
+#[cfg(feature = "output")]
+pub use output::{TrajectoryOutcome, analyse_trajectory};

@@ -1,0 +1,346 @@
+//! The closed forms of a mechanism: positions, m, ½m′, and a and b of a reaction, as named steps.
+
+use crate::algebra::{self, Term, derivative, number, plus, square, symbol, times, zero};
+use crate::error::SymbolicError;
+use crate::positions::PositionFormulas;
+use crate::quantities::{Quantity, result_quantities};
+use crate::symbol_table::{Assignment, Constant, DerivativeKind, SymbolTable, needed};
+use dwell_geometry::{BodyId, Mechanism, Plan, Reaction};
+use dwell_kinetostatics::Mass;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// What a part of the steps is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FormulaSection {
+    /// Angles, travels and points.
+    Positions,
+    /// Their first derivatives by the coordinate.
+    FirstDerivatives,
+    /// Their second ones.
+    SecondDerivatives,
+    /// Virtual displacements: their derivatives by the released coordinate.
+    VirtualDisplacements,
+    /// The results.
+    Results,
+}
+
+/// The closed forms of a mechanism of one coordinate.
+#[derive(Debug, Clone)]
+pub struct ClosedForm {
+    /// The coordinate: rad or m.
+    pub coordinate: Quantity,
+    /// The numbers of the scene that occur in it.
+    pub constants: Vec<Constant>,
+    /// What it gives: positions, then m and ½m′, then a and b of the reaction.
+    pub quantities: Vec<Quantity>,
+    /// The name of the reaction, if there is one.
+    pub reaction: Option<String>,
+    pub(crate) sections: Vec<(FormulaSection, Vec<Assignment>)>,
+    pub(crate) symbols: SymbolTable,
+}
+
+/// A mechanism made of dyads, as symbols.
+#[derive(Debug, Clone)]
+pub struct Symbolic<'a> {
+    positions: PositionFormulas<'a>,
+    masses: Vec<SymbolicMass>,
+}
+
+/// A body with inertia, by the names of its constants.
+#[derive(Debug, Clone)]
+struct SymbolicMass {
+    body: usize,
+    mass: Option<Term>,
+    inertia: Option<Term>,
+}
+
+impl<'a> Symbolic<'a> {
+    /// Closed forms of the positions of a mechanism, one mass for each body.
+    ///
+    /// # Errors
+    /// [`SymbolicError`] where it does not have one actuator, or a group is no dyad.
+    pub fn new(
+        mechanism: &'a Mechanism,
+        masses: &[Mass],
+        plan: &'a Plan,
+    ) -> Result<Self, SymbolicError> {
+        let mut positions = PositionFormulas::new(mechanism, masses, plan)?;
+        let mut inertial_bodies = Vec::new();
+        for tree_joint in &plan.tree().joints {
+            let Some(mass) = masses.get(tree_joint.body) else {
+                continue;
+            };
+            let name = mechanism.body_name(BodyId(tree_joint.body));
+            let symbols = &mut positions.symbols;
+            let mut named = |letter, value: f64, unit, what: &str| {
+                let meaning = format!("{name}: {what}");
+                (value > 0.0).then(|| symbols.add_constant((letter, &[name]), value, unit, meaning))
+            };
+            inertial_bodies.push(SymbolicMass {
+                body: tree_joint.body,
+                mass: named("m", mass.mass, "kg", "mass"),
+                inertia: named(
+                    "I",
+                    mass.inertia,
+                    "kg m²",
+                    "moment of inertia about its centre of mass",
+                ),
+            });
+        }
+        inertial_bodies.retain(|one| one.mass.is_some() || one.inertia.is_some());
+        Ok(Self {
+            positions,
+            masses: inertial_bodies,
+        })
+    }
+
+    /// Positions, m and ½m′, and with a reaction its a and b: what q̈ and q̇² contribute to it
+    /// (Jordi, Zayas and Cardona 2008; a = m₁₂, b = ∂m₁₂/∂q − ½ ∂m₁₁/∂q₂, the second coordinate q₂ being
+    /// that of the released joint).
+    ///
+    /// # Errors
+    /// [`SymbolicError::Reaction`] where the loads do not determine the reaction.
+    pub fn closed_form(&self, reaction: Option<Reaction>) -> Result<ClosedForm, SymbolicError> {
+        let mut positions = self.positions.clone();
+        let release = match reaction {
+            Some(reaction) => {
+                let all = positions.mechanism.reactions();
+                let at = all.iter().position(|&r| r == reaction);
+                if !at.is_some_and(|k| positions.plan.is_determinate(k)) {
+                    return Err(SymbolicError::Reaction(reaction));
+                }
+                Some(positions.release(reaction)?)
+            }
+            None => None,
+        };
+        let mut symbols = std::mem::take(&mut positions.symbols);
+        let base = std::mem::take(&mut symbols.assignments);
+        let none = BTreeMap::new();
+        let q = positions.q.to_string();
+        let mut by_coordinate = BTreeMap::from([(q.clone(), number(1.0))]);
+        let first = symbols.differentiate(&base, DerivativeKind::First, &mut by_coordinate, &none);
+        let second =
+            symbols.differentiate(&first, DerivativeKind::Second, &mut by_coordinate, &none);
+        let mut by_release = BTreeMap::new();
+        let mut virtual_assignments = Vec::new();
+        if let Some(release) = &release {
+            virtual_assignments = symbols.differentiate(
+                &base,
+                DerivativeKind::Virtual,
+                &mut by_release,
+                &release.shifts,
+            );
+        }
+        let derivatives = Derivatives {
+            positions: &positions,
+            by_q: &by_coordinate,
+            virtual_displacements: &by_release,
+            extra_rotation: release.as_ref().map(|r| r.extra_rotation.as_slice()),
+        };
+        let results = self.results(&mut symbols, &derivatives);
+        let mut closed_form = ClosedForm {
+            coordinate: positions.coordinate(&symbols, &q),
+            constants: Vec::new(),
+            quantities: positions.quantities(&symbols, &by_coordinate),
+            reaction: reaction.map(|r| positions.mechanism.reaction_name(r)),
+            sections: vec![
+                (FormulaSection::Positions, base),
+                (FormulaSection::FirstDerivatives, first),
+                (FormulaSection::SecondDerivatives, second),
+                (FormulaSection::VirtualDisplacements, virtual_assignments),
+                (FormulaSection::Results, results.clone()),
+            ],
+            symbols,
+        };
+        let angle = positions.plan.is_angle(0);
+        closed_form.quantities.extend(result_quantities(
+            &closed_form.symbols,
+            &results,
+            reaction,
+            angle,
+        ));
+        closed_form.inline();
+        closed_form.prune();
+        Ok(closed_form)
+    }
+
+    /// m, ½m′, a and b as sums over the bodies.
+    fn results(&self, symbols: &mut SymbolTable, derivatives: &Derivatives<'_>) -> Vec<Assignment> {
+        let mut sums: [Term; 4] = std::array::from_fn(|_| zero());
+        for one in &self.masses {
+            let mut displacements: Vec<(&Term, Vec<[Term; 3]>)> = Vec::new();
+            if let Some(inertia) = &one.inertia {
+                displacements.push((inertia, vec![derivatives.of_angle(one.body)]));
+            }
+            if let (Some(mass), Some(centre)) =
+                (&one.mass, &derivatives.positions.mass_centres[one.body])
+            {
+                let both = centre.iter().map(|code| derivatives.of_term(&symbol(code)));
+                displacements.push((mass, both.collect()));
+            }
+            for (weight, displacements) in displacements {
+                let mut body_sums: [Term; 4] = std::array::from_fn(|_| zero());
+                for [first, second, virtual_displacement] in &displacements {
+                    let products = [
+                        square_or_zero(first),
+                        times(first, second),
+                        times(first, virtual_displacement),
+                        times(second, virtual_displacement),
+                    ];
+                    for (sum, product) in body_sums.iter_mut().zip(products) {
+                        *sum = plus(sum, &product);
+                    }
+                }
+                for (sum, body_sums) in sums.iter_mut().zip(body_sums) {
+                    *sum = plus(sum, &times(weight, &body_sums));
+                }
+            }
+        }
+        let count = if derivatives.extra_rotation.is_some() {
+            4
+        } else {
+            2
+        };
+        let names = [
+            ("m", "m"),
+            ("half_dm", "\\tfrac{1}{2} m'"),
+            ("a", "a"),
+            ("b", "b"),
+        ];
+        let mut assignments = Vec::new();
+        for ((code, latex), sum) in names.into_iter().zip(sums).take(count) {
+            assignments.push(Assignment {
+                code: symbols.result_name(code, latex),
+                value: sum.simplify(),
+                partials: None,
+            });
+        }
+        assignments
+    }
+}
+
+fn square_or_zero(term: &Term) -> Term {
+    if algebra::is_zero(term) {
+        zero()
+    } else {
+        square(term).simplify()
+    }
+}
+
+/// The derivatives of all steps.
+struct Derivatives<'a> {
+    positions: &'a PositionFormulas<'a>,
+    /// Of steps and of their first derivatives.
+    by_q: &'a BTreeMap<String, Term>,
+    virtual_displacements: &'a BTreeMap<String, Term>,
+    extra_rotation: Option<&'a [f64]>,
+}
+
+impl Derivatives<'_> {
+    /// First, second and virtual derivative of a term.
+    fn of_term(&self, term: &Term) -> [Term; 3] {
+        let first = derivative(term, self.by_q);
+        let second = derivative(&first, self.by_q);
+        [first, second, derivative(term, self.virtual_displacements)]
+    }
+
+    /// The same of a body's angle, which a released couple turns beside its frame.
+    fn of_angle(&self, body: usize) -> [Term; 3] {
+        let frame = self.positions.plan.frames().orientations[body].frame;
+        let [first, second, virtual_rotation] = self.of_term(&self.positions.angle(frame));
+        let extra = self.extra_rotation.map_or(0.0, |turned| turned[body]);
+        [
+            first,
+            second,
+            plus(&virtual_rotation, &number(extra)).simplify(),
+        ]
+    }
+}
+
+impl ClosedForm {
+    /// Puts what is only a number or another name into the terms that it occurs in.
+    fn inline(&mut self) {
+        let mut atomic: BTreeMap<String, Term> = BTreeMap::new();
+        for (_, assignments) in &mut self.sections {
+            for assignment in assignments.iter_mut() {
+                assignment.value = algebra::substitute(&assignment.value, &atomic);
+                if algebra::is_atomic(&assignment.value) {
+                    atomic.insert(assignment.code.clone(), assignment.value.clone());
+                }
+            }
+        }
+    }
+
+    /// Leaves out what no quantity needs.
+    fn prune(&mut self) {
+        let all: Vec<Assignment> = self.assignments().cloned().collect();
+        let wanted = self.quantities.iter().map(|q| q.code.clone());
+        let needed_names = needed(&all, wanted);
+        let needed_names: BTreeSet<&str> = needed_names.iter().map(|s| s.code.as_str()).collect();
+        for (_, assignments) in &mut self.sections {
+            assignments.retain(|assignment| needed_names.contains(assignment.code.as_str()));
+        }
+        self.sections
+            .retain(|(_, assignments)| !assignments.is_empty());
+        let mut used: Vec<String> = Vec::new();
+        for assignment in self.assignments() {
+            used.extend(algebra::names(&assignment.value));
+        }
+        let constants = self.symbols.constants.iter();
+        self.constants = constants
+            .filter(|c| used.contains(&c.code))
+            .cloned()
+            .collect();
+    }
+
+    /// All steps in their order.
+    pub(crate) fn assignments(&self) -> impl Iterator<Item = &Assignment> {
+        self.sections.iter().flat_map(|(_, steps)| steps)
+    }
+
+    /// The quantities at a coordinate, rad or m, in their order. Where the mechanism cannot be closed
+    /// they are not numbers.
+    pub fn evaluate(&self, q: f64) -> Vec<f64> {
+        self.perturbed(q, |_| 1.0)
+    }
+
+    /// How far the quantities move when the coordinate and the constants are off by a unit of rounding, each
+    /// one way or the other: what no evaluation can know better.
+    pub fn rounding_error(&self, q: f64) -> Vec<f64> {
+        let value_at = self.evaluate(q);
+        let mut largest = vec![0.0_f64; value_at.len()];
+        for pattern in [0b0110_1001_u32, 0b0011_0101, 0b0101_1100] {
+            let perturb = |k: usize| {
+                let up = pattern >> (k % 8) & 1 == 1;
+                1.0 + if up { f64::EPSILON } else { -f64::EPSILON }
+            };
+            for (largest, (value, value_at)) in largest
+                .iter_mut()
+                .zip(self.perturbed(q, perturb).iter().zip(&value_at))
+            {
+                *largest = largest.max((value - value_at).abs());
+            }
+        }
+        largest
+    }
+
+    fn perturbed(&self, q: f64, perturb: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut values: HashMap<&str, f64> = HashMap::new();
+        values.insert(&self.coordinate.code, q * perturb(0));
+        for (k, constant) in self.constants.iter().enumerate() {
+            let by = if constant.unit.is_empty() {
+                1.0
+            } else {
+                perturb(k + 1)
+            };
+            values.insert(&constant.code, constant.value * by);
+        }
+        for assignment in self.assignments() {
+            let value = algebra::value(&assignment.value, &values);
+            values.insert(&assignment.code, value);
+        }
+        let of = |quantity: &Quantity| values.get(quantity.code.as_str()).copied();
+        let quantities = self.quantities.iter();
+        quantities.map(|q| of(q).unwrap_or(f64::NAN)).collect()
+    }
+}

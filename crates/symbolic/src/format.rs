@@ -1,0 +1,364 @@
+//! Terms as text, in LaTeX or as code.
+
+use crate::algebra::{Node, Term};
+
+/// A programming language.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Language {
+    /// Rust, `f64`.
+    Rust,
+    /// C99, `double`.
+    C,
+    /// Python 3.
+    Python,
+}
+
+/// How terms are written.
+pub(crate) enum OutputStyle<'a> {
+    Code(Language),
+    /// With the name of a symbol in LaTeX, and whether it is a constant.
+    Latex(&'a dyn Fn(&str) -> String, &'a dyn Fn(&str) -> bool),
+}
+
+/// How tightly what surrounds a term binds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Precedence {
+    Lowest,
+    Product,
+    /// The operand of a power, a method or a sign.
+    Highest,
+}
+
+impl OutputStyle<'_> {
+    /// A term as text.
+    pub(crate) fn text(&self, term: &Term) -> String {
+        self.write(term, Precedence::Lowest)
+    }
+
+    /// The summands of a term, each with its sign: what is added comes first.
+    pub(crate) fn summands(&self, term: &Term) -> Vec<(bool, String)> {
+        let mut found = Vec::new();
+        summands(term, false, &mut found);
+        if let (Self::Latex(..), Some(first)) = (self, found.iter().position(|s| !s.0)) {
+            let positive = found.remove(first);
+            found.insert(0, positive);
+        }
+        let several = found.len() > 1;
+        let precedence = |minus: bool| match (several, minus) {
+            (false, false) => Precedence::Lowest,
+            _ => Precedence::Product,
+        };
+        found
+            .iter()
+            .map(|(minus, term)| (*minus, self.single(term, precedence(*minus))))
+            .collect()
+    }
+
+    fn write(&self, term: &Term, precedence: Precedence) -> String {
+        let summands = self.summands(term);
+        if let [(false, _)] = summands.as_slice() {
+            return self.single(&without_sign(term), precedence);
+        }
+        let mut text = String::new();
+        for (k, (minus, one)) in summands.iter().enumerate() {
+            text.push_str(match (k, minus) {
+                (0, true) => "-",
+                (0, false) => "",
+                (_, true) => " - ",
+                (_, false) => " + ",
+            });
+            text.push_str(one);
+        }
+        if precedence == Precedence::Lowest {
+            text
+        } else {
+            self.in_brackets(&text)
+        }
+    }
+
+    fn in_brackets(&self, text: &str) -> String {
+        match self {
+            Self::Code(_) => format!("({text})"),
+            Self::Latex(..) => format!("\\left({text}\\right)"),
+        }
+    }
+
+    /// A term that is no sum and has no sign.
+    fn single(&self, term: &Term, precedence: Precedence) -> String {
+        match term.as_ref() {
+            Node::Mul(..) | Node::Div(..) => self.product(term, precedence),
+            Node::Add(..) | Node::Sub(..) | Node::Neg(_) => self.write(term, precedence),
+            Node::Pow(base, exponent) => self.power(base, exponent, precedence),
+            _ => self.atom(term),
+        }
+    }
+
+    fn product(&self, term: &Term, precedence: Precedence) -> String {
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        factors(term, &mut above, &mut below);
+        if let Self::Latex(_, constant) = self {
+            self.halves(&mut above, &mut below);
+            above.sort_by_key(|t| factor_order(t, constant));
+            below.sort_by_key(|t| factor_order(t, constant));
+            let join = |terms: &[Term], precedence: Precedence| {
+                let one = |t: &Term| self.write(t, precedence);
+                terms.iter().map(one).collect::<Vec<_>>().join(" \\, ")
+            };
+            let of = |terms: &[Term]| match terms {
+                [] => "1".to_owned(),
+                [one] => join(std::slice::from_ref(one), Precedence::Lowest),
+                many => join(many, Precedence::Product),
+            };
+            return if below.is_empty() {
+                let text = join(&above, Precedence::Product);
+                if precedence == Precedence::Highest {
+                    self.in_brackets(&text)
+                } else {
+                    text
+                }
+            } else {
+                format!("\\frac{{{}}}{{{}}}", of(&above), of(&below))
+            };
+        }
+        let join = |terms: &[Term]| {
+            let one = |t: &Term| self.write(t, Precedence::Product);
+            terms.iter().map(one).collect::<Vec<_>>().join(" * ")
+        };
+        let mut text = if above.is_empty() {
+            "1.0".to_owned()
+        } else {
+            join(&above)
+        };
+        match below.as_slice() {
+            [] => {}
+            [one] => text = format!("{text} / {}", self.write(one, Precedence::Highest)),
+            many => text = format!("{text} / ({})", join(many)),
+        }
+        if precedence == Precedence::Highest
+            || (precedence == Precedence::Product && !below.is_empty())
+        {
+            self.in_brackets(&text)
+        } else {
+            text
+        }
+    }
+
+    /// A factor of one half is a denominator of two.
+    fn halves(&self, above: &mut Vec<Term>, below: &mut Vec<Term>) {
+        above.retain(|term| {
+            let Node::Const(value) = term.as_ref() else {
+                return true;
+            };
+            let whole = inverse(*value);
+            below.extend(whole.map(crate::algebra::number));
+            whole.is_none() && *value != 1.0
+        });
+    }
+
+    fn power(&self, base: &Term, exponent: &Term, precedence: Precedence) -> String {
+        let whole = match exponent.as_ref() {
+            Node::Const(n) if n.fract() == 0.0 && n.abs() < 100.0 => Some(*n as i32),
+            _ => None,
+        };
+        let tight = self.write(base, Precedence::Highest);
+        match (self, whole) {
+            (Self::Latex(..), _) => {
+                let exponent = self.write(exponent, Precedence::Lowest);
+                // A function's power stands at its name, a derivative's outside brackets.
+                match base.as_ref() {
+                    Node::Cos(angle) | Node::Sin(angle) if whole == Some(2) => {
+                        let name = if matches!(base.as_ref(), Node::Cos(_)) {
+                            "\\cos"
+                        } else {
+                            "\\sin"
+                        };
+                        format!("{name}^2 {}", self.write(angle, Precedence::Highest))
+                    }
+                    Node::Sym(_) if !tight.contains(['\'', ' ']) => {
+                        format!("{tight}^{{{exponent}}}")
+                    }
+                    Node::Sym(_) => format!("{{{tight}}}^{{{exponent}}}"),
+                    _ => format!("{tight}^{{{exponent}}}"),
+                }
+            }
+            (Self::Code(Language::Rust), Some(n)) => {
+                // A literal has no type of its own before a method is called on it.
+                format!("{tight}.powi({n})")
+            }
+            (Self::Code(Language::C), Some(2)) if matches!(base.as_ref(), Node::Sym(_)) => {
+                let text = format!("{tight} * {tight}");
+                if precedence == Precedence::Lowest {
+                    text
+                } else {
+                    format!("({text})")
+                }
+            }
+            (Self::Code(Language::C), _) => {
+                let base = self.write(base, Precedence::Lowest);
+                format!("pow({base}, {})", self.write(exponent, Precedence::Lowest))
+            }
+            (Self::Code(Language::Python), Some(n)) => format!("{tight}**{n}"),
+            (Self::Code(Language::Python), None) => {
+                format!("{tight}**{}", self.write(exponent, Precedence::Highest))
+            }
+            (Self::Code(Language::Rust), None) => {
+                format!("{tight}.powf({})", self.write(exponent, Precedence::Lowest))
+            }
+        }
+    }
+
+    fn atom(&self, term: &Term) -> String {
+        match term.as_ref() {
+            Node::Sym(name) => match self {
+                Self::Latex(names, _) => names(name),
+                // What terms share is named by the algebra.
+                Self::Code(_) => name.replace("__x", "t"),
+            },
+            Node::Const(value) => match self {
+                Self::Latex(..) if value.fract() == 0.0 && value.abs() < 1e6 => {
+                    format!("{value:.0}")
+                }
+                Self::Latex(..) if inverse(*value).is_some() => {
+                    format!("\\frac{{1}}{{{}}}", inverse(*value).unwrap_or(1.0))
+                }
+                _ => format!("{value:?}"),
+            },
+            Node::Cos(angle) => self.function("cos", &[angle]),
+            Node::Sin(angle) => self.function("sin", &[angle]),
+            Node::Sqrt(inner) => self.function("sqrt", &[inner]),
+            Node::Atan2(y, x) => self.function("atan2", &[y, x]),
+            // The closed forms hold nothing else.
+            _ => format!("{term}"),
+        }
+    }
+
+    fn function(&self, name: &str, of: &[&Term]) -> String {
+        let arguments = || {
+            let all: Vec<String> = of
+                .iter()
+                .map(|t| self.write(t, Precedence::Lowest))
+                .collect();
+            all.join(", ")
+        };
+        match self {
+            Self::Latex(..) => match (name, of) {
+                ("sqrt", _) => format!("\\sqrt{{{}}}", arguments()),
+                ("atan2", _) => format!("\\operatorname{{atan2}}\\left({}\\right)", arguments()),
+                (_, [angle]) => format!("\\{name} {}", self.write(angle, Precedence::Highest)),
+                _ => format!("\\{name}\\left({}\\right)", arguments()),
+            },
+            Self::Code(Language::Rust) => match of {
+                [one] => format!("{}.{name}()", self.write(one, Precedence::Highest)),
+                [one, rest @ ..] => {
+                    let rest: Vec<String> = rest
+                        .iter()
+                        .map(|t| self.write(t, Precedence::Lowest))
+                        .collect();
+                    format!(
+                        "{}.{name}({})",
+                        self.write(one, Precedence::Highest),
+                        rest.join(", ")
+                    )
+                }
+                [] => String::new(),
+            },
+            Self::Code(_) => format!("{name}({})", arguments()),
+        }
+    }
+}
+
+/// The number that a simple fraction is one over.
+fn inverse(value: f64) -> Option<f64> {
+    let inverse = (1.0 / value).round();
+    (inverse > 1.0 && inverse < 10.0 && inverse * value == 1.0).then_some(inverse)
+}
+
+/// The summands of a term, without their signs; `true` for what is taken away.
+fn summands(term: &Term, minus: bool, found: &mut Vec<(bool, Term)>) {
+    match term.as_ref() {
+        Node::Add(a, b) => {
+            summands(a, minus, found);
+            summands(b, minus, found);
+        }
+        Node::Sub(a, b) => {
+            summands(a, minus, found);
+            summands(b, !minus, found);
+        }
+        Node::Neg(a) => summands(a, !minus, found),
+        Node::Const(value) if *value < 0.0 => {
+            found.push((!minus, crate::algebra::number(-value)));
+        }
+        Node::Mul(..) | Node::Div(..) => {
+            let (term, negative) = unsigned(term);
+            found.push((minus != negative, term));
+        }
+        _ => found.push((minus, term.clone())),
+    }
+}
+
+/// A product without its sign.
+fn unsigned(term: &Term) -> (Term, bool) {
+    match term.as_ref() {
+        Node::Mul(a, b) => {
+            let ((a, m), (b, n)) = (unsigned(a), unsigned(b));
+            let one = |t: &Term| matches!(t.as_ref(), Node::Const(v) if *v == 1.0);
+            let product = if one(&a) {
+                b
+            } else if one(&b) {
+                a
+            } else {
+                a * b
+            };
+            (product, m != n)
+        }
+        Node::Div(a, b) => {
+            let ((a, m), (b, n)) = (unsigned(a), unsigned(b));
+            (a / b, m != n)
+        }
+        Node::Neg(a) => {
+            let (a, m) = unsigned(a);
+            (a, !m)
+        }
+        Node::Const(value) if *value < 0.0 => (crate::algebra::number(-value), true),
+        Node::Add(..) | Node::Sub(..) => {
+            let mut parts = Vec::new();
+            summands(term, false, &mut parts);
+            if parts.iter().any(|part| !part.0) {
+                return (term.clone(), false);
+            }
+            let sum = parts.into_iter().map(|part| part.1).reduce(|a, b| a + b);
+            (sum.unwrap_or_else(|| term.clone()), true)
+        }
+        _ => (term.clone(), false),
+    }
+}
+
+/// A term of one summand without its sign, which is known to be plus.
+fn without_sign(term: &Term) -> Term {
+    unsigned(term).0
+}
+
+fn factors(term: &Term, above: &mut Vec<Term>, below: &mut Vec<Term>) {
+    match term.as_ref() {
+        Node::Mul(a, b) => {
+            factors(a, above, below);
+            factors(b, above, below);
+        }
+        Node::Div(a, b) => {
+            factors(a, above, below);
+            factors(b, below, above);
+        }
+        _ => above.push(term.clone()),
+    }
+}
+
+/// Numbers, constants, variables, functions and sums: in this order they stand in a product.
+fn factor_order(term: &Term, constant: &dyn Fn(&str) -> bool) -> u8 {
+    match term.as_ref() {
+        Node::Const(_) => 0,
+        Node::Sym(name) if constant(name) => 1,
+        Node::Sym(_) => 2,
+        Node::Pow(base, _) => factor_order(base, constant),
+        _ => 3,
+    }
+}

@@ -1,0 +1,168 @@
+//! How a loop is made of pieces of bodies: walked anew, body by body, so that each piece can be turned or
+//! shifted by itself when a joint is released.
+
+use dwell_geometry::frames::Frames;
+use dwell_geometry::lower::{Owner, PairKind};
+use dwell_geometry::{Mechanism, Plan, Vec2};
+
+/// A constant vector on a body.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LinkVector {
+    pub(crate) body: usize,
+    pub(crate) frame: usize,
+    /// In the frame, m; in the direction in which the loop passes it.
+    pub(crate) local: Vec2,
+    /// From which joint to which.
+    pub(crate) joints: [String; 2],
+}
+
+/// A travel that a loop passes.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SlideTerm {
+    pub(crate) slide: usize,
+    /// The first body of its bond, which holds its direction.
+    pub(crate) body: usize,
+    pub(crate) frame: usize,
+    /// The direction along which it counts, in the frame.
+    pub(crate) local: Vec2,
+}
+
+/// A loop: P₂ − P₁ of the bond that closes it, through the tree.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LoopEquation {
+    pub(crate) loop_joint: usize,
+    pub(crate) link_vectors: Vec<LinkVector>,
+    pub(crate) slide_terms: Vec<SlideTerm>,
+    /// The tree's bonds that it passes, each with the sign of what shifts its second point.
+    pub(crate) tree_pairs: Vec<(usize, f64)>,
+    /// Where only the normal part must vanish: the axis, with its body and frame.
+    pub(crate) axis: Option<(usize, usize, Vec2)>,
+}
+
+/// Pieces shorter than this part of the coordinates that they are differences of are nothing.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+/// The vector between two points of a body, in its frame.
+pub(crate) fn vector_between(frames: &Frames, body: usize, from: Vec2, to: Vec2) -> Vec2 {
+    let rounding = ROUNDING * (from.norm() + to.norm());
+    let clean = |d: f64| if d.abs() <= rounding { 0.0 } else { d };
+    let difference = dwell_geometry::vec2(clean(to.x - from.x), clean(to.y - from.y));
+    rotated_constant(difference, frames.orientations[body].offset)
+}
+
+/// A vector by a constant rotation; what a rotation by quarter turns leaves of a component is
+/// nothing.
+pub(crate) fn rotated_constant(vector: Vec2, by: Vec2) -> Vec2 {
+    let rotated = vector.rotate(by);
+    let rounding = ROUNDING * vector.norm();
+    let clean = |d: f64| if d.abs() <= rounding { 0.0 } else { d };
+    dwell_geometry::vec2(clean(rotated.x), clean(rotated.y))
+}
+
+/// The name of what a bond comes from.
+pub(crate) fn pair_name(mechanism: &Mechanism, plan: &Plan, pair: usize) -> String {
+    match plan.pairs()[pair].owner {
+        Owner::Joint(joint) => mechanism.joints[joint.0].name.clone(),
+        Owner::Actuator(actuator) => mechanism.actuators[actuator.0].name.clone(),
+    }
+}
+
+impl LoopEquation {
+    /// The loop that a chord closes.
+    pub(crate) fn of(mechanism: &Mechanism, plan: &Plan, closure: usize) -> Self {
+        let (tree, frames) = (plan.tree(), plan.frames());
+        let loop_joint = plan.loop_closures()[closure].pair;
+        let pair = &plan.pairs()[loop_joint];
+        let mut loop_equation = Self {
+            loop_joint,
+            link_vectors: Vec::new(),
+            slide_terms: Vec::new(),
+            tree_pairs: Vec::new(),
+            axis: None,
+        };
+        let point_on = |pair: usize, body: usize| {
+            let pair = &plan.pairs()[pair];
+            pair.points[usize::from(pair.bodies[0] != body)]
+        };
+        let mut ends = [0, 1].map(|i| (pair.bodies[i], pair.points[i], loop_joint));
+        while ends[0].0 != ends[1].0 {
+            let which = usize::from(tree.joint_of_body[ends[1].0] > tree.joint_of_body[ends[0].0]);
+            let sign = if which == 1 { 1.0 } else { -1.0 };
+            let (body, point, reached) = ends[which];
+            let Some(at) = tree.joint_of_body[body] else {
+                break;
+            };
+            let tree_joint = &tree.joints[at];
+            let joint_origin = point_on(tree_joint.pair, body);
+            loop_equation.add_link_vector(
+                frames,
+                body,
+                (joint_origin, point),
+                sign,
+                [tree_joint.pair, reached].map(|b| pair_name(mechanism, plan, b)),
+            );
+            let is_second = plan.pairs()[tree_joint.pair].bodies[1] == body;
+            let pair_sign = if is_second { sign } else { -sign };
+            loop_equation.tree_pairs.push((tree_joint.pair, pair_sign));
+            if let Some((slide, away)) = tree_joint.slide {
+                loop_equation.slide_terms.push(SlideTerm {
+                    slide,
+                    body: plan.pairs()[tree_joint.pair].bodies[0],
+                    frame: frames.orientations[body].frame,
+                    local: away * sign,
+                });
+            }
+            ends[which] = (
+                tree_joint.parent,
+                point_on(tree_joint.pair, tree_joint.parent),
+                tree_joint.pair,
+            );
+        }
+        let names = [ends[0].2, ends[1].2].map(|b| pair_name(mechanism, plan, b));
+        loop_equation.add_link_vector(frames, ends[0].0, (ends[0].1, ends[1].1), 1.0, names);
+        loop_equation
+            .link_vectors
+            .retain(|piece| piece.local != Vec2::ZERO);
+        if let PairKind::Prismatic {
+            axes,
+            travel_is_coordinate: measured,
+            ..
+        } = pair.kind
+        {
+            let body = pair.bodies[0];
+            let attitude = frames.orientations[body];
+            let local = rotated_constant(axes[0], attitude.offset);
+            let slide_index = plan
+                .tree()
+                .slide_pairs
+                .iter()
+                .position(|&b| b == loop_joint);
+            match slide_index.filter(|_| measured) {
+                Some(slide) => loop_equation.slide_terms.push(SlideTerm {
+                    slide,
+                    body,
+                    frame: attitude.frame,
+                    local: -local,
+                }),
+                None => loop_equation.axis = Some((body, attitude.frame, local)),
+            }
+        }
+        loop_equation
+    }
+
+    fn add_link_vector(
+        &mut self,
+        frames: &Frames,
+        body: usize,
+        (from, to): (Vec2, Vec2),
+        sign: f64,
+        joints: [String; 2],
+    ) {
+        self.link_vectors.push(LinkVector {
+            body,
+            frame: frames.orientations[body].frame,
+            local: self::vector_between(frames, body, from, to) * sign,
+            joints,
+        });
+    }
+}

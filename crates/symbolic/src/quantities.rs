@@ -1,0 +1,174 @@
+//! The quantities that closed forms give, with their names, units and meanings.
+
+use crate::algebra::{self, Term};
+use crate::loops::pair_name;
+use crate::positions::PositionFormulas;
+use crate::symbol_table::{Assignment, SymbolTable};
+use dwell_geometry::{BodyId, Reaction};
+use std::collections::BTreeMap;
+
+/// A quantity that the forms give.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Quantity {
+    /// Its name in code.
+    pub code: String,
+    /// Its name in LaTeX.
+    pub latex: String,
+    /// Its unit.
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: String,
+    /// What it is of, in terms of the plan.
+    pub origin: QuantityOrigin,
+}
+
+/// What a quantity is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum QuantityOrigin {
+    /// The angle of a frame.
+    Frame(usize),
+    /// The travel of a slide.
+    Slide(usize),
+    /// The travel of a loop that closes along its normal only.
+    Closure(usize),
+    /// The point that carries a body: x or y, 0 or 1.
+    JointOrigin(usize, usize),
+    /// The centre of mass of a body: x or y, 0 or 1.
+    MassCentre(usize, usize),
+    /// The coordinate.
+    Coordinate,
+    /// The inertia, or the reaction.
+    Result,
+}
+
+impl PositionFormulas<'_> {
+    pub(crate) fn coordinate(&self, symbols: &SymbolTable, code: &str) -> Quantity {
+        let angle = self.plan.is_angle(0);
+        Quantity {
+            code: code.to_owned(),
+            latex: symbols.latex_names(code),
+            unit: if angle { "rad" } else { "m" },
+            meaning: format!("coordinate {}", self.mechanism.actuators[0].name),
+            origin: QuantityOrigin::Coordinate,
+        }
+    }
+
+    /// Angles and travels, and the points of the bodies.
+    pub(crate) fn quantities(
+        &self,
+        symbols: &SymbolTable,
+        derivatives: &BTreeMap<String, Term>,
+    ) -> Vec<Quantity> {
+        let quantity = |code: String, unit, meaning, of| Quantity {
+            latex: symbols.latex_names(&code),
+            code,
+            unit,
+            meaning,
+            origin: of,
+        };
+        let mut found = Vec::new();
+        for (frame, angle) in self.angles.iter().enumerate() {
+            if let Some(code) = angle.as_ref().and_then(symbol_name) {
+                let meaning = format!("angle of {}", self.frame_name(frame));
+                found.push(quantity(code, "rad", meaning, QuantityOrigin::Frame(frame)));
+            }
+        }
+        for (slide, travel) in self.travels.iter().enumerate() {
+            if let (Some(code), None) = (
+                travel.as_ref().and_then(symbol_name),
+                self.plan.actuated_slides()[slide],
+            ) {
+                let pair = self.plan.tree().slide_pairs[slide];
+                let name = pair_name(self.mechanism, self.plan, pair);
+                let meaning = format!("travel of {name}");
+                found.push(quantity(code, "m", meaning, QuantityOrigin::Slide(slide)));
+            }
+        }
+        for (c, (symbols_of_loop, loop_equation)) in
+            self.loop_symbols.iter().zip(&self.loops).enumerate()
+        {
+            if let Some(code) = symbols_of_loop
+                .normal_distance
+                .as_ref()
+                .and_then(|n| symbol_name(&n.1))
+            {
+                let name = pair_name(self.mechanism, self.plan, loop_equation.loop_joint);
+                let meaning = format!("travel of {name}");
+                found.push(quantity(code, "m", meaning, QuantityOrigin::Closure(c)));
+            }
+        }
+        let joint_origin: fn(usize, usize) -> QuantityOrigin = QuantityOrigin::JointOrigin;
+        let points = [
+            (&self.joint_origins, "the point that carries", joint_origin),
+            (
+                &self.mass_centres,
+                "the centre of mass of",
+                QuantityOrigin::MassCentre,
+            ),
+        ];
+        for (points, what, of) in points {
+            for (body, point) in points.iter().enumerate() {
+                let (Some(point), true) = (point, body < self.mechanism.bodies.len()) else {
+                    continue;
+                };
+                let known = |code: &String| found.iter().any(|q: &Quantity| q.code == *code);
+                if !point.iter().any(|code| derivatives.contains_key(code)) || known(&point[0]) {
+                    continue;
+                }
+                for (k, (code, axis)) in point.iter().zip(["x", "y"]).enumerate() {
+                    let name = self.mechanism.body_name(BodyId(body));
+                    let meaning = format!("{axis} of {what} {name}");
+                    found.push(quantity(code.clone(), "m", meaning, of(body, k)));
+                }
+            }
+        }
+        found
+    }
+}
+
+/// m, ½m′, a and b.
+pub(crate) fn result_quantities(
+    symbols: &SymbolTable,
+    results: &[Assignment],
+    reaction: Option<Reaction>,
+    angle: bool,
+) -> Vec<Quantity> {
+    let moment = reaction.is_some_and(|r| r.component.unit() == "N m");
+    let of_reaction = match (moment, angle) {
+        (true, true) => "kg m²",
+        (false, false) => "kg",
+        _ => "kg m",
+    };
+    let what = [
+        "generalised inertia",
+        "half its derivative",
+        "what q̈ contributes to the reaction",
+        "what q̇² contributes to the reaction",
+    ];
+    let inertia = if angle { "kg m²" } else { "kg" };
+    let per = if angle { "kg m²" } else { "kg/m" };
+    let rate = match (moment, angle) {
+        (_, true) => of_reaction,
+        (true, false) => "kg",
+        (false, false) => "kg/m",
+    };
+    let units = [inertia, per, of_reaction, rate];
+    let quantities = results.iter().zip(what).zip(units);
+    quantities
+        .map(|((assignment, what), unit)| Quantity {
+            code: assignment.code.clone(),
+            latex: symbols.latex_names(&assignment.code),
+            unit,
+            meaning: what.to_owned(),
+            origin: QuantityOrigin::Result,
+        })
+        .collect()
+}
+
+/// The name that a plain derivative is.
+fn symbol_name(term: &Term) -> Option<String> {
+    match term.as_ref() {
+        algebra::Node::Sym(name) => Some(name.clone()),
+        _ => None,
+    }
+}

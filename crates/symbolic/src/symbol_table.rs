@@ -1,0 +1,299 @@
+//! Constants and named steps, one below the other, as on a sheet of paper.
+
+use crate::algebra::{self, Term, derivative, plus, symbol, times, zero};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+/// A number of the scene.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Constant {
+    /// Its name in code.
+    pub code: String,
+    /// Its name in LaTeX.
+    pub latex: String,
+    /// Its value, SI.
+    pub value: f64,
+    /// Its unit; empty for a sign or a ratio.
+    pub unit: &'static str,
+    /// What it is.
+    pub meaning: String,
+}
+
+/// A named quantity: a term of what stands above it.
+#[derive(Debug, Clone)]
+pub(crate) struct Assignment {
+    pub(crate) code: String,
+    pub(crate) value: Term,
+    /// Its derivatives, where they are known in a shorter form than differentiation gives.
+    pub(crate) partials: Option<PartialDerivatives>,
+}
+
+/// The derivatives of a step by the names it is made of: that of a root by what is under it, of an angle
+/// by the coordinates of what it points along.
+#[derive(Debug, Clone)]
+pub(crate) struct PartialDerivatives {
+    /// What these are divided by.
+    pub(crate) denominator: Term,
+    pub(crate) quotient_partials: Vec<(String, Term)>,
+    /// Those that nothing divides.
+    pub(crate) extra_partials: Vec<(String, Term)>,
+}
+
+impl PartialDerivatives {
+    fn derivative(&self, derivatives: &BTreeMap<String, Term>) -> Term {
+        let quotient = chain_rule(&self.quotient_partials, derivatives);
+        let extra = chain_rule(&self.extra_partials, derivatives);
+        if algebra::is_zero(&quotient) {
+            return extra;
+        }
+        plus(&(quotient / self.denominator.clone()).simplify(), &extra).simplify()
+    }
+}
+
+/// What a name's derivative is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum DerivativeKind {
+    /// By the coordinate.
+    First,
+    /// By the coordinate, of what is a derivative already.
+    Second,
+    /// By the released coordinate, at zero of it: a virtual displacement.
+    Virtual,
+}
+
+/// Constants, steps and how their names are written.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct SymbolTable {
+    pub(crate) constants: Vec<Constant>,
+    pub(crate) assignments: Vec<Assignment>,
+    /// By name in code: letter and indices in LaTeX.
+    latex_names: HashMap<String, (String, String)>,
+}
+
+impl SymbolTable {
+    /// A name that nothing else has: a letter and what stands below it.
+    pub(crate) fn new_name(&mut self, letter: &str, below: &[&str]) -> String {
+        let mut code = letter.to_owned();
+        for part in below {
+            code.push('_');
+            code.extend(part.chars().map(code_char));
+        }
+        let mut below: Vec<String> = below.iter().map(|part| upright(part)).collect();
+        let base = code.clone();
+        let mut suffix = 1;
+        while self.latex_names.contains_key(&code) {
+            suffix += 1;
+            code = format!("{base}_{suffix}");
+        }
+        if suffix > 1 {
+            below.push(suffix.to_string());
+        }
+        self.latex_names
+            .insert(code.clone(), (greek(letter), below.join(",")));
+        code
+    }
+
+    /// The name of a result.
+    pub(crate) fn result_name(&mut self, code: &str, latex: &str) -> String {
+        let name = (latex.to_owned(), String::new());
+        self.latex_names.insert(code.to_owned(), name);
+        code.to_owned()
+    }
+
+    /// A name in LaTeX.
+    pub(crate) fn latex_names(&self, code: &str) -> String {
+        match self.latex_names.get(code) {
+            Some((letter, below)) if below.is_empty() => letter.clone(),
+            Some((letter, below)) => format!("{letter}_{{{below}}}"),
+            None => upright(code),
+        }
+    }
+
+    /// The name of a name's derivative.
+    pub(crate) fn derivative_name(&mut self, of: &str, kind: DerivativeKind) -> String {
+        let (letter, below) = self
+            .latex_names
+            .get(of)
+            .cloned()
+            .unwrap_or_else(|| (upright(of), String::new()));
+        let (mut code, letter) = match kind {
+            DerivativeKind::First => (format!("{of}_d"), format!("{letter}'")),
+            // Of a name that is a first derivative.
+            DerivativeKind::Second => (format!("{of}d"), format!("{letter}'")),
+            DerivativeKind::Virtual => (format!("{of}_v"), format!("\\delta {letter}")),
+        };
+        // A body may be called like another one's derivative.
+        while self.latex_names.contains_key(&code) {
+            code.push('_');
+        }
+        self.latex_names.insert(code.clone(), (letter, below));
+        code
+    }
+
+    /// A number of the scene, by name.
+    pub(crate) fn add_constant(
+        &mut self,
+        (letter, below): (&str, &[&str]),
+        value: f64,
+        unit: &'static str,
+        meaning: String,
+    ) -> Term {
+        let code = self.new_name(letter, below);
+        self.constants.push(Constant {
+            latex: self.latex_names(&code),
+            code: code.clone(),
+            value,
+            unit,
+            meaning,
+        });
+        symbol(&code)
+    }
+
+    /// Writes a step down.
+    pub(crate) fn assign(&mut self, code: &str, value: &Term) -> Term {
+        self.assignments.push(Assignment {
+            code: code.to_owned(),
+            value: value.simplify(),
+            partials: None,
+        });
+        symbol(code)
+    }
+
+    /// Writes a step down whose derivatives are known.
+    pub(crate) fn assign_with_partials(
+        &mut self,
+        code: &str,
+        value: Term,
+        partials: PartialDerivatives,
+    ) -> Term {
+        self.assignments.push(Assignment {
+            code: code.to_owned(),
+            value,
+            partials: Some(partials),
+        });
+        symbol(code)
+    }
+
+    /// The derivative of every step so far that has one, as further steps: by the names in `rates`,
+    /// to which it adds, and by what `shifts` adds to a step itself.
+    pub(crate) fn differentiate(
+        &mut self,
+        of: &[Assignment],
+        kind: DerivativeKind,
+        derivatives: &mut BTreeMap<String, Term>,
+        shifts: &BTreeMap<String, Term>,
+    ) -> Vec<Assignment> {
+        let mut found = Vec::new();
+        for assignment in of {
+            let mut value = match &assignment.partials {
+                Some(partials) => partials.derivative(derivatives),
+                None => quotient_derivative(assignment, derivatives)
+                    .unwrap_or_else(|| derivative(&assignment.value, derivatives)),
+            };
+            if let Some(shift) = shifts.get(&assignment.code) {
+                value = plus(&value, shift).simplify();
+            }
+            if algebra::is_zero(&value) {
+                continue;
+            }
+            let code = self.derivative_name(&assignment.code, kind);
+            let symbol_or_value = if algebra::is_atomic(&value) {
+                value
+            } else {
+                found.push(Assignment {
+                    code: code.clone(),
+                    value,
+                    partials: None,
+                });
+                symbol(&code)
+            };
+            derivatives.insert(assignment.code.clone(), symbol_or_value);
+        }
+        found
+    }
+}
+
+/// The derivative of y = N/D by its own name: (N′ − y D′)/D, which stays as short as it can.
+fn quotient_derivative(
+    assignment: &Assignment,
+    derivatives: &BTreeMap<String, Term>,
+) -> Option<Term> {
+    let (above, below) = algebra::quotient(&assignment.value)?;
+    let by_below = times(&symbol(&assignment.code), &derivative(&below, derivatives));
+    let above = plus(&derivative(&above, derivatives), &-by_below).simplify();
+    if algebra::is_zero(&above) {
+        return Some(zero());
+    }
+    Some((above / below).simplify())
+}
+
+fn chain_rule(partials: &[(String, Term)], derivatives: &BTreeMap<String, Term>) -> Term {
+    let mut sum = zero();
+    for (name, partial) in partials {
+        if let Some(derivative) = derivatives.get(name) {
+            sum = plus(&sum, &times(partial, derivative));
+        }
+    }
+    sum.simplify()
+}
+
+/// The steps that the terms named need, in their order.
+pub(crate) fn needed(
+    assignments: &[Assignment],
+    wanted: impl IntoIterator<Item = String>,
+) -> Vec<Assignment> {
+    let mut wanted: BTreeSet<String> = wanted.into_iter().collect();
+    let mut needed: Vec<Assignment> = Vec::new();
+    for assignment in assignments.iter().rev() {
+        if wanted.contains(&assignment.code) {
+            wanted.extend(algebra::names(&assignment.value));
+            needed.push(assignment.clone());
+        }
+    }
+    needed.reverse();
+    needed
+}
+
+/// A character that a name in code may hold.
+fn code_char(c: char) -> char {
+    if c.is_ascii_alphanumeric() { c } else { '_' }
+}
+
+/// The letters that LaTeX knows by name.
+const GREEK: [&str; 22] = [
+    "alpha", "beta", "gamma", "delta", "epsilon", "zeta", "eta", "theta", "iota", "kappa", "mu",
+    "nu", "xi", "pi", "rho", "sigma", "tau", "phi", "chi", "psi", "omega", "Delta",
+];
+
+/// Whether a word is the name of a Greek letter.
+pub(crate) fn is_greek(word: &str) -> bool {
+    GREEK.contains(&word)
+}
+
+fn greek(letter: &str) -> String {
+    if letter == "phi" {
+        "\\varphi".to_owned()
+    } else if is_greek(letter) {
+        format!("\\{letter}")
+    } else {
+        letter.to_owned()
+    }
+}
+
+/// A word as an index: single letters and numbers as they are, words upright.
+fn upright(word: &str) -> String {
+    let mut chars = word.chars();
+    if let (Some(c), None) = (chars.next(), chars.next())
+        && c.is_ascii_alphanumeric()
+    {
+        return word.to_owned();
+    }
+    if word.chars().all(|c| c.is_ascii_digit()) {
+        return word.to_owned();
+    }
+    let style = if word.chars().all(|c| c.is_ascii_alphanumeric()) {
+        "mathrm"
+    } else {
+        "text"
+    };
+    format!("\\{style}{{{}}}", word.replace('_', "\\_"))
+}

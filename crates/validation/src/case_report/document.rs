@@ -1,0 +1,126 @@
+//! The report of a case as a document.
+
+use super::figures::Dwell;
+use super::finding_text::tolerances_block;
+use crate::cases::reference::Reference;
+use crate::checked::analysis::CaseAnalysis;
+use dwell_report::{Block, Document, Figure};
+use dwell_scene::Scene;
+use dwell_study::CalibrationResult;
+use dwell_study::output::provenance_line;
+use dwell_verify::{CheckedFreeMotion, ToleranceRun};
+
+/// The document with its figures.
+pub(super) fn document(
+    scene: &Scene,
+    reference: &Reference,
+    figures: &[Figure],
+    analysis: &CaseAnalysis<'_>,
+    dwell: Option<&Dwell>,
+) -> Document {
+    let mut blocks: Vec<Block> = scene.note.iter().cloned().map(Block::Text).collect();
+    blocks.push(Block::Text(findings_sentence(reference, analysis)));
+    if !reference.source.is_empty() {
+        blocks.push(Block::Text(format!("Source: {}.", reference.source)));
+    }
+    if let Some(computed) = &reference.computed_by {
+        blocks.push(Block::Text(format!("Reference numbers: {computed}.")));
+    }
+    let reduced = analysis.reduced.as_ref();
+    if let Some(calibration) = reduced.and_then(|r| r.calibration.as_ref()) {
+        blocks.push(Block::Heading("Agreement by construction".to_owned()));
+        blocks.push(Block::Text(calibration_sentence(calibration)));
+    }
+    blocks.extend(dwell.map(|d| Block::Text(dwell_sentence(scene, d))));
+    blocks.push(Block::Heading("Findings".to_owned()));
+    blocks.push(Block::Findings(analysis.findings.clone()));
+    blocks.push(tolerances_block(&analysis.findings));
+    if let Some(motion) = reduced.and_then(|r| r.motion.as_ref()) {
+        blocks.push(Block::Heading("Errors of the integrators".to_owned()));
+        blocks.push(Block::Text(
+            "A tolerance bounds the error of one step, not of the motion: with BDF the energy error is hundreds of times \
+             the tolerance. Errors are relative; times are of the machine that wrote this report."
+                .to_owned(),
+        ));
+        blocks.push(tolerance_runs_block(motion));
+    }
+    blocks.push(Block::Heading("Figures".to_owned()));
+    blocks.extend(figures.iter().map(|figure| Block::Figure {
+        file: format!("{}/{}.png", scene.name, figure.name),
+        alt: figure.title.clone(),
+        caption: figure.caption.clone(),
+    }));
+    blocks.push(Block::Text(provenance_line(scene)));
+    Document {
+        title: scene.title.clone(),
+        blocks,
+    }
+}
+
+fn findings_sentence(reference: &Reference, analysis: &CaseAnalysis<'_>) -> String {
+    let passed = analysis.findings.iter().filter(|f| f.pass).count();
+    let reference_states = match reference.state_requests().len() {
+        0 => String::new(),
+        n => format!(" and {n} of the reference"),
+    };
+    format!(
+        "{passed} of {} findings pass. States were checked at {} instants: {}{reference_states}.",
+        analysis.findings.len(),
+        analysis.states.states.len(),
+        analysis.states.motion_text,
+    )
+}
+
+fn calibration_sentence(c: &CalibrationResult) -> String {
+    format!(
+        "`{}` is fitted to the period of {} s, so that the period is no finding. The fit gives **{:.12} {}** for \
+         {} s; the scene has the rounded value {} {}, for which the period is {:.12} s.",
+        c.path, c.period, c.value, c.unit, c.period, c.current, c.unit, c.current_period
+    )
+}
+
+fn dwell_sentence(scene: &Scene, dwell: &Dwell) -> String {
+    format!(
+        "Dwell: the angle of `{}` varies by {:.3}° (of {:.2}° over the whole range) while the actuator moves from {:.1}° to \
+         {:.1}°.",
+        scene.mechanism.body_name(dwell.body),
+        dwell.variation.to_degrees(),
+        dwell.swing.to_degrees(),
+        dwell.from.to_degrees(),
+        dwell.to.to_degrees()
+    )
+}
+
+/// Cost and errors of every method and tolerance.
+fn tolerance_runs_block(motion: &CheckedFreeMotion) -> Block {
+    let header = [
+        "Method",
+        "Tolerance",
+        "Steps",
+        "Evaluations",
+        "Jacobians",
+        "Time (ms)",
+        "Period",
+        "Energy",
+        "Reaction",
+        "Energy error / tolerance",
+    ];
+    let row = |r: &ToleranceRun| {
+        vec![
+            r.method.name().to_owned(),
+            format!("{:.0e}", r.tolerance),
+            r.statistics.steps.to_string(),
+            r.statistics.evaluations.to_string(),
+            r.statistics.jacobians.to_string(),
+            format!("{:.2}", r.wall_time * 1e3),
+            format!("{:.1e}", r.period_error),
+            format!("{:.1e}", r.drift),
+            format!("{:.1e}", r.reaction_error),
+            format!("{:.0}", r.drift / r.tolerance),
+        ]
+    };
+    Block::Table {
+        header: header.map(str::to_owned).to_vec(),
+        rows: motion.tolerance_runs.iter().map(row).collect(),
+    }
+}

@@ -1,0 +1,82 @@
+//! How far the findings of a case agree.
+
+use dwell_findings::Finding;
+use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
+use dwell_scene::Scene;
+use dwell_study::number_format::count;
+use dwell_study::output::scene_caption;
+
+/// Digits of a number: what agrees exactly has no more.
+const MAX_DIGITS: f64 = 16.0;
+
+/// Difference, tolerance and what is between them, of every finding, by truth.
+pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
+    let mut groups: Vec<Group> = Vec::new();
+    let mut by_check: Vec<&Finding> = findings.iter().collect();
+    by_check.sort_by_key(|finding| finding.check);
+    for finding in by_check {
+        match groups
+            .iter_mut()
+            .find(|group| group.heading == finding.check.to_string())
+        {
+            Some(group) => group.rows.push(row(finding)),
+            None => groups.push(Group {
+                heading: finding.check.to_string(),
+                rows: vec![row(finding)],
+            }),
+        }
+    }
+    let columns = [
+        "relative difference",
+        "tolerance",
+        "tolerance over difference",
+    ];
+    Figure {
+        name: "digits".to_owned(),
+        title: "Digits of agreement".to_owned(),
+        caption: scene_caption(
+            scene,
+            "The largest relative difference of every finding and its tolerance, grouped by check.",
+        ),
+        columns: 1,
+        panels: vec![
+            Grid {
+                columns: columns.map(str::to_owned).into(),
+                groups,
+                values: Axis::new("digits that agree", "").with_range(0.0, MAX_DIGITS),
+                ..Grid::default()
+            }
+            .into(),
+        ],
+        provenance: format!(
+            "{}, each with its own check and tolerance",
+            count(findings.len(), "finding")
+        ),
+    }
+}
+
+fn row(finding: &Finding) -> Row {
+    let part = |value: f64| {
+        let text = match value {
+            0.0 => "0".to_owned(),
+            value => format!("{value:.1e}").replace('-', "−"),
+        };
+        // Zero has all the digits there are; what is no number has no colour.
+        Cell {
+            value: (!value.is_nan()).then(|| (-value.log10()).min(MAX_DIGITS)),
+            ..Cell::text_only(text)
+        }
+    };
+    let between = match finding.tolerance / finding.relative_difference {
+        factor if !factor.is_finite() => None,
+        factor if factor < 100.0 => Some(Cell::text_only(format!("{factor:.1}"))),
+        factor if factor < 1e5 => Some(Cell::text_only(format!("{factor:.0}"))),
+        factor => Some(Cell::text_only(format!("{factor:.0e}"))),
+    };
+    let mut difference = part(finding.relative_difference);
+    difference.failed = !finding.pass;
+    Row::new(
+        finding.key.clone(),
+        vec![Some(difference), Some(part(finding.tolerance)), between],
+    )
+}

@@ -1,0 +1,131 @@
+//! A mechanism in the states in which it was checked, and its actuators' forces there.
+
+use super::mechanism::{RangePoses, paths};
+use crate::checked::states::CheckedStates;
+use dwell_geometry::{Vec2, vec2};
+use dwell_report::{Axis, Chart, Drawing, Figure, Panel, Series};
+use dwell_scene::Scene;
+use dwell_study::bodies::BodyPose;
+use dwell_study::number_format::count;
+use dwell_study::output::MechanismDrawing;
+use dwell_study::output::{scene_caption, symbol};
+
+/// Number of positions in which the mechanism is drawn.
+const DRAWN_POSITIONS: usize = 5;
+/// The mechanism in several states, with the paths of its points.
+pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
+    let body_poses = checked.body_poses.iter().map(|bodies| {
+        let body_pose = |&[x, y, angle]: &[f64; 3]| (vec2(x, y), Vec2::from_angle(angle));
+        bodies.iter().map(body_pose).collect()
+    });
+    let range_poses = RangePoses {
+        q: Vec::new(),
+        body_poses: body_poses.collect(),
+    };
+    let mechanism = MechanismDrawing::new(scene, &range_poses.body_poses);
+    let mut shapes = paths(scene, &range_poses);
+    for (k, &position) in distinct_positions(&range_poses.body_poses)
+        .iter()
+        .enumerate()
+        .rev()
+    {
+        let lightness = if k == 0 { 0.0 } else { 0.62 + 0.05 * k as f64 };
+        mechanism.draw(&range_poses.body_poses[position], lightness, &mut shapes);
+    }
+    Figure {
+        name: "mechanism".to_owned(),
+        title: scene.title.clone(),
+        caption: scene_caption(
+            scene,
+            &format!(
+                "Drawn in full at the beginning of {}, lighter further on.",
+                checked.motion_text
+            ),
+        ),
+        columns: 1,
+        panels: vec![Panel::from(Drawing {
+            title: String::new(),
+            x: Axis::new("x", "m"),
+            y: Axis::new("y", "m"),
+            shapes,
+        })],
+        provenance: format!("the mechanism at {}", count(checked.drawn_count, "state")),
+    }
+}
+
+/// Positions that differ as much as they can, the first before all, in the order of the motion: at equal distances of
+/// time those of whole turns would all be one.
+fn distinct_positions(body_poses: &[Vec<BodyPose>]) -> Vec<usize> {
+    let points = || body_poses.iter().flatten().map(|(at, _)| at.norm());
+    let size = points().fold(f64::MIN_POSITIVE, f64::max);
+    let pose_distance = |a: usize, b: usize| {
+        let bodies = body_poses[a].iter().zip(&body_poses[b]);
+        let of = |(a, b): (&BodyPose, &BodyPose)| (a.0 - b.0).norm() / size + (a.1 - b.1).norm();
+        bodies.map(of).sum::<f64>()
+    };
+    let mut chosen = vec![0];
+    while chosen.len() < DRAWN_POSITIONS.min(body_poses.len()) {
+        let nearest = |k: &usize| {
+            let distances = chosen.iter().map(|&c| pose_distance(c, *k));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        let next_position = (0..body_poses.len()).max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
+        chosen.extend(next_position);
+    }
+    chosen.sort_unstable();
+    chosen.dedup();
+    chosen
+}
+
+/// What the actuators do along those states.
+pub(crate) fn actuator_forces(scene: &Scene, checked: &CheckedStates) -> Figure {
+    let drawn = &checked.states[..checked.drawn_count];
+    let panel = |(k, actuator): (usize, &dwell_geometry::Actuator)| {
+        let (what, unit) = match actuator.coordinate().is_angle() {
+            true => ("couple", "N m"),
+            false => ("force", "N"),
+        };
+        Panel::from(Chart {
+            title: format!("Action of {}", symbol(&actuator.name)),
+            x: Axis::new("time", "s"),
+            y: Axis::new(what, unit),
+            series: vec![Series::line(
+                "",
+                drawn.iter().map(|state| [state.t, state.tau[k]]).collect(),
+            )],
+            ..Chart::default()
+        })
+    };
+    let actuators = scene.mechanism.actuators.iter().enumerate();
+    Figure {
+        name: "actuator-forces".to_owned(),
+        title: "What the actuators do".to_owned(),
+        caption: scene_caption(
+            scene,
+            &format!("Along {}, under the loads.", checked.motion_text),
+        ),
+        columns: 1,
+        panels: actuators.map(panel).collect(),
+        provenance: format!("the mechanism at {}", count(checked.drawn_count, "state")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn positions_of_whole_turns_are_not_drawn_over_each_other() {
+        // Five turns in 120 steps: at equal distances all would be the first.
+        let turn = |k: usize| Vec2::from_angle(std::f64::consts::TAU * 5.0 * k as f64 / 120.0);
+        let frames: Vec<Vec<BodyPose>> = (0..=120).map(|k| vec![(turn(k), turn(k))]).collect();
+        let chosen = distinct_positions(&frames);
+        assert_eq!((chosen.len(), chosen[0]), (DRAWN_POSITIONS, 0));
+        for (i, &a) in chosen.iter().enumerate() {
+            for &b in &chosen[..i] {
+                assert!((turn(a) - turn(b)).norm() > 0.5);
+            }
+        }
+        assert_eq!(distinct_positions(&frames[..1]), [0]);
+    }
+}

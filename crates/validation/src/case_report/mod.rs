@@ -1,0 +1,9 @@
+//! The report of one case: document, numbers, tables, figures and snapshot.
+
+mod document;
+mod figures;
+pub(crate) mod finding_text;
+mod numbers;
+mod snapshot;
+pub(crate) mod validate;
+pub(crate) mod validation;

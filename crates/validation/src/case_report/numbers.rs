@@ -1,0 +1,154 @@
+//! The numbers of a case's report: JSON and tables.
+
+use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis};
+use crate::error::ValidationError;
+use dwell_dynamics::Method;
+use dwell_findings::all_pass;
+use dwell_report::{Column, FindingRecord, Number, Table, json};
+use dwell_scene::Scene;
+use dwell_verify::{CheckedFreeMotion, ToleranceRun};
+use serde::Serialize;
+
+/// The numbers of the report, as JSON.
+#[derive(Serialize)]
+struct Numbers<'a> {
+    title: &'a str,
+    note: &'a Option<String>,
+    version: &'static str,
+    scene: &'a str,
+    scene_sha256: String,
+    passed: bool,
+    states: usize,
+    period_s: Option<Number>,
+    energy_j: Option<Number>,
+    calibration: Option<CalibrationValue<'a>>,
+    convergence_slope: Option<Number>,
+    findings: Vec<FindingRecord<'a>>,
+    tolerance_series: Vec<ToleranceRunRow>,
+}
+
+#[derive(Serialize)]
+struct CalibrationValue<'a> {
+    path: &'a str,
+    unit: &'a str,
+    scene: Number,
+    scene_period_s: Number,
+    found: Number,
+    target_period_s: Number,
+}
+
+#[derive(Serialize)]
+struct ToleranceRunRow {
+    method: &'static str,
+    tolerance: Number,
+    steps: usize,
+    rejected: usize,
+    evaluations: usize,
+    jacobians: usize,
+    seconds: Number,
+    period_error: Number,
+    energy_drift: Number,
+    reaction_error: Number,
+}
+
+impl From<&ToleranceRun> for ToleranceRunRow {
+    fn from(r: &ToleranceRun) -> Self {
+        Self {
+            method: r.method.name(),
+            tolerance: r.tolerance.into(),
+            steps: r.statistics.steps,
+            rejected: r.statistics.rejected_steps,
+            evaluations: r.statistics.evaluations,
+            jacobians: r.statistics.jacobians,
+            seconds: r.wall_time.into(),
+            period_error: r.period_error.into(),
+            energy_drift: r.drift.into(),
+            reaction_error: r.reaction_error.into(),
+        }
+    }
+}
+
+/// The JSON text. What only the reduced model has is null or empty for other cases.
+pub(super) fn numbers(
+    scene: &Scene,
+    analysis: &CaseAnalysis<'_>,
+) -> Result<String, ValidationError> {
+    let reduced = analysis.reduced.as_ref();
+    let motion = reduced.and_then(|r| r.motion.as_ref());
+    let calibration = reduced.and_then(|r| r.calibration.as_ref());
+    Ok(json(&Numbers {
+        title: &scene.title,
+        note: &scene.note,
+        version: env!("CARGO_PKG_VERSION"),
+        scene: &scene.name,
+        scene_sha256: scene.hash(),
+        passed: all_pass(&analysis.findings),
+        states: analysis.states.states.len(),
+        period_s: motion.map(|m| m.orbit.period.into()),
+        energy_j: motion.map(|m| m.orbit.energy.into()),
+        calibration: calibration.map(|c| CalibrationValue {
+            path: &c.path,
+            unit: &c.unit,
+            scene: c.current.into(),
+            scene_period_s: c.current_period.into(),
+            found: c.value.into(),
+            target_period_s: c.period.into(),
+        }),
+        convergence_slope: motion.map(|m| m.drift_slope.into()),
+        findings: analysis.findings.iter().map(FindingRecord::from).collect(),
+        tolerance_series: motion.map_or_else(Vec::new, |m| {
+            m.tolerance_runs.iter().map(ToleranceRunRow::from).collect()
+        }),
+    })?)
+}
+
+/// The tables of the reduced model, by file name.
+pub(super) fn tables(reduced: &ReducedAnalysis<'_>) -> Vec<(&'static str, Table)> {
+    let prepared = &reduced.prepared;
+    let mut tables = vec![("reduced", reduced.curves.table(prepared))];
+    if let Some(history) = &reduced.history {
+        tables.push(("motion", history.table(prepared)));
+    }
+    if let Some(motion) = &reduced.motion {
+        tables.push((
+            "work-precision-bdf",
+            tolerance_runs_table(motion, Method::Bdf),
+        ));
+        tables.push((
+            "work-precision-tsit45",
+            tolerance_runs_table(motion, Method::Tsit45),
+        ));
+    }
+    tables
+}
+
+/// Cost and errors of one method over its tolerances.
+fn tolerance_runs_table(motion: &CheckedFreeMotion, method: Method) -> Table {
+    let columns = [
+        ("tolerance", ""),
+        ("steps", ""),
+        ("evaluations", ""),
+        ("jacobians", ""),
+        ("wall_time", "s"),
+        ("period_error", ""),
+        ("energy_drift", ""),
+        ("reaction_error", ""),
+    ];
+    let row = |r: &ToleranceRun| {
+        vec![
+            r.tolerance,
+            r.statistics.steps as f64,
+            r.statistics.evaluations as f64,
+            r.statistics.jacobians as f64,
+            r.wall_time,
+            r.period_error,
+            r.drift,
+            r.reaction_error,
+        ]
+    };
+    let runs = motion.tolerance_runs.iter().filter(|r| r.method == method);
+    Table {
+        columns: columns.map(|(n, u)| Column::new(n, u)).to_vec(),
+        rows: runs.map(row).collect(),
+    }
+}

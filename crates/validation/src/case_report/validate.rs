@@ -1,0 +1,136 @@
+//! `dwell validate`: checks a case and makes its report.
+
+use super::document::document;
+use super::figures::{self, Dwell};
+use super::finding_text::findings_summary;
+use super::numbers::{numbers, tables};
+use super::snapshot::snapshot;
+use super::validation::Validation;
+use crate::cases::reference::Reference;
+use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
+use crate::error::ValidationError;
+use dwell_report::TableExport as _;
+use dwell_report::{Figure, Files};
+use dwell_scene::Scene;
+use dwell_study::SolverSettings;
+use dwell_study::output::signed_png;
+use dwell_study::{Outcome, Progress, Step};
+use rayon::prelude::*;
+use std::path::Path;
+
+/// Steps of the progress bar for one case: three of the analysis and two of the report.
+const PROGRESS_STEPS: usize = 5;
+
+/// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`. The
+/// files are `NAME.md`, `NAME.json`, `NAME.txt` and the folder `NAME/` with figures and tables.
+///
+/// # Errors
+/// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
+pub fn validate(
+    scene: &Scene,
+    folder: &Path,
+    progress: Progress<'_>,
+) -> Result<Validation, ValidationError> {
+    let done = |what: &str| {
+        progress(Step {
+            total: PROGRESS_STEPS,
+            done: what,
+        });
+    };
+    let reference = Reference::read(folder, scene)?;
+    let analysis = analyse(scene, &reference, &done)?;
+    let (figures, dwell) = case_figures(scene, &analysis)?;
+    let draw = |figure| signed_png(scene, figure);
+    let images: Vec<Vec<u8>> = figures.par_iter().map(draw).collect::<Result<_, _>>()?;
+    done("figures");
+    let mut files = Files::new();
+    let name = &scene.name;
+    for (figure, image) in figures.iter().zip(images) {
+        files.add(format!("{name}/{}.png", figure.name), image);
+    }
+    for (file, table) in analysis.reduced.iter().flat_map(tables) {
+        files.add(format!("{name}/{file}.csv"), table.csv()?);
+    }
+    let snapshot = snapshot(scene, &analysis);
+    let document = document(scene, &reference, &figures, &analysis, dwell.as_ref());
+    files.add(format!("{name}.txt"), snapshot.clone());
+    files.add(format!("{name}.json"), numbers(scene, &analysis)?);
+    files.add(format!("{name}.md"), document.markdown());
+    done("report");
+    Ok(Validation {
+        outcome: Outcome {
+            summary: summary(scene, &analysis) + &reference.notes + &reference.tolerances.notes,
+            files,
+            findings: analysis.findings,
+        },
+        snapshot,
+        not_applicable: analysis.not_applicable,
+    })
+}
+
+fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
+    let mut text = findings_summary(scene, &analysis.findings);
+    let Some(reduced) = &analysis.reduced else {
+        return text;
+    };
+    if let Some(motion) = &reduced.motion {
+        text += &format!("  period {:.12} s by quadrature\n", motion.orbit.period);
+    }
+    if let Some(c) = &reduced.calibration {
+        text += &format!(
+            "  {} = {:.12} {} gives a period of {} s; the scene has {}\n",
+            c.path, c.value, c.unit, c.period, c.current
+        );
+    }
+    text
+}
+
+/// All figures, and the dwell that the drawing of the mechanism shows.
+fn case_figures(
+    scene: &Scene,
+    analysis: &CaseAnalysis<'_>,
+) -> Result<(Vec<Figure>, Option<Dwell>), ValidationError> {
+    let states = &analysis.states;
+    let (mut figures, dwell) = match &analysis.reduced {
+        Some(reduced) => reduced_figures(reduced)?,
+        None => {
+            let mut figures = vec![
+                figures::states_drawing(scene, states),
+                figures::actuator_forces(scene, states),
+            ];
+            let free_motion = analysis.free_motion.as_ref();
+            figures.extend(free_motion.map(|run| figures::energies(scene, run)));
+            (figures, None)
+        }
+    };
+    figures.push(figures::digits(scene, &analysis.findings));
+    figures.push(figures::rounding(scene, states, &analysis.rounding));
+    Ok((figures, dwell))
+}
+
+fn reduced_figures(
+    reduced: &ReducedAnalysis<'_>,
+) -> Result<(Vec<Figure>, Option<Dwell>), ValidationError> {
+    let prepared = &reduced.prepared;
+    let (drawing, dwell) = figures::mechanism(prepared)?;
+    let mut figures = vec![
+        drawing,
+        dwell_study::reduce::figures::reduced(prepared, &reduced.curves),
+    ];
+    // The caption of the last one says which reactions are left out.
+    figures.extend(dwell_study::reduce::figures::coefficients(prepared, &reduced.curves).0);
+    if let Some(history) = &reduced.history {
+        let settings = SolverSettings::default();
+        figures.push(figures::history(prepared, history, &settings));
+    }
+    if let Some(motion) = &reduced.motion {
+        figures.push(figures::drift(prepared, motion));
+    }
+    if !reduced.error_curves.is_empty() {
+        figures.push(figures::finite_differences(prepared, &reduced.error_curves));
+    }
+    if let Some(motion) = &reduced.motion {
+        figures.push(figures::work_precision(prepared, motion));
+    }
+    Ok((figures, dwell))
+}

@@ -1,0 +1,309 @@
+//! What a scene's model says of states of motion, under its loads: claims for the judge of states.
+
+use dwell_geometry::{ActuatorId, BodyId, Vec2};
+use dwell_kinetostatics::{InverseDynamics, KinetostaticsError, Model, Workspace};
+use dwell_scene::{Scene, SceneLocation};
+use dwell_study::StudyError;
+use dwell_study::explain::explain_model;
+use dwell_study::explain::explain_position;
+use dwell_verify::{ClaimedState, condition_number, load_wrenches};
+use std::f64::consts::TAU;
+
+/// Between two states no coordinate goes farther at once than this, rad, or this part of the size:
+/// then no body turns by half a turn, and whole turns are counted.
+const MAX_COORDINATE_STEP: f64 = 0.1;
+
+/// A state of motion that is asked about: time (s), coordinates, speeds and accelerations (rad or
+/// m, per s, per s²). Without accelerations it is that of free motion: the actuators do nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct StateRequest {
+    pub(crate) t: f64,
+    pub(crate) q: Vec<f64>,
+    pub(crate) q_dot: Vec<f64>,
+    pub(crate) q_ddot: Option<Vec<f64>>,
+}
+
+/// A scene's model with every reaction, under its loads, walking from state to state.
+#[derive(Debug)]
+pub(crate) struct ModelStates<'a> {
+    scene: &'a Scene,
+    model: Model,
+    workspace: Workspace<f64>,
+    result: InverseDynamics<f64>,
+    /// By body: its angle, rad, whole turns counted on the way from the start.
+    angles: Vec<f64>,
+    /// Where that is, rad or m, and how far each coordinate goes at once.
+    coordinates: Vec<f64>,
+    coordinate_steps: Vec<f64>,
+    assembly_poses: Vec<[f64; 3]>,
+}
+
+/// A state of motion that was evaluated.
+#[derive(Debug)]
+pub(crate) struct EvaluatedState<'m> {
+    pub(crate) scene: &'m Scene,
+    pub(crate) workspace: &'m Workspace<f64>,
+    pub(crate) result: &'m InverseDynamics<f64>,
+    pub(crate) angles: &'m [f64],
+}
+
+impl<'a> ModelStates<'a> {
+    /// Compiles a scene for all reactions, and stands at the start.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] when the mechanism cannot be put together or a load does not fit.
+    pub(crate) fn new(scene: &'a Scene) -> Result<Self, StudyError> {
+        let start = scene.assembly.to_configuration();
+        let mechanism = &scene.mechanism;
+        let model = Model::new(mechanism, &scene.masses, &start, &mechanism.reactions())
+            .map_err(|e| explain_model(scene, &e))?
+            .with_loads(scene.loads.clone())
+            .map_err(|e| {
+                let at = [(SceneLocation::Load(e.load), "this load".to_owned())];
+                scene.error(e.what.to_owned(), None, &at)
+            })?;
+        let (workspace, result) = (model.workspace(), model.result_buffer());
+        let points = scene.points.iter().flatten();
+        let mechanism_size = points.fold(0.0_f64, |m, (_, at)| m.max(at.norm()));
+        let step = |a: usize| match model.plan().is_angle(a) {
+            true => MAX_COORDINATE_STEP,
+            false => {
+                MAX_COORDINATE_STEP
+                    * if mechanism_size > 0.0 {
+                        mechanism_size
+                    } else {
+                        1.0
+                    }
+            }
+        };
+        let mut model_states = Self {
+            scene,
+            workspace,
+            result,
+            angles: Vec::new(),
+            coordinates: start.q,
+            coordinate_steps: (0..model.plan().actuators()).map(step).collect(),
+            assembly_poses: Vec::new(),
+            model,
+        };
+        model_states.set_coordinates(&model_states.coordinates.clone())?;
+        model_states.assembly_poses = model_states.body_poses();
+        model_states.angles = model_states
+            .assembly_poses
+            .iter()
+            .map(|pose| pose[2])
+            .collect();
+        Ok(model_states)
+    }
+
+    pub(crate) fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// The frames of all bodies as assembled.
+    pub(crate) fn assembly_poses(&self) -> &[[f64; 3]] {
+        &self.assembly_poses
+    }
+
+    /// The state's own account, for the judge.
+    ///
+    /// # Errors
+    /// As [`ModelStates::evaluate_at`].
+    pub(crate) fn state(&mut self, request: &StateRequest) -> Result<ClaimedState, StudyError> {
+        let q_ddot = self.evaluate_at(request)?;
+        let (scene, states) = (self.scene, self.workspace.states());
+        let mut bodies = self.body_poses();
+        for (pose, angle) in bodies.iter_mut().zip(&self.angles) {
+            pose[2] = *angle;
+        }
+        let origin_of = |b: usize| (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
+        let velocity: Vec<_> = (0..bodies.len())
+            .map(|b| {
+                let (body, origin) = origin_of(b);
+                [origin.velocity.x, origin.velocity.y, body.angular_velocity]
+            })
+            .collect();
+        let acceleration = |b: usize| {
+            let (body, origin) = origin_of(b);
+            [
+                origin.acceleration.x,
+                origin.acceleration.y,
+                body.angular_acceleration,
+            ]
+        };
+        let loads = scene.loads.iter().zip(&self.workspace.loads().magnitude);
+        let ground = scene.mechanism.ground;
+        let loads = loads.filter_map(|(load, &magnitude)| {
+            load_wrenches(
+                &load.kind,
+                magnitude,
+                ground,
+                &scene.masses,
+                &bodies,
+                &velocity,
+            )
+        });
+        Ok(ClaimedState {
+            t: request.t,
+            q: request.q.clone(),
+            q_dot: request.q_dot.clone(),
+            q_ddot,
+            load_wrenches: loads.flatten().collect(),
+            accelerations: (0..bodies.len()).map(acceleration).collect(),
+            velocities: velocity,
+            reactions: self.result.reactions.clone(),
+            tau: self.result.tau.clone(),
+            poses: bodies,
+        })
+    }
+
+    /// The generalised inertias at the last state that was gone to, by unit runs, row by row.
+    pub(crate) fn mass_matrix(&mut self) -> Vec<f64> {
+        let n = self.coordinate_steps.len();
+        let mut run = self.model.result_buffer();
+        let columns: Vec<Vec<f64>> = (0..n)
+            .map(|i| {
+                self.model
+                    .mass_matrix_column(i, &mut self.workspace, &mut run);
+                run.tau.clone()
+            })
+            .collect();
+        let at = |k: usize| columns[k % n][k / n];
+        (0..n * n).map(at).collect()
+    }
+
+    /// The frames of all bodies at a position.
+    ///
+    /// # Errors
+    /// As [`ModelStates::evaluate_at`].
+    pub(crate) fn body_poses_at(&mut self, q: &[f64]) -> Result<Vec<[f64; 3]>, StudyError> {
+        self.step_to(q)?;
+        Ok(self.body_poses())
+    }
+
+    /// Condition number of the dense rows at the last state that was gone to.
+    pub(crate) fn condition_number(&self) -> f64 {
+        condition_number(&self.scene.mechanism, &self.body_poses())
+    }
+
+    /// The last state that was gone to.
+    pub(crate) fn evaluated(&self) -> EvaluatedState<'_> {
+        EvaluatedState {
+            scene: self.scene,
+            workspace: &self.workspace,
+            result: &self.result,
+            angles: &self.angles,
+        }
+    }
+
+    /// Goes to a state and evaluates it; yields its accelerations.
+    ///
+    /// # Errors
+    /// [`StudyError::Scene`] when it cannot be reached, or a load has no magnitude or direction
+    /// there.
+    pub(crate) fn evaluate_at(&mut self, request: &StateRequest) -> Result<Vec<f64>, StudyError> {
+        self.step_to(&request.q)?;
+        let q_ddot = match &request.q_ddot {
+            Some(given) => given.clone(),
+            None => self.free_acceleration(request)?,
+        };
+        self.evaluate(request, &q_ddot)?;
+        Ok(q_ddot)
+    }
+
+    /// In straight steps, counting the whole turns of every body.
+    fn step_to(&mut self, to: &[f64]) -> Result<(), StudyError> {
+        let from = self.coordinates.clone();
+        let distances = from.iter().zip(to).zip(&self.coordinate_steps);
+        let steps = distances
+            .map(|((a, b), stride)| ((b - a) / stride).abs().ceil())
+            .fold(1.0, f64::max);
+        for k in 1..=steps as usize {
+            let fraction = k as f64 / steps;
+            let there = |(a, b): (&f64, &f64)| {
+                if fraction == 1.0 {
+                    *b
+                } else {
+                    a + fraction * (b - a)
+                }
+            };
+            let q: Vec<f64> = from.iter().zip(to).map(there).collect();
+            self.set_coordinates(&q)?;
+            let poses = self.body_poses();
+            for (angle, pose) in self.angles.iter_mut().zip(poses) {
+                *angle = pose[2] + ((*angle - pose[2]) / TAU).round() * TAU;
+            }
+        }
+        self.coordinates = to.to_vec();
+        Ok(())
+    }
+
+    fn set_coordinates(&mut self, q: &[f64]) -> Result<(), StudyError> {
+        let plan = self.model.plan();
+        plan.positions(q, &mut self.workspace.pose)
+            .map_err(|e| explain_position(self.scene, plan, &e))
+    }
+
+    fn body_poses(&self) -> Vec<[f64; 3]> {
+        let plan = self.model.plan();
+        plan.body_frames(&self.scene.mechanism, &self.workspace.pose)
+    }
+
+    fn evaluate(&mut self, request: &StateRequest, q_ddot: &[f64]) -> Result<(), StudyError> {
+        let (workspace, result) = (&mut self.workspace, &mut self.result);
+        let done = self.model.kinetostatics(
+            request.t,
+            &request.q,
+            &request.q_dot,
+            q_ddot,
+            workspace,
+            result,
+        );
+        done.map_err(|e| self.explain(&e))
+    }
+
+    /// The acceleration at which the actuator does nothing. What it does is linear in it.
+    fn free_acceleration(&mut self, request: &StateRequest) -> Result<Vec<f64>, StudyError> {
+        if self.coordinate_steps.len() != 1 {
+            let place = (
+                SceneLocation::Actuator(ActuatorId(0)),
+                "one of several".to_owned(),
+            );
+            let message = "a free motion is only that of one actuator".to_owned();
+            return Err(self.scene.error(message, None, &[place]).into());
+        }
+        self.evaluate(request, &[0.0])?;
+        let at_rest = self.result.tau[0];
+        self.evaluate(request, &[1.0])?;
+        let mut found = -at_rest / (self.result.tau[0] - at_rest);
+        // Once more from there: the difference above is rounded relative to the loads.
+        self.evaluate(request, &[found])?;
+        if at_rest != 0.0 {
+            found += self.result.tau[0] * found / at_rest;
+        }
+        Ok(vec![found])
+    }
+
+    fn explain(&self, error: &KinetostaticsError) -> StudyError {
+        match error {
+            KinetostaticsError::Position(place) => {
+                explain_position(self.scene, self.model.plan(), place)
+            }
+            other => {
+                let name = other.load().and_then(|l| self.scene.loads.get(l));
+                let name = name.map_or("", |load| &load.name);
+                let at = other
+                    .load()
+                    .map_or(SceneLocation::Whole, SceneLocation::Load);
+                let message = match other {
+                    KinetostaticsError::NoDirection { .. } => {
+                        format!("`{name}` has no direction: its two points coincide")
+                    }
+                    _ => format!("the magnitude of `{name}` is not a finite number"),
+                };
+                let at = [(at, "in a state that is checked".to_owned())];
+                self.scene.error(message, None, &at).into()
+            }
+        }
+    }
+}

@@ -1,0 +1,374 @@
+//! What a case knows of itself: `case.toml` beside its scene, with reference numbers, their source and tolerances.
+
+mod states;
+mod tolerances;
+
+use crate::cases::state_quantity::current_name;
+use crate::error::ValidationError;
+use dwell_findings::Finding;
+use dwell_geometry::{BodyId, Vec2};
+use dwell_scene::Scene;
+use dwell_study::former_names;
+use dwell_verify::checks::{PublishedPoint, PublishedSample};
+use serde_json::{Map, Value};
+use states::{ReferenceStates, read_states};
+use std::collections::BTreeSet;
+use std::path::Path;
+use tolerances::Tolerances;
+
+/// The file of a case beside its scene.
+const FILE: &str = "case.toml";
+
+/// Published or independently computed values of a case.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Reference {
+    /// Where they come from.
+    pub(crate) source: String,
+    /// How the values of states were computed, if they were.
+    pub(crate) computed_by: Option<String>,
+    /// Coefficients at sampled positions.
+    pub(crate) samples: Vec<PublishedSample>,
+    /// Period of the free motion, s.
+    pub(crate) period: Option<f64>,
+    /// States along the free motion.
+    pub(crate) motion_states: Vec<PublishedState>,
+    /// Values of states of motion, computed and published.
+    pub(crate) computed_states: Option<ReferenceStates>,
+    pub(crate) published_states: Option<ReferenceStates>,
+    /// By finding.
+    pub(crate) tolerances: Tolerances,
+    /// A line for each former name of a quantity in it.
+    pub(crate) notes: String,
+    /// The file.
+    path: String,
+}
+
+/// What is known of a free motion at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct PublishedState {
+    /// Time, s.
+    pub(crate) t: f64,
+    /// By name of an actuator, its velocity (`phi.velocity`) or a reaction: the value.
+    pub(crate) values: Vec<(String, f64)>,
+    /// Largest difference, as a part of the largest value of the kind.
+    pub(crate) tolerance: f64,
+    /// Why so much.
+    pub(crate) reason: String,
+}
+
+/// What the file holds. The words are for people, and so are numbers of other quantities.
+const KEYS: [&str; 12] = [
+    "title",
+    "source",
+    "computed",
+    "definition",
+    "convention",
+    "tolerance",
+    "tolerances",
+    "samples",
+    "free_motion",
+    "others_measured",
+    "published",
+    "truths",
+];
+/// What a sample holds beside points, such as `P_m`, and angles, such as `theta_guide_rad`.
+const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
+
+impl Reference {
+    /// Reads the file of a case; an absent one is an empty reference. A key that is not known
+    /// is an error: what is given and never compared would pass for agreement.
+    pub(crate) fn read(folder: &Path, scene: &Scene) -> Result<Self, ValidationError> {
+        let path = folder.join(FILE);
+        if !path.exists() {
+            return Ok(Self::default());
+        }
+        let wrong = |reason: String| ValidationError::Reference {
+            path: path.display().to_string(),
+            reason,
+        };
+        let bytes = std::fs::read(&path).map_err(|e| wrong(format!("cannot be read: {e}")))?;
+        let text = String::from_utf8(bytes).map_err(|_| wrong("is not UTF-8 text".to_owned()))?;
+        let text = text.trim_start_matches('\u{feff}');
+        let mut value: Value = toml::from_str(text).map_err(|e| {
+            let before = e.span().and_then(|span| text.get(..span.start));
+            let line = before.map_or(1, |before| before.lines().count().max(1));
+            wrong(format!(
+                "line {line}: not valid TOML: {}",
+                e.message().trim_end()
+            ))
+        })?;
+        let notes = rename_quantities(&mut value, scene);
+        let read = Self::from_value(&value, scene).map_err(wrong)?;
+        Ok(Self {
+            notes,
+            path: path.display().to_string(),
+            ..read
+        })
+    }
+
+    /// Applies the case's own tolerances to its findings.
+    ///
+    /// # Errors
+    /// [`ValidationError::Reference`] where a tolerance is given for no finding.
+    pub(crate) fn apply_tolerances(&self, findings: &mut [Finding]) -> Result<(), ValidationError> {
+        let applied = self.tolerances.apply(findings);
+        applied.map_err(|reason| ValidationError::Reference {
+            path: self.path.clone(),
+            reason,
+        })
+    }
+
+    fn from_value(value: &Value, scene: &Scene) -> Result<Self, String> {
+        let fields = object(value, "the file")?;
+        let is_known = |key: &str| KEYS.contains(&key);
+        if let Some(key) = fields.keys().find(|key| !is_known(key)) {
+            return Err(format!(
+                "unknown key `{key}`; known are {}",
+                KEYS.join(", ")
+            ));
+        }
+        let has_values = |s: &Value| s.get("values").is_some();
+        let all = list(value, "samples")?;
+        let (states, samples) = if all.iter().any(has_values) {
+            (read_states(value, scene)?, Vec::new())
+        } else {
+            let read = |(k, s)| sample(s, scene).map_err(|e| format!("samples[{k}]: {e}"));
+            (
+                None,
+                all.iter().enumerate().map(read).collect::<Result<_, _>>()?,
+            )
+        };
+        let published = match &value["published"] {
+            Value::Null => None,
+            // The tolerance is that of the file.
+            given => {
+                let mut given = object(given, "`published`")?.clone();
+                given.insert("tolerance".to_owned(), value["tolerance"].clone());
+                let read = read_states(&Value::Object(given), scene);
+                read.map_err(|e| format!("published: {e}"))?
+            }
+        };
+        let (period, motion) = match &value["free_motion"] {
+            Value::Null => (None, Vec::new()),
+            _ if scene.motion.is_none() => {
+                return Err("there is a `free_motion`, but no [motion] in the scene".to_owned());
+            }
+            motion => free_motion(motion).map_err(|e| format!("free_motion: {e}"))?,
+        };
+        Ok(Self {
+            source: value["source"]
+                .as_str()
+                .unwrap_or("no source given")
+                .to_owned(),
+            computed_by: value["computed"].as_str().map(str::to_owned),
+            samples,
+            period,
+            motion_states: motion,
+            computed_states: states,
+            published_states: published,
+            tolerances: Tolerances::read(&value["tolerances"])?,
+            notes: String::new(),
+            path: String::new(),
+        })
+    }
+}
+
+/// Gives quantities that are called by a former name their current one, and returns a line for each of them.
+fn rename_quantities(value: &mut Value, scene: &Scene) -> String {
+    let mut notes = BTreeSet::new();
+    for states in ["/samples", "/published/samples", "/free_motion/states"] {
+        let states = value.pointer_mut(states).and_then(Value::as_array_mut);
+        for state in states.into_iter().flatten() {
+            let Some(values) = state.get_mut("values").and_then(Value::as_object_mut) else {
+                continue;
+            };
+            let rename = |(name, value): (String, Value)| match current_name(scene, &name) {
+                Some(current) => {
+                    notes.insert(former_names::note(&name, &[&current]));
+                    (current, value)
+                }
+                None => (name, value),
+            };
+            *values = std::mem::take(values).into_iter().map(rename).collect();
+        }
+    }
+    notes.into_iter().collect()
+}
+
+/// The period of a free motion, s, and states along it.
+fn free_motion(value: &Value) -> Result<(Option<f64>, Vec<PublishedState>), String> {
+    object(value, "it")?;
+    let period = optional(value, "period_s")?;
+    let states = list(value, "states")?;
+    if period.is_none() && states.is_empty() {
+        return Err("neither `period_s` nor `states` is given".to_owned());
+    }
+    let state = |state: &Value| {
+        let values = object(&state["values"], "`values`")?;
+        let read_value = |(name, value): (&String, &Value)| {
+            let number = parse(value).ok_or_else(|| format!("`{name}` is not a number: {value}"));
+            Ok::<_, String>((name.clone(), number?))
+        };
+        Ok(PublishedState {
+            t: number(state, "t")?,
+            values: values
+                .iter()
+                .map(read_value)
+                .collect::<Result<_, String>>()?,
+            tolerance: number(value, "relative")?,
+            reason: value["reason"].as_str().unwrap_or("as given").to_owned(),
+        })
+    };
+    let states = states.iter().enumerate().map(|(k, s)| {
+        let read: Result<PublishedState, String> = state(s);
+        read.map_err(|e| format!("states[{k}]: {e}"))
+    });
+    Ok((period, states.collect::<Result<_, _>>()?))
+}
+
+/// The entries of a key that may be absent.
+fn list<'a>(object: &'a Value, key: &str) -> Result<&'a [Value], String> {
+    match &object[key] {
+        Value::Null => Ok(&[]),
+        Value::Array(entries) => Ok(entries),
+        _ => Err(format!("`{key}` is not a list")),
+    }
+}
+
+fn object<'a>(value: &'a Value, what: &str) -> Result<&'a Map<String, Value>, String> {
+    let object = value.as_object();
+    object.ok_or_else(|| format!("{what} is not an object {{ … }}"))
+}
+
+/// A number, or the text of one (fifty digits do not fit a JSON number).
+fn parse(value: &Value) -> Option<f64> {
+    let parsed = match value {
+        Value::String(text) => text.trim().parse().ok(),
+        other => other.as_f64(),
+    };
+    parsed.filter(|v: &f64| v.is_finite())
+}
+
+/// The number of a key.
+fn number(object: &Value, key: &str) -> Result<f64, String> {
+    match &object[key] {
+        Value::Null => Err(format!("`{key}` is missing")),
+        value => parse(value).ok_or_else(|| format!("`{key}` is not a number: {value}")),
+    }
+}
+
+/// The number of a key that may be absent.
+fn optional(object: &Value, key: &str) -> Result<Option<f64>, String> {
+    match &object[key] {
+        Value::Null => Ok(None),
+        _ => number(object, key).map(Some),
+    }
+}
+
+fn sample(value: &Value, scene: &Scene) -> Result<PublishedSample, String> {
+    let fields = object(value, "it")?;
+    let q = match (optional(value, "phi_rad")?, optional(value, "phi_deg")?) {
+        (None, None) => return Err("neither `phi_rad` nor `phi_deg` is given".to_owned()),
+        (Some(_), Some(_)) => return Err("both `phi_rad` and `phi_deg` are given".to_owned()),
+        (Some(radians), None) => radians,
+        (None, Some(degrees)) => degrees.to_radians(),
+    };
+    let mut points = Vec::new();
+    for (key, at) in fields {
+        if SAMPLE_KEYS.contains(&key.as_str()) || is_angle(key, scene) {
+            continue;
+        }
+        points.push(point(key, at, scene)?);
+    }
+    let sample = PublishedSample {
+        q,
+        m: optional(value, "m1_kg_m2")?,
+        half_dm: optional(value, "half_dm1")?,
+        reactions: reactions(&value["reactions"], scene)?,
+        points,
+    };
+    let nothing = sample.m.is_none() && sample.half_dm.is_none();
+    if nothing && sample.reactions.is_empty() && sample.points.is_empty() {
+        return Err("there is nothing to compare in it".to_owned());
+    }
+    Ok(sample)
+}
+
+/// The reactions of a sample: (index in the mechanism, a, b).
+fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, String> {
+    if value.is_null() {
+        return Ok(Vec::new());
+    }
+    let names: Vec<String> = {
+        let mechanism = &scene.mechanism;
+        let all = mechanism.reactions().into_iter();
+        all.map(|r| mechanism.reaction_name(r)).collect()
+    };
+    let pair = |(name, pair): (&String, &Value)| {
+        let k = names.iter().position(|n| n == name).ok_or_else(|| {
+            format!(
+                "the scene has no reaction `{name}`; it has {}",
+                names.join(", ")
+            )
+        })?;
+        let wrong = |e: String| format!("reaction `{name}`: {e}");
+        object(pair, "it").map_err(wrong)?;
+        let (a, b) = (number(pair, "a"), number(pair, "b"));
+        Ok((k, a.map_err(wrong)?, b.map_err(wrong)?))
+    };
+    let fields = object(value, "`reactions`")?;
+    fields.iter().map(pair).collect()
+}
+
+/// Whether a key gives the angle of a body, such as `theta_guide_rad`. It is not compared: the
+/// points are.
+fn is_angle(key: &str, scene: &Scene) -> bool {
+    let body = key
+        .strip_prefix("theta_")
+        .and_then(|k| k.strip_suffix("_rad"));
+    body.is_some_and(|body| scene.mechanism.bodies.iter().any(|b| b.name == body))
+}
+
+/// A point is published by its name alone, such as `P_m`: any body that has it will do.
+fn point(key: &str, at: &Value, scene: &Scene) -> Result<PublishedPoint, String> {
+    let Some(name) = key.strip_suffix("_m") else {
+        return Err(format!(
+            "unknown key `{key}`; known are {}, and points such as `P_m`",
+            SAMPLE_KEYS.join(", ")
+        ));
+    };
+    let found = scene.points.iter().enumerate().find_map(|(body, points)| {
+        let (_, local) = points.iter().find(|(n, _)| n == name)?;
+        Some((BodyId(body), *local))
+    });
+    let (body, local) = found.ok_or_else(|| format!("the scene has no point `{name}`"))?;
+    match at.as_array().map(Vec::as_slice) {
+        Some([x, y]) => match (parse(x), parse(y)) {
+            (Some(x), Some(y)) => Ok(PublishedPoint {
+                body,
+                local,
+                position: Vec2 { x, y },
+            }),
+            _ => Err(format!("`{key}` is not a pair of numbers: {at}")),
+        },
+        _ => Err(format!("`{key}` is not a pair of numbers: {at}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn former_names_of_quantities_become_current_ones() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/cam");
+        let scene = Scene::read(folder.join("scene.toml")).expect("a scene");
+        let mut value =
+            json!({ "samples": [{ "values": { "rise.speed": 1, "phi.action": 2, "phi": 3 } }] });
+        let notes = rename_quantities(&mut value, &scene);
+        let expected = json!({ "rise.velocity": 1, "phi.actuator_force": 2, "phi": 3 });
+        assert_eq!(value["samples"][0]["values"], expected);
+        assert_eq!(notes.lines().count(), 2, "{notes}");
+    }
+}

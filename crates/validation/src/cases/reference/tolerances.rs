@@ -1,0 +1,135 @@
+//! The tolerances of a case, by finding: written from measurement, in place of those of the code.
+
+use super::{object, parse};
+use dwell_findings::Finding;
+use serde_json::Value;
+
+/// Keys of findings that were renamed, with the new ones; a case may still use them.
+const FORMER_KEYS: [(&str, &str); 20] = [
+    ("balance-force", "momentum-force"),
+    ("balance-moment", "momentum-moment"),
+    ("bodies-force", "newton-force"),
+    ("bodies-moment", "euler-moment"),
+    ("convergence-bdf", "drift-convergence-bdf"),
+    ("curvature", "half-ddm"),
+    ("motion-actions", "motion-actuator-forces"),
+    ("period-event", "period-integrated"),
+    ("period-slope", "period-convergence"),
+    ("periodic-speed-bdf", "periodic-velocity-bdf"),
+    ("periodic-speed-tsit45", "periodic-velocity-tsit45"),
+    ("published-actions", "published-actuator-forces"),
+    ("published-names", "published-unknown-names"),
+    ("reference-actions", "reference-actuator-forces"),
+    ("reference-names", "reference-unknown-names"),
+    ("state-balance", "state-momentum"),
+    ("state-differenced", "state-newton-euler-differences"),
+    ("state-inertia", "state-mass-matrix"),
+    ("state-kinetic", "state-kinetic-energy"),
+    ("state-newton", "state-newton-euler"),
+];
+
+/// By key of a finding: the largest relative difference allowed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Tolerances {
+    by_key: Vec<(String, f64)>,
+    /// A line for each former key that was read, naming the current one.
+    pub(crate) notes: String,
+}
+
+impl Tolerances {
+    pub(super) fn read(value: &Value) -> Result<Self, String> {
+        if value.is_null() {
+            return Ok(Self::default());
+        }
+        let mut tolerances = Self::default();
+        for (key, value) in object(value, "`tolerances`")? {
+            let Some(tolerance) = parse(value).filter(|&tolerance| tolerance >= 0.0) else {
+                return Err(format!(
+                    "tolerances: `{key}` is not a number from zero on: {value}"
+                ));
+            };
+            let former = FORMER_KEYS.iter().find(|(former, _)| former == key);
+            let key = former.map_or(key.as_str(), |&(former, current)| {
+                tolerances.notes += &format!("  note: tolerance `{former}` is now `{current}`\n");
+                current
+            });
+            tolerances.by_key.push((key.to_owned(), tolerance));
+        }
+        Ok(tolerances)
+    }
+
+    /// Applies them to findings. A finding without one keeps the tolerance of the code.
+    ///
+    /// # Errors
+    /// A key that no finding has, in words that name the known ones.
+    pub(crate) fn apply(&self, findings: &mut [Finding]) -> Result<(), String> {
+        for (key, tolerance) in &self.by_key {
+            if findings.iter().all(|f| f.key != *key) {
+                let mut known: Vec<&str> = findings.iter().map(|f| f.key.as_str()).collect();
+                known.sort_unstable();
+                known.dedup();
+                return Err(format!(
+                    "tolerances: there is no finding `{key}`; there are {}",
+                    known.join(", ")
+                ));
+            }
+            for finding in findings.iter_mut().filter(|f| f.key == *key) {
+                let reason = "measured for this case, with room for another machine's rounding";
+                let usual = finding.tolerance_reason.clone();
+                finding.set_tolerance(*tolerance, &format!("{reason}; in general: {usual}"));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    fn findings() -> Vec<Finding> {
+        let of = |key: &str| Finding {
+            key: key.into(),
+            relative_difference: 1e-14,
+            tolerance: 1e-12,
+            pass: true,
+            ..Finding::default()
+        };
+        vec![of("power"), of("closure"), of("power")]
+    }
+
+    #[test]
+    fn every_finding_of_a_key_is_judged_by_it() {
+        let read = Tolerances::read(&json!({ "power": 1e-15 })).unwrap();
+        let mut all = findings();
+        read.apply(&mut all).unwrap();
+        assert_eq!(
+            all.iter().map(|f| f.pass).collect::<Vec<_>>(),
+            [false, true, false]
+        );
+    }
+
+    #[test]
+    fn a_former_key_is_read_with_a_note() {
+        let read = Tolerances::read(&json!({ "state-newton": 1e-15 })).unwrap();
+        assert_eq!(read.by_key, [("state-newton-euler".to_owned(), 1e-15)]);
+        assert_eq!(
+            read.notes,
+            "  note: tolerance `state-newton` is now `state-newton-euler`\n"
+        );
+    }
+
+    #[test]
+    fn a_key_that_no_finding_has_is_an_error() {
+        let read = Tolerances::read(&json!({ "pwoer": 1e-15 })).unwrap();
+        let error = read.apply(&mut findings()).unwrap_err();
+        assert_eq!(
+            error,
+            "tolerances: there is no finding `pwoer`; there are closure, power"
+        );
+        assert!(Tolerances::read(&json!({ "power": "much" })).is_err());
+        assert!(Tolerances::read(&json!({ "power": -1e-9 })).is_err());
+        assert!(Tolerances::read(&json!(3)).is_err());
+    }
+}

@@ -1,0 +1,215 @@
+//! Quantities of a state by the names that tables and references use.
+
+use crate::cases::model_states::EvaluatedState;
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{BodyId, Component, Coordinate, JointId, Vec2};
+use dwell_scene::Scene;
+use dwell_study::former_names;
+
+/// How often a quantity is differentiated with time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum DerivativeOrder {
+    /// Not at all: an angle or a place.
+    Value,
+    /// Once.
+    Velocity,
+    /// Twice.
+    Acceleration,
+}
+
+/// What a name stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum StateQuantity {
+    /// Angle of a body, and its rates.
+    BodyAngle(BodyId, DerivativeOrder),
+    /// A coordinate along x (false) or y (true) of a point given in its body's frame, m.
+    PointCoordinate(BodyId, Vec2, DerivativeOrder, bool),
+    /// A coordinate of the mechanism.
+    Coordinate(Coordinate, DerivativeOrder),
+    /// A reaction, by its index in the mechanism.
+    Reaction(usize, Component),
+    /// What an actuator does.
+    ActuatorForce(usize),
+}
+
+/// Quantities that are compared relative to the largest of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum QuantityKind {
+    /// Angles and places.
+    Positions,
+    /// Their first rates.
+    Velocities,
+    /// Their second rates.
+    Accelerations,
+    /// Reactions of joints.
+    Reactions,
+    /// Actions of actuators.
+    ActuatorForces,
+}
+
+fn derivative_order(name: &str) -> Option<DerivativeOrder> {
+    match name {
+        "velocity" => Some(DerivativeOrder::Velocity),
+        "acceleration" => Some(DerivativeOrder::Acceleration),
+        _ => None,
+    }
+}
+
+/// The name that a quantity has now, if `name` is one that it had before.
+pub(crate) fn current_name(scene: &Scene, name: &str) -> Option<String> {
+    if StateQuantity::find(scene, name).is_some() {
+        return None;
+    }
+    former_names::current_columns(name).find(|name| StateQuantity::find(scene, name).is_some())
+}
+
+/// `x`, `vy`, `ax` …
+fn point_component(name: &str) -> Option<(DerivativeOrder, bool)> {
+    let (order, axis) = match name.as_bytes() {
+        [axis] => (DerivativeOrder::Value, axis),
+        [b'v', axis] => (DerivativeOrder::Velocity, axis),
+        [b'a', axis] => (DerivativeOrder::Acceleration, axis),
+        _ => return None,
+    };
+    match axis {
+        b'x' => Some((order, false)),
+        b'y' => Some((order, true)),
+        _ => None,
+    }
+}
+
+impl StateQuantity {
+    /// What a name stands for in a scene; none if it has no such quantity.
+    pub(crate) fn find(scene: &Scene, name: &str) -> Option<Self> {
+        let Some((whose, what)) = name.split_once('.') else {
+            return Some(Self::Coordinate(
+                scene.coordinate(name)?,
+                DerivativeOrder::Value,
+            ));
+        };
+        Self::of_body(scene, whose, what)
+            .or_else(|| {
+                Some(Self::Coordinate(
+                    scene.coordinate(whose)?,
+                    derivative_order(what)?,
+                ))
+            })
+            .or_else(|| Self::of_joint(scene, whose, what, name))
+            .or_else(|| {
+                let mut actuators = scene.mechanism.actuators.iter();
+                let found = actuators.position(|a| a.name == whose && what == "actuator_force");
+                found.map(Self::ActuatorForce)
+            })
+    }
+
+    fn of_body(scene: &Scene, whose: &str, what: &str) -> Option<Self> {
+        let mut bodies = scene.mechanism.bodies.iter();
+        let body = bodies.position(|b| b.name == whose)?;
+        let id = BodyId(body);
+        let order = match what {
+            "angle" => Some(DerivativeOrder::Value),
+            "angular_velocity" => Some(DerivativeOrder::Velocity),
+            "angular_acceleration" => Some(DerivativeOrder::Acceleration),
+            _ => None,
+        };
+        if let Some(order) = order {
+            return Some(Self::BodyAngle(id, order));
+        }
+        let (point, axis) = what.split_once('.')?;
+        let (_, at) = scene.points[body].iter().find(|(name, _)| name == point)?;
+        let (order, is_y) = point_component(axis)?;
+        Some(Self::PointCoordinate(id, *at, order, is_y))
+    }
+
+    fn of_joint(scene: &Scene, whose: &str, what: &str, name: &str) -> Option<Self> {
+        let mechanism = &scene.mechanism;
+        if what == "travel" {
+            let joint = mechanism.joints.iter().position(|j| j.name == whose)?;
+            let travel = Coordinate::Travel(JointId(joint));
+            CoordinateFunction::find(mechanism, travel)?;
+            return Some(Self::Coordinate(travel, DerivativeOrder::Value));
+        }
+        let reactions = mechanism.reactions();
+        let named = |&r| mechanism.reaction_name(r) == name;
+        let found = reactions.iter().position(named)?;
+        Some(Self::Reaction(found, reactions[found].component))
+    }
+
+    /// The quantities that it is compared with.
+    pub(crate) fn kind(self) -> QuantityKind {
+        match self {
+            Self::BodyAngle(_, order)
+            | Self::PointCoordinate(_, _, order, _)
+            | Self::Coordinate(_, order) => match order {
+                DerivativeOrder::Value => QuantityKind::Positions,
+                DerivativeOrder::Velocity => QuantityKind::Velocities,
+                DerivativeOrder::Acceleration => QuantityKind::Accelerations,
+            },
+            Self::Reaction(..) => QuantityKind::Reactions,
+            Self::ActuatorForce(_) => QuantityKind::ActuatorForces,
+        }
+    }
+
+    /// Its unit.
+    pub(crate) fn unit(self, scene: &Scene) -> &'static str {
+        let of = |angle: bool, order: DerivativeOrder| match (angle, order) {
+            (true, DerivativeOrder::Value) => "rad",
+            (true, DerivativeOrder::Velocity) => "rad/s",
+            (true, DerivativeOrder::Acceleration) => "rad/s2",
+            (false, DerivativeOrder::Value) => "m",
+            (false, DerivativeOrder::Velocity) => "m/s",
+            (false, DerivativeOrder::Acceleration) => "m/s2",
+        };
+        match self {
+            Self::BodyAngle(_, order) => of(true, order),
+            Self::PointCoordinate(_, _, order, _) => of(false, order),
+            Self::Coordinate(coordinate, order) => of(coordinate.is_angle(), order),
+            Self::Reaction(_, component) => component.unit(),
+            Self::ActuatorForce(actuator) => {
+                let actuator_coordinate = scene.mechanism.actuators[actuator].coordinate();
+                if actuator_coordinate.is_angle() {
+                    "N m"
+                } else {
+                    "N"
+                }
+            }
+        }
+    }
+
+    /// Its value at a moment, SI. What cannot be measured there is no number.
+    pub(crate) fn value(self, evaluated: &EvaluatedState<'_>) -> f64 {
+        let states = evaluated.workspace.states();
+        match self {
+            Self::BodyAngle(body, DerivativeOrder::Value) => evaluated.angles[body.0],
+            Self::BodyAngle(body, DerivativeOrder::Velocity) => states.body(body).angular_velocity,
+            Self::BodyAngle(body, DerivativeOrder::Acceleration) => {
+                states.body(body).angular_acceleration
+            }
+            Self::PointCoordinate(body, at, order, is_y) => {
+                let point = states.point(body, at);
+                let vector = match order {
+                    DerivativeOrder::Value => point.position,
+                    DerivativeOrder::Velocity => point.velocity,
+                    DerivativeOrder::Acceleration => point.acceleration,
+                };
+                if is_y { vector.y } else { vector.x }
+            }
+            // Whole turns are counted by body.
+            Self::Coordinate(Coordinate::Angle([one, two]), DerivativeOrder::Value) => {
+                evaluated.angles[two.0] - evaluated.angles[one.0]
+            }
+            Self::Coordinate(coordinate, order) => {
+                let found = CoordinateFunction::find(&evaluated.scene.mechanism, coordinate);
+                let [value, speed, acceleration] =
+                    found.map_or([f64::NAN; 3], |found| states.coordinate(found));
+                match order {
+                    DerivativeOrder::Value => value,
+                    DerivativeOrder::Velocity => speed,
+                    DerivativeOrder::Acceleration => acceleration,
+                }
+            }
+            Self::Reaction(k, _) => evaluated.result.reactions[k],
+            Self::ActuatorForce(k) => evaluated.result.tau[k],
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! The exact model with every reaction, as the subject of the checks.
+
+use dwell_geometry::{Mechanism, PositionError};
+use dwell_kinetostatics::{ExactModel, ReducedModel};
+use dwell_scene::Scene;
+use dwell_study::StudyError;
+use dwell_study::models::reduced_model;
+use dwell_verify::{Coefficients, InverseDynamics, Subject, SubjectError};
+
+/// The compiled model of a scene with all reactions.
+#[derive(Debug)]
+pub struct PlanSubject {
+    mechanism: Mechanism,
+    exact: ExactModel,
+}
+
+impl PlanSubject {
+    /// Compiles a scene for all reactions.
+    ///
+    /// # Errors
+    /// As [`crate::PreparedScene::new`].
+    pub fn new(scene: &Scene) -> Result<Self, StudyError> {
+        Ok(Self {
+            mechanism: scene.mechanism.clone(),
+            exact: reduced_model(scene, &scene.mechanism.reactions())?,
+        })
+    }
+
+    /// The model.
+    pub fn exact(&self) -> &ExactModel {
+        &self.exact
+    }
+}
+
+fn subject_error(q: f64) -> impl Fn(PositionError) -> SubjectError {
+    move |e| SubjectError {
+        q,
+        message: e.to_string(),
+    }
+}
+
+impl Subject for PlanSubject {
+    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+        let plan = self.exact.model().plan();
+        let mut pose = plan.pose();
+        plan.positions(&[q], &mut pose).map_err(subject_error(q))?;
+        Ok(plan.body_frames(&self.mechanism, &pose))
+    }
+
+    fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
+        let mut workspace = self.exact.workspace();
+        let mut at = self.exact.model().coefficient_buffer();
+        let evaluated = self.exact.coefficients(q, &mut workspace, &mut at);
+        evaluated.map_err(subject_error(q))?;
+        Ok(Coefficients {
+            m: at.m,
+            half_dm: at.half_dm,
+            a: at.a,
+            b: at.b,
+        })
+    }
+
+    fn inverse_dynamics(
+        &self,
+        q: f64,
+        q_dot: f64,
+        q_ddot: f64,
+    ) -> Result<InverseDynamics, SubjectError> {
+        let model = self.exact.model();
+        let mut workspace = model.workspace();
+        let mut inverse_dynamics = model.result_buffer();
+        let evaluated = model.inverse_dynamics(
+            &[q],
+            &[q_dot],
+            &[q_ddot],
+            &mut workspace,
+            &mut inverse_dynamics,
+        );
+        evaluated.map_err(subject_error(q))?;
+        Ok(InverseDynamics {
+            tau: inverse_dynamics.tau[0],
+            reactions: inverse_dynamics.reactions,
+        })
+    }
+}

@@ -1,0 +1,263 @@
+//! All checks of a case: of its reduced model, its states, its free motion, its period and its rounding errors.
+
+use crate::cases::reference::Reference;
+use crate::cases::subject::PlanSubject;
+use crate::checked::history::History;
+use crate::checked::multibody::{self, FreeMotionRun};
+use crate::checked::period_check;
+use crate::checked::rounding_check::{self, RoundingCheck};
+use crate::checked::states::{self, CheckedStates};
+use crate::error::ValidationError;
+use dwell_findings::{Check, Finding};
+use dwell_kinetostatics::ReducedModel;
+use dwell_scene::{MotionDuration, Scene};
+use dwell_study::PreparedScene;
+use dwell_study::SolverSettings;
+use dwell_study::explain::explain_motion;
+use dwell_study::reduce::compute::ReducedCurves;
+use dwell_study::symbolic_findings;
+use dwell_study::{CalibrationResult, find_value};
+use dwell_verify::{
+    Case, CheckContext, CheckedFreeMotion, ErrorCurve, FreeMotionCase, Range, check_free_motion,
+    half_dm_curve, reaction_curve, spread,
+};
+
+/// Positions at which the reduced model is checked.
+const CHECKED_POSITIONS: usize = 24;
+/// The most revolutions of a free motion that are checked: it is integrated with twenty tolerances, so a longer motion
+/// would take minutes and show no more.
+const MAX_REVOLUTIONS: usize = 20;
+
+/// What the checks of a case yield.
+pub(crate) struct CaseAnalysis<'a> {
+    pub(crate) findings: Vec<Finding>,
+    /// The checks without findings, and in a few words why.
+    pub(crate) not_applicable: Vec<(Check, &'static str)>,
+    pub(crate) states: CheckedStates,
+    pub(crate) rounding: RoundingCheck,
+    /// The free motion that was compared with the multibody equations.
+    pub(crate) free_motion: Option<FreeMotionRun>,
+    /// The reduced model, where it describes the whole case.
+    pub(crate) reduced: Option<ReducedAnalysis<'a>>,
+}
+
+/// The reduced model of a case with one actuator and without loads, drives and prescribed coordinates.
+pub(crate) struct ReducedAnalysis<'a> {
+    pub(crate) prepared: PreparedScene<'a>,
+    pub(crate) curves: ReducedCurves,
+    pub(crate) error_curves: Vec<ErrorCurve>,
+    pub(crate) motion: Option<CheckedFreeMotion>,
+    pub(crate) calibration: Option<CalibrationResult>,
+    pub(crate) history: Option<History>,
+}
+
+/// Checks a case in every way that applies to it; `done` is called after each of three steps.
+///
+/// # Errors
+/// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
+pub(crate) fn analyse<'a>(
+    scene: &'a Scene,
+    reference: &Reference,
+    done: &(dyn Fn(&str) + Sync),
+) -> Result<CaseAnalysis<'a>, ValidationError> {
+    let prepared = is_reduced(scene)
+        .then(|| PreparedScene::new(scene))
+        .transpose()?;
+    let (reduced, motion) = rayon::join(
+        || check_reduced_model(scene, reference).inspect(|_| done("reduced model")),
+        || match &prepared {
+            Some(prepared) => free_motion_results(prepared, reference),
+            None => Ok((None, None, None)),
+        },
+    );
+    let ((reduced_findings, error_curves), (motion, calibration, history)) = (reduced?, motion?);
+    done("free motion");
+    let (states, (multibody, period)) = rayon::join(
+        || states::check(scene, reference),
+        || {
+            rayon::join(
+                || multibody::check_free_motion(scene, reference),
+                // The checks of a free motion without loads hold its period already.
+                || match &motion {
+                    Some(_) => Ok(Ok(Vec::new())),
+                    None => period_check::check_case(scene, reference),
+                },
+            )
+        },
+    );
+    let (states, (free_motion, multibody_findings), period) = (states?, multibody?, period?);
+    let rounding = RoundingCheck::new(scene, &states.states)?;
+    let rounding_findings = rounding_check::finding(&rounding).into_iter().collect();
+    let motion_findings = motion.iter().flat_map(|m| m.findings.clone()).collect();
+    let state_findings = states.findings.clone();
+    let period_findings = period.iter().flatten().cloned().collect();
+    // Snapshots list the findings in this order.
+    let groups: [Vec<Finding>; 6] = match prepared {
+        Some(_) => [
+            reduced_findings,
+            motion_findings,
+            rounding_findings,
+            state_findings,
+            multibody_findings,
+            period_findings,
+        ],
+        None => [
+            state_findings,
+            reduced_findings,
+            period_findings,
+            multibody_findings,
+            motion_findings,
+            rounding_findings,
+        ],
+    };
+    let mut findings = groups.concat();
+    reference.apply_tolerances(&mut findings)?;
+    let reduced = match prepared {
+        Some(prepared) => Some(ReducedAnalysis {
+            curves: ReducedCurves::new(&prepared)?,
+            prepared,
+            error_curves,
+            motion,
+            calibration,
+            history,
+        }),
+        None => None,
+    };
+    done("states");
+    Ok(CaseAnalysis {
+        not_applicable: not_applicable(scene, &findings, period.err()),
+        findings,
+        states,
+        rounding,
+        free_motion,
+        reduced,
+    })
+}
+
+/// Whether the reduced model describes the whole case: it knows no loads, drives and laws.
+fn is_reduced(scene: &Scene) -> bool {
+    let motion = scene.motion.as_ref();
+    scene.mechanism.actuators.len() == 1
+        && scene.loads.is_empty()
+        && scene.drives.is_empty()
+        && motion.is_none_or(|motion| motion.laws.iter().all(Option::is_none))
+}
+
+/// The checks without findings, and in a few words why.
+fn not_applicable(
+    scene: &Scene,
+    findings: &[Finding],
+    period: Option<&'static str>,
+) -> Vec<(Check, &'static str)> {
+    let no_closed_form = match scene.mechanism.actuators.len() {
+        1 => "no dyads",
+        _ => "several freedoms",
+    };
+    let reasons = [
+        (Check::ReleasedConstraint, "reactions shared"),
+        (Check::Period, period.unwrap_or("no period")),
+        (Check::ReferenceValues, "no values"),
+        (Check::ClosedForms, no_closed_form),
+    ];
+    let has_findings = |check: Check| findings.iter().any(|f| f.check == check);
+    reasons
+        .into_iter()
+        .filter(|&(check, _)| !has_findings(check))
+        .collect()
+}
+
+/// The checks of the reduced model at single positions, on every reaction of every joint. The reduced model does not
+/// depend on loads.
+fn check_reduced_model(
+    scene: &Scene,
+    reference: &Reference,
+) -> Result<(Vec<Finding>, Vec<ErrorCurve>), ValidationError> {
+    if scene.mechanism.actuators.len() != 1 {
+        return Ok((Vec::new(), Vec::new()));
+    }
+    let subject = PlanSubject::new(scene)?;
+    // Outside the range that the scene uses, a change point may be near.
+    let used = scene.sweep.as_ref().and_then(|sweep| sweep.range);
+    let range = match used {
+        Some([from, to]) => Range::Limited(from.min(to), from.max(to)),
+        None => subject.exact().range(),
+    };
+    let case = Case {
+        mechanism: &scene.mechanism,
+        masses: &scene.masses,
+        range,
+        positions: spread(range, CHECKED_POSITIONS),
+    };
+    let mut findings = dwell_verify::verify_all(&case, &subject, &reference.samples);
+    findings.extend(symbolic_findings(scene)?);
+    let mut curves = Vec::new();
+    if let Ok(context) = CheckContext::new(&case, &subject) {
+        // Where ½m′ is largest, differences have most to get right.
+        let steepest = |s: &&dwell_verify::CheckedPosition| s.reference.half_dm.abs();
+        let position = context
+            .positions
+            .iter()
+            .max_by(|a, b| steepest(a).total_cmp(&steepest(b)));
+        if let Some(position) = position {
+            let requested = scene.requests.reactions.first();
+            let k = requested.and_then(|w| context.reactions.iter().position(|r| r == w));
+            curves.extend(half_dm_curve(&context, position));
+            curves.extend(k.and_then(|k| reaction_curve(&context, position, k)));
+        }
+    }
+    Ok((findings, curves))
+}
+
+type FreeMotionResults = (
+    Option<CheckedFreeMotion>,
+    Option<CalibrationResult>,
+    Option<History>,
+);
+
+/// The checked free motion, the fitted value and the time history, where the scene has them.
+fn free_motion_results(
+    prepared: &PreparedScene<'_>,
+    reference: &Reference,
+) -> Result<FreeMotionResults, ValidationError> {
+    let scene = prepared.scene;
+    let (Some(start), Some(motion)) = (prepared.initial_state(), &scene.motion) else {
+        return Ok((None, None, None));
+    };
+    let plan = prepared.model.model().plan();
+    let history = History::new(
+        prepared,
+        start,
+        two_periods(motion.duration),
+        &SolverSettings::default(),
+    )?;
+    let checked = match (history.period, motion.duration) {
+        (None, _) => None,
+        (Some(period), length) => {
+            let revolutions = match length {
+                MotionDuration::Periods(n) => n,
+                MotionDuration::Seconds(d) => d / period,
+            };
+            let case = FreeMotionCase {
+                initial_state: start,
+                revolutions: (revolutions.floor() as usize).clamp(1, MAX_REVOLUTIONS),
+                reactions: prepared.reaction_units(),
+                period: reference.period.map(|p| (p, reference.source.clone())),
+            };
+            let checked = check_free_motion(&prepared.model, &case);
+            Some(checked.map_err(|e| explain_motion(scene, plan, &e))?)
+        }
+    };
+    let request = scene.calibration.as_ref();
+    let calibrated = request
+        .map(|c| find_value(scene, &c.path, c.period))
+        .transpose()?;
+    Ok((checked, calibrated, Some(history)))
+}
+
+/// The duration of the time history: at most two periods, or the whole motion where it is given in seconds.
+fn two_periods(length: MotionDuration) -> MotionDuration {
+    match length {
+        MotionDuration::Periods(n) => MotionDuration::Periods(n.min(2.0)),
+        duration @ MotionDuration::Seconds(_) => duration,
+    }
+}

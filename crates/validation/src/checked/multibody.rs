@@ -1,0 +1,396 @@
+//! The free motion of a scene, compared with the multibody equations in absolute coordinates.
+
+use crate::cases::reference::{PublishedState, Reference};
+use crate::checked::free_motion_setup::FreeMotionSetup;
+use crate::error::ValidationError;
+use dwell_dynamics::{
+    CoordinateMode, DynamicsError, Machine, MachineError, Method, OdeState, Options, Orbit,
+    loads_with_drives,
+};
+use dwell_findings::{Check, Finding};
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{BodyId, Vec2};
+use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
+use dwell_scene::{MotionDuration, Scene};
+use dwell_study::StudyError;
+use dwell_study::explain::explain_motion;
+use dwell_study::explain::{explain_machine, explain_model};
+use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
+use dwell_verify::{MotionSample, MultibodyError, MultibodySystem, check_motion};
+use std::f64::consts::TAU;
+
+/// Integrator of the motion, and its relative and absolute tolerance.
+const METHOD: Method = Method::Tsit45;
+const TOLERANCE: f64 = 1e-13;
+/// The most periods that are compared.
+const MAX_PERIODS: f64 = 2.0;
+/// Instants at which the motion is held against the multibody equations.
+const CHECKED_INSTANTS: usize = 40;
+/// What is left to do for a free actuator, as a part of the largest reaction: rounding.
+const ZERO_FORCE: f64 = 1e-10;
+
+/// A free motion, step by step.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FreeMotionRun {
+    /// Every step of the integration, the start first: what is claimed of it.
+    pub steps: Vec<MotionSample>,
+    /// By step and actuator: coordinate (rad or m) and speed (per s).
+    pub coordinates: Vec<Vec<[f64; 2]>>,
+    /// Why it ended early, if it did.
+    pub stop_reason: Option<String>,
+    /// How the workbench set the motion of a scene without `[motion]`; else empty.
+    pub setup: String,
+}
+
+impl FreeMotionRun {
+    /// Integrator and tolerance, as figure captions give them.
+    pub(crate) fn method_text() -> String {
+        format!("{}, tolerance {TOLERANCE:e}", METHOD.name())
+    }
+}
+
+/// The free motion of a scene over its duration or two periods, whichever is shorter; none where
+/// the scene has no `[motion]`.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the scene cannot be put together or its start cannot be evaluated.
+pub fn free_motion_run(scene: &Scene) -> Result<Option<FreeMotionRun>, StudyError> {
+    solve_motion(scene, None, None)
+}
+
+/// The same, or until a time.
+fn solve_motion(
+    scene: &Scene,
+    until: Option<f64>,
+    max_step: Option<f64>,
+) -> Result<Option<FreeMotionRun>, StudyError> {
+    let Some(motion) = &scene.motion else {
+        return Ok(None);
+    };
+    let scene_with_drives = with_drive_loads(scene)?;
+    let free = FreeMotionProblem::new(scene, &scene_with_drives, motion)?;
+    let period = Orbit::loaded(&free.machine, free.initial_reduced_state()).ok();
+    let period = period.filter(|_| free.machine.free().len() == 1 && motion.laws.len() == 1);
+    let duration = match (motion.duration, period) {
+        _ if until.is_some() => until.unwrap_or_default(),
+        (MotionDuration::Periods(n), Some(orbit)) => n.min(MAX_PERIODS) * orbit.period,
+        (MotionDuration::Seconds(d), Some(orbit)) => d.min(MAX_PERIODS * orbit.period),
+        (_, None) => free.duration()?,
+    };
+    let options = Options {
+        max_step,
+        ..Options::new(METHOD, TOLERANCE)
+    };
+    let motion_segments = free.solve(scene, duration, &options)?;
+    let output_model = output_model(&scene_with_drives)?;
+    let explain = |e: &DynamicsError| explain_motion(&scene_with_drives, output_model.plan(), e);
+    let mut run = collect_steps(scene, &free.machine, &output_model, &motion_segments)
+        .map_err(|e| explain(&e))?;
+    run.stop_reason = motion_segments
+        .failure
+        .as_ref()
+        .map(|e| explain(e).to_string());
+    Ok(Some(run))
+}
+
+/// The scene with the loads through which its drives act.
+pub(crate) fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
+    let loads = loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives);
+    let mut scene_with_drives = scene.clone();
+    scene_with_drives.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
+    Ok(scene_with_drives)
+}
+
+/// The model with all loads and reactions.
+fn output_model(scene_with_drives: &Scene) -> Result<Model, StudyError> {
+    let start = scene_with_drives.assembly.to_configuration();
+    let mechanism = &scene_with_drives.mechanism;
+    Model::new(
+        mechanism,
+        &scene_with_drives.masses,
+        &start,
+        &mechanism.reactions(),
+    )
+    .map_err(|e| explain_model(scene_with_drives, &e))?
+    .with_loads(scene_with_drives.loads.clone())
+    .map_err(|e| explain_machine(scene_with_drives, MachineError::from(e)))
+}
+
+/// Every step, leg by leg. Within the window of a bridge nothing is known of the reactions.
+fn collect_steps(
+    scene: &Scene,
+    machine: &Machine,
+    output_model: &Model,
+    motion_segments: &SegmentedMotion,
+) -> Result<FreeMotionRun, DynamicsError> {
+    let mut run = FreeMotionRun::default();
+    for (k, (chart, solution)) in motion_segments.segments.iter().enumerate() {
+        let chart = motion_segments.charts.get(*chart);
+        let (machine, output_model) = chart.map_or((machine, output_model), |chart| {
+            (&chart.machine, &chart.output_model)
+        });
+        let mut reader = StateReader::new(scene, machine, output_model);
+        // A leg begins with the state in which the last one ended.
+        for point in solution.steps.iter().skip(usize::from(k > 0)) {
+            if !machine.is_in_fit_window(&point.y) {
+                reader.append_state(point, &mut run)?;
+            }
+        }
+    }
+    Ok(run)
+}
+
+/// Reads everything off a state of a machine.
+struct StateReader<'a> {
+    scene: &'a Scene,
+    machine: &'a Machine,
+    output_model: &'a Model,
+    workspace: dwell_dynamics::MachineWorkspace,
+    output_workspace: Workspace<f64>,
+    result: InverseDynamics<f64>,
+}
+
+impl<'a> StateReader<'a> {
+    fn new(scene: &'a Scene, machine: &'a Machine, output_model: &'a Model) -> Self {
+        Self {
+            scene,
+            machine,
+            output_model,
+            workspace: machine.workspace(),
+            output_workspace: output_model.workspace(),
+            result: output_model.result_buffer(),
+        }
+    }
+
+    /// Adds a state to the run. Angles go on from those before: no step turns a body by half a turn.
+    fn append_state(
+        &mut self,
+        at: &OdeState,
+        run: &mut FreeMotionRun,
+    ) -> Result<(), DynamicsError> {
+        let (machine, workspace) = (self.machine, &mut self.workspace);
+        machine.evaluate(at.t, &at.y, workspace)?;
+        machine.evaluate_outputs(
+            self.output_model,
+            at.t,
+            workspace,
+            &mut self.output_workspace,
+            &mut self.result,
+        )?;
+        let states = self.output_workspace.states();
+        let unwrapped = |angle: f64, last: Option<f64>| match last {
+            Some(last) => angle + ((last - angle) / TAU).round() * TAU,
+            None => angle,
+        };
+        let last = run.steps.last();
+        // There are more states: of what the lowering and the charts add.
+        let all = (0..self.scene.mechanism.bodies.len()).map(BodyId);
+        let body_pose = |body: BodyId| {
+            let position = states.point(body, Vec2::ZERO).position;
+            let state = states.body(body);
+            let angle = state.angle.unwrap_or_else(|| state.rotation.angle());
+            let last = last.map(|sample| sample.poses[body.0][2]);
+            [position.x, position.y, unwrapped(angle, last)]
+        };
+        let body_velocity = |body: BodyId| {
+            let velocity = states.point(body, Vec2::ZERO).velocity;
+            [velocity.x, velocity.y, states.body(body).angular_velocity]
+        };
+        let previous = run.coordinates.last();
+        let actuators = self.scene.mechanism.actuators.iter().enumerate();
+        let coordinate = |(k, actuator): (usize, &dwell_geometry::Actuator)| {
+            let function = CoordinateFunction::find(&self.scene.mechanism, actuator.coordinate());
+            let [q, speed, _] = function.map_or([f64::NAN; 3], |m| states.coordinate(m));
+            match actuator.coordinate().is_angle() {
+                true => [unwrapped(q, previous.map(|all| all[k][0])), speed],
+                false => [q, speed],
+            }
+        };
+        let [kinetic, potential] = machine.energy(workspace);
+        let sample = MotionSample {
+            t: at.t,
+            poses: all.clone().map(body_pose).collect(),
+            velocities: all.map(body_velocity).collect(),
+            reactions: self.result.reactions.clone(),
+            tau: self.residual_actuator_forces(),
+            drive_forces: self.workspace.drive_forces.clone(),
+            kinetic,
+            potential,
+            work: at.y[machine.work_offset()..].iter().sum(),
+        };
+        let coordinates = actuators.map(coordinate).collect();
+        run.steps.push(sample);
+        run.coordinates.push(coordinates);
+        Ok(())
+    }
+
+    /// What the actuators do: nothing is left for one that is free, but for rounding.
+    fn residual_actuator_forces(&self) -> Vec<f64> {
+        let reactions = self.result.reactions.iter();
+        let max = reactions.fold(1.0_f64, |max, r| max.max(r.abs()));
+        let mut tau = self.result.tau.clone();
+        for &free in self.machine.free() {
+            if tau[free].abs() < ZERO_FORCE * max {
+                tau[free] = 0.0;
+            }
+        }
+        tau
+    }
+}
+
+/// The findings of a scene's motion: the multibody equations, then what is known of it. A scene without one is
+/// set free.
+///
+/// # Errors
+/// As [`free_motion_run`]; [`ValidationError::Reference`] where a name is none of the scene's.
+pub(crate) fn check_free_motion(
+    scene: &Scene,
+    reference: &Reference,
+) -> Result<(Option<FreeMotionRun>, Vec<Finding>), ValidationError> {
+    let Some(run) = free_motion_run(scene)? else {
+        let setup = FreeMotionSetup::new(scene, reference)?;
+        let Some(mut run) = solve_motion(&setup.scene, None, setup.max_step())? else {
+            return Ok((None, Vec::new()));
+        };
+        setup.truncate(&mut run);
+        let mut findings = run.check(&setup.scene);
+        for finding in &mut findings {
+            finding.domain += &format!(", {}", run.setup);
+        }
+        return Ok((Some(run), findings));
+    };
+    let mut findings = run.check(scene);
+    for published in &reference.motion_states {
+        if let Some(run) = solve_motion(scene, Some(published.t), None)? {
+            findings.push(run.compare_published(scene, published, &reference.source)?);
+        }
+    }
+    Ok((Some(run), findings))
+}
+
+impl FreeMotionRun {
+    /// The values of the last step by name, each with its unit.
+    fn final_values(&self, scene: &Scene) -> Vec<(String, &'static str, f64)> {
+        let (Some(step), Some(coordinates)) = (self.steps.last(), self.coordinates.last()) else {
+            return Vec::new();
+        };
+        let mut values = Vec::new();
+        for (actuator, [q, speed]) in scene.mechanism.actuators.iter().zip(coordinates) {
+            let [unit, of_speed] = match actuator.coordinate().is_angle() {
+                true => ["rad", "rad/s"],
+                false => ["m", "m/s"],
+            };
+            values.push((actuator.name.clone(), unit, *q));
+            values.push((format!("{}.velocity", actuator.name), of_speed, *speed));
+        }
+        let reactions = scene.mechanism.reactions();
+        let named = reactions.iter().zip(&step.reactions).map(|(&r, value)| {
+            let name = scene.mechanism.reaction_name(r);
+            (name, r.component.unit(), *value)
+        });
+        values.extend(named);
+        values
+    }
+
+    /// Holds the last step against what is known of it.
+    fn compare_published(
+        &self,
+        scene: &Scene,
+        published: &PublishedState,
+        source: &str,
+    ) -> Result<Finding, ValidationError> {
+        let values = self.final_values(scene);
+        let mut found = Vec::new();
+        for (name, expected) in &published.values {
+            let Some((_, unit, value)) = values.iter().find(|(known_name, ..)| known_name == name)
+            else {
+                return Err(ValidationError::Reference {
+                    path: format!("{}: free_motion", scene.name),
+                    reason: format!("`{name}` is no actuator, velocity or reaction"),
+                });
+            };
+            found.push((name, *unit, *value, *expected));
+        }
+        let scale = |unit: &str| {
+            let same_unit = found
+                .iter()
+                .filter(|(_, known_name, ..)| *known_name == unit);
+            same_unit.fold(0.0_f64, |max, (.., expected)| max.max(expected.abs()))
+        };
+        let mut finding = Finding {
+            key: "published-motion".into(),
+            check: Check::ReferenceValues,
+            comparison: format!("the state that is reached with its published values ({source})"),
+            domain: format!("{} values at t = {} s", found.len(), published.t),
+            absolute_difference: 0.0,
+            unit: String::new(),
+            relative_difference: 0.0,
+            scale: "the largest published value of the unit".into(),
+            worst_at: "none".into(),
+            tolerance: published.tolerance,
+            tolerance_reason: published.reason.clone(),
+            integrated: true,
+            ..Finding::default()
+        };
+        for (name, unit, value, expected) in &found {
+            let absolute = (value - expected).abs();
+            let relative = absolute / scale(unit);
+            // What is not a number is the worst there is.
+            if relative >= finding.relative_difference || relative.is_nan() {
+                (finding.absolute_difference, finding.relative_difference) = (absolute, relative);
+                (finding.unit, finding.worst_at) = ((*unit).to_owned(), (*name).clone());
+            }
+        }
+        finding.pass = self.stop_reason.is_none()
+            && !found.is_empty()
+            && finding.relative_difference <= published.tolerance;
+        Ok(finding)
+    }
+
+    /// Holds the run against the multibody equations of a scene: its own, but for deliberate faults.
+    pub fn check(&self, scene: &Scene) -> Vec<Finding> {
+        let last = self.steps.len().saturating_sub(1);
+        let mut instants: Vec<usize> = (0..=CHECKED_INSTANTS)
+            .map(|k| k * last / CHECKED_INSTANTS)
+            .collect();
+        instants.dedup();
+        let claimed: Vec<MotionSample> = instants.iter().map(|&k| self.steps[k].clone()).collect();
+        let outcome = multibody_system(scene).and_then(|system| check_motion(&system, &claimed));
+        match (outcome, &self.stop_reason) {
+            (Ok(findings), None) => findings,
+            (Ok(_), Some(why)) => vec![failed_finding(why.clone())],
+            (Err(error), _) => vec![failed_finding(error.to_string())],
+        }
+    }
+}
+
+/// The multibody equations of a scene.
+fn multibody_system(scene: &Scene) -> Result<MultibodySystem, MultibodyError> {
+    let laws = scene.motion.iter().flat_map(|motion| &motion.laws);
+    let mode = |law: &Option<dwell_laws::Law>| {
+        let prescribed = law.clone().map(CoordinateMode::Prescribed);
+        prescribed.unwrap_or(CoordinateMode::Free)
+    };
+    let modes: Vec<CoordinateMode> = laws.map(mode).collect();
+    MultibodySystem::new(
+        &scene.mechanism,
+        &scene.masses,
+        &scene.loads,
+        &modes,
+        &scene.drives,
+    )
+}
+
+/// The failed finding of a motion that could not be compared.
+fn failed_finding(why: String) -> Finding {
+    Finding {
+        key: "motion".into(),
+        check: Check::MultibodyMotion,
+        comparison: "the motion with that of the multibody equations".into(),
+        domain: "the motion".into(),
+        worst_at: why,
+        tolerance_reason: "a motion that cannot be computed cannot be checked".into(),
+        integrated: true,
+        ..Finding::default()
+    }
+}

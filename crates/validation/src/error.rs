@@ -1,0 +1,34 @@
+//! Why a case cannot be validated.
+
+use dwell_report::ReportError;
+use dwell_scene::SceneError;
+use dwell_study::StudyError;
+use thiserror::Error;
+
+/// A case that cannot be validated.
+#[derive(Debug, Error)]
+pub enum ValidationError {
+    /// The scene cannot be computed.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// A reference file cannot be read.
+    #[error("{path}: {reason}")]
+    Reference {
+        /// The file.
+        path: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl From<SceneError> for ValidationError {
+    fn from(error: SceneError) -> Self {
+        Self::Study(error.into())
+    }
+}
+
+impl From<ReportError> for ValidationError {
+    fn from(error: ReportError) -> Self {
+        Self::Study(error.into())
+    }
+}

@@ -1,0 +1,187 @@
+//! Motions: speeds, tolerances, revolutions.
+
+use super::closed_forms::{dd, four_bar, root_inertia_integral};
+use super::mechanisms::CRANK_ROCKER;
+use super::run_pair::{free_motion, kinetic_energy, wrapped_free_motion};
+use super::series::{
+    CellResult, EstimatedValue, ParameterSeries, Requirement, decades, repeat_error,
+};
+use dwell_dynamics::{DynamicsError, Method, Options, ReducedState};
+use dwell_kinetostatics::ExactModel;
+use dwell_numerics::{DoubleDouble, Scalar};
+use std::f64::consts::TAU;
+use std::sync::{Arc, LazyLock};
+
+/// The crank where the motions start, rad.
+const START_ANGLE: f64 = 1.125;
+/// Points of the rule for the period; half of them differ by 1e-28.
+const QUADRATURE_POINTS: usize = 256;
+/// Tolerances that a step errs by in energy at most.
+const ENERGY_ERROR_PER_STEP: f64 = 4.0;
+/// Steps of a turn at a tolerance of one.
+const STEPS_PER_REVOLUTION: f64 = 8.0;
+
+/// Turns after which the angle is wrapped: its rounding is then that of a hundred turns.
+const MAX_UNWRAPPED_REVOLUTIONS: f64 = 100.0;
+
+/// What is reported of a motion at its end.
+const QUANTITIES: [&str; 2] = ["angle", "energy"];
+
+/// m at the start, and the period at 1 rad/s there, of the crank-rocker's free motion: E_c is constant.
+static REFERENCE_REVOLUTION: LazyLock<[DoubleDouble; 2]> = LazyLock::new(|| {
+    let m = four_bar(&CRANK_ROCKER, 1.0, dd(START_ANGLE)).m;
+    [
+        m,
+        root_inertia_integral(&CRANK_ROCKER, 1.0, QUADRATURE_POINTS) / m.sqrt(),
+    ]
+});
+
+/// Page of these rows, and its title.
+const FIGURE: (&str, &str) = ("motions", "Speeds and revolutions");
+/// The same of the rows of tolerances.
+const TOLERANCES_FIGURE: (&str, &str) = ("tolerances", "Tolerances");
+
+pub(super) fn series(slow: bool) -> Vec<ParameterSeries> {
+    let mut series = vec![speeds(), revolutions(slow)];
+    series.extend(Method::ALL.map(tolerances));
+    series
+}
+
+/// Order of the error that a method's step control sees.
+fn order(method: Method) -> f64 {
+    match method {
+        Method::Bdf => 5.0,
+        Method::Esdirk34 => 3.0,
+        Method::TrBdf2 => 2.0,
+        Method::Tsit45 => 4.0,
+        Method::Dop853 => 7.0,
+    }
+}
+
+/// A turn takes 8 tol^(−1/(p + 1)) steps, each of which errs by some tolerances in energy, always the same
+/// way; the phase follows the energy's half, summed over the turns.
+fn required(method: Method, tolerance: f64, revolutions: f64, quantity: usize) -> Requirement {
+    let steps = STEPS_PER_REVOLUTION * tolerance.powf(-1.0 / (order(method) + 1.0));
+    let energy = ENERGY_ERROR_PER_STEP * steps * (tolerance + f64::EPSILON) * revolutions;
+    let phase = 0.5 * energy * revolutions.max(1.0);
+    Requirement::from_error(if quantity == 0 { phase } else { energy }, revolutions)
+}
+
+/// So many turns at a speed of the start, to the same position again.
+fn solve_revolutions(
+    model: &ExactModel,
+    speed: f64,
+    revolutions: f64,
+    options: &Options,
+) -> Result<Vec<CellResult>, DynamicsError> {
+    let [m, period] = *REFERENCE_REVOLUTION;
+    let parts = (revolutions / MAX_UNWRAPPED_REVOLUTIONS).max(1.0);
+    let advance = DoubleDouble::from_revolutions(revolutions / parts);
+    let exact_duration = period * dd(revolutions / parts) / dd(speed);
+    let duration = exact_duration.value();
+    let start = ReducedState {
+        t: 0.0,
+        q: START_ANGLE,
+        q_dot: speed,
+    };
+    let (runs, angle) = if parts > 1.0 {
+        let parts = (parts as usize, duration);
+        (
+            wrapped_free_motion(model, start, parts, advance, options)?,
+            dd(START_ANGLE),
+        )
+    } else {
+        (
+            free_motion(model, start, duration, options)?,
+            dd(START_ANGLE) + advance,
+        )
+    };
+    // The plain end is not quite the whole of the turns.
+    let remainder = (dd(duration) - exact_duration) * dd(speed) * dd(parts);
+    let angle = angle + remainder;
+    // A last place of the angle is lost in each part, and of the time.
+    let rounding = 2.0 * f64::EPSILON * (advance.value() + angle.value()) * parts.sqrt();
+    let (q, q_error) = runs.final_value(|y| y[0], rounding);
+    let energy = dd(0.5) * m * dd(speed) * dd(speed);
+    let rounding = 4.0 * f64::EPSILON * energy.value();
+    let (e, e_error) = runs.final_value(|y| kinetic_energy(model, y), rounding);
+    Ok(vec![
+        Ok(EstimatedValue::new(q, angle, q_error).with_scale(TAU)),
+        Ok(EstimatedValue::new(e, energy, e_error)),
+    ])
+}
+
+/// A row of motions of the crank-rocker: speed, turns and options by value.
+fn base_series(
+    values: Vec<f64>,
+    motion: impl Fn(f64) -> (f64, f64, Options) + Send + Sync + Clone + 'static,
+) -> ParameterSeries {
+    let model = Arc::new(CRANK_ROCKER.build().exact_model(&[]));
+    let motion_of = motion.clone();
+    ParameterSeries {
+        figure: FIGURE,
+        key: String::new(),
+        description: String::new(),
+        parameter: ("", ""),
+        values,
+        quantities: &QUANTITIES,
+        reference: "the period by quadrature of a closed form in 32 digits: the crank is where it was, at the same energy",
+        reason: "",
+        requirement: Box::new(move |at, quantity| {
+            let (_, revolutions, options) = motion_of(at);
+            required(options.method, options.rtol, revolutions, quantity)
+        }),
+        run: Box::new(move |at| {
+            let (speed, revolutions, options) = motion(at);
+            let evaluate = match &*model {
+                Ok(model) => solve_revolutions(model, speed, revolutions, &options)
+                    .map_err(|e| e.to_string()),
+                Err(error) => Err(error.clone()),
+            };
+            evaluate.unwrap_or_else(|error| repeat_error(&error, QUANTITIES.len()))
+        }),
+    }
+}
+
+fn speeds() -> ParameterSeries {
+    let options = Options::new(Method::Bdf, 1e-10);
+    ParameterSeries {
+        figure: FIGURE,
+        key: "speed".into(),
+        description: "Free motion of a four-bar over one turn: its speed".into(),
+        parameter: ("speed at the start", "rad/s"),
+        reason: "without loads a speed only scales time: one turn at 1e-10, whatever the speed; a turn's steps, \
+              4 tolerances each",
+        ..base_series(decades(-9, 9), move |speed| (speed, 1.0, options))
+    }
+}
+
+fn tolerances(method: Method) -> ParameterSeries {
+    let name = method.name();
+    ParameterSeries {
+        figure: TOLERANCES_FIGURE,
+        key: format!("tolerance-{}", name.to_lowercase()),
+        description: format!("Free motion of a four-bar over one turn by {name}: tolerance"),
+        parameter: ("tolerance", ""),
+        reason: "a turn takes 8 tol^(−1/(p + 1)) steps of the order p that step control sees, each errs by 4 tolerances \
+              and a rounding at most",
+        ..base_series(decades(-2, -14), move |tolerance| {
+            (1.0, 1.0, Options::new(method, tolerance))
+        })
+    }
+}
+
+fn revolutions(slow: bool) -> ParameterSeries {
+    let options = Options::new(Method::Tsit45, 1e-12);
+    let max_exponent = if slow { 5 } else { 3 };
+    ParameterSeries {
+        figure: FIGURE,
+        key: "revolutions".into(),
+        description: "Free motion of a four-bar at 1e-12 by Tsit45: revolutions".into(),
+        parameter: ("revolutions n", ""),
+        reason: "the energy error has the same sign in each of the n revolutions, and the angle errs by half of that, summed over them: n²/2 times the energy error of one revolution",
+        ..base_series(decades(0, max_exponent), move |revolutions| {
+            (1.0, revolutions, options)
+        })
+    }
+}

@@ -1,0 +1,243 @@
+//! Distances: to a limit position, to a flat parallelogram, to a dead point.
+
+use super::closed_forms::{self, arc_cosine, dd};
+use super::mechanisms::{FourBar, SliderCrank};
+use super::series::{
+    CellResult, EstimatedValue, ParameterSeries, Requirement, decades, repeat_error,
+};
+use dwell_geometry::{Reaction, Vec2, vec2};
+use dwell_kinetostatics::{ExactModel, Mass};
+use dwell_numerics::{DoubleDouble, Scalar};
+use dwell_study::estimate;
+
+/// Roundings that an evaluation of a dyad's reduced model is allowed, each magnified by the condition: it
+/// takes some hundred operations, whose roundings add up as their root.
+pub(super) const ALLOWED_ROUNDINGS: f64 = 16.0;
+
+/// A triple rocker: coupler and rocker are stretched in one line at both ends of the crank's swing.
+const ROCKER: FourBar = FourBar {
+    base: [Vec2::ZERO, vec2(4.0, 0.0)],
+    lengths: [2.0, 1.5, 1.625],
+    assembly: [0.125, 1.0],
+    ..super::mechanisms::CRANK_ROCKER
+};
+
+/// A parallelogram whose coupler has inertia of its own.
+const PARALLELOGRAM: FourBar = FourBar {
+    base: [Vec2::ZERO, vec2(2.0, 0.0)],
+    lengths: [1.0, 2.0, 1.0],
+    assembly: [1.0, 0.0],
+    ..super::mechanisms::CRANK_ROCKER
+};
+
+/// A rod shorter than the crank: it stands across the guide where the crank can go no further.
+const SHORT_ROD: SliderCrank = SliderCrank {
+    lengths: [1.5, 1.0],
+    height: 0.125,
+    masses: [
+        Mass {
+            mass: 2.0,
+            center: vec2(0.25, 0.125),
+            inertia: 0.5,
+        },
+        Mass {
+            mass: 1.5,
+            center: vec2(0.5, 0.0625),
+            inertia: 0.25,
+        },
+        Mass {
+            mass: 1.0,
+            center: Vec2::ZERO,
+            inertia: 0.0,
+        },
+    ],
+    assembly: [0.125, 0.0],
+};
+
+/// Page of these rows, and its title.
+const FIGURE: (&str, &str) = ("limits", "Near limit positions");
+
+pub(super) fn series() -> Vec<ParameterSeries> {
+    vec![four_bar(), slider_crank(), parallelogram()]
+}
+
+/// m, ½m′ and what C's reaction has of q̈ and q̇² (the component along x).
+pub(super) const QUANTITIES: [&str; 4] = ["m", "½m′", "a of C", "b of C"];
+
+/// The reduced parameters of a four-bar against circle and circle.
+pub(super) fn compare_four_bar(
+    four_bar: &FourBar,
+    model: &ExactModel,
+    branch_sign: f64,
+    q: f64,
+) -> Vec<CellResult> {
+    let (computed, error) = match estimate::coefficients_with_errors(model.model(), q) {
+        Ok(both) => both,
+        Err(error) => return repeat_error(&error, QUANTITIES.len()),
+    };
+    let reference = closed_forms::four_bar(four_bar, branch_sign, dd(q));
+    let size = |v: Vec2<DoubleDouble>| v.dot(v).sqrt().value();
+    vec![
+        Ok(EstimatedValue::new(computed.m, reference.m, error.m)),
+        Ok(EstimatedValue::new(
+            computed.half_dm,
+            reference.half_dm,
+            error.half_dm,
+        )),
+        Ok(
+            EstimatedValue::new(computed.a[0], reference.a.x, error.a[0])
+                .with_scale(size(reference.a)),
+        ),
+        Ok(
+            EstimatedValue::new(computed.b[0], reference.b.x, error.b[0])
+                .with_scale(size(reference.b)),
+        ),
+    ]
+}
+
+fn four_bar() -> ParameterSeries {
+    let [a, b, c] = ROCKER.lengths.map(dd);
+    let d = dd(ROCKER.base[1].x);
+    let stretched_length = b + c;
+    let limit =
+        arc_cosine((a * a + d * d - stretched_length * stretched_length) / (dd(2.0) * a * d));
+    let test = ROCKER.build();
+    let reactions: Vec<Reaction> = test.reactions("C");
+    let model = test.exact_model(&reactions);
+    ParameterSeries {
+        figure: FIGURE,
+        key: "limit-four-bar".into(),
+        description: "Four-bar: distance of the crank from its limit position".into(),
+        parameter: ("distance δ", "rad"),
+        values: decades(-1, -15),
+        quantities: &QUANTITIES,
+        reference: "circle and circle in 32 digits, at the same plain number φ",
+        reason: "the coordinate and the lengths are known to their rounding: m and a grow as 1/δ and err as φ eps/δ, \
+              ½m′ and b as 1/δ² and err twice as much; 16 roundings",
+        requirement: Box::new(move |at, quantity| {
+            let factor = if quantity % 2 == 1 { 2.0 } else { 1.0 };
+            Requirement::from_rounding(ALLOWED_ROUNDINGS, factor * limit.value() / at)
+        }),
+        run: Box::new(move |at| match &model {
+            Ok(model) => compare_four_bar(&ROCKER, model, 1.0, (limit - dd(at)).value()),
+            Err(error) => repeat_error(&error, QUANTITIES.len()),
+        }),
+    }
+}
+
+fn slider_crank() -> ParameterSeries {
+    let [crank, rod] = SHORT_ROD.lengths.map(dd);
+    let sine = (dd(SHORT_ROD.height) + rod) / crank;
+    let limit = DoubleDouble::PI * dd(0.5) - arc_cosine(sine);
+    let model = SHORT_ROD.build(false).exact_model(&[]);
+    ParameterSeries {
+        figure: FIGURE,
+        key: "limit-slider-crank".into(),
+        description: "Slider-crank with a short rod: distance of the crank from its limit position"
+            .into(),
+        parameter: ("distance δ", "rad"),
+        values: decades(-1, -15),
+        quantities: &QUANTITIES[..2],
+        reference: "right-angled triangle in 32 digits, at the same plain number φ",
+        reason: "as of the four-bar: φ eps/δ for m, twice that for ½m′; 16 roundings",
+        requirement: Box::new(move |at, quantity| {
+            let factor = [1.0, 2.0][quantity];
+            Requirement::from_rounding(ALLOWED_ROUNDINGS, factor * limit.value() / at)
+        }),
+        run: Box::new(move |at| {
+            let evaluate = |model: &ExactModel| {
+                let q = (limit - dd(at)).value();
+                let (computed, error) = estimate::coefficients_with_errors(model.model(), q)
+                    .map_err(|e| e.to_string())?;
+                let [m, half_dm] = closed_forms::slider_crank(&SHORT_ROD, dd(q));
+                Ok(vec![
+                    Ok(EstimatedValue::new(computed.m, m, error.m)),
+                    Ok(EstimatedValue::new(
+                        computed.half_dm,
+                        half_dm,
+                        error.half_dm,
+                    )),
+                ])
+            };
+            let evaluate = model.as_ref().map_err(Clone::clone).and_then(evaluate);
+            evaluate.unwrap_or_else(|e: String| repeat_error(&e, 2))
+        }),
+    }
+}
+
+fn parallelogram() -> ParameterSeries {
+    let model = PARALLELOGRAM.build().exact_model(&[]);
+    ParameterSeries {
+        figure: FIGURE,
+        key: "flat-parallelogram".into(),
+        description: "Parallelogram: distance of the crank from the flat position".into(),
+        parameter: ("distance δ", "rad"),
+        values: decades(-1, -15),
+        quantities: &["m", "½m′"],
+        reference: "the coupler keeps its direction: m is constant but for what its centre and the rocker's add, \
+                in closed form",
+        reason: "a length off by eps turns the coupler by eps/δ, its speed by eps/δ² and its acceleration by eps/δ³; \
+              16 roundings. Branches meet at δ = 0",
+        requirement: Box::new(|at, quantity| {
+            Requirement::from_rounding(ALLOWED_ROUNDINGS, at.powi(-2 - quantity as i32))
+        }),
+        run: Box::new(move |at| {
+            let evaluate = |model: &ExactModel| {
+                let (computed, error) = estimate::coefficients_with_errors(model.model(), at)
+                    .map_err(|e| e.to_string())?;
+                let [m, half_dm] = closed_forms::parallelogram(&PARALLELOGRAM);
+                Ok(vec![
+                    Ok(EstimatedValue::new(computed.m, m, error.m)),
+                    Ok(
+                        EstimatedValue::new(computed.half_dm, half_dm, error.half_dm)
+                            .with_scale(m.value()),
+                    ),
+                ])
+            };
+            let evaluate = model.as_ref().map_err(Clone::clone).and_then(evaluate);
+            evaluate.unwrap_or_else(|e: String| repeat_error(&e, 2))
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_kinetostatics::Coefficients;
+
+    /// The same plan in two words keeps twice as many digits as in one, at every distance: 1e-31 × some
+    /// hundred roundings × the condition.
+    #[test]
+    fn val_the_plan_in_two_words() {
+        let test = ROCKER.build();
+        let exact = test.exact_model(&test.reactions("C")).expect("a model");
+        let model = exact.model();
+        for distance in decades(-1, -12) {
+            // Of [2, 1.5, 1.625] on 4 m the crank stops at 0.8767… rad.
+            let q = dd(0.876_755_514_351_7 - distance);
+            let mut computed: Coefficients<DoubleDouble> = model.coefficient_buffer();
+            model
+                .reduce(q, &mut model.workspace(), &mut computed)
+                .expect("a pose");
+            let reference = closed_forms::four_bar(&ROCKER, 1.0, q);
+            let tolerance = 1e-28 / distance;
+            let relative_error = |a: DoubleDouble, b: DoubleDouble| ((a - b) / b).value().abs();
+            assert!(
+                relative_error(computed.m, reference.m) < tolerance,
+                "{distance:e}"
+            );
+            assert!(
+                relative_error(computed.half_dm, reference.half_dm) < tolerance,
+                "{distance:e}"
+            );
+            assert!(
+                relative_error(computed.a[0], reference.a.x) < tolerance,
+                "{distance:e}"
+            );
+            assert!(
+                relative_error(computed.b[0], reference.b.x) < tolerance,
+                "{distance:e}"
+            );
+        }
+    }
+}

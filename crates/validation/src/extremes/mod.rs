@@ -1,0 +1,68 @@
+//! The extremes: rows of parameters driven as far as they go, each with the digits that it must keep stated
+//! beforehand, held against closed forms in 32 digits. Every result carries the estimate of its error, and the
+//! estimates are checked too.
+
+mod check;
+mod closed_forms;
+mod free_motion;
+mod limit_positions;
+mod mechanisms;
+mod report;
+mod run_pair;
+mod scale;
+pub mod series;
+mod singular;
+mod stiff;
+
+pub use check::check;
+pub use report::outcome;
+pub use series::{
+    CellResult, EstimatedValue, ParameterSeries, Requirement, ResultCell, SeriesResult,
+};
+
+use dwell_study::Outcome;
+use dwell_study::StudyError;
+use rayon::prelude::*;
+
+/// The whole study: `extremes`, or `extremes-long` with the rows that take minutes.
+///
+/// # Errors
+/// [`StudyError`] where a picture cannot be drawn.
+pub fn study(slow: bool) -> Result<Outcome, StudyError> {
+    let name = if slow { "extremes-long" } else { "extremes" };
+    outcome(&evaluate(all_series(slow)), name)
+}
+
+/// The rows of the grid; `long` for those that take minutes.
+pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
+    let mut series = limit_positions::series();
+    series.extend(scale::series());
+    series.extend(free_motion::series(slow));
+    series.extend(stiff::series());
+    series.extend(singular::series());
+    series
+}
+
+/// Computes all cells.
+pub fn evaluate(series: Vec<ParameterSeries>) -> Vec<SeriesResult> {
+    let jobs: Vec<(usize, f64)> = series
+        .iter()
+        .enumerate()
+        .flat_map(|(k, row)| row.values.iter().map(move |&at| (k, at)))
+        .collect();
+    let cells: Vec<(usize, Vec<ResultCell>)> = jobs
+        .into_par_iter()
+        .map(|(k, at)| (k, series[k].evaluate(at)))
+        .collect();
+    let mut results: Vec<SeriesResult> = series
+        .into_iter()
+        .map(|row| SeriesResult {
+            series: row,
+            cells: Vec::new(),
+        })
+        .collect();
+    for (k, more) in cells {
+        results[k].cells.extend(more);
+    }
+    results
+}

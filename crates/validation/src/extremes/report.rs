@@ -1,0 +1,284 @@
+//! Pictures, tables and words of the grid.
+
+use super::check::check;
+use super::series::{MAX_ESTIMATE_RATIO, ResultCell, SeriesResult};
+use dwell_findings::{Finding, all_pass};
+use dwell_report::TableExport as _;
+use dwell_report::{
+    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table, png,
+    reproducible_text,
+};
+use dwell_study::Outcome;
+use dwell_study::StudyError;
+use rayon::prelude::*;
+
+/// Most digits that a chart shows.
+const MAX_DIGITS: f64 = 17.0;
+/// Where typed errors stand in a chart of digits.
+const TYPED_ERROR_HEIGHT: f64 = 0.4;
+/// The ratios that a chart shows.
+const RATIO_RANGE: [f64; 2] = [0.1, 1e5];
+
+/// Everything that is written of the grid: `MAGIC.md`, `MAGIC.txt` and the folder `MAGIC/`.
+///
+/// # Errors
+/// [`StudyError`] where a picture cannot be drawn.
+pub fn outcome(results: &[SeriesResult], name: &str) -> Result<Outcome, StudyError> {
+    let findings = check(results);
+    let figures = figures(results);
+    let pictures: Vec<Vec<u8>> = figures.par_iter().map(png).collect::<Result<_, _>>()?;
+    let mut files = Files::new();
+    for (figure, picture) in figures.iter().zip(pictures) {
+        files.add(format!("{name}/{}.png", figure.name), picture);
+    }
+    for result in results {
+        let file = format!("{name}/{}.csv", result.series.key);
+        files.add(file, csv_table(result).csv()?);
+    }
+    files.add(format!("{name}.txt"), snapshot(results, &findings));
+    let document = document(results, name, &figures, &findings);
+    files.add(format!("{name}.md"), document.markdown());
+    let passed = findings.iter().filter(|f| f.pass).count();
+    Ok(Outcome {
+        summary: format!(
+            "{name}: {passed} of {} findings pass, {} cells\n",
+            findings.len(),
+            results.iter().map(|m| m.cells.len()).sum::<usize>()
+        ),
+        files,
+        findings,
+    })
+}
+
+/// A page for each family of rows: digits on the left, estimates on the right.
+fn figures(results: &[SeriesResult]) -> Vec<Figure> {
+    let mut figures: Vec<Figure> = Vec::new();
+    for result in results {
+        let series = &result.series;
+        let (name, title) = series.figure;
+        if figures.last().is_none_or(|figure| figure.name != name) {
+            figures.push(Figure {
+                name: name.to_owned(),
+                title: title.to_owned(),
+                caption: format!(
+                    "Left: decimal digits kept; dashed: the floor stated beforehand; at the foot: typed errors, allowed \
+                     where the condition is above 1e8. Right: the estimated error over the true one, which must not be \
+                     below 1 and in 95 % of all cells not above {MAX_ESTIMATE_RATIO}. What the results are held against:"
+                ),
+                columns: 2,
+                ..Figure::default()
+            });
+        }
+        if let Some(figure) = figures.last_mut() {
+            // Rows of one truth need it but once.
+            if !figure.caption.contains(series.reference) {
+                figure.caption += &format!("\n{}: {}.", series.description, series.reference);
+            }
+            figure.panels.push(digits_chart(result).into());
+            figure.panels.push(ratio_chart(result).into());
+        }
+    }
+    figures
+}
+
+/// The points of a quantity's cells, where there are any.
+fn points(
+    result: &SeriesResult,
+    quantity: usize,
+    of: impl Fn(&ResultCell) -> Option<f64>,
+) -> Vec<[f64; 2]> {
+    let cells = result.cells.iter().filter(|c| c.quantity == quantity);
+    cells.filter_map(|c| Some([c.parameter, of(c)?])).collect()
+}
+
+fn parameter_axis(result: &SeriesResult) -> Axis {
+    let (label, unit) = result.series.parameter;
+    let values = result.series.values.iter().copied();
+    let (low, high) = (values.clone().reduce(f64::min), values.reduce(f64::max));
+    // A little room beside the outermost points, the same on the left and on the right.
+    let (low, high) = (low.unwrap_or(1.0), high.unwrap_or(1.0));
+    let margin = (high / low).powf(0.03);
+    Axis::log(label, unit).with_range(low / margin, high * margin)
+}
+
+fn digits_chart(result: &SeriesResult) -> Chart {
+    let parameter_series = &result.series;
+    let mut series = Vec::new();
+    let mut required_lines: Vec<(Vec<[f64; 2]>, Paint)> = Vec::new();
+    for (k, quantity) in parameter_series.quantities.iter().enumerate() {
+        let paint = Paint::Palette(k);
+        let achieved = points(result, k, ResultCell::digits);
+        series.push(
+            Series::line(*quantity, achieved)
+                .stroke(Stroke::LineAndPoints)
+                .color(paint),
+        );
+        // A line each where they differ, else one for all.
+        let required = points(result, k, |c| {
+            Some(c.requirement.min_digits.min(MAX_DIGITS))
+        });
+        match required_lines
+            .iter_mut()
+            .find(|(known_line, _)| *known_line == required)
+        {
+            Some((_, paint)) => *paint = Paint::Grey,
+            None => required_lines.push((required, paint)),
+        }
+    }
+    for (required, paint) in required_lines {
+        let dashed = Series::line("", required).stroke(Stroke::Dashed);
+        series.push(dashed.color(paint));
+    }
+    let typed_errors: Vec<[f64; 2]> = result
+        .cells
+        .iter()
+        .filter(|c| c.result.is_err())
+        .map(|c| [c.parameter, TYPED_ERROR_HEIGHT])
+        .collect();
+    if !typed_errors.is_empty() {
+        let marked = Series::line("typed error", typed_errors).stroke(Stroke::Points);
+        series.push(marked.color(Paint::Ink));
+    }
+    Chart {
+        title: parameter_series.description.clone(),
+        x: parameter_axis(result),
+        y: Axis::new("digits kept", "").with_range(0.0, MAX_DIGITS),
+        series,
+        ..Chart::default()
+    }
+}
+
+fn ratio_chart(result: &SeriesResult) -> Chart {
+    let parameter_series = &result.series;
+    let named = parameter_series.quantities.iter().enumerate();
+    let series = named.map(|(k, quantity)| {
+        let clamped =
+            |c: &ResultCell| Some(c.estimate_ratio()?.clamp(RATIO_RANGE[0], RATIO_RANGE[1]));
+        Series::line(*quantity, points(result, k, clamped))
+            .stroke(Stroke::Points)
+            .color(Paint::Palette(k))
+    });
+    let line = |at: f64| Mark::Horizontal {
+        at,
+        label: String::new(),
+    };
+    Chart {
+        x: parameter_axis(result),
+        y: Axis::log("estimate / true error", "").with_range(RATIO_RANGE[0], RATIO_RANGE[1]),
+        series: series.collect(),
+        marks: vec![line(1.0), line(MAX_ESTIMATE_RATIO)],
+        ..Chart::default()
+    }
+}
+
+/// All numbers of a row.
+fn csv_table(result: &SeriesResult) -> Table {
+    let series = &result.series;
+    let mut columns = vec![Column::new(series.parameter.0, series.parameter.1)];
+    for quantity in series.quantities {
+        let kinds = ["", ", truth", ", true error", ", estimate", ", floor"];
+        let units = ["", "", "", "", "digits"];
+        let columns_of_quantity = kinds.iter().zip(units);
+        columns.extend(
+            columns_of_quantity.map(|(kind, unit)| Column::new(format!("{quantity}{kind}"), unit)),
+        );
+    }
+    let at = |&value: &f64| {
+        let mut cells = vec![value];
+        for cell in result.cells.iter().filter(|c| c.parameter == value) {
+            cells.extend(match &cell.result {
+                Ok(r) => [r.value, r.reference.hi, r.true_error(), r.error_estimate],
+                Err(_) => [f64::NAN; 4],
+            });
+            cells.push(cell.requirement.min_digits);
+        }
+        cells
+    };
+    Table {
+        columns,
+        rows: series.values.iter().map(at).collect(),
+    }
+}
+
+/// What every machine reproduces: what was stated, and the verdicts.
+fn snapshot(results: &[SeriesResult], findings: &[Finding]) -> String {
+    let mut text = "Extremes\n\n".to_owned();
+    for result in results {
+        let series = &result.series;
+        let min_digits = result.cells.iter().map(|c| c.requirement.min_digits);
+        let min = min_digits.clone().fold(f64::INFINITY, f64::min);
+        let max = min_digits.fold(0.0, f64::max);
+        text += &format!(
+            "{}  {} values of {} quantities  floors {max:.1} to {min:.1} digits\n",
+            series.key,
+            series.values.len(),
+            series.quantities.len()
+        );
+    }
+    text + "\n" + &reproducible_text(findings)
+}
+
+fn document(
+    results: &[SeriesResult],
+    name: &str,
+    figures: &[Figure],
+    findings: &[Finding],
+) -> Document {
+    let verdict = if all_pass(findings) {
+        "pass"
+    } else {
+        "**FAIL**"
+    };
+    let header = [
+        "Row",
+        "Floor, digits",
+        "Fewest digits",
+        "Typed errors",
+        "Estimate / true error",
+        "Why this floor",
+    ];
+    let mut blocks = vec![
+        Block::Text(format!(
+            "{verdict}. Parameters are driven to their extremes, and the results are compared with closed forms in 32 digits. Each row states beforehand how many digits it must keep; below that only a typed error is accepted, and only where the condition number is above 1e8. Each result carries an estimate of its error: from the same evaluation in double-double numbers, from a second run at a tenth of the tolerance, or from the change of a period with its initial state."
+        )),
+        Block::Table {
+            header: header.map(str::to_owned).to_vec(),
+            rows: results.iter().map(summary_row).collect(),
+        },
+    ];
+    blocks.extend(figures.iter().map(|figure| Block::Figure {
+        file: format!("{name}/{}.png", figure.name),
+        alt: figure.title.clone(),
+        caption: figure.title.clone(),
+    }));
+    blocks.push(Block::Heading("Findings".to_owned()));
+    blocks.push(Block::Findings(findings.to_vec()));
+    Document {
+        title: "Extremes".to_owned(),
+        blocks,
+    }
+}
+
+/// A row in words.
+fn summary_row(result: &SeriesResult) -> Vec<String> {
+    let cells = &result.cells;
+    let span = |of: &dyn Fn(&ResultCell) -> Option<f64>| {
+        let all = || cells.iter().filter_map(of);
+        (
+            all().fold(f64::INFINITY, f64::min),
+            all().fold(f64::NEG_INFINITY, f64::max),
+        )
+    };
+    let (min_required, max_required) = span(&|c| Some(c.requirement.min_digits));
+    let (min_digits, _) = span(&ResultCell::digits);
+    let (low, high) = span(&ResultCell::estimate_ratio);
+    let typed_errors = cells.iter().filter(|c| c.result.is_err()).count();
+    vec![
+        result.series.description.clone(),
+        format!("{max_required:.1} to {min_required:.1}"),
+        format!("{min_digits:.1}"),
+        format!("{typed_errors} of {}", cells.len()),
+        format!("{low:.2} to {high:.0}"),
+        result.series.reason.to_owned(),
+    ]
+}

@@ -1,0 +1,123 @@
+//! How the rows of motion are run: twice, for the estimate.
+
+use super::mechanisms::TestMechanism;
+use dwell_dynamics::{
+    CoordinateMode, DynamicsError, Machine, OdeState, Options, ReducedState, Solution, solve,
+    solve_reduced,
+};
+use dwell_kinetostatics::{ExactModel, Load, ReducedModel as _};
+use dwell_numerics::{DoubleDouble, Scalar};
+use dwell_study::estimate;
+
+/// Times of a motion at which its two runs are compared, the end among them.
+const COMPARED_TIMES: usize = 64;
+
+/// The states of a motion at the same times in a run and in its second.
+pub(super) struct RunPair {
+    pub(super) first: Vec<Vec<f64>>,
+    pub(super) second: Vec<Vec<f64>>,
+}
+
+impl RunPair {
+    /// The last of a function of the states, and the estimate of its error.
+    pub(super) fn final_value(&self, of: impl Fn(&[f64]) -> f64, rounding: f64) -> (f64, f64) {
+        let all = |states: &[Vec<f64>]| states.iter().map(|y| of(y)).collect::<Vec<f64>>();
+        let (first, second) = (all(&self.first), all(&self.second));
+        let last = first.last().copied().unwrap_or(f64::NAN);
+        (last, estimate::of_motion(&first, &second, rounding))
+    }
+}
+
+/// The states of a complete motion at the compared times.
+fn compared_states(solution: Solution) -> Result<Vec<Vec<f64>>, DynamicsError> {
+    let Solution { steps, samples, .. } = solution.completed()?;
+    let mut states = samples;
+    states.truncate(COMPARED_TIMES);
+    states.extend(steps.last().cloned());
+    Ok(states.into_iter().map(|s| s.y).collect())
+}
+
+/// A motion without loads.
+pub(super) fn free_motion(
+    model: &ExactModel,
+    start: ReducedState,
+    end: f64,
+    options: &Options,
+) -> Result<RunPair, DynamicsError> {
+    let options = Options {
+        sample_interval: Some((end - start.t) / COMPARED_TIMES as f64),
+        ..*options
+    };
+    let run = |options: &Options| -> Result<Vec<Vec<f64>>, DynamicsError> {
+        solve_reduced(model, start, Some(end), options, &[]).and_then(compared_states)
+    };
+    Ok(RunPair {
+        first: run(&options)?,
+        second: run(&estimate::comparison_options(&options))?,
+    })
+}
+
+/// A motion without loads in parts of equal duration, s, each of which turns by `way`: the angle is wrapped
+/// after each, so that it keeps its digits. Compared are the ends of the parts.
+pub(super) fn wrapped_free_motion(
+    model: &ExactModel,
+    start: ReducedState,
+    (parts, duration): (usize, f64),
+    advance: DoubleDouble,
+    options: &Options,
+) -> Result<RunPair, DynamicsError> {
+    let run = |options: &Options| -> Result<Vec<Vec<f64>>, DynamicsError> {
+        let mut at = start;
+        let mut final_states = Vec::with_capacity(parts);
+        for _ in 0..parts {
+            let part = solve_reduced(model, at, Some(duration), options, &[])?.completed()?;
+            if let Some(end) = part.steps.last().map(ReducedState::from) {
+                let q = (DoubleDouble::from_f64(end.q) - advance).value();
+                at = ReducedState { t: 0.0, q, ..end };
+            }
+            final_states.push(vec![at.q, at.q_dot]);
+        }
+        Ok(final_states)
+    };
+    Ok(RunPair {
+        first: run(options)?,
+        second: run(&estimate::comparison_options(options))?,
+    })
+}
+
+/// The kinetic energy of a state, J; no number where there is none.
+pub(super) fn kinetic_energy(model: &ExactModel, y: &[f64]) -> f64 {
+    let m = model.inertia(y[0], &mut model.workspace());
+    m.map_or(f64::NAN, |(m, _)| 0.5 * m * y[1] * y[1])
+}
+
+/// A machine of one freedom under loads.
+pub(super) fn machine(test: &TestMechanism, loads: &[Load]) -> Result<Machine, String> {
+    let model = test.model(&[]).map_err(|e| e.to_string())?;
+    let free = vec![CoordinateMode::Free];
+    Machine::new(model, loads, free, &[]).map_err(|e| e.to_string())
+}
+
+/// A motion under loads, from rest or not.
+pub(super) fn loaded_motion(
+    machine: &Machine,
+    [q, q_dot]: [f64; 2],
+    end: f64,
+    options: &Options,
+) -> Result<RunPair, DynamicsError> {
+    let options = Options {
+        sample_interval: Some(end / COMPARED_TIMES as f64),
+        ..*options
+    };
+    let start = OdeState {
+        t: 0.0,
+        y: machine.initial_state(&[q], &[q_dot]),
+    };
+    let run = |options: &Options| -> Result<Vec<Vec<f64>>, DynamicsError> {
+        solve(machine, machine.model(), &start, end, options, &[]).and_then(compared_states)
+    };
+    Ok(RunPair {
+        first: run(&options)?,
+        second: run(&estimate::comparison_options(&options))?,
+    })
+}

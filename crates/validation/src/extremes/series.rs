@@ -1,0 +1,194 @@
+//! The grid: rows of extreme parameters, with what each must keep stated beforehand.
+
+use dwell_numerics::{DoubleDouble, Scalar};
+
+/// A typed error is an answer only where the condition number is above this.
+pub const MIN_ILL_CONDITIONED: f64 = 1e8;
+/// The rule of the estimates: so many times the true error at most, in so large a part of the cells.
+pub const MAX_ESTIMATE_RATIO: f64 = 100.0;
+/// The part of the cells that the rule of the estimates holds for.
+pub const REQUIRED_CELL_FRACTION: f64 = 0.95;
+
+/// A row of the grid: one parameter driven to its extremes.
+pub struct ParameterSeries {
+    /// Short stable key, such as `limit-four-bar`.
+    pub key: String,
+    /// Name and title of the page it stands on.
+    pub figure: (&'static str, &'static str),
+    /// What is driven to what extreme.
+    pub description: String,
+    /// Name and unit of the parameter.
+    pub parameter: (&'static str, &'static str),
+    /// Its values, all above zero.
+    pub values: Vec<f64>,
+    /// What is reported, in the order of the readings.
+    pub quantities: &'static [&'static str],
+    /// What the results are held against.
+    pub reference: &'static str,
+    /// Why the floor is what it is.
+    pub reason: &'static str,
+    /// What is stated beforehand, by value and quantity.
+    pub requirement: Box<dyn Fn(f64, usize) -> Requirement + Send + Sync>,
+    /// The results at a value, one for each quantity.
+    pub run: Box<dyn Fn(f64) -> Vec<CellResult> + Send + Sync>,
+}
+
+/// What is stated of a cell before it is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Requirement {
+    /// Decimal digits that must be kept at least.
+    pub min_digits: f64,
+    /// By how much a relative change of the input is magnified in the result.
+    pub condition_number: f64,
+}
+
+impl Requirement {
+    /// The digits that rounding leaves: `roundings` of ½ ulp in each of the numbers that a result of this
+    /// condition depends on.
+    pub fn from_rounding(roundings: f64, condition_number: f64) -> Self {
+        Self::from_error(
+            roundings * f64::EPSILON * condition_number,
+            condition_number,
+        )
+    }
+
+    /// The digits that an error leaves, relative to the scale of the result.
+    pub fn from_error(error: f64, condition_number: f64) -> Self {
+        Self {
+            min_digits: (-error.log10()).max(0.0),
+            condition_number,
+        }
+    }
+}
+
+/// A result, or the typed error that stands for it.
+pub type CellResult = Result<EstimatedValue, String>;
+
+/// A result with its truth and the estimate of its error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EstimatedValue {
+    /// What the workbench reports.
+    pub value: f64,
+    /// What is true.
+    pub reference: DoubleDouble,
+    /// What digits are counted from.
+    pub scale: f64,
+    /// The estimate of the absolute error that is reported with the value.
+    pub error_estimate: f64,
+}
+
+impl EstimatedValue {
+    /// A result whose digits are counted from its own size.
+    pub fn new(value: f64, reference: DoubleDouble, error_estimate: f64) -> Self {
+        Self {
+            value,
+            reference,
+            scale: reference.hi.abs(),
+            error_estimate,
+        }
+    }
+
+    /// The same with digits counted from another size.
+    #[must_use]
+    pub fn with_scale(self, scale: f64) -> Self {
+        Self { scale, ..self }
+    }
+
+    /// The true absolute error; where there is none, half a unit in the last place.
+    pub fn true_error(&self) -> f64 {
+        let error = (DoubleDouble::from_f64(self.value) - self.reference)
+            .hi
+            .abs();
+        if error == 0.0 {
+            0.5 * ulp(self.value)
+        } else {
+            error
+        }
+    }
+}
+
+/// The distance from a number to the next larger one in size.
+pub fn ulp(value: f64) -> f64 {
+    let size = value.abs();
+    f64::from_bits(size.to_bits() + 1) - size
+}
+
+/// A result of the grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResultCell {
+    /// The value of the row's parameter.
+    pub parameter: f64,
+    /// Index of the quantity.
+    pub quantity: usize,
+    /// What was stated beforehand.
+    pub requirement: Requirement,
+    /// The value with its errors, or the error that was returned.
+    pub result: CellResult,
+}
+
+impl ResultCell {
+    /// Decimal digits kept; none where a typed error stands.
+    pub fn digits(&self) -> Option<f64> {
+        let reading = self.result.as_ref().ok()?;
+        let lost = reading.true_error() / reading.scale;
+        // What is no number keeps nothing.
+        Some(if lost.is_nan() {
+            0.0
+        } else {
+            (-lost.log10()).clamp(0.0, 17.0)
+        })
+    }
+
+    /// The estimate over the true error.
+    pub fn estimate_ratio(&self) -> Option<f64> {
+        let reading = self.result.as_ref().ok()?;
+        let ratio = reading.error_estimate / reading.true_error();
+        // Neither an estimate nor an error that is no number says anything.
+        Some(if ratio.is_nan() { 0.0 } else { ratio })
+    }
+
+    /// Whether it keeps what was stated: its digits, or a typed error where the condition is bad.
+    pub fn meets_requirement(&self) -> bool {
+        match self.digits() {
+            Some(digits) => digits >= self.requirement.min_digits,
+            None => self.requirement.condition_number > MIN_ILL_CONDITIONED,
+        }
+    }
+}
+
+/// A row with its cells.
+pub struct SeriesResult {
+    /// The row.
+    pub series: ParameterSeries,
+    /// Its cells, by value and quantity.
+    pub cells: Vec<ResultCell>,
+}
+
+impl ParameterSeries {
+    /// The cells at one value.
+    pub fn evaluate(&self, parameter: f64) -> Vec<ResultCell> {
+        let results = (self.run)(parameter).into_iter().enumerate();
+        results
+            .map(|(quantity, results)| ResultCell {
+                parameter,
+                quantity,
+                requirement: (self.requirement)(parameter, quantity),
+                result: results,
+            })
+            .collect()
+    }
+}
+
+/// The same words for every quantity of a value.
+pub(crate) fn repeat_error(error: &impl ToString, quantities: usize) -> Vec<CellResult> {
+    vec![Err(error.to_string()); quantities]
+}
+
+/// Powers of ten from one exponent to another.
+pub(crate) fn decades(from: i32, to: i32) -> Vec<f64> {
+    let step = if from < to { 1 } else { -1 };
+    let count = (to - from).abs();
+    (0..=count)
+        .map(|k| format!("1e{}", from + step * k).parse().unwrap_or(f64::NAN))
+        .collect()
+}

@@ -1,0 +1,241 @@
+//! Stiffness, damping, and drives with next to no mass.
+
+use super::closed_forms::{dd, elliptic_e, exponential};
+use super::mechanisms::{rotor, scotch_yoke, slider};
+use super::run_pair::{free_motion, kinetic_energy, loaded_motion, machine};
+use super::series::{
+    CellResult, EstimatedValue, ParameterSeries, Requirement, decades, repeat_error,
+};
+use dwell_dynamics::{Method, Options, Orbit, ReducedState};
+use dwell_geometry::{BodyId, Vec2, vec2};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass};
+use dwell_numerics::{DoubleDouble, Scalar};
+use dwell_study::estimate;
+use std::f64::consts::TAU;
+
+/// Errors of these motions in tolerances: a few hundred steps, four tolerances each.
+const ERROR_IN_TOLERANCES: f64 = 2000.0;
+const BODIES: [BodyId; 2] = [BodyId(0), BodyId(1)];
+
+/// Page of these rows, and its title.
+const FIGURE: (&str, &str) = ("stiff", "Stiffness, damping and next to no mass");
+
+pub(super) fn series() -> Vec<ParameterSeries> {
+    vec![stiffness(), damping(), small_rotor(), light_crank()]
+}
+
+fn options() -> Options {
+    Options::new(Method::Bdf, 1e-10)
+}
+
+fn load(kind: LoadKind, magnitude: f64) -> Load {
+    Load {
+        name: "load".into(),
+        kind,
+        magnitude: Magnitude::Constant(magnitude),
+    }
+}
+
+/// Free at zero travel of the slider, from a point 2 m behind it.
+fn spring(stiffness: f64) -> Load {
+    let kind = LoadKind::Spring {
+        bodies: BODIES,
+        points: [vec2(-2.0, 0.0), Vec2::ZERO],
+        free_length: 2.0,
+    };
+    load(kind, stiffness)
+}
+
+fn stiffness() -> ParameterSeries {
+    let run = |k: f64| -> Result<Vec<CellResult>, String> {
+        let machine = machine(&slider(1.0), &[spring(k)])?;
+        let frequency = dd(k).sqrt();
+        let period = DoubleDouble::PI * dd(2.0) / frequency;
+        let end = 2.3 * period.value();
+        let runs =
+            loaded_motion(&machine, [1.0, 0.0], end, &options()).map_err(|e| e.to_string())?;
+        let (sin, cos) = (frequency * dd(end)).sin_cos();
+        let (q, q_error) = runs.final_value(|y| y[0], 16.0 * f64::EPSILON);
+        let rounding = 16.0 * f64::EPSILON * frequency.value();
+        let (v, v_error) = runs.final_value(|y| y[1], rounding);
+        let start = ReducedState {
+            t: 0.0,
+            q: 1.0,
+            q_dot: 0.0,
+        };
+        let orbit = |stretch: f64| {
+            let q = start.q * stretch;
+            Orbit::loaded(&machine, ReducedState { q, ..start })
+        };
+        let quadrature = orbit(1.0)
+            .and_then(|exact| Ok((exact.period, estimate::of_period(&exact, orbit)?)))
+            .map_err(|e| e.to_string());
+        Ok(vec![
+            Ok(EstimatedValue::new(q, cos, q_error).with_scale(1.0)),
+            Ok(EstimatedValue::new(v, -(sin * frequency), v_error).with_scale(frequency.value())),
+            quadrature.map(|(got, error)| EstimatedValue::new(got, period, error)),
+        ])
+    };
+    ParameterSeries {
+        figure: FIGURE,
+        key: "stiffness".into(),
+        description: "Slider on a spring over 2.3 swings: stiffness".into(),
+        parameter: ("stiffness", "N/m"),
+        values: decades(0, 12),
+        quantities: &["travel", "speed", "period by quadrature"],
+        reference: "cos √k t, and 2π/√k",
+        reason: "a stiffness scales time: some hundred steps of 4 tolerances (1e-10); the quadrature keeps all but 16 \
+              roundings of 2 m",
+        requirement: Box::new(|_, quantity| match quantity {
+            2 => Requirement::from_rounding(32.0, 1.0),
+            _ => Requirement::from_error(ERROR_IN_TOLERANCES * 1e-10, 1.0),
+        }),
+        run: Box::new(move |k| run(k).unwrap_or_else(|e| repeat_error(&e, 3))),
+    }
+}
+
+fn damping() -> ParameterSeries {
+    let run = |c: f64| -> Result<Vec<CellResult>, String> {
+        let damper = LoadKind::Damper {
+            bodies: BODIES,
+            points: [vec2(-2.0, 0.0), Vec2::ZERO],
+        };
+        let machine = machine(&slider(1.0), &[spring(c), load(damper, c)])?;
+        let runs =
+            loaded_motion(&machine, [1.0, 0.0], 1.0, &options()).map_err(|e| e.to_string())?;
+        // q̈ + c q̇ + c q = 0: the slow root by the product of both.
+        let (two, four) = (dd(2.0), dd(4.0));
+        let root = (dd(c) * (dd(c) - four)).sqrt();
+        let fast = -(dd(c) + root) / two;
+        let slow = dd(c) / fast;
+        let (one, other) = (exponential(slow), exponential(fast));
+        let travel = (fast * one - slow * other) / (fast - slow);
+        let speed = dd(c) * (one - other) / (fast - slow);
+        let (q, q_error) = runs.final_value(|y| y[0], 16.0 * f64::EPSILON);
+        let (v, v_error) = runs.final_value(|y| y[1], 16.0 * f64::EPSILON);
+        Ok(vec![
+            Ok(EstimatedValue::new(q, travel, q_error).with_scale(1.0)),
+            Ok(EstimatedValue::new(v, speed, v_error).with_scale(1.0)),
+        ])
+    };
+    ParameterSeries {
+        figure: FIGURE,
+        key: "damping".into(),
+        description:
+            "Slider between a spring and a damper of the same number: it returns to rest within seconds"
+                .into(),
+        parameter: ("damping", "N s/m"),
+        values: decades(1, 12),
+        quantities: &["travel", "speed"],
+        reference: "two exponentials, of which the fast one is gone after 1/c s",
+        reason: "the slow motion is the same for all: some hundred steps of 4 tolerances (1e-10)",
+        requirement: Box::new(|_, _| Requirement::from_error(ERROR_IN_TOLERANCES * 1e-10, 1.0)),
+        run: Box::new(move |c| run(c).unwrap_or_else(|e| repeat_error(&e, 2))),
+    }
+}
+
+fn small_rotor() -> ParameterSeries {
+    let run = |inertia: f64| -> Result<Vec<CellResult>, String> {
+        let mass = Mass {
+            inertia,
+            ..Mass::default()
+        };
+        let loads = [
+            load(LoadKind::Torque { bodies: BODIES }, 1.0),
+            load(LoadKind::RotationalDamper { bodies: BODIES }, 1.0),
+        ];
+        let machine = machine(&rotor(mass), &loads)?;
+        let runs =
+            loaded_motion(&machine, [0.0, 0.0], 1.0, &options()).map_err(|e| e.to_string())?;
+        let decayed = exponential(-(dd(1.0) / dd(inertia)));
+        let speed = dd(1.0) - decayed;
+        let angle = dd(1.0) - dd(inertia) * speed;
+        let (q, q_error) = runs.final_value(|y| y[0], 4.0 * f64::EPSILON);
+        let (v, v_error) = runs.final_value(|y| y[1], 4.0 * f64::EPSILON);
+        Ok(vec![
+            Ok(EstimatedValue::new(q, angle, q_error).with_scale(1.0)),
+            Ok(EstimatedValue::new(v, speed, v_error).with_scale(1.0)),
+        ])
+    };
+    ParameterSeries {
+        figure: FIGURE,
+        key: "small-rotor".into(),
+        description: "Rotor driven by 1 N m against 1 N m s: its inertia goes to nothing".into(),
+        parameter: ("inertia", "kg m²"),
+        values: decades(0, -15),
+        quantities: &["angle", "speed"],
+        reference: "1 − J (1 − e^(−1/J)) rad after 1 s",
+        reason: "what is left is the balance of both couples: some hundred steps of 4 tolerances (1e-10)",
+        requirement: Box::new(|_, _| Requirement::from_error(ERROR_IN_TOLERANCES * 1e-10, 1.0)),
+        run: Box::new(move |j| run(j).unwrap_or_else(|e| repeat_error(&e, 2))),
+    }
+}
+
+/// A Scotch yoke's crank carries next to nothing: m = J + sin² φ kg m², and the speed at the dead points is
+/// as large as J is small.
+fn light_crank() -> ParameterSeries {
+    const FROM: f64 = 1.125;
+    let run = |inertia: f64| -> Result<Vec<CellResult>, String> {
+        let model = scotch_yoke(inertia, 1.0).exact_model(&[])?;
+        let (sin, _) = dd(FROM).sin_cos();
+        let m = dd(inertia) + sin * sin;
+        // ∮ √(J + sin² φ) dφ = 4 √(1 + J) E(k), k² = 1/(1 + J).
+        let one = dd(1.0) + dd(inertia);
+        let complement = (dd(inertia) / one).sqrt();
+        let root_inertia_integral = dd(4.0) * one.sqrt() * elliptic_e(dd(1.0) / one, complement);
+        let period = root_inertia_integral / m.sqrt();
+        let start = ReducedState {
+            t: 0.0,
+            q: FROM,
+            q_dot: 1.0,
+        };
+        let motion =
+            free_motion(&model, start, period.value(), &options()).map_err(|e| e.to_string());
+        let final_values = motion.map(|runs| {
+            let angle =
+                dd(FROM) + DoubleDouble::from_revolutions(1.0) + (dd(period.value()) - period);
+            let energy = dd(0.5) * m;
+            let (q, q_error) = runs.final_value(|y| y[0], 4.0 * f64::EPSILON * TAU);
+            let rounding = 4.0 * f64::EPSILON * energy.value();
+            let (e, e_error) = runs.final_value(|y| kinetic_energy(&model, y), rounding);
+            [
+                EstimatedValue::new(q, angle, q_error).with_scale(TAU),
+                EstimatedValue::new(e, energy, e_error),
+            ]
+        });
+        let orbit = |stretch: f64| {
+            let q_dot = start.q_dot * stretch;
+            Orbit::new(&model, ReducedState { q_dot, ..start })
+        };
+        let quadrature = orbit(1.0)
+            .and_then(|exact| Ok((exact.period, estimate::of_period(&exact, orbit)?)))
+            .map_err(|e| e.to_string());
+        let final_value = |k: usize| final_values.clone().map(|both| both[k]);
+        Ok(vec![
+            final_value(0),
+            final_value(1),
+            quadrature.map(|(got, error)| EstimatedValue::new(got, period, error)),
+        ])
+    };
+    ParameterSeries {
+        figure: FIGURE,
+        key: "light-crank".into(),
+        description: "Scotch yoke without loads over one revolution: the crank's inertia vanishes against a slide of 1 kg"
+            .into(),
+        parameter: ("inertia of the crank", "kg m²"),
+        values: decades(0, -15),
+        quantities: &["angle", "energy", "period by quadrature"],
+        reference: "the complete elliptic integral of the second kind, by the arithmetic-geometric mean",
+        reason: "the time of a turn hardly knows J: the steps of a turn (1e-10), and as many for each tenth of J, for they \
+              grow geometrically from each dead point on. There the state passes within J s, so that its time would \
+              have to be known to eps J: a condition of 1/J. The quadrature keeps all but 64 roundings",
+        requirement: Box::new(|inertia, quantity| match quantity {
+            2 => Requirement::from_rounding(64.0, 1.0),
+            _ => {
+                let decades = 1.0 - inertia.log10();
+                Requirement::from_error(decades * ERROR_IN_TOLERANCES * 1e-10, 1.0 / inertia)
+            }
+        }),
+        run: Box::new(move |j| run(j).unwrap_or_else(|e| repeat_error(&e, 3))),
+    }
+}

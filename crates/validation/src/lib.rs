@@ -1,0 +1,40 @@
+//! The validation cases: each is computed, checked against independent computations and published numbers, and
+//! reported. Two studies belong to them: series of closed forms with ever more extreme parameters ([`extremes`]), and
+//! what accuracy costs ([`work_precision`](mod@work_precision)).
+//!
+//! ```
+//! use dwell_findings::all_pass;
+//! use dwell_scene::Scene;
+//! use dwell_validation::check_case;
+//! use std::path::Path;
+//!
+//! let folder = Path::new("../../validation/pendulum-a01");
+//! let scene = Scene::read(folder.join("scene.toml"))?;
+//! let checked = check_case(&scene, folder)?;
+//! assert!(all_pass(&checked.findings));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! ```text
+//! cases ── checked ── case_report ── overview      extremes      work_precision
+//! ```
+//!
+//! `cases` reads the references of a case and evaluates its states, `checked` makes all findings, `case_report` writes
+//! them, and `overview` puts all cases into one table.
+
+mod case_report;
+mod cases;
+mod checked;
+mod error;
+pub mod extremes;
+mod overview;
+pub mod work_precision;
+
+pub use case_report::validate::validate;
+pub use case_report::validation::Validation;
+pub use cases::subject::PlanSubject;
+pub use checked::multibody::{FreeMotionRun, free_motion_run};
+pub use checked::states::{CheckedStates, check_case};
+pub use error::ValidationError;
+pub use overview::{CaseResult, index};
+pub use work_precision::work_precision;

@@ -1,0 +1,296 @@
+//! The cases that were validated together: case by truth, as a table and as a picture.
+
+mod figure;
+
+use crate::case_report::finding_text::describe_failure;
+use crate::case_report::validation::Validation;
+use dwell_findings::{Check, Finding, all_pass};
+use dwell_report::{Block, Document, Files, png};
+use dwell_scene::Scene;
+use dwell_study::StudyError;
+
+/// A case and what became of it: its report, or why there is none.
+pub type CaseResult<'a> = (&'a str, Result<(&'a Scene, &'a Validation), String>);
+
+/// What a case says of one truth.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum CheckCell {
+    /// Digits of agreement, of the worst finding.
+    Digits(f64),
+    /// The key of the finding that failed.
+    Failed(String),
+    /// Why there is none.
+    NotApplicable(&'static str),
+}
+
+/// What a validated case says of every truth.
+pub(crate) fn check_cells(done: &Validation) -> [CheckCell; Check::ALL.len()] {
+    Check::ALL.map(|check| {
+        let all = || done.outcome.findings.iter();
+        let of = || all().filter(|f| f.check == check);
+        if let Some(failed) = of().find(|f| !f.pass) {
+            return CheckCell::Failed(failed.key.clone());
+        }
+        // Double precision has no more digits than its last place.
+        let worst = of().map(|f| f.relative_difference.max(f64::EPSILON));
+        let worst = worst.reduce(f64::max);
+        let not_applicable = || {
+            done.not_applicable
+                .iter()
+                .find(|(not_applicable, _)| *not_applicable == check)
+        };
+        match worst {
+            Some(worst) => CheckCell::Digits(-worst.log10()),
+            None => CheckCell::NotApplicable(not_applicable().map_or("nothing", |(_, why)| why)),
+        }
+    })
+}
+
+/// The report on all cases beside their own: `index.md` and the picture of its table, `index.png`.
+///
+/// # Errors
+/// [`StudyError::Report`] when the picture cannot be drawn.
+pub fn index(results: &[CaseResult<'_>]) -> Result<Files, StudyError> {
+    let good = |(_, result): &&CaseResult<'_>| match result {
+        Ok((_, done)) => all_pass(&done.outcome.findings),
+        Err(_) => false,
+    };
+    let heads = Check::ALL.map(|check| check.to_string());
+    let mut blocks = vec![
+        Block::Text(format!(
+            "{} of {} cases pass. Written by Dwell {}.",
+            results.iter().filter(good).count(),
+            results.len(),
+            env!("CARGO_PKG_VERSION")
+        )),
+        table(
+            [&["Case"][..], &heads.each_ref().map(String::as_str)].concat(),
+            results.iter().map(agreement_row),
+        ),
+        Block::Text(
+            "Agreeing decimal digits of the worst finding of each check; double precision has 15.7. Checks 5, 6 and part of 4 are limited by the integrator's tolerance, not by rounding. Check 10 compares the results with 32-digit arithmetic, check 11 with closed forms. See also the [extreme parameters](extremes.md) and the [mutation study](mutations.md), which shows the checks that detect each deliberate fault (`just mutations`)."
+                .to_owned(),
+        ),
+        Block::Figure {
+            file: "index.png".to_owned(),
+            alt: "Agreeing digits of every case and check".to_owned(),
+            caption: String::new(),
+        },
+    ];
+    blocks.extend(failures(results));
+    blocks.push(Block::Heading("Tolerances".to_owned()));
+    blocks.push(table(
+        vec![
+            "Case",
+            "Verdict",
+            "Findings",
+            "Nearest to its tolerance",
+            "Slack tolerances",
+        ],
+        results.iter().map(tolerance_row),
+    ));
+    blocks.push(Block::Text(
+        "The last column is the largest ratio of a difference to its tolerance. A tolerance is loose if it exceeds 100 times the largest difference plus 50 rounding errors times the condition number of the dense rows there. Integrated results are exempt: convergence orders and multiples of the integrator's tolerance check them."
+            .to_owned(),
+    ));
+    let document = Document {
+        title: "Cases".to_owned(),
+        blocks,
+    };
+    let mut files = Files::new();
+    files.add("index.md", document.markdown());
+    files.add("index.png", png(&figure::overview(results))?);
+    Ok(files)
+}
+
+fn table(header: Vec<&str>, rows: impl Iterator<Item = Vec<String>>) -> Block {
+    Block::Table {
+        header: header.into_iter().map(str::to_owned).collect(),
+        rows: rows.collect(),
+    }
+}
+
+fn link(scene: &Scene) -> String {
+    format!("[{}]({}.md)", scene.title, scene.name)
+}
+
+/// A row of the table of digits.
+fn agreement_row((name, result): &CaseResult<'_>) -> Vec<String> {
+    match result {
+        Ok((scene, validation)) => {
+            let cells = check_cells(validation).map(|cell| match cell {
+                CheckCell::Digits(digits) => format!("{digits:.1}"),
+                CheckCell::Failed(key) => format!("**FAIL** {key}"),
+                CheckCell::NotApplicable(why) => why.to_owned(),
+            });
+            std::iter::once(link(scene)).chain(cells).collect()
+        }
+        Err(_) => vec![format!("`{name}`"), "**not validated**".to_owned()],
+    }
+}
+
+/// Every failure: the equation, the place and the difference.
+fn failures(results: &[CaseResult<'_>]) -> Vec<Block> {
+    let mut text = String::new();
+    for (name, result) in results {
+        match result {
+            Ok((scene, validation)) => {
+                for failed in validation.outcome.findings.iter().filter(|f| !f.pass) {
+                    text += &format!(
+                        "- `{}` {}: {}\n",
+                        scene.name,
+                        failed.key,
+                        describe_failure(failed).join("; ")
+                    );
+                }
+            }
+            Err(reason) => text += &format!("- `{name}`: {reason}\n"),
+        }
+    }
+    match text.is_empty() {
+        true => Vec::new(),
+        false => vec![Block::Heading("Failures".to_owned()), Block::Text(text)],
+    }
+}
+
+/// How near the findings come to their tolerances, and how near these to the findings.
+fn tolerance_row((name, status): &CaseResult<'_>) -> Vec<String> {
+    let (scene, done) = match status {
+        Ok(validated) => validated,
+        Err(reason) => {
+            return vec![
+                format!("`{name}`"),
+                "**not validated**".to_owned(),
+                String::new(),
+                reason.clone(),
+            ];
+        }
+    };
+    let findings = &done.outcome.findings;
+    let part = |f: &Finding| match f.relative_difference {
+        0.0 => 0.0,
+        // What is no number is the worst there is.
+        relative if relative.is_nan() => f64::INFINITY,
+        relative => relative / f.tolerance,
+    };
+    let near = findings.iter().max_by(|a, b| part(a).total_cmp(&part(b)));
+    let near = near.map_or(String::new(), |f| format!("{:.2} of {}", part(f), f.key));
+    let passed = findings.iter().filter(|f| f.pass).count();
+    let loose: Vec<&str> = findings
+        .iter()
+        .filter(|f| f.is_loose())
+        .map(|f| f.key.as_str())
+        .collect();
+    let status = match all_pass(findings) {
+        true => "pass",
+        false => "**FAIL**",
+    };
+    vec![
+        link(scene),
+        status.to_owned(),
+        format!("{passed} of {}", findings.len()),
+        near,
+        match loose.is_empty() {
+            true => "none".to_owned(),
+            false => loose.join(", "),
+        },
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use dwell_scene::Scene;
+
+    fn finding(check: Check, relative: f64, tolerance: f64) -> Finding {
+        Finding {
+            key: format!("key-{}", check.number()),
+            check,
+            comparison: "m with 2 E_c".into(),
+            domain: "24 positions".into(),
+            absolute_difference: 2.0 * relative,
+            unit: "kg m2".into(),
+            relative_difference: relative,
+            scale: "the largest m".into(),
+            worst_at: "phi = 1 rad".into(),
+            tolerance,
+            pass: relative <= tolerance,
+            ..Finding::default()
+        }
+    }
+
+    fn validation(findings: Vec<Finding>) -> Validation {
+        let mut done = Validation {
+            not_applicable: vec![(Check::Period, "driven")],
+            ..Validation::default()
+        };
+        done.outcome.findings = findings;
+        done
+    }
+
+    #[test]
+    fn a_truth_has_the_digits_of_its_worst_finding_or_says_why_it_has_none() {
+        let done = validation(vec![
+            finding(Check::KineticEnergy, 1e-15, 1e-14),
+            finding(Check::KineticEnergy, 1e-13, 1e-12),
+            finding(Check::EnergySlope, 0.0, 1e-12),
+            finding(Check::ReleasedConstraint, 1e-9, 1e-12),
+            finding(Check::ReleasedConstraint, 1e-15, 1e-12),
+        ]);
+        let cells = check_cells(&done);
+        assert_eq!(cells[0], CheckCell::NotApplicable("nothing"));
+        // Digits are given to a tenth.
+        assert!(matches!(cells[1], CheckCell::Digits(d) if (d - 13.0).abs() < 0.01));
+        assert!(matches!(cells[2], CheckCell::Digits(d) if (d - 15.65).abs() < 0.01));
+        assert_eq!(cells[3], CheckCell::Failed("key-3".into()));
+        assert_eq!(cells[5], CheckCell::NotApplicable("driven"));
+    }
+
+    #[test]
+    fn a_failure_names_the_equation_the_place_and_the_difference() {
+        let [equation, location, difference] =
+            describe_failure(&finding(Check::KineticEnergy, 3e-9, 1e-12));
+        assert_eq!(equation, "check 1 kinetic energy, m with 2 E_c");
+        assert_eq!(location, "at phi = 1 rad, of 24 positions");
+        assert_eq!(
+            difference,
+            "difference 6.00e-9 kg m2, 3.0e-9 of the largest m; tolerance 1.0e-12"
+        );
+        let [.., difference] = describe_failure(&finding(Check::KineticEnergy, f64::NAN, 1e-12));
+        assert_eq!(difference, "difference none could be taken");
+    }
+
+    #[test]
+    fn the_index_tells_failures_slack_and_what_was_not_validated() {
+        let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.bar]\npoints = { A = [0, 0] }\n\
+                    [joints]\nA = { revolute = [\"ground.A\", \"bar.A\"] }\n[actuators]\nphi = { angle = [\"ground\", \"bar\"] }";
+        let scene = Scene::parse("bar.toml", text).unwrap();
+        let done = validation(vec![
+            finding(Check::KineticEnergy, 1e-16, 1e-9),
+            finding(Check::EnergySlope, 1e-9, 1e-12),
+        ]);
+        let results = [
+            ("cases/bar", Ok((&scene, &done))),
+            ("cases/lost", Err("it cannot be read".to_owned())),
+        ];
+        let files = index(&results).unwrap();
+        let text = files.iter().find(|(path, _)| path.ends_with("index.md"));
+        let text = String::from_utf8(text.unwrap().1.to_vec()).unwrap();
+        for part in [
+            "0 of 2 cases pass",
+            "| 15.7 | **FAIL** key-2 |",
+            "| driven |",
+            "- `bar` key-2: check 2 energy slope, m with 2 E_c; at phi = 1 rad, of 24 positions; difference 2.00e-9 kg m2",
+            "| 1 of 2 | 1000.00 of key-2 | key-1 |",
+            "| `cases/lost` | **not validated** |",
+            "- `cases/lost`: it cannot be read",
+        ] {
+            assert!(text.contains(part), "{part}\n{text}");
+        }
+        assert!(
+            files
+                .iter()
+                .any(|(path, bytes)| path.ends_with("index.png") && !bytes.is_empty())
+        );
+    }
+}

@@ -1,0 +1,380 @@
+//! Ways to evaluate the equation of motion and the reactions, of which any can be tried.
+
+use super::combination::Evaluation;
+use dwell_dynamics::{
+    DynamicsError, Machine, MachineOde, MachineWorkspace, OdeState, OdeSystem, Orbit, ReducedOde,
+    ReducedOutputs, ReducedState, TabulatedMachine,
+};
+use dwell_geometry::{PositionError, Range};
+use dwell_kinetostatics::{
+    Coefficients, ExactModel, ExactWorkspace, Inertia, Model, ReducedModel, TabulatedModel,
+    Workspace,
+};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Finds the reactions at a state, N or N·m.
+pub type ReactionFn<'e> = Box<dyn FnMut(&OdeState, &mut [f64]) -> Result<(), DynamicsError> + 'e>;
+
+/// A way to evaluate. What is new (another kind of table, another number) is tried by making it one.
+pub trait Evaluator {
+    /// What it is called.
+    fn evaluation(&self) -> Evaluation;
+
+    /// The equation of motion with its working memory.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where the start cannot be evaluated.
+    fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError>;
+
+    /// The reactions, in its own arithmetic, with the working memory for them.
+    fn reactions(&self) -> ReactionFn<'_>;
+
+    /// The evaluations that one Jacobian is weighed as: a dual number is two.
+    fn jacobian_weight(&self) -> usize;
+
+    /// How long it took to make it, s.
+    fn build_time(&self) -> f64 {
+        0.0
+    }
+
+    /// The motion by quadrature with the evaluations it took; none where it is not known by its energy.
+    fn orbit(&self, start: ReducedState) -> Option<(Orbit, usize)>;
+}
+
+/// A reduced model of one freedom without loads.
+#[derive(Debug)]
+pub struct ModelEvaluator<R: ReducedModel> {
+    /// The model, with the reactions that are compared.
+    pub model: R,
+    /// What it is called.
+    pub evaluation: Evaluation,
+    /// How long it took to make it, s.
+    pub build_time: f64,
+}
+
+impl<R: ReducedModel> Evaluator for ModelEvaluator<R> {
+    fn evaluation(&self) -> Evaluation {
+        self.evaluation
+    }
+
+    fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError> {
+        Ok(Box::new(ReducedOde::new(&self.model)))
+    }
+
+    fn reactions(&self) -> ReactionFn<'_> {
+        let mut outputs = ReducedOutputs::new(&self.model);
+        Box::new(move |point, out| {
+            outputs.evaluate(point.y[0], point.y[1])?;
+            out.copy_from_slice(&outputs.reactions);
+            Ok(())
+        })
+    }
+
+    fn jacobian_weight(&self) -> usize {
+        2
+    }
+
+    fn build_time(&self) -> f64 {
+        self.build_time
+    }
+
+    fn orbit(&self, start: ReducedState) -> Option<(Orbit, usize)> {
+        let counted = CountingModel {
+            model: &self.model,
+            count: AtomicUsize::new(0),
+        };
+        let orbit = Orbit::new(&counted, start).ok()?;
+        Some((orbit, counted.count.into_inner()))
+    }
+}
+
+/// A model that counts its evaluations.
+struct CountingModel<'a, R> {
+    model: &'a R,
+    count: AtomicUsize,
+}
+
+impl<R: ReducedModel> ReducedModel for CountingModel<'_, R> {
+    type Workspace = R::Workspace;
+
+    fn workspace(&self) -> R::Workspace {
+        self.model.workspace()
+    }
+
+    fn reactions(&self) -> usize {
+        self.model.reactions()
+    }
+
+    fn range(&self) -> Range {
+        self.model.range()
+    }
+
+    fn inertia(&self, q: f64, workspace: &mut R::Workspace) -> Result<(f64, f64), PositionError> {
+        self.count.fetch_add(1, Ordering::Relaxed);
+        self.model.inertia(q, workspace)
+    }
+
+    fn inertia_derivatives(
+        &self,
+        q: f64,
+        workspace: &mut R::Workspace,
+    ) -> Result<Inertia, PositionError> {
+        self.count.fetch_add(2, Ordering::Relaxed);
+        self.model.inertia_derivatives(q, workspace)
+    }
+
+    fn coefficients(
+        &self,
+        q: f64,
+        workspace: &mut R::Workspace,
+        out: &mut Coefficients,
+    ) -> Result<(), PositionError> {
+        self.count.fetch_add(1, Ordering::Relaxed);
+        self.model.coefficients(q, workspace, out)
+    }
+}
+
+/// The reduced model in single precision. Its derivative is that of double precision: it helps Newton's
+/// method and is in no result.
+#[derive(Debug)]
+pub(super) struct SinglePrecisionModel {
+    exact: ExactModel,
+    /// Without reactions, and with nothing else that the inertia does not need.
+    inertia_model: Model,
+}
+
+impl SinglePrecisionModel {
+    pub(super) fn new(exact: &ExactModel) -> Self {
+        let model = exact.model();
+        Self {
+            inertia_model: model.without_reactions().pruned_for(&[]),
+            exact: exact.clone(),
+        }
+    }
+}
+
+impl ReducedModel for SinglePrecisionModel {
+    type Workspace = (Workspace<f32>, ExactWorkspace);
+
+    fn workspace(&self) -> Self::Workspace {
+        (self.exact.model().workspace(), self.exact.workspace())
+    }
+
+    fn reactions(&self) -> usize {
+        self.exact.reactions()
+    }
+
+    fn range(&self) -> Range {
+        self.exact.range()
+    }
+
+    fn inertia(
+        &self,
+        q: f64,
+        (workspace, _): &mut Self::Workspace,
+    ) -> Result<(f64, f64), PositionError> {
+        let mut out = Coefficients::default();
+        self.inertia_model.reduce(q as f32, workspace, &mut out)?;
+        Ok((f64::from(out.m), f64::from(out.half_dm)))
+    }
+
+    fn inertia_derivatives(
+        &self,
+        q: f64,
+        (_, workspace): &mut Self::Workspace,
+    ) -> Result<Inertia, PositionError> {
+        self.exact.inertia_derivatives(q, workspace)
+    }
+
+    fn coefficients(
+        &self,
+        q: f64,
+        (workspace, _): &mut Self::Workspace,
+        out: &mut Coefficients,
+    ) -> Result<(), PositionError> {
+        let model = self.exact.model();
+        let mut single = model.coefficient_buffer::<f32>();
+        model.reduce(q as f32, workspace, &mut single)?;
+        (out.m, out.half_dm) = (f64::from(single.m), f64::from(single.half_dm));
+        let lists = [(&mut out.a, &single.a), (&mut out.b, &single.b)];
+        for (out, single) in lists {
+            out.clear();
+            out.extend(single.iter().map(|&v| f64::from(v)));
+        }
+        Ok(())
+    }
+}
+
+/// A machine: any number of freedoms, loads, drives.
+pub(super) struct MachineEvaluator<'m> {
+    pub(super) machine: &'m Machine,
+    /// The same with the reactions that are compared, its first ones.
+    pub(super) output_machine: &'m Machine,
+    pub(super) initial_state: &'m OdeState,
+}
+
+impl Evaluator for MachineEvaluator<'_> {
+    fn evaluation(&self) -> Evaluation {
+        Evaluation::Exact
+    }
+
+    fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError> {
+        let ode = MachineOde::new(self.machine, self.initial_state.t, &self.initial_state.y)?;
+        Ok(Box::new(ode))
+    }
+
+    fn reactions(&self) -> ReactionFn<'_> {
+        let mut workspace = self.output_machine.workspace::<f64>();
+        Box::new(move |point, out| {
+            self.output_machine
+                .evaluate(point.t, &point.y, &mut workspace)?;
+            for (out, value) in out.iter_mut().zip(&workspace.inverse_dynamics().reactions) {
+                *out = *value;
+            }
+            Ok(())
+        })
+    }
+
+    fn jacobian_weight(&self) -> usize {
+        2 * self.machine.work_offset()
+    }
+
+    fn orbit(&self, start: ReducedState) -> Option<(Orbit, usize)> {
+        let orbit = Orbit::loaded(self.machine, start).ok()?;
+        let points = orbit.points;
+        Some((orbit, points))
+    }
+}
+
+/// The same machine on a table. Reactions are those of the machine at the table's states: a table of it holds none.
+pub(super) struct TableEvaluator<'m> {
+    pub(super) table: TabulatedMachine,
+    /// How long it took to make it, s.
+    pub(super) build_time: f64,
+    pub(super) accuracy: f64,
+    pub(super) exact: MachineEvaluator<'m>,
+}
+
+impl Evaluator for TableEvaluator<'_> {
+    fn evaluation(&self) -> Evaluation {
+        let [cells, ..] = self.table.cells();
+        Evaluation::Table {
+            accuracy: self.accuracy,
+            cells,
+            bytes: self.table.bytes(),
+        }
+    }
+
+    fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError> {
+        let OdeState { t, y } = self.exact.initial_state;
+        Ok(Box::new(self.table.ode(*t, y)?))
+    }
+
+    fn reactions(&self) -> ReactionFn<'_> {
+        self.exact.reactions()
+    }
+
+    fn jacobian_weight(&self) -> usize {
+        self.exact.jacobian_weight()
+    }
+
+    fn build_time(&self) -> f64 {
+        self.build_time
+    }
+
+    fn orbit(&self, _: ReducedState) -> Option<(Orbit, usize)> {
+        None
+    }
+}
+
+/// The same machine in single precision.
+pub(super) struct SinglePrecisionEvaluator<'m>(pub(super) MachineEvaluator<'m>);
+
+impl Evaluator for SinglePrecisionEvaluator<'_> {
+    fn evaluation(&self) -> Evaluation {
+        Evaluation::SinglePrecision
+    }
+
+    fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError> {
+        let machine = self.0.machine;
+        Ok(Box::new(SinglePrecisionOde {
+            machine,
+            workspace: machine.workspace(),
+            y: vec![0.0; machine.state_count()],
+            out: vec![0.0; machine.state_count()],
+            exact: MachineOde::new(machine, self.0.initial_state.t, &self.0.initial_state.y)?,
+        }))
+    }
+
+    fn reactions(&self) -> ReactionFn<'_> {
+        let output_machine = self.0.output_machine;
+        let mut workspace = output_machine.workspace::<f32>();
+        let mut y = vec![0.0; output_machine.state_count()];
+        Box::new(move |point, out| {
+            to_f32(&point.y, &mut y);
+            output_machine.evaluate(point.t, &y, &mut workspace)?;
+            for (out, &value) in out.iter_mut().zip(&workspace.inverse_dynamics().reactions) {
+                *out = f64::from(value);
+            }
+            Ok(())
+        })
+    }
+
+    fn jacobian_weight(&self) -> usize {
+        self.0.jacobian_weight()
+    }
+
+    fn orbit(&self, _: ReducedState) -> Option<(Orbit, usize)> {
+        None
+    }
+}
+
+/// A machine about to move, evaluated in single precision; its Jacobian is that of double precision.
+struct SinglePrecisionOde<'m> {
+    machine: &'m Machine,
+    workspace: MachineWorkspace<f32>,
+    y: Vec<f32>,
+    out: Vec<f32>,
+    exact: MachineOde<'m>,
+}
+
+impl OdeSystem for SinglePrecisionOde<'_> {
+    fn size(&self) -> usize {
+        self.machine.state_count()
+    }
+
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        to_f32(y, &mut self.y);
+        self.machine.evaluate(t, &self.y, &mut self.workspace)?;
+        self.machine
+            .state_derivative(&self.workspace, &mut self.out);
+        for (out, &value) in out.iter_mut().zip(&self.out) {
+            *out = f64::from(value);
+        }
+        Ok(())
+    }
+
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+        self.exact.jacobian(t, y, out)
+    }
+
+    fn error_weight(&self, state: usize) -> f64 {
+        self.exact.error_weight(state)
+    }
+}
+
+fn to_f32(y: &[f64], single: &mut [f32]) {
+    for (single, &value) in single.iter_mut().zip(y) {
+        *single = value as f32;
+    }
+}
+
+/// What a table is called.
+pub(super) fn table_evaluation(table: &TabulatedModel, accuracy: f64) -> Evaluation {
+    let ([cells, ..], [bytes, _]) = (table.cells(), table.bytes());
+    Evaluation::Table {
+        accuracy,
+        cells,
+        bytes,
+    }
+}

@@ -1,0 +1,403 @@
+//! `dwell work-precision`: what accuracy costs. Every combination of evaluation, integrator and tolerance is run on
+//! the motion of a scene; its true error is held against what it took.
+
+mod combination;
+mod evaluator;
+mod figure;
+mod reference_solution;
+mod report;
+mod run;
+mod selected_cases;
+mod subject;
+
+pub use combination::{
+    Combination, CombinationResult, Cost, CostMeasure, Effort, ErrorQuantity, Errors, Evaluation,
+    Integrator, ReferenceInfo, WorkPrecision,
+};
+pub use evaluator::{Evaluator, ModelEvaluator, ReactionFn};
+pub use selected_cases::selected_case_reports;
+
+use dwell_dynamics::{DynamicsError, Method, TabulatedMachine, TabulationError};
+use dwell_geometry::Range;
+use dwell_kinetostatics::{ExactModel, ReducedModel, TableDomain, TableError, TabulatedModel};
+use dwell_report::TableExport as _;
+use dwell_scene::Scene;
+use dwell_study::StudyError;
+use dwell_study::output::signed_png;
+use dwell_study::{Outcome, Progress, Step};
+use evaluator::{
+    MachineEvaluator, SinglePrecisionEvaluator, SinglePrecisionModel, TableEvaluator,
+    table_evaluation,
+};
+use reference_solution::ReferenceSolution;
+use run::{Run, ToleranceSeries};
+use std::time::Instant;
+use subject::Subject;
+
+/// What a table of a limited range covers beyond where the motion goes, as a part of its way.
+const TABLE_MARGIN: f64 = 0.05;
+/// A run of so many evaluations tells its time at once.
+const MAX_REPEATED_EVALUATIONS: usize = 30_000;
+/// Evaluations between two looks at the clock.
+const TIMING_PASSES: usize = 20;
+
+/// The study of a scene, with everything that is tried: `NAME-work-precision.md`, `.csv`, `.npz` and `.png`.
+///
+/// # Errors
+/// As [`measure`]; [`StudyError::Report`] when the picture cannot be drawn.
+pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, StudyError> {
+    let found = measure(scene, &Effort::full(), progress)?;
+    let name = format!("{}-work-precision", scene.name);
+    let mut outcome = Outcome {
+        summary: report::summary(scene, &found),
+        ..Outcome::default()
+    };
+    let figure = figure::figure(scene, &found, &name);
+    let files = &mut outcome.files;
+    files.add(format!("{name}.png"), signed_png(scene, &figure)?);
+    files.add(format!("{name}.csv"), report::csv(&found)?);
+    files.add(format!("{name}.npz"), report::table(&found).npz()?);
+    let document = report::document(scene, &found, &name);
+    files.add(format!("{name}.md"), document.markdown());
+    Ok(outcome)
+}
+
+/// What each combination costs on the motion of a scene, and its true error: that of `[motion]`, or one that it is
+/// set free for, followed for three periods or turns at most.
+///
+/// # Errors
+/// [`StudyError::Scene`] when the scene cannot be put together, nothing in it is free or moves, or its motion
+/// cannot be followed by two methods.
+pub fn measure(
+    scene: &Scene,
+    effort: &Effort,
+    progress: Progress<'_>,
+) -> Result<WorkPrecision, StudyError> {
+    measure_with(scene, effort, &|_| Vec::new(), progress)
+}
+
+/// Further evaluators, made of the reduced model of a motion of one freedom without loads.
+pub type ExtraEvaluators<'m> = &'m dyn Fn(&ExactModel) -> Vec<Box<dyn Evaluator>>;
+
+/// [`measure`] with further evaluators.
+///
+/// # Errors
+/// As [`measure`].
+pub fn measure_with(
+    scene: &Scene,
+    effort: &Effort,
+    extra: ExtraEvaluators<'_>,
+    progress: Progress<'_>,
+) -> Result<WorkPrecision, StudyError> {
+    let subject = Subject::new(scene)?;
+    let mut omitted = Vec::new();
+    let evaluators = evaluators(&subject, effort, extra, &mut omitted);
+    let Some(exact) = evaluators.first().map(|exact| &**exact) else {
+        return Err(subject.explain(&DynamicsError::DurationTooShort));
+    };
+    let total = Method::ALL.len() * evaluators.len() + effort.repetitions.max(1);
+    let done = |what: &str| progress(Step { total, done: what });
+    let series =
+        |evaluator: &dyn Evaluator, method: Method, reference: Option<&ToleranceSeries>| {
+            let series = ToleranceSeries::new(evaluator, &subject, method, effort, reference);
+            let name = evaluator.evaluation().name();
+            done(&format!("{name}, {}", method.name()));
+            series
+        };
+    let methods = Method::ALL.into_iter();
+    let series_by_method: Vec<ToleranceSeries> =
+        methods.map(|method| series(exact, method, None)).collect();
+    let mut reference = ReferenceSolution::new(&subject, exact, &series_by_method, effort)
+        .map_err(|e| no_reference_error(&subject, &e, &series_by_method))?;
+    let mut trials: Vec<Trial<'_>> = Vec::new();
+    for (k, evaluator) in evaluators.iter().enumerate() {
+        let rerun =
+            |reference: &ToleranceSeries| series(&**evaluator, reference.method, Some(reference));
+        let series_of_evaluator = match k {
+            0 => series_by_method.clone(),
+            _ => series_by_method.iter().map(rerun).collect(),
+        };
+        collect_trials(
+            &**evaluator,
+            &subject,
+            series_of_evaluator,
+            &mut trials,
+            &mut omitted,
+        );
+    }
+    let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &|| {
+        done("times");
+    });
+    let unit_times = unit_times.map_err(|e| subject.explain(&e))?;
+    let mut points = Vec::new();
+    for (evaluator, combination, run) in trials {
+        // What left the range of an evaluator or the mechanism has no error, and no place in the study.
+        match reference.errors(&run.states, &mut evaluator.reactions()) {
+            Ok(errors) => points.push(CombinationResult {
+                combination,
+                errors,
+                cost: cost(evaluator, &run, unit_times.evaluation),
+            }),
+            Err(error) => omitted.push(format!("{}: {error}", combination.name())),
+        }
+    }
+    Ok(WorkPrecision {
+        points,
+        omitted,
+        reference: ReferenceInfo {
+            method: reference.method,
+            error: reference.error,
+        },
+        motion_notes: subject.notes.clone(),
+        duration: subject.end(),
+        unit: subject.unit(),
+        repetitions: effort.repetitions.max(1),
+        evaluation_time: unit_times.evaluation,
+        jacobian_cost: unit_times.jacobian / unit_times.evaluation,
+    })
+}
+
+/// The runs of one evaluator, with the quadrature where the energy tells the motion.
+fn collect_trials<'e>(
+    evaluator: &'e dyn Evaluator,
+    subject: &Subject,
+    all_series: Vec<ToleranceSeries>,
+    trials: &mut Vec<Trial<'e>>,
+    omitted: &mut Vec<String>,
+) {
+    let evaluation = evaluator.evaluation();
+    let mut add = |integrator: Integrator, run: Run| {
+        let combination = Combination {
+            evaluation,
+            integrator,
+        };
+        trials.push((evaluator, combination, run));
+    };
+    for series in all_series {
+        omitted.extend(series.omitted);
+        for (tolerance, run) in series.runs {
+            add(Integrator::Steps(series.method, tolerance), run);
+        }
+    }
+    if subject.orbit.is_none() {
+        return;
+    }
+    match run::quadrature(evaluator, subject) {
+        Some(run) => add(Integrator::Quadrature, run),
+        None => omitted.push(format!(
+            "{}, quadrature: not smooth enough, or not known",
+            evaluation.name()
+        )),
+    }
+}
+
+/// All ways to evaluate the motion, the exact one first. A new one is a line here.
+fn evaluators<'s>(
+    subject: &'s Subject,
+    effort: &Effort,
+    extra: ExtraEvaluators<'_>,
+    omitted: &mut Vec<String>,
+) -> Vec<Box<dyn Evaluator + 's>> {
+    let Some(exact) = &subject.reduced else {
+        let machine = || MachineEvaluator {
+            machine: &subject.machine,
+            output_machine: &subject.output_machine,
+            initial_state: &subject.initial_state,
+        };
+        let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
+            Box::new(machine()),
+            Box::new(SinglePrecisionEvaluator(machine())),
+        ];
+        for &accuracy in &effort.table_accuracies {
+            let started = Instant::now();
+            match TabulatedMachine::new(
+                &subject.machine,
+                accuracy,
+                table_domain(
+                    subject.machine.model().plan().range(),
+                    subject.coordinate_range,
+                ),
+            ) {
+                Ok(table) => all.push(Box::new(TableEvaluator {
+                    build_time: started.elapsed().as_secs_f64(),
+                    table,
+                    accuracy,
+                    exact: machine(),
+                })),
+                Err(error @ TabulationError::Table(_)) => {
+                    omitted.push(format!("table {accuracy:.0e}: {error}"));
+                }
+                Err(error) => {
+                    omitted.push(format!("tables: {error}"));
+                    break;
+                }
+            }
+        }
+        return all;
+    };
+    let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
+        Box::new(ModelEvaluator {
+            model: exact.clone(),
+            evaluation: Evaluation::Exact,
+            build_time: 0.0,
+        }),
+        Box::new(ModelEvaluator {
+            model: SinglePrecisionModel::new(exact),
+            evaluation: Evaluation::SinglePrecision,
+            build_time: 0.0,
+        }),
+    ];
+    for &accuracy in &effort.table_accuracies {
+        match build_table(exact, accuracy, subject.coordinate_range) {
+            Ok((model, build_time)) => all.push(Box::new(ModelEvaluator {
+                evaluation: table_evaluation(&model, accuracy),
+                model,
+                build_time,
+            })),
+            Err(error) => omitted.push(format!("table {accuracy:.0e}: {error}")),
+        }
+    }
+    all.extend(extra(exact));
+    all
+}
+
+/// A table that reaches as far as the motion, and the time of making it, s.
+fn build_table(
+    exact: &ExactModel,
+    accuracy: f64,
+    coordinate_range: [f64; 2],
+) -> Result<(TabulatedModel, f64), TableError> {
+    let started = Instant::now();
+    let table = TabulatedModel::new(
+        exact,
+        accuracy,
+        table_domain(exact.range(), coordinate_range),
+    )?;
+    Ok((table, started.elapsed().as_secs_f64()))
+}
+
+/// As far as a motion goes, and somewhat farther.
+fn table_domain(range: Range, [low, high]: [f64; 2]) -> TableDomain {
+    match (range.period(), range.limits()) {
+        (Some(_), _) => TableDomain::Full,
+        (None, limits) => {
+            let margin = TABLE_MARGIN * (high - low);
+            let (min, max) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+            TableDomain::Between((low - margin).max(min), (high + margin).min(max))
+        }
+    }
+}
+
+fn cost(evaluator: &dyn Evaluator, run: &Run, evaluation_time: f64) -> Cost {
+    let statistics = run.statistics;
+    Cost {
+        steps: statistics.steps,
+        rejected: statistics.rejected_steps,
+        evaluations: statistics.evaluations,
+        jacobians: statistics.jacobians,
+        weighted_evaluations: statistics.evaluations
+            + evaluator.jacobian_weight() * statistics.jacobians,
+        time: run.seconds / evaluation_time,
+        build_time: evaluator.build_time() / evaluation_time,
+    }
+}
+
+/// What one evaluation and one Jacobian take, s.
+struct UnitTimes {
+    evaluation: f64,
+    jacobian: f64,
+}
+
+/// A combination with its evaluator and the best of its runs.
+type Trial<'e> = (&'e dyn Evaluator, Combination, Run);
+
+/// Runs everything again, one after the other, with the unit between them, and keeps the least times.
+fn time_runs(
+    subject: &Subject,
+    reference: &ReferenceSolution<'_>,
+    exact: &dyn Evaluator,
+    trials: &mut [Trial<'_>],
+    effort: &Effort,
+    done: &dyn Fn(),
+) -> Result<UnitTimes, DynamicsError> {
+    let mut unit_times = UnitTimes {
+        evaluation: f64::INFINITY,
+        jacobian: f64::INFINITY,
+    };
+    unit_times.update(subject, reference, exact)?;
+    for _ in 1..effort.repetitions {
+        for (k, (evaluator, combination, best_run)) in trials.iter_mut().enumerate() {
+            if k % 16 == 0 {
+                unit_times.update(subject, reference, exact)?;
+            }
+            if best_run.statistics.evaluations > MAX_REPEATED_EVALUATIONS {
+                continue;
+            }
+            let rerun = match combination.integrator {
+                Integrator::Steps(method, tolerance) => {
+                    run::solve(*evaluator, subject, (method, tolerance), usize::MAX).ok()
+                }
+                Integrator::Quadrature => run::quadrature(*evaluator, subject),
+            };
+            let seconds = rerun.map_or(f64::INFINITY, |run| run.seconds);
+            best_run.seconds = best_run.seconds.min(seconds);
+        }
+        done();
+    }
+    unit_times.update(subject, reference, exact)?;
+    done();
+    Ok(unit_times)
+}
+
+impl UnitTimes {
+    /// Evaluates at every state of the truth: each waits for no other, but has its own place.
+    fn update(
+        &mut self,
+        subject: &Subject,
+        reference: &ReferenceSolution<'_>,
+        exact: &dyn Evaluator,
+    ) -> Result<(), DynamicsError> {
+        let mut system = exact.system()?;
+        let n = system.size();
+        let (mut out, mut matrix) = (vec![0.0; n], vec![0.0; n * n]);
+        let count = reference.states.len().max(1) as f64;
+        for _ in 0..TIMING_PASSES {
+            let started = Instant::now();
+            for (y, &t) in reference.states.iter().zip(&subject.times) {
+                system.rhs(t, y, &mut out)?;
+            }
+            let seconds = started.elapsed().as_secs_f64() / count;
+            self.evaluation = self.evaluation.min(seconds.max(f64::MIN_POSITIVE));
+            let started = Instant::now();
+            for (y, &t) in reference.states.iter().zip(&subject.times) {
+                system.jacobian(t, y, &mut matrix)?;
+            }
+            let seconds = started.elapsed().as_secs_f64() / count;
+            self.jacobian = self.jacobian.min(seconds);
+        }
+        Ok(())
+    }
+}
+
+/// Why there is no truth: no two methods get to the end.
+fn no_reference_error(
+    subject: &Subject,
+    error: &DynamicsError,
+    all_series: &[ToleranceSeries],
+) -> StudyError {
+    let reasons = all_series.iter().flat_map(|series| series.omitted.first());
+    let labels: Vec<_> = reasons
+        .take(4)
+        .map(|reasons| (dwell_scene::SceneLocation::Duration, reasons.clone()))
+        .collect();
+    if labels.is_empty() {
+        return subject.explain(error);
+    }
+    let help =
+        "a shorter `duration`, or what is less stiff (a friction that fades over a larger speed)";
+    let message = "no two methods reach the end of this motion, so no error can be determined";
+    let error = subject
+        .scene
+        .error(message.to_owned(), Some(help.to_owned()), &labels);
+    error.into()
+}

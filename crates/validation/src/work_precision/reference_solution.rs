@@ -1,0 +1,273 @@
+//! What the errors are measured from, and how well that is known.
+//!
+//! Of a conservative motion of one freedom it is the quadrature, which knows no integrator; how well, tells the
+//! same of a start changed by its rounding. Of all others it is the method that changes least from one tolerance
+//! to the next, at its finest, and how well, tells the second best of another method.
+
+use super::combination::{Effort, Errors};
+use super::evaluator::{Evaluator, ReactionFn};
+use super::run::{ToleranceSeries, orbit_states, solve};
+use super::subject::Subject;
+use dwell_dynamics::{DynamicsError, MachineWorkspace, Orbit};
+
+/// Below this no integrator keeps a tolerance in double precision.
+const MIN_TOLERANCE: f64 = 1e-14;
+/// Steps that a truth may take, in those of any other run.
+const STEP_FACTOR: usize = 3;
+/// Roundings of a start, relative.
+const START_ROUNDING: f64 = 2.0 * f64::EPSILON;
+/// Roundings of a result, relative: of sums of energies and forces, and of a phase that Newton's method finds.
+const RESULT_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// The truth with what is compared with it.
+pub(super) struct ReferenceSolution<'s> {
+    subject: &'s Subject,
+    workspace: MachineWorkspace<f64>,
+    pub(super) method: String,
+    pub(super) states: Vec<Vec<f64>>,
+    reactions: Vec<Vec<f64>>,
+    /// By reaction: the largest of its unit.
+    scales: Vec<f64>,
+    /// The largest kinetic energy, J, and the energy at the start.
+    max_kinetic_energy: f64,
+    initial_energy: f64,
+    pub(super) error: Errors,
+}
+
+/// A motion, how it was found, and others that tell how well it is known.
+struct Candidate {
+    method: String,
+    states: Vec<Vec<f64>>,
+    comparisons: Vec<Vec<Vec<f64>>>,
+    /// What these do not tell, rad or m.
+    extra_error: f64,
+}
+
+impl<'s> ReferenceSolution<'s> {
+    /// Finds the truth: `ladders` are the runs of the mechanism itself by each method.
+    ///
+    /// # Errors
+    /// [`DynamicsError`] where there are no two runs to be compared, or a state cannot be evaluated.
+    pub(super) fn new(
+        subject: &'s Subject,
+        exact: &dyn Evaluator,
+        all_series: &[ToleranceSeries],
+        effort: &Effort,
+    ) -> Result<Self, DynamicsError> {
+        let orbit = subject.orbit.as_ref();
+        let Candidate {
+            method: by,
+            states,
+            comparisons: others,
+            extra_error: unknown,
+        } = match orbit.and_then(|orbit| from_quadrature(subject, orbit)) {
+            Some(found) => found,
+            None => from_integrators(subject, exact, all_series, effort)?,
+        };
+        let mut reference = Self {
+            subject,
+            workspace: subject.machine.workspace(),
+            method: by,
+            states,
+            reactions: Vec::new(),
+            scales: Vec::new(),
+            max_kinetic_energy: 0.0,
+            initial_energy: 0.0,
+            error: Errors {
+                coordinate: 0.0,
+                energy: 0.0,
+                reaction: 0.0,
+            },
+        };
+        reference.evaluate_reference(exact)?;
+        for other in &others {
+            let errors = reference.errors(other, &mut exact.reactions())?;
+            reference.error.coordinate = reference.error.coordinate.max(errors.coordinate);
+            reference.error.reaction = reference.error.reaction.max(errors.reaction);
+        }
+        reference.error.coordinate += unknown;
+        reference.error.reaction += RESULT_ROUNDING;
+        if reference.scales.iter().all(|scale| *scale == 0.0) {
+            reference.error.reaction = f64::NAN;
+        }
+        Ok(reference)
+    }
+
+    /// Evaluates everything at the states of the truth.
+    fn evaluate_reference(&mut self, exact: &dyn Evaluator) -> Result<(), DynamicsError> {
+        let [kinetic, potential] = self.energies(0.0, &self.subject.initial_state.y)?;
+        (self.max_kinetic_energy, self.initial_energy) = (kinetic, kinetic + potential);
+        let mut size = kinetic + potential.abs();
+        let mut find = exact.reactions();
+        let count = self.subject.reactions.len();
+        let mut max_abs = vec![0.0_f64; count];
+        for k in 0..self.states.len() {
+            let t = self.subject.times[k];
+            let y = std::mem::take(&mut self.states[k]);
+            let [kinetic, potential] = self.energies(t, &y)?;
+            self.max_kinetic_energy = self.max_kinetic_energy.max(kinetic);
+            size = size.max(kinetic + potential.abs());
+            let mut reactions = vec![0.0; count];
+            let point = dwell_dynamics::OdeState { t, y };
+            find(&point, &mut reactions)?;
+            self.states[k] = point.y;
+            for (max, value) in max_abs.iter_mut().zip(&reactions) {
+                *max = max.max(value.abs());
+            }
+            self.reactions.push(reactions);
+        }
+        let unit = |k: usize| self.subject.reaction_unit(k);
+        let of_unit = |k: usize| {
+            let same = (0..count).filter(|&other| unit(other) == unit(k));
+            same.map(|other| max_abs[other]).fold(0.0, f64::max)
+        };
+        self.scales = (0..count).map(of_unit).collect();
+        self.error.energy = RESULT_ROUNDING * size / self.max_kinetic_energy;
+        Ok(())
+    }
+
+    /// Kinetic energy, and potential energy less the works, at a state of the exact machine, J.
+    fn energies(&mut self, t: f64, y: &[f64]) -> Result<[f64; 2], DynamicsError> {
+        let machine = &self.subject.machine;
+        machine.evaluate(t, y, &mut self.workspace)?;
+        let [kinetic, potential] = machine.energy(&self.workspace);
+        let works: f64 = y[machine.work_offset()..].iter().sum();
+        Ok([kinetic, potential - works])
+    }
+
+    /// The errors of some states at the subject's times, with reactions as they are evaluated there.
+    pub(super) fn errors(
+        &mut self,
+        states: &[Vec<f64>],
+        find: &mut ReactionFn<'_>,
+    ) -> Result<Errors, DynamicsError> {
+        let no_reactions = self.scales.iter().all(|scale| *scale == 0.0);
+        let mut errors = Errors {
+            coordinate: difference(self.subject, states, &self.states),
+            energy: 0.0,
+            reaction: if no_reactions { f64::NAN } else { 0.0 },
+        };
+        let mut reactions = vec![0.0; self.scales.len()];
+        for (k, y) in states.iter().enumerate() {
+            let t = self.subject.times[k];
+            let [kinetic, rest] = self.energies(t, y)?;
+            let drift = (kinetic + rest - self.initial_energy).abs() / self.max_kinetic_energy;
+            errors.energy = nan_max(errors.energy, drift);
+            find(
+                &dwell_dynamics::OdeState { t, y: y.clone() },
+                &mut reactions,
+            )?;
+            let pairs = reactions.iter().zip(&self.reactions[k]).zip(&self.scales);
+            for ((value, expected), scale) in pairs.filter(|(_, scale)| **scale > 0.0) {
+                errors.reaction = nan_max(errors.reaction, (value - expected).abs() / scale);
+            }
+        }
+        Ok(errors)
+    }
+}
+
+/// The larger one; what is no number stays none.
+fn nan_max(max: f64, value: f64) -> f64 {
+    if value > max || value.is_nan() {
+        value
+    } else {
+        max
+    }
+}
+
+/// How far two motions are apart in the free coordinates, rad or m.
+fn difference(subject: &Subject, one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
+    let free = subject.machine.free().len();
+    let mut max = 0.0;
+    for (one, other) in one.iter().zip(other) {
+        for (a, b) in one.iter().zip(other).take(free) {
+            max = nan_max(max, (a - b).abs());
+        }
+    }
+    max
+}
+
+fn from_quadrature(subject: &Subject, orbit: &Orbit) -> Option<Candidate> {
+    let state = subject.reduced_state();
+    let mut others = Vec::new();
+    for sign in [-1.0, 1.0] {
+        let mut perturbed = state;
+        perturbed.q_dot *= 1.0 + sign * START_ROUNDING;
+        // At rest it is the place that counts.
+        if state.q_dot == 0.0 {
+            perturbed.q += sign * START_ROUNDING * (1.0 + state.q.abs());
+        }
+        let perturbed = Orbit::loaded(&subject.machine, perturbed).ok()?;
+        others.push(orbit_states(&perturbed, &subject.times));
+    }
+    let states = orbit_states(orbit, &subject.times);
+    let [low, high] = subject.coordinate_range;
+    let max_velocity = states.iter().fold(0.0_f64, |max, y| max.max(y[1].abs()));
+    let max_coordinate = low.abs().max(high.abs()).max(high - low);
+    Some(Candidate {
+        method: format!(
+            "quadrature over the coordinate ({} points), which uses no integrator; its error is how much it changes when the initial state is perturbed by rounding",
+            orbit.points
+        ),
+        states,
+        comparisons: others,
+        extra_error: orbit.tail * orbit.period * max_velocity + RESULT_ROUNDING * max_coordinate,
+    })
+}
+
+/// The run of the method that changes least from one tolerance to the next, with that of the second best.
+fn from_integrators(
+    subject: &Subject,
+    exact: &dyn Evaluator,
+    all_series: &[ToleranceSeries],
+    effort: &Effort,
+) -> Result<Candidate, DynamicsError> {
+    let mut found: Vec<(f64, String, Vec<Vec<f64>>)> = Vec::new();
+    for series in all_series {
+        let [.., (_, before), (fine, last)] = series.runs.as_slice() else {
+            continue;
+        };
+        let finer_tolerance = (0.1 * fine).max(MIN_TOLERANCE);
+        let max_steps = STEP_FACTOR * effort.max_steps;
+        let at = (series.method, finer_tolerance);
+        // What the budget stopped before the last tolerance is not the best.
+        let complete =
+            effort.finest_tolerance() == Some(*fine) && series.predicted_steps() < max_steps as f64;
+        let finer_run = match complete && finer_tolerance < 0.5 * fine {
+            true => solve(exact, subject, at, max_steps).ok(),
+            false => None,
+        };
+        let name = |tolerance: f64| format!("{} at {tolerance:.0e}", series.method.name());
+        let (change, name_text, states) = match finer_run {
+            Some(finer_run) => (
+                difference(subject, &finer_run.states, &last.states),
+                name(finer_tolerance),
+                finer_run.states,
+            ),
+            // A change over two decades is a change over one, and more.
+            None => (
+                difference(subject, &before.states, &last.states),
+                name(*fine),
+                last.states.clone(),
+            ),
+        };
+        if change.is_finite() {
+            found.push((change, name_text, states));
+        }
+    }
+    found.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
+    let mut found = found.into_iter();
+    let (Some((_, by, states)), Some((_, check, other))) = (found.next(), found.next()) else {
+        return Err(DynamicsError::MaxStepsReached {
+            t: 0.0,
+            max_steps: effort.max_steps,
+        });
+    };
+    let max_coordinate = states.iter().map(|y| y[0].abs()).fold(0.0, f64::max);
+    Ok(Candidate {
+        method: format!("{by}, known as well as it agrees with {check}"),
+        states,
+        comparisons: vec![other],
+        extra_error: RESULT_ROUNDING * max_coordinate,
+    })
+}

@@ -1,0 +1,371 @@
+//! The words and tables of a study.
+
+use super::combination::{
+    CombinationResult, CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
+    describe_error, digits_or_dash,
+};
+use dwell_dynamics::Method;
+use dwell_report::TableExport as _;
+use dwell_report::{Block, Column, Document, Table};
+use dwell_scene::Scene;
+use dwell_study::StudyError;
+use dwell_study::number_format::{count, digits};
+use dwell_study::output::provenance_line;
+use std::fmt::Write as _;
+
+/// Accuracies for which the cheapest combination is listed.
+const ACCURACIES: [f64; 4] = [1e-3, 1e-6, 1e-9, 1e-12];
+
+/// All numbers. The integrators are numbered as `Method::ALL`, quadrature is −1; evaluations are 0 exact, 1 single
+/// precision, 2 table, 3 other.
+pub(super) fn table(found: &WorkPrecision) -> Table {
+    let mut table = numbers(found);
+    let coded = ["evaluation", "integrator"].map(|name| Column::new(name, ""));
+    table.columns.splice(0..0, coded);
+    for (row, point) in table.rows.iter_mut().zip(&found.points) {
+        let evaluation = match point.combination.evaluation {
+            Evaluation::Exact => 0.0,
+            Evaluation::SinglePrecision => 1.0,
+            Evaluation::Table { .. } => 2.0,
+            Evaluation::Other(_) => 3.0,
+        };
+        let integrator = match point.combination.integrator {
+            Integrator::Steps(its_method, _) => {
+                let position = Method::ALL.iter().position(|&method| method == its_method);
+                position.map_or(f64::NAN, |position| position as f64)
+            }
+            Integrator::Quadrature => -1.0,
+        };
+        row.splice(0..0, [evaluation, integrator]);
+    }
+    table
+}
+
+/// All numbers, with names before them.
+pub(super) fn csv(found: &WorkPrecision) -> Result<String, StudyError> {
+    let text = numbers(found).csv()?;
+    let mut lines = text.lines();
+    let mut csv = format!(
+        "evaluation,integrator,{}\n",
+        lines.next().unwrap_or_default()
+    );
+    for (line, point) in lines.zip(&found.points) {
+        let combination = point.combination;
+        let [evaluation, integrator] = [
+            combination.evaluation.name(),
+            combination.integrator.name().to_owned(),
+        ];
+        // Writing to a string cannot fail.
+        let _ = writeln!(csv, "{evaluation},{integrator},{line}");
+    }
+    Ok(csv)
+}
+
+fn numbers(found: &WorkPrecision) -> Table {
+    let unit = found.unit.replace(' ', "_");
+    let columns = [
+        ("tolerance", ""),
+        ("table_accuracy", ""),
+        ("table_cells", ""),
+        ("table_bytes", ""),
+        ("steps", ""),
+        ("rejected", ""),
+        ("evaluations", ""),
+        ("jacobians", ""),
+        ("weighted_evaluations", ""),
+        ("time", "evaluations"),
+        ("time_with_build", "evaluations"),
+        ("coordinate_error", unit.as_str()),
+        ("energy_error", ""),
+        ("reaction_error", ""),
+        ("coordinate_below_reference_error", ""),
+        ("energy_below_reference_error", ""),
+        ("reaction_below_reference_error", ""),
+    ];
+    let row =
+        |point: &CombinationResult| {
+            let [accuracy, cells, bytes] = match point.combination.evaluation {
+                Evaluation::Table {
+                    accuracy,
+                    cells,
+                    bytes,
+                } => [accuracy, cells as f64, bytes as f64],
+                _ => [f64::NAN; 3],
+            };
+            let cost = point.cost;
+            let mut row = vec![
+                point.combination.integrator.tolerance().unwrap_or(f64::NAN),
+                accuracy,
+                cells,
+                bytes,
+            ];
+            let counts = [
+                cost.steps,
+                cost.rejected,
+                cost.evaluations,
+                cost.jacobians,
+                cost.weighted_evaluations,
+            ];
+            row.extend(counts.map(|count| count as f64));
+            row.extend([cost.time, cost.of(CostMeasure::TimeWithBuild)]);
+            row.extend(ErrorQuantity::ALL.map(|quantity| point.errors.of(quantity)));
+            row.extend(ErrorQuantity::ALL.map(|quantity| {
+                f64::from(u8::from(found.is_below_reference_error(point, quantity)))
+            }));
+            row
+        };
+    Table {
+        columns: columns.map(|(n, u)| Column::new(n, u)).to_vec(),
+        rows: found.points.iter().map(row).collect(),
+    }
+}
+
+fn quantity_name(quantity: ErrorQuantity) -> &'static str {
+    match quantity {
+        ErrorQuantity::Coordinate => "coordinate",
+        ErrorQuantity::Energy => "energy",
+        ErrorQuantity::Reaction => "worst reaction",
+    }
+}
+
+/// A point in the cells of a front's table.
+fn cells(found: &WorkPrecision, result: &CombinationResult) -> Vec<String> {
+    let mut cells = vec![
+        result.combination.name(),
+        result.cost.steps.to_string(),
+        result.cost.weighted_evaluations.to_string(),
+        digits(result.cost.time, 3),
+        digits(result.cost.of(CostMeasure::TimeWithBuild), 3),
+    ];
+    cells.extend(
+        ErrorQuantity::ALL
+            .map(|q| describe_error(result.errors.of(q), found.reference.error.of(q))),
+    );
+    cells
+}
+
+fn front_table(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -> Block {
+    let coordinate = format!("error of the coordinate, {}", found.unit);
+    let header = [
+        "combination",
+        "steps",
+        "evaluations",
+        "time",
+        "time with making",
+        coordinate.as_str(),
+        "energy drift",
+        "worst reaction",
+    ];
+    let front = found.pareto_front(quantity, measure);
+    Block::Table {
+        header: header.map(str::to_owned).to_vec(),
+        rows: front
+            .iter()
+            .map(|&k| cells(found, &found.points[k]))
+            .collect(),
+    }
+}
+
+/// The cheapest combination in words: what it is, and what it costs.
+fn cheapest(
+    found: &WorkPrecision,
+    quantity: ErrorQuantity,
+    measure: CostMeasure,
+    accuracy: f64,
+) -> String {
+    let Some(k) = found.cheapest(quantity, measure, accuracy) else {
+        let none = match found.reference.error.of(quantity) > accuracy {
+            true => "not known",
+            false => "none",
+        };
+        return none.to_owned();
+    };
+    let point = &found.points[k];
+    format!(
+        "{} ({})",
+        point.combination.name(),
+        digits(point.cost.of(measure), 3)
+    )
+}
+
+/// The page of a study.
+pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Document {
+    let mut blocks = vec![
+        Block::Text(intro(scene, found)),
+        Block::Figure {
+            file: format!("{file}.png"),
+            alt: "Cost over true error of every combination".to_owned(),
+            caption: String::new(),
+        },
+        Block::Heading("The cheapest for an accuracy".to_owned()),
+        Block::Table {
+            header: [
+                "error of",
+                "at most",
+                "by evaluations",
+                "by time, all made",
+                "by time with making",
+            ]
+            .map(str::to_owned)
+            .to_vec(),
+            rows: ErrorQuantity::ALL
+                .into_iter()
+                .flat_map(|quantity| {
+                    ACCURACIES.map(|accuracy| cheapest_row(found, quantity, accuracy))
+                })
+                .collect(),
+        },
+        Block::Text(quadrature(found)),
+    ];
+    for (heading, quantity, price) in [
+        (
+            "Front: coordinate over evaluations",
+            ErrorQuantity::Coordinate,
+            CostMeasure::Evaluations,
+        ),
+        (
+            "Front: coordinate over time with making",
+            ErrorQuantity::Coordinate,
+            CostMeasure::TimeWithBuild,
+        ),
+        (
+            "Front: coordinate over time, all made",
+            ErrorQuantity::Coordinate,
+            CostMeasure::Time,
+        ),
+        (
+            "Front: energy over evaluations",
+            ErrorQuantity::Energy,
+            CostMeasure::Evaluations,
+        ),
+        (
+            "Front: worst reaction over evaluations",
+            ErrorQuantity::Reaction,
+            CostMeasure::Evaluations,
+        ),
+    ] {
+        blocks.push(Block::Heading(heading.to_owned()));
+        blocks.push(front_table(found, quantity, price));
+    }
+    if !found.omitted.is_empty() {
+        blocks.push(Block::Heading("Left out".to_owned()));
+        let lines: Vec<String> = found.omitted.iter().map(|why| format!("- {why}")).collect();
+        blocks.push(Block::Text(lines.join("\n")));
+    }
+    Document {
+        title: format!("What accuracy costs: {}", scene.title),
+        blocks,
+    }
+}
+
+fn cheapest_row(found: &WorkPrecision, quantity: ErrorQuantity, accuracy: f64) -> Vec<String> {
+    let measures = [
+        CostMeasure::Evaluations,
+        CostMeasure::Time,
+        CostMeasure::TimeWithBuild,
+    ];
+    let mut row = vec![
+        quantity_name(quantity).to_owned(),
+        format!("{accuracy:.0e}"),
+    ];
+    row.extend(measures.map(|measure| cheapest(found, quantity, measure, accuracy)));
+    row
+}
+
+fn intro(scene: &Scene, found: &WorkPrecision) -> String {
+    let reference_error = found.reference.error;
+    let mut text = format!(
+        "{}.\n\nFollowed from t = 0 to {} s; errors are the largest at 50 times spread over it, by dense output.\n",
+        provenance_line(scene),
+        digits(found.duration, 7)
+    );
+    for line in &found.motion_notes {
+        let _ = write!(text, "\n- {line}");
+    }
+    let _ = write!(
+        text,
+        "\n\nReference: {}. Its error is {} {} in the coordinate, {} of the largest kinetic energy and {} of the largest reaction; smaller errors are reported as below that.\n\nAn *evaluation* is one evaluation of the equation of motion; a Jacobian counts as its dual-number evaluations. *Time* is in units of one exact evaluation in double precision, measured between the runs ({} ns here; a Jacobian takes {} of them): the minimum of {}. *With build* adds the time to build the table once.",
+        found.reference.method,
+        digits(reference_error.coordinate, 2),
+        found.unit,
+        digits(reference_error.energy, 2),
+        digits_or_dash(reference_error.reaction, 2),
+        digits(found.evaluation_time * 1e9, 2),
+        digits(found.jacobian_cost, 2),
+        count(found.repetitions, "run"),
+    );
+    text
+}
+
+fn quadrature(found: &WorkPrecision) -> String {
+    match found.quadrature() {
+        Some(point) => format!(
+            "The motion follows from its energy: quadrature computes all of it with {} evaluations, in the time of {}, with errors of {}, {} and {}. No time-stepping method is competitive, so the Pareto fronts show integrators only.",
+            point.cost.weighted_evaluations,
+            digits(point.cost.time, 3),
+            describe_error(point.errors.coordinate, found.reference.error.coordinate),
+            describe_error(point.errors.energy, found.reference.error.energy),
+            describe_error(point.errors.reaction, found.reference.error.reaction),
+        ),
+        None => "Quadrature does not apply: the motion is not conservative, not periodic, or has several degrees of freedom."
+            .to_owned(),
+    }
+}
+
+/// What the terminal shows.
+pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
+    let reference_error = found.reference.error;
+    let mut text = format!(
+        "{}: {} combinations over {} s\n",
+        scene.title.trim_end_matches('.'),
+        found.points.len(),
+        digits(found.duration, 6)
+    );
+    for line in &found.motion_notes {
+        let _ = writeln!(text, "  {line}");
+    }
+    let _ = writeln!(
+        text,
+        "  reference: {}\n  its error: {} {}, {} of the energy, {} of the reactions",
+        found.reference.method,
+        digits(reference_error.coordinate, 1),
+        found.unit,
+        digits(reference_error.energy, 1),
+        digits_or_dash(reference_error.reaction, 1)
+    );
+    for accuracy in ACCURACIES {
+        let measures = [
+            CostMeasure::Evaluations,
+            CostMeasure::Time,
+            CostMeasure::TimeWithBuild,
+        ];
+        let [counted, once_built, with_build] =
+            measures.map(|measure| cheapest(found, ErrorQuantity::Coordinate, measure, accuracy));
+        let _ = write!(
+            text,
+            "  {accuracy:.0e} {}: evaluations {counted}; time {with_build}",
+            found.unit
+        );
+        let build_text = if once_built == with_build {
+            String::new()
+        } else {
+            format!("; once tables are made {once_built}")
+        };
+        let _ = writeln!(text, "{build_text}");
+    }
+    if let Some(point) = found.quadrature() {
+        let _ = writeln!(
+            text,
+            "  quadrature, which the energy of this motion allows: {} evaluations, in time {}",
+            point.cost.weighted_evaluations,
+            digits(point.cost.time, 3)
+        );
+    }
+    for why in found.omitted.iter().take(8) {
+        let _ = writeln!(text, "  left out: {why}");
+    }
+    if found.omitted.len() > 8 {
+        let _ = writeln!(text, "  and {} more, in the page", found.omitted.len() - 8);
+    }
+    text
+}

@@ -1,0 +1,169 @@
+//! One combination after another.
+
+use super::combination::Effort;
+use super::evaluator::Evaluator;
+use super::subject::Subject;
+use dwell_dynamics::{
+    DenseOutput, DynamicsError, Method, OdeState, Options, Orbit, ReducedState, Statistics,
+    StepControl, integrate,
+};
+use std::time::Instant;
+
+/// What is not the mechanism itself may take so many times the steps that it does: its values are not
+/// smooth below its accuracy, where an integrator finds no end.
+const NON_SMOOTH_STEP_FACTOR: usize = 3;
+const EXTRA_STEPS: usize = 200;
+/// A tolerance so far below what an evaluation keeps gains nothing.
+const MIN_TOLERANCE_RATIO: f64 = 1e-2;
+
+/// The states at the subject's times, and what they took.
+#[derive(Debug, Clone)]
+pub(super) struct Run {
+    pub(super) states: Vec<Vec<f64>>,
+    pub(super) statistics: Statistics,
+    pub(super) seconds: f64,
+}
+
+/// The runs of one method with one evaluator, from the coarsest tolerance on.
+#[derive(Debug, Clone)]
+pub(super) struct ToleranceSeries {
+    pub(super) method: Method,
+    pub(super) runs: Vec<(f64, Run)>,
+    /// What was left out, and why.
+    pub(super) omitted: Vec<String>,
+}
+
+/// Follows the motion at one tolerance.
+pub(super) fn solve(
+    evaluator: &dyn Evaluator,
+    subject: &Subject,
+    (method, tolerance): (Method, f64),
+    max_steps: usize,
+) -> Result<Run, DynamicsError> {
+    let options = Options {
+        max_steps,
+        ..Options::new(method, tolerance)
+    };
+    let mut system = evaluator.system()?;
+    let mut states: Vec<Vec<f64>> = Vec::with_capacity(subject.times.len());
+    let mut observer = |_: &OdeState, current: &OdeState, dense: DenseOutput<'_>| {
+        while let Some(&t) = subject.times.get(states.len()).filter(|t| **t <= current.t) {
+            let mut y = current.y.clone();
+            if t < current.t {
+                dense(t, &mut y)?;
+            }
+            states.push(y);
+        }
+        Ok(StepControl::Continue)
+    };
+    let (start, end) = (&subject.initial_state, Some(subject.end()));
+    let started = Instant::now();
+    let termination = integrate(&mut *system, start, end, &options, &mut observer)?;
+    let seconds = started.elapsed().as_secs_f64();
+    match termination.error {
+        Some(error) => Err(error),
+        None if states.len() < subject.times.len() => Err(DynamicsError::DurationTooShort),
+        None => Ok(Run {
+            states,
+            statistics: termination.statistics,
+            seconds,
+        }),
+    }
+}
+
+/// The motion by quadrature.
+pub(super) fn quadrature(evaluator: &dyn Evaluator, subject: &Subject) -> Option<Run> {
+    let started = Instant::now();
+    let (orbit, evaluations) = evaluator.orbit(subject.reduced_state())?;
+    let states = orbit_states(&orbit, &subject.times);
+    Some(Run {
+        states,
+        seconds: started.elapsed().as_secs_f64(),
+        statistics: Statistics {
+            evaluations,
+            ..Statistics::default()
+        },
+    })
+}
+
+/// The states of an orbit.
+pub(super) fn orbit_states(orbit: &Orbit, times: &[f64]) -> Vec<Vec<f64>> {
+    let state = |&t: &f64| {
+        let ReducedState { q, q_dot, .. } = orbit.state_at(t);
+        vec![q, q_dot]
+    };
+    times.iter().map(state).collect()
+}
+
+impl ToleranceSeries {
+    /// Runs a method through the tolerances. `exact` is what it took with the mechanism itself.
+    pub(super) fn new(
+        evaluator: &dyn Evaluator,
+        subject: &Subject,
+        method: Method,
+        effort: &Effort,
+        exact: Option<&Self>,
+    ) -> Self {
+        let mut series = Self {
+            method,
+            runs: Vec::new(),
+            omitted: Vec::new(),
+        };
+        let evaluation = evaluator.evaluation();
+        for power in &effort.tolerance_exponents {
+            let tolerance = 10_f64.powi(*power);
+            let name = format!(
+                "{}, {} at {tolerance:.0e}",
+                evaluation.name(),
+                method.name()
+            );
+            if tolerance < MIN_TOLERANCE_RATIO * evaluation.relative_error() {
+                break;
+            }
+            let max_steps = match exact {
+                None => effort.max_steps,
+                Some(exact) => match exact.run_at(tolerance) {
+                    // Why, has been said of the mechanism itself.
+                    None => continue,
+                    Some(run) => NON_SMOOTH_STEP_FACTOR * run.statistics.steps + EXTRA_STEPS,
+                },
+            };
+            let non_smooth_text = match exact {
+                None => "",
+                Some(_) => ", far more than of the mechanism itself: it is not smooth there",
+            };
+            let too_many_steps =
+                || format!("{name} and finer: more than {max_steps} steps{non_smooth_text}");
+            if series.predicted_steps() > max_steps as f64 {
+                series.omitted.push(too_many_steps());
+                break;
+            }
+            match solve(evaluator, subject, (method, tolerance), max_steps) {
+                Ok(run) => series.runs.push((tolerance, run)),
+                Err(DynamicsError::MaxStepsReached { .. }) => {
+                    series.omitted.push(too_many_steps());
+                    break;
+                }
+                Err(error) => series.omitted.push(format!("{name}: {error}")),
+            }
+        }
+        series
+    }
+
+    /// The steps that the next tolerance will take, if they go on growing as they have grown.
+    pub(super) fn predicted_steps(&self) -> f64 {
+        let steps = |(_, run): &(f64, Run)| run.statistics.steps as f64;
+        match self.runs.as_slice() {
+            [.., before, last] => steps(last) * (steps(last) / steps(before)).max(1.0),
+            _ => 0.0,
+        }
+    }
+
+    fn run_at(&self, tolerance: f64) -> Option<&Run> {
+        let found = self
+            .runs
+            .iter()
+            .find(|(run_tolerance, _)| *run_tolerance == tolerance);
+        found.map(|(_, run)| run)
+    }
+}

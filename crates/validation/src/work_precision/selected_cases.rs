@@ -1,0 +1,113 @@
+//! The study as a part of the reports: three telling cases, and a text that every machine reproduces.
+
+use super::combination::{
+    CostMeasure, Effort, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
+};
+use super::{figure, measure, report};
+use dwell_report::Files;
+use dwell_scene::Scene;
+use dwell_study::StudyError;
+use dwell_study::number_format::digits;
+use dwell_study::output::signed_png;
+use dwell_study::{Outcome, no_progress};
+use rayon::prelude::*;
+use std::fmt::Write as _;
+
+/// A short turning motion, one with a dwell, and one under friction that a motor drives.
+const SELECTED_CASES: [&str; 3] = ["crank-rocker", "single-dwell", "slider-crank-friction"];
+/// The finest tolerance of the text: below it rounding has a say in the steps that are taken.
+const FINEST_PRINTED_TOLERANCE: f64 = 0.9e-9;
+/// Accuracies of the text.
+const ACCURACIES: [f64; 3] = [1e-3, 1e-6, 1e-9];
+
+/// The study of the telling cases among some scenes, with what there is time for: `work-precision/NAME.png` and `.md`,
+/// and `work-precision.txt`, which holds counts and errors and no times.
+///
+/// # Errors
+/// As [`measure`]; [`StudyError::Report`] when a picture cannot be drawn.
+pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
+    let is_selected = |scene: &&&Scene| SELECTED_CASES.contains(&scene.name.as_str());
+    let selected: Vec<&Scene> = scenes.iter().filter(is_selected).copied().collect();
+    let one = |scene: &&Scene| -> Result<(Files, String), StudyError> {
+        let found = measure(scene, &Effort::brief(), &no_progress)?;
+        let name = &scene.name;
+        let mut files = Files::new();
+        let figure = figure::figure(scene, &found, name);
+        files.add(
+            format!("work-precision/{name}.png"),
+            signed_png(scene, &figure)?,
+        );
+        let document = report::document(scene, &found, name);
+        files.add(format!("work-precision/{name}.md"), document.markdown());
+        // Under dry friction the last bit of a sine decides which steps are rejected: nothing to be reproduced.
+        let text_of_case = match found.quadrature() {
+            Some(_) => snapshot(scene, &found),
+            None => String::new(),
+        };
+        Ok((files, text_of_case))
+    };
+    let done: Vec<(Files, String)> = selected.par_iter().map(one).collect::<Result<_, _>>()?;
+    let mut outcome = Outcome::default();
+    let mut text = "What accuracy costs\n".to_owned();
+    for (files, text_of_case) in done {
+        outcome.files.extend("", files);
+        text += &text_of_case;
+    }
+    outcome.files.add("work-precision.txt", text);
+    outcome.summary = format!("work-precision: {} cases\n", selected.len());
+    Ok(outcome)
+}
+
+/// Counts to two digits and errors to powers of ten, of what does not hang on rounding.
+fn snapshot(scene: &Scene, found: &WorkPrecision) -> String {
+    let mut text = format!(
+        "\n{}, t = 0 to {} s, against quadrature: evaluations, and errors of coordinate ({}), energy and worst reaction\n",
+        scene.title.trim_end_matches('.'),
+        digits(found.duration, 3),
+        found.unit
+    );
+    for point in &found.points {
+        let Integrator::Steps(method, tolerance) = point.combination.integrator else {
+            continue;
+        };
+        if point.combination.evaluation != Evaluation::Exact || tolerance < FINEST_PRINTED_TOLERANCE
+        {
+            continue;
+        }
+        let errors = ErrorQuantity::ALL.map(|q| nearest_power(point.errors.of(q)));
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "  {:<8} {tolerance:.0e}  {:>6}  {:<6} {:<6} {}",
+            method.name(),
+            digits(point.cost.weighted_evaluations as f64, 2),
+            errors[0],
+            errors[1],
+            errors[2]
+        );
+    }
+    for accuracy in ACCURACIES {
+        let k = found.cheapest(
+            ErrorQuantity::Coordinate,
+            CostMeasure::Evaluations,
+            accuracy,
+        );
+        let name = k.map_or("none".to_owned(), |k| found.points[k].combination.name());
+        let _ = writeln!(
+            text,
+            "  fewest evaluations for {accuracy:.0e} {}: {name}",
+            found.unit
+        );
+    }
+    text
+}
+
+/// An error as the nearest power of ten.
+fn nearest_power(error: f64) -> String {
+    if error > 0.0 && error.is_finite() {
+        // As a whole number, for there is no power of −0.
+        format!("1e{}", error.log10().round() as i32)
+    } else {
+        "–".to_owned()
+    }
+}

@@ -1,0 +1,65 @@
+//! What loads and laws measure on bodies, from their frames and velocities alone.
+
+use dwell_geometry::{BodyId, Vec2, vec2};
+
+/// The frames [x, y, θ] of all bodies and their velocities, in m, rad and per s. Where a body does not
+/// exist there is no value.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BodyMotion<'a> {
+    pub(crate) poses: &'a [[f64; 3]],
+    pub(crate) velocities: &'a [[f64; 3]],
+}
+
+impl BodyMotion<'_> {
+    pub(crate) fn rotation(&self, body: BodyId) -> Option<Vec2> {
+        Some(Vec2::from_angle(self.poses.get(body.0)?[2]))
+    }
+
+    pub(crate) fn point(&self, body: BodyId, point: Vec2) -> Option<Vec2> {
+        let [x, y, _] = *self.poses.get(body.0)?;
+        Some(vec2(x, y) + point.rotate(self.rotation(body)?))
+    }
+
+    pub(crate) fn point_velocity(&self, body: BodyId, point: Vec2) -> Option<Vec2> {
+        let [vx, vy, omega] = *self.velocities.get(body.0)?;
+        Some(vec2(vx, vy) + point.rotate(self.rotation(body)?).perp() * omega)
+    }
+
+    /// The vector between two points, and its rate.
+    pub(crate) fn gap(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> Option<[Vec2; 2]> {
+        Some([
+            self.point(bodies[1], points[1])? - self.point(bodies[0], points[0])?,
+            self.point_velocity(bodies[1], points[1])?
+                - self.point_velocity(bodies[0], points[0])?,
+        ])
+    }
+
+    /// Angle of the second body from the first, with the whole revolutions of their frames, and its rate.
+    pub(crate) fn angle(&self, [first, second]: [BodyId; 2]) -> Option<[f64; 2]> {
+        let of = |all: &[[f64; 3]]| Some(all.get(second.0)?[2] - all.get(first.0)?[2]);
+        Some([of(self.poses)?, of(self.velocities)?])
+    }
+
+    /// t·(P₂ − P₁) along an axis of the first body, and its rate, in which the axis turns with the body.
+    pub(crate) fn travel(
+        &self,
+        bodies: [BodyId; 2],
+        points: [Vec2; 2],
+        axis: Vec2,
+    ) -> Option<[f64; 2]> {
+        let [gap, rate] = self.gap(bodies, points)?;
+        let axis_in_plane = axis.rotate(self.rotation(bodies[0])?);
+        let axis_rate = axis_in_plane.perp() * self.velocities.get(bodies[0].0)?[2];
+        Some([
+            axis_in_plane.dot(gap),
+            axis_in_plane.dot(rate) + axis_rate.dot(gap),
+        ])
+    }
+
+    /// The distance of two points, and its rate.
+    pub(crate) fn length(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> Option<[f64; 2]> {
+        let [gap, rate] = self.gap(bodies, points)?;
+        let length = gap.norm();
+        Some([length, gap.dot(rate) / length])
+    }
+}

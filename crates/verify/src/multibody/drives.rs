@@ -1,0 +1,128 @@
+//! What drives do, from the words of their kinds.
+
+use super::state::MultibodyState;
+use super::{MultibodyError, MultibodySystem};
+use dwell_geometry::{Actuator, Coordinate, Mechanism};
+use dwell_kinetostatics::{Drive, DriveKind};
+
+/// What a drive does at an instant.
+pub(super) struct DriveOutput {
+    /// On the coordinate, N·m or N.
+    pub(super) force: f64,
+    /// The rate of its current (A/s) or integral (rad/s or m/s), if it has one.
+    pub(super) state_rate: f64,
+}
+
+/// What the rotor's inertia is on the coordinate, kg m² or kg.
+pub(super) fn rotor_inertia(kind: &DriveKind) -> f64 {
+    match kind {
+        DriveKind::Motor(motor) => motor.gear_ratio * motor.gear_ratio * motor.rotor_inertia,
+        DriveKind::AppliedForce(_) | DriveKind::SpeedController(_) => 0.0,
+    }
+}
+
+/// The mechanism with one more actuator for each drive: its row tells the drive's coordinate, and what
+/// a unit of its action does to every body.
+pub(super) fn with_drives(
+    mechanism: &Mechanism,
+    drives: &[Drive],
+) -> Result<Mechanism, MultibodyError> {
+    let mut extended = mechanism.clone();
+    for (i, drive) in drives.iter().enumerate() {
+        let what = "its coordinate is not there";
+        let wrong = MultibodyError::Drive { drive: i, what };
+        let (bodies, kind) = match drive.coordinate {
+            Coordinate::Angle(bodies) => (bodies, dwell_geometry::ActuatorKind::Angle),
+            Coordinate::Length { bodies, points } => {
+                (bodies, dwell_geometry::ActuatorKind::Length(points))
+            }
+            Coordinate::Travel(joint) => {
+                let of = mechanism.joints.get(joint.0).ok_or(wrong)?;
+                (of.bodies, dwell_geometry::ActuatorKind::Travel(joint))
+            }
+        };
+        if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
+            return Err(wrong);
+        }
+        extended.actuators.push(Actuator {
+            name: drive.name.clone(),
+            bodies,
+            kind,
+        });
+    }
+    Ok(extended)
+}
+
+impl MultibodySystem {
+    pub(super) fn check_drives(&self) -> Result<(), MultibodyError> {
+        for (i, drive) in self.drives.iter().enumerate() {
+            let magnitude = match &drive.kind {
+                DriveKind::AppliedForce(magnitude) => magnitude,
+                DriveKind::Motor(motor) => &motor.voltage,
+                DriveKind::SpeedController(regulator) => &regulator.reference_speed,
+            };
+            if self.magnitude(magnitude, &self.rest_state()).is_none() {
+                let what = "its magnitude does not fit the mechanism";
+                return Err(MultibodyError::Drive { drive: i, what });
+            }
+        }
+        Ok(())
+    }
+
+    /// Kinetic energy of the rotors, ½ N² J ṡ², J.
+    pub(super) fn rotor_energy(&self, at: &MultibodyState) -> f64 {
+        let energy = self.drives.iter().map(|drive| {
+            let speed = self.coordinate(drive.coordinate, at).map_or(0.0, |s| s[1]);
+            0.5 * rotor_inertia(&drive.kind) * speed * speed
+        });
+        energy.sum()
+    }
+
+    /// A drive at its coordinate's speed, with its current (A) or integral (rad or m) in `state`.
+    pub(super) fn drive_output(
+        &self,
+        drive: usize,
+        speed: f64,
+        state: f64,
+        at: &MultibodyState,
+    ) -> Option<DriveOutput> {
+        match &self.drives.get(drive)?.kind {
+            DriveKind::AppliedForce(force) => Some(DriveOutput {
+                force: self.magnitude(force, at)?,
+                state_rate: 0.0,
+            }),
+            // u = R i + L di/dt + k (N q̇): the rotor turns N times as fast, its couple arrives N-fold.
+            DriveKind::Motor(motor) => {
+                let net_voltage = self.magnitude(&motor.voltage, at)?
+                    - motor.torque_constant * motor.gear_ratio * speed;
+                let algebraic = motor.inductance == 0.0;
+                let current = if algebraic {
+                    net_voltage / motor.resistance
+                } else {
+                    state
+                };
+                let drop = net_voltage - motor.resistance * current;
+                Some(DriveOutput {
+                    force: motor.gear_ratio * (motor.torque_constant * current),
+                    state_rate: if algebraic {
+                        0.0
+                    } else {
+                        drop / motor.inductance
+                    },
+                })
+            }
+            // It goes on integrating only what brings it back from its limit.
+            DriveKind::SpeedController(regulator) => {
+                let error = self.magnitude(&regulator.reference_speed, at)? - speed;
+                let unlimited =
+                    regulator.proportional_gain * error + regulator.integral_gain * state;
+                let force = unlimited.clamp(-regulator.limit, regulator.limit);
+                let outward = force != unlimited && error * unlimited > 0.0;
+                Some(DriveOutput {
+                    force,
+                    state_rate: if outward { 0.0 } else { error },
+                })
+            }
+        }
+    }
+}

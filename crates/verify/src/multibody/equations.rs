@@ -1,0 +1,316 @@
+//! Equation (1) at one instant.
+
+use super::drives::rotor_inertia;
+use super::friction::FrictionResponse;
+use super::rows::CentroidalFrames;
+use super::state::MultibodyState;
+use super::{MotionSample, MultibodyError, MultibodySystem};
+use crate::lu::Lu;
+use crate::wrenches::BodyWrench;
+use dwell_geometry::vec2;
+use dwell_kinetostatics::Magnitude;
+use faer::Mat;
+
+/// The equations from a start on: gears meshed, rows chosen.
+pub(super) struct MultibodyOde<'a> {
+    pub(super) system: &'a MultibodySystem,
+    pub(super) frames: CentroidalFrames,
+    /// The rows that are solved.
+    pub(super) active_rows: Vec<usize>,
+    /// The rows that must close.
+    pub(super) candidate_rows: Vec<usize>,
+}
+
+/// The equations solved.
+pub(super) struct MultibodySolution {
+    /// ẏ of the state [x, v, states of the drives, work].
+    pub(super) derivative: Vec<f64>,
+    /// By row, actuators after reactions, the drives' (zero) after these.
+    multipliers: Vec<f64>,
+    drive_forces: Vec<f64>,
+    state: MultibodyState,
+}
+
+/// What acts, but for friction, and the inertia that answers.
+struct AppliedForces {
+    mass: Mat<f64>,
+    force: Vec<f64>,
+    /// Of what has no potential, W.
+    power: f64,
+    /// By drive: its action, and the rate of its state.
+    drive_forces: Vec<f64>,
+    drive_state_rates: Vec<f64>,
+}
+
+/// The rows at a state.
+struct EvaluationPoint<'a> {
+    x: &'a [f64],
+    v: &'a [f64],
+    drive_states: &'a [f64],
+    jacobian: Vec<f64>,
+    velocity_products: Vec<f64>,
+}
+
+/// Accelerations, and multipliers by row.
+type AugmentedSolution = (Vec<f64>, Vec<f64>);
+
+fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
+    to.iter_mut()
+        .zip(more)
+        .for_each(|(to, more)| *to += factor * more);
+}
+
+impl MultibodyOde<'_> {
+    /// Number of states.
+    pub(super) fn dimension(&self) -> usize {
+        2 * self.frames.coordinate_count() + self.system.drives.len() + 1
+    }
+
+    pub(super) fn state(&self, t: f64, y: &[f64]) -> MultibodyState {
+        let n = self.frames.coordinate_count();
+        let [bodies, velocity] = self.frames.to_frames(&y[..n], &y[n..2 * n]);
+        MultibodyState {
+            t,
+            poses: bodies,
+            velocities: velocity,
+        }
+    }
+
+    /// The forces on the coordinates that acts make: forces, and moments about the centres.
+    fn add_wrenches(&self, wrenches: &[BodyWrench], x: &[f64], force: &mut [f64]) {
+        for wrench in wrenches {
+            let Some(c) = self.frames.columns[wrench.body.0] else {
+                continue;
+            };
+            let arm = wrench.point - self.frames.ground_origin - vec2(x[c], x[c + 1]);
+            force[c] += wrench.force.x;
+            force[c + 1] += wrench.force.y;
+            let moment = if wrench.force == dwell_geometry::Vec2::ZERO {
+                0.0
+            } else {
+                arm.cross(wrench.force)
+            };
+            force[c + 2] += moment + wrench.couple;
+        }
+    }
+
+    /// The masses, and nothing that acts.
+    fn assemble_masses(&self) -> AppliedForces {
+        let n = self.frames.coordinate_count();
+        let mut mass = Mat::zeros(n, n);
+        for (of, column) in self.system.masses.iter().zip(&self.frames.columns) {
+            if let Some(c) = *column {
+                mass[(c, c)] = of.mass;
+                mass[(c + 1, c + 1)] = of.mass;
+                mass[(c + 2, c + 2)] = of.inertia;
+            }
+        }
+        AppliedForces {
+            mass,
+            force: vec![0.0; n],
+            power: 0.0,
+            drive_forces: vec![],
+            drive_state_rates: vec![],
+        }
+    }
+
+    /// All loads but frictions; none if a magnitude cannot be told.
+    fn add_loads(
+        &self,
+        at: &MultibodyState,
+        point: &EvaluationPoint<'_>,
+        to: &mut AppliedForces,
+    ) -> Option<()> {
+        for (i, load) in self.system.loads.iter().enumerate() {
+            if matches!(load.magnitude, Magnitude::Friction(_)) {
+                continue;
+            }
+            let magnitude = self.system.magnitude(&load.magnitude, at)?;
+            let wrenches = self.system.wrenches(i, magnitude, at);
+            self.add_wrenches(&wrenches, point.x, &mut to.force);
+            if !load.is_conservative() {
+                to.power += wrenches.iter().map(|wrench| at.power(wrench)).sum::<f64>();
+            }
+        }
+        Some(())
+    }
+
+    /// All drives: the rotors' inertia I on s̈ = J ẍ + Φ̇ₓ ẋ joins the masses as Jᵀ I J.
+    fn add_drives(
+        &self,
+        at: &MultibodyState,
+        point: &EvaluationPoint<'_>,
+        to: &mut AppliedForces,
+    ) -> Option<()> {
+        let n = self.frames.coordinate_count();
+        for (d, drive) in self.system.drives.iter().enumerate() {
+            let row = self.frames.actuator_row + self.system.modes.len() + d;
+            let velocity = self.frames.row_velocity(&point.jacobian, row, point.v);
+            let output = self
+                .system
+                .drive_output(d, velocity, point.drive_states[d], at)?;
+            let inertia = rotor_inertia(&drive.kind);
+            let jacobian_row = &point.jacobian[row * n..][..n];
+            add_scaled(
+                &mut to.force,
+                output.force - inertia * point.velocity_products[row],
+                jacobian_row,
+            );
+            for (i, a) in jacobian_row.iter().enumerate() {
+                for (j, b) in jacobian_row.iter().enumerate() {
+                    to.mass[(i, j)] += inertia * a * b;
+                }
+            }
+            to.power += output.force * velocity;
+            to.drive_forces.push(output.force);
+            to.drive_state_rates.push(output.state_rate);
+        }
+        Some(())
+    }
+
+    /// Solves (1) at a state [x, v, states of the drives, work].
+    pub(super) fn solve(&self, t: f64, y: &[f64]) -> Result<MultibodySolution, MultibodyError> {
+        let frames = &self.frames;
+        let n = frames.coordinate_count();
+        let not_finite = MultibodyError::NotFinite { t };
+        if y.iter().any(|y| !y.is_finite()) {
+            return Err(not_finite);
+        }
+        let at = self.state(t, y);
+        let (x, v) = (&y[..n], &y[n..2 * n]);
+        let mut velocity_products = vec![0.0; frames.rows.len()];
+        frames.rows.velocity_product(x, v, &mut velocity_products);
+        let point = EvaluationPoint {
+            x,
+            v,
+            drive_states: &y[2 * n..],
+            jacobian: frames.jacobian(x),
+            velocity_products,
+        };
+        let mut applied = self.assemble_masses();
+        self.add_loads(&at, &point, &mut applied)
+            .ok_or(not_finite)?;
+        self.add_drives(&at, &point, &mut applied)
+            .ok_or(not_finite)?;
+        let (a, multipliers) = self.solve_with_friction(&at, &point, &mut applied)?;
+        let velocities = &self.prescribed_values(t)[1];
+        for (tau, velocity) in multipliers.iter().zip(velocities).skip(frames.actuator_row) {
+            applied.power += tau * velocity;
+        }
+        let derivative = [v, &a, &applied.drive_state_rates, &[applied.power]].concat();
+        if derivative.iter().any(|r| !r.is_finite()) {
+            return Err(not_finite);
+        }
+        Ok(MultibodySolution {
+            derivative,
+            multipliers,
+            drive_forces: applied.drive_forces,
+            state: at,
+        })
+    }
+
+    /// What answers to all that acts, with the frictions.
+    fn solve_with_friction(
+        &self,
+        at: &MultibodyState,
+        point: &EvaluationPoint<'_>,
+        applied: &mut AppliedForces,
+    ) -> Result<AugmentedSolution, MultibodyError> {
+        let not_finite = MultibodyError::NotFinite { t: at.t };
+        let frictions = self.system.frictions();
+        let mut forces = vec![std::mem::take(&mut applied.force)];
+        for (load, _) in &frictions {
+            let mut unit = vec![0.0; self.frames.coordinate_count()];
+            self.add_wrenches(&self.system.wrenches(*load, 1.0, at), point.x, &mut unit);
+            forces.push(unit);
+        }
+        let mut found = self
+            .solve_augmented(&applied.mass, point, &forces, at.t)?
+            .into_iter();
+        let (mut a, mut multipliers) = found.next().ok_or(not_finite)?;
+        let (unit_accelerations, unit_reactions): (Vec<_>, Vec<_>) = found.unzip();
+        let response = FrictionResponse {
+            frictionless: multipliers.clone(),
+            unit_responses: unit_reactions,
+        };
+        let friction_forces = self.solve_friction(&frictions, &response, at)?;
+        for (k, &force) in friction_forces.iter().enumerate() {
+            add_scaled(&mut a, force, &unit_accelerations[k]);
+            add_scaled(&mut multipliers, force, &response.unit_responses[k]);
+            let wrenches = self.system.wrenches(frictions[k].0, force, at);
+            applied.power += wrenches.iter().map(|wrench| at.power(wrench)).sum::<f64>();
+        }
+        Ok((a, multipliers))
+    }
+
+    /// Accelerations and multipliers for several forces, the first with the accelerations that the
+    /// rows want, the others with none.
+    fn solve_augmented(
+        &self,
+        mass: &Mat<f64>,
+        point: &EvaluationPoint<'_>,
+        forces: &[Vec<f64>],
+        t: f64,
+    ) -> Result<Vec<AugmentedSolution>, MultibodyError> {
+        let frames = &self.frames;
+        let (n, m) = (frames.coordinate_count(), self.active_rows.len());
+        let scale = |c| frames.column_scale(c);
+        let scaled = |i: usize, j: usize| mass[(i, j)] * scale(i) * scale(j);
+        // Kilograms of the size of one, as the rows are.
+        let largest = (0..n).map(|i| scaled(i, i)).fold(0.0, f64::max);
+        let unit = if largest > 0.0 { largest } else { 1.0 };
+        let mut matrix = Mat::zeros(n + m, n + m);
+        for j in 0..n {
+            for i in 0..n {
+                matrix[(i, j)] = scaled(i, j) / unit;
+            }
+        }
+        self.add_border(&point.jacobian, &mut matrix);
+        let mut right = Mat::zeros(n + m, forces.len());
+        for (k, force) in forces.iter().enumerate() {
+            for (c, force) in force.iter().enumerate() {
+                right[(c, k)] = force * scale(c) / unit;
+            }
+        }
+        let prescribed_accelerations = &self.prescribed_values(t)[2];
+        for (k, &row) in self.active_rows.iter().enumerate() {
+            right[(n + k, 0)] = (prescribed_accelerations[row] - point.velocity_products[row])
+                * frames.row_scale[row];
+        }
+        let lu = Lu::new(matrix).map_err(|pivot| MultibodyError::Singular { t, pivot })?;
+        lu.solve(&mut right);
+        let solution = |k: usize| {
+            let a = (0..n).map(|c| right[(c, k)] * scale(c)).collect();
+            let mut multipliers = vec![0.0; frames.rows.len()];
+            for (i, &row) in self.active_rows.iter().enumerate() {
+                multipliers[row] = -right[(n + i, k)] * frames.row_scale[row] * unit;
+            }
+            (a, multipliers)
+        };
+        Ok((0..forces.len()).map(solution).collect())
+    }
+
+    /// What is told of a state.
+    pub(super) fn sample(&self, t: f64, y: &[f64]) -> Result<MotionSample, MultibodyError> {
+        let MultibodySolution {
+            mut multipliers,
+            drive_forces: drives,
+            state: at,
+            ..
+        } = self.solve(t, y)?;
+        let [kinetic, potential] = self.system.energies(&at);
+        let mut tau = multipliers.split_off(self.frames.actuator_row);
+        tau.truncate(self.system.modes.len());
+        Ok(MotionSample {
+            t,
+            poses: at.poses,
+            velocities: at.velocities,
+            reactions: multipliers,
+            tau,
+            drive_forces: drives,
+            kinetic,
+            potential,
+            work: y.last().copied().unwrap_or(0.0),
+        })
+    }
+}

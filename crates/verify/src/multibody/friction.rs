@@ -1,0 +1,181 @@
+//! Coulomb friction: how much of each there is, when each answers to reactions that all of them make.
+//!
+//! ```text
+//! F_j = −µ g(R_j) tanh(v/v₀),    R = R⁰ + Σ F_k R^k
+//! g = r √(X² + Y²)  in a pin,    |N/2 + M/l| + |N/2 − M/l|  in a guide of length l
+//! ```
+
+use super::equations::MultibodyOde;
+use super::state::MultibodyState;
+use super::{MultibodyError, MultibodySystem};
+use crate::lu::Lu;
+use dwell_geometry::{Component, JointKind, Reaction};
+use dwell_kinetostatics::{Friction, FrictionContact, LoadKind, Magnitude};
+use faer::Mat;
+
+const MAX_NEWTON_STEPS: usize = 100;
+/// Newton's change of a friction, relative to the largest, that is none.
+const CONVERGED_CHANGE: f64 = 1e-15;
+
+/// Reactions by row: without friction, and what a unit of each friction adds.
+pub(super) struct FrictionResponse {
+    pub(super) frictionless: Vec<f64>,
+    pub(super) unit_responses: Vec<Vec<f64>>,
+}
+
+impl MultibodySystem {
+    pub(super) fn check_friction(&self, kind: &LoadKind, friction: &Friction) -> bool {
+        let joint = self.mechanism.joints.get(friction.joint.0);
+        joint.is_some_and(|joint| match joint.kind {
+            JointKind::Revolute => {
+                matches!(kind, LoadKind::Torque { bodies } if *bodies == joint.bodies)
+            }
+            JointKind::Prismatic { .. } | JointKind::Slot { .. } => {
+                matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == joint.bodies)
+            }
+            JointKind::Weld { .. }
+            | JointKind::Gear { .. }
+            | JointKind::Rack { .. }
+            | JointKind::Rolling { .. }
+            | JointKind::Distance { .. }
+            | JointKind::Coupling(_) => false,
+        })
+    }
+
+    /// The loads that are frictions.
+    pub(super) fn frictions(&self) -> Vec<(usize, Friction)> {
+        let loads = self.loads.iter().enumerate();
+        loads
+            .filter_map(|(i, load)| match load.magnitude {
+                Magnitude::Friction(friction) => Some((i, friction)),
+                Magnitude::Constant(_)
+                | Magnitude::Law(..)
+                | Magnitude::Expression(..)
+                | Magnitude::External(_) => None,
+            })
+            .collect()
+    }
+
+    /// The row of a joint's reaction.
+    fn reaction_row(&self, friction: &Friction, component: Component) -> Option<usize> {
+        let reaction = Reaction {
+            joint: friction.joint,
+            component,
+        };
+        self.mechanism
+            .reactions()
+            .iter()
+            .position(|r| *r == reaction)
+    }
+
+    /// µ tanh(v/v₀).
+    fn friction_factor(
+        &self,
+        load: usize,
+        friction: &Friction,
+        at: &MultibodyState,
+    ) -> Option<f64> {
+        let [_, velocity] = match self.loads.get(load)?.kind {
+            LoadKind::SlideForce(guide) => {
+                at.motion().travel(guide.bodies, guide.points, guide.axis)?
+            }
+            LoadKind::Torque { bodies } => at.motion().angle(bodies)?,
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideDamper(_) => return None,
+        };
+        Some(friction.coefficient * (velocity / friction.regularization_speed).tanh())
+    }
+
+    /// g, with its derivative by every row that it depends on.
+    fn contact_force(&self, friction: &Friction, reactions: &[f64]) -> (f64, Vec<(usize, f64)>) {
+        let row = |component| {
+            let row = self.reaction_row(friction, component)?;
+            Some((row, reactions[row]))
+        };
+        let (FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size }) =
+            friction.contact;
+        if let (Some((i, x)), Some((j, y))) = (row(Component::X), row(Component::Y)) {
+            let force = x.hypot(y);
+            if force == 0.0 {
+                return (0.0, vec![]);
+            }
+            let slope = size / force;
+            return (size * force, vec![(i, slope * x), (j, slope * y)]);
+        }
+        let Some((i, n)) = row(Component::Normal) else {
+            return (0.0, vec![]);
+        };
+        match row(Component::Moment) {
+            Some((j, m)) if size > 0.0 => {
+                let [near, far] = [1.0, -1.0].map(|side| 0.5 * n + side * m / size);
+                let (s, t) = (near.signum(), far.signum());
+                let gradient = vec![(i, 0.5 * (s + t)), (j, (s - t) / size)];
+                (near.abs() + far.abs(), gradient)
+            }
+            _ => (n.abs(), vec![(i, n.signum())]),
+        }
+    }
+}
+
+impl MultibodyOde<'_> {
+    /// The frictions that fit the reactions which they make.
+    pub(super) fn solve_friction(
+        &self,
+        frictions: &[(usize, Friction)],
+        response: &FrictionResponse,
+        at: &MultibodyState,
+    ) -> Result<Vec<f64>, MultibodyError> {
+        let n = frictions.len();
+        if n == 0 {
+            return Ok(vec![]);
+        }
+        let self_locking = MultibodyError::SelfLocking { t: at.t };
+        let friction_factors: Option<Vec<f64>> = frictions
+            .iter()
+            .map(|(load, friction)| self.system.friction_factor(*load, friction, at))
+            .collect();
+        let friction_factors = friction_factors.ok_or(MultibodyError::NotFinite { t: at.t })?;
+        let mut force = vec![0.0_f64; n];
+        for _ in 0..MAX_NEWTON_STEPS {
+            let mut reactions = response.frictionless.clone();
+            for (force, unit) in force.iter().zip(&response.unit_responses) {
+                reactions
+                    .iter_mut()
+                    .zip(unit)
+                    .for_each(|(r, u)| *r += force * u);
+            }
+            let mut matrix = Mat::<f64>::identity(n, n);
+            let mut step = Mat::zeros(n, 1);
+            for (j, ((_, friction), factor)) in frictions.iter().zip(&friction_factors).enumerate()
+            {
+                let (contact_force, gradient) = self.system.contact_force(friction, &reactions);
+                step[(j, 0)] = -(force[j] + factor * contact_force);
+                for (k, unit) in response.unit_responses.iter().enumerate() {
+                    let sensitivity: f64 = gradient.iter().map(|&(row, s)| s * unit[row]).sum();
+                    matrix[(j, k)] += factor * sensitivity;
+                }
+            }
+            let lu = Lu::new(matrix).map_err(|_| self_locking)?;
+            lu.solve(&mut step);
+            let (mut change, mut largest) = (0.0_f64, 0.0_f64);
+            for (j, force) in force.iter_mut().enumerate() {
+                *force += step[(j, 0)];
+                if !force.is_finite() {
+                    return Err(self_locking);
+                }
+                change = change.max(step[(j, 0)].abs());
+                largest = largest.max(force.abs());
+            }
+            if change <= CONVERGED_CHANGE * largest {
+                return Ok(force);
+            }
+        }
+        Err(self_locking)
+    }
+}

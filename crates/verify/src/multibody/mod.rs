@@ -1,0 +1,201 @@
+//! Check 6: the full multibody equations, not reduced.
+//!
+//! Every body has its centre of mass and its angle, x = [x_G, y_G, θ], whatever joins it to others,
+//! and every joint has its multipliers. A free actuator has no row, and a drive is what it does; the row of a prescribed one is
+//! imposed by its law of time. At each instant
+//!
+//! ```text
+//! ⎡ M  Jᵀ ⎤ ⎡  ẍ ⎤   ⎡ f(t, x, ẋ, λ) ⎤
+//! ⎢       ⎥ ⎢    ⎥ = ⎢               ⎥                                        (1)
+//! ⎣ J  0  ⎦ ⎣ −λ ⎦   ⎣ v̈ − Φ̇ₓ ẋ      ⎦
+//! ```
+//!
+//! in dense numbers: M is singular where bodies are massless, the whole matrix is not. λ of a row is
+//! the action of its first body on its second. Friction makes f depend on λ; the response of (1) to
+//! each friction is a column more, and Newton's method finds how much of each there is.
+//!
+//! ẋ = v, v̇ = ẍ of (1) are integrated by extrapolation, to the order that the step needs; after each
+//! step positions and velocities are moved by the least that closes the rows again. Nothing here
+//! knows a plan, a tree, a reduced coordinate or another integrator of the workbench.
+
+mod drives;
+mod equations;
+mod extrapolation;
+mod friction;
+mod motion_check;
+mod rows;
+mod state;
+
+use crate::error::DenseError;
+use dwell_dynamics::CoordinateMode;
+use dwell_geometry::Mechanism;
+use dwell_kinetostatics::{Drive, Load, Mass};
+use extrapolation::ExtrapolationSolver;
+pub use motion_check::check_motion;
+use rows::CentroidalFrames;
+
+/// Why the multibody equations cannot be written or followed.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum MultibodyError {
+    /// The mechanism or its start is not sound.
+    #[error(transparent)]
+    Dense(#[from] DenseError),
+    /// Not one coordinate mode for each actuator.
+    #[error("the number of coordinate modes is not that of the actuators")]
+    CoordinateModes,
+    /// A load that cannot act.
+    #[error("load {load}: {what}")]
+    Load {
+        /// Its index.
+        load: usize,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// A drive that cannot act.
+    #[error("drive {drive}: {what}")]
+    Drive {
+        /// Its index.
+        drive: usize,
+        /// What is wrong.
+        what: &'static str,
+    },
+    /// The poses, velocities or times to go by are missing, not finite or not in order.
+    #[error("the initial state or the times are incomplete, not finite or not increasing")]
+    InvalidStart,
+    /// Positions that do not close.
+    #[error("at t = {t} s the constraint equations do not close")]
+    NotClosed {
+        /// Time, s.
+        t: f64,
+    },
+    /// The equations have no single solution.
+    #[error("at t = {t} s the equations of motion are singular: smallest pivot {pivot:.1e}")]
+    Singular {
+        /// Time, s.
+        t: f64,
+        /// Smallest pivot relative to the largest.
+        pivot: f64,
+    },
+    /// No friction found that fits the reactions it makes.
+    #[error(
+        "at t = {t} s no friction force satisfies the friction law: the mechanism locks itself"
+    )]
+    SelfLocking {
+        /// Time, s.
+        t: f64,
+    },
+    /// A load, drive or law that is no number.
+    #[error("at t = {t} s a load, drive or law is not a finite number")]
+    NotFinite {
+        /// Time, s.
+        t: f64,
+    },
+    /// The accuracy cannot be had.
+    #[error("at t = {t} s the accuracy needs too many or too short steps")]
+    AccuracyNotReached {
+        /// Time, s.
+        t: f64,
+    },
+}
+
+/// A motion at one instant: of the multibody equations, or one that is claimed. What is given by
+/// body is in the order of [`Mechanism::bodies`], the ground included.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct MotionSample {
+    /// Time, s.
+    pub t: f64,
+    /// The frame [x, y, θ] of every body, m and rad; θ counted from the start on.
+    pub poses: Vec<[f64; 3]>,
+    /// Its rates, m/s and rad/s.
+    pub velocities: Vec<[f64; 3]>,
+    /// The reactions in the order of [`Mechanism::reactions`], N or N·m.
+    pub reactions: Vec<f64>,
+    /// By actuator: what its prescribed motion takes, N·m or N; zero for a free one.
+    pub tau: Vec<f64>,
+    /// By drive: its action on the coordinate, N·m or N, without what its rotor's inertia takes.
+    pub drive_forces: Vec<f64>,
+    /// Kinetic energy, with the rotors', J.
+    pub kinetic: f64,
+    /// Potential energy of the loads that have one, J.
+    pub potential: f64,
+    /// Work since the start of all that has no potential: other loads, drives, prescribed motions, J.
+    pub work: f64,
+}
+
+/// A mechanism in motion by its full equations.
+#[derive(Debug, Clone)]
+pub struct MultibodySystem {
+    /// As it was given.
+    mechanism: Mechanism,
+    masses: Vec<Mass>,
+    loads: Vec<Load>,
+    modes: Vec<CoordinateMode>,
+    drives: Vec<Drive>,
+    frames: CentroidalFrames,
+}
+
+impl MultibodySystem {
+    /// The equations of a mechanism with one mass for each body, loads, one coordinate mode for each
+    /// actuator, and drives along any coordinates.
+    ///
+    /// # Errors
+    /// [`MultibodyError`] where they do not fit each other.
+    pub fn new(
+        mechanism: &Mechanism,
+        masses: &[Mass],
+        loads: &[Load],
+        modes: &[CoordinateMode],
+        drives: &[Drive],
+    ) -> Result<Self, MultibodyError> {
+        let frames = CentroidalFrames::new(&drives::with_drives(mechanism, drives)?, masses)?;
+        if modes.len() != mechanism.actuators.len() {
+            return Err(MultibodyError::CoordinateModes);
+        }
+        let mut masses = masses.to_vec();
+        if let Some(ground) = masses.get_mut(mechanism.ground) {
+            *ground = Mass::default();
+        }
+        let system = Self {
+            mechanism: mechanism.clone(),
+            masses,
+            loads: loads.to_vec(),
+            modes: modes.to_vec(),
+            drives: drives.to_vec(),
+            frames,
+        };
+        system.check_loads()?;
+        system.check_drives()?;
+        Ok(system)
+    }
+
+    /// Follows the motion from the poses and velocities of `start` (nothing else of it is read but
+    /// its time), with the states of the drives at zero, and tells it at its time and at the
+    /// `times` after it, s. The start is first moved by the least that closes all rows; gears mesh
+    /// as they stand there.
+    ///
+    /// # Errors
+    /// [`MultibodyError`] where the start does not close, or the motion cannot be followed.
+    pub fn integrate(
+        &self,
+        start: &MotionSample,
+        times: &[f64],
+    ) -> Result<Vec<MotionSample>, MultibodyError> {
+        let rising = std::iter::once(&start.t).chain(times);
+        let in_order = rising.clone().all(|t| t.is_finite())
+            && rising.clone().zip(times).all(|(one, next)| one < next);
+        let bodies = self.masses.len();
+        let complete = start.poses.len() == bodies && start.velocities.len() == bodies;
+        let numbers = start.poses.iter().chain(&start.velocities).flatten();
+        if !in_order || !complete || numbers.into_iter().any(|v| !v.is_finite()) {
+            return Err(MultibodyError::InvalidStart);
+        }
+        let ode = self.ode_at(start)?;
+        let mut solver = ExtrapolationSolver::new(&ode, start, times.last().copied())?;
+        let mut samples = vec![solver.sample()?];
+        for &t in times {
+            solver.advance_to(t)?;
+            samples.push(solver.sample()?);
+        }
+        Ok(samples)
+    }
+}

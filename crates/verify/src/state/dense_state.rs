@@ -1,0 +1,384 @@
+//! One state closed densely, with all that it is compared with.
+
+use super::{ClaimedState, StateError};
+use crate::constraint_closing::ClosedConfiguration;
+use crate::dense::DenseMechanism;
+use crate::differences::Extrapolated;
+use crate::error::DenseError;
+use crate::wrenches::{DenseWrench, NetWrench};
+use dwell_geometry::{Vec2, vec2};
+
+/// The longest step of a difference in time turns no body by more than this (rad), nor moves one
+/// by more than this many sizes, to first order: as for the checks of the reduced model.
+pub(super) const MAX_DIFFERENCE_STEP: f64 = 0.3;
+
+/// A state with its dense solution.
+pub(super) struct DenseState<'a> {
+    pub(super) dense: &'a DenseMechanism,
+    pub(super) state: &'a ClaimedState,
+    pub(super) configuration: ClosedConfiguration,
+    /// How far closing moved the claimed poses, relative to the largest coordinate in them.
+    pub(super) closing_correction: f64,
+    /// Dense velocities and accelerations of the moved frames, and the claimed ones.
+    pub(super) x_dot: Vec<f64>,
+    pub(super) x_ddot: Vec<f64>,
+    pub(super) claimed_dot: Vec<f64>,
+    pub(super) claimed_ddot: Vec<f64>,
+    /// Dense reactions, followed by the actuators' actions.
+    pub(super) multipliers: Vec<f64>,
+    /// How much rounding may have moved the dense numbers.
+    pub(super) pose_rounding_bound: f64,
+    pub(super) velocity_rounding_bound: Vec<f64>,
+    pub(super) acceleration_rounding_bound: Vec<f64>,
+    pub(super) multiplier_rounding_bound: Vec<f64>,
+    pub(super) condition_number: f64,
+    pub(super) load_wrenches: Vec<DenseWrench>,
+    joint_wrenches: Vec<DenseWrench>,
+}
+
+/// Speeds, accelerations and multipliers at a configuration.
+struct DenseSolution {
+    x_dot: Vec<f64>,
+    x_ddot: Vec<f64>,
+    multipliers: Vec<f64>,
+}
+
+impl DenseSolution {
+    fn new(
+        dense: &DenseMechanism,
+        state: &ClaimedState,
+        at: &ClosedConfiguration,
+        unit_velocities: &[Vec<f64>],
+        loads: &[DenseWrench],
+    ) -> Result<Self, DenseError> {
+        let actuator_row = dense.actuator_row();
+        let mut x_dot = vec![0.0; dense.rows.columns()];
+        for (u, rate) in unit_velocities[actuator_row..].iter().zip(&state.q_dot) {
+            for (v, u) in x_dot.iter_mut().zip(u) {
+                *v += u * rate;
+            }
+        }
+        let mut rates = vec![0.0; dense.rows.len()];
+        rates[actuator_row..].copy_from_slice(&state.q_ddot);
+        let x_ddot = dense.acceleration(at, &x_dot, &rates);
+        let forces = required_forces(dense, at, &x_dot, &x_ddot, loads);
+        Ok(Self {
+            multipliers: dense.multipliers(at, &forces)?,
+            x_dot,
+            x_ddot,
+        })
+    }
+
+    fn flat(&self) -> Vec<f64> {
+        [&self.x_dot[..], &self.x_ddot, &self.multipliers].concat()
+    }
+}
+
+/// M ẍ + h − f in dense coordinates: what the joints and actuators have to bring.
+fn required_forces(
+    dense: &DenseMechanism,
+    at: &ClosedConfiguration,
+    x_dot: &[f64],
+    x_ddot: &[f64],
+    loads: &[DenseWrench],
+) -> Vec<f64> {
+    let mut forces = vec![0.0; dense.rows.columns()];
+    let origin = |c: usize| vec2(at.x[c], at.x[c + 1]);
+    let mut add = |c: usize, force: Vec2, moment: f64| {
+        forces[c] += force.x;
+        forces[c + 1] += force.y;
+        forces[c + 2] += moment;
+    };
+    for body in &dense.bodies {
+        if let Some(c) = body.column {
+            let force = dense.center_acceleration(body, at, x_dot, x_ddot) * body.mass.mass;
+            let arm = dense.center(body, at) - origin(c);
+            add(
+                c,
+                force,
+                arm.cross(force) + body.mass.inertia * x_ddot[c + 2],
+            );
+        }
+    }
+    for load in loads {
+        if let Some(c) = dense.bodies[load.body].column {
+            add(c, -load.force, -load.moment(origin(c)));
+        }
+    }
+    forces
+}
+
+impl<'a> DenseState<'a> {
+    pub(super) fn new(
+        dense: &'a DenseMechanism,
+        state: &'a ClaimedState,
+    ) -> Result<Self, StateError> {
+        check_counts(dense, state)?;
+        let claimed_coordinates = dense.coordinates(&state.poses)?;
+        let mut row_values = vec![0.0; dense.rows.len()];
+        row_values[dense.actuator_row()..].copy_from_slice(&state.q);
+        let configuration = dense.close(&claimed_coordinates, &row_values)?;
+        dense.check_redundant_rows(&configuration)?;
+        let correction: Vec<_> = claimed_coordinates
+            .iter()
+            .zip(&configuration.x)
+            .map(|(s, x)| s - x)
+            .collect();
+        let distances = state.poses.iter().map(|p| p[0].hypot(p[1]));
+        let largest = distances.fold(dense.size(), f64::max);
+        let loads = shifted_wrenches(dense, state);
+        let unit_velocities = dense.unit_velocities(&configuration);
+        let solution = DenseSolution::new(dense, state, &configuration, &unit_velocities, &loads)?;
+        let (bounds, pose_bound) = dense.rounding_bounds(
+            &configuration,
+            &unit_velocities,
+            &solution.flat(),
+            |perturbed| {
+                let velocities = dense.unit_velocities(perturbed);
+                Ok(DenseSolution::new(dense, state, perturbed, &velocities, &loads)?.flat())
+            },
+        )?;
+        let n = dense.rows.columns();
+        let (claimed_dot, claimed_ddot) = shifted_motion(dense, state);
+        Ok(Self {
+            closing_correction: dense.scaled_norm(&correction) * dense.size() / largest,
+            joint_wrenches: dense.joint_wrenches(&configuration, &state.reactions, &state.tau),
+            dense,
+            state,
+            condition_number: dense.condition_number(&configuration.x),
+            configuration,
+            x_dot: solution.x_dot,
+            x_ddot: solution.x_ddot,
+            multipliers: solution.multipliers,
+            claimed_dot,
+            claimed_ddot,
+            pose_rounding_bound: pose_bound,
+            velocity_rounding_bound: bounds[..n].to_vec(),
+            acceleration_rounding_bound: bounds[n..2 * n].to_vec(),
+            multiplier_rounding_bound: bounds[2 * n..].to_vec(),
+            load_wrenches: loads,
+        })
+    }
+
+    /// The moving bodies with their columns.
+    pub(super) fn moving_bodies(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let bodies = self.dense.bodies.iter().enumerate();
+        bodies.filter_map(|(b, body)| Some((b, body.column?)))
+    }
+
+    /// The largest |ω|, or |v| per size.
+    pub(super) fn scaled_norm(&self, velocities: &[f64]) -> f64 {
+        self.dense.scaled_norm(velocities)
+    }
+
+    /// How much rounding may have moved the dense motion, relative to it.
+    pub(super) fn relative_rounding_bound(&self) -> f64 {
+        let of = |bound: &[f64], value: &[f64]| {
+            let (bound, value) = (self.scaled_norm(bound), self.scaled_norm(value));
+            if bound == 0.0 { 0.0 } else { bound / value }
+        };
+        self.pose_rounding_bound
+            .max(of(&self.velocity_rounding_bound, &self.x_dot))
+            .max(of(&self.acceleration_rounding_bound, &self.x_ddot))
+    }
+
+    /// The largest force of inertia or of a load, moments over the size: what reactions are
+    /// relative to where they all vanish.
+    pub(super) fn largest_force(&self) -> f64 {
+        let size = self.dense.size();
+        let loads = self.load_wrenches.iter();
+        let loads = loads.map(|l| l.force.norm().max(l.couple.abs() / size));
+        let inertia = self.moving_bodies().map(|(body, _)| {
+            let [x, y, moment] = self.inertia_forces(body);
+            x.hypot(y).max(moment.abs() / size)
+        });
+        loads.chain(inertia).fold(0.0, f64::max)
+    }
+
+    /// Everything that acts on a body.
+    pub(super) fn net_wrench(&self, body: usize) -> NetWrench {
+        let center = self
+            .dense
+            .center(&self.dense.bodies[body], &self.configuration);
+        let all = self.joint_wrenches.iter().chain(&self.load_wrenches);
+        NetWrench::of(all.filter(|a| a.body == body), center)
+    }
+
+    /// m a_G and I α with the claimed motion.
+    pub(super) fn inertia_forces(&self, body: usize) -> [f64; 3] {
+        let of = &self.dense.bodies[body];
+        let (u, a) = (&self.claimed_dot, &self.claimed_ddot);
+        let force = self
+            .dense
+            .center_acceleration(of, &self.configuration, u, a)
+            * of.mass.mass;
+        let alpha = of.column.map_or(0.0, |c| a[c + 2]);
+        [force.x, force.y, of.mass.inertia * alpha]
+    }
+
+    /// Second derivatives in time of every moving body's centre of mass and angle, from positions
+    /// alone. Newton's method starts from the state itself, not where its speeds would lead.
+    pub(super) fn second_differences(&self) -> Vec<Extrapolated> {
+        let s = self.state;
+        self.dense.second_differences(
+            &self.configuration,
+            self.time_step(),
+            self.pose_rounding_bound.max(f64::EPSILON),
+            |t, q| {
+                for (i, q) in q.iter_mut().enumerate() {
+                    *q = s.q[i] + t * (s.q_dot[i] + 0.5 * t * s.q_ddot[i]);
+                }
+            },
+        )
+    }
+
+    /// t with v t + ½ a t² = the longest step; a second where nothing moves.
+    pub(super) fn time_step(&self) -> f64 {
+        let (v, a) = (
+            self.scaled_norm(&self.x_dot),
+            self.scaled_norm(&self.x_ddot),
+        );
+        let step = 2.0 * MAX_DIFFERENCE_STEP / (v + (v * v + 2.0 * a * MAX_DIFFERENCE_STEP).sqrt());
+        if step.is_finite() { step } else { 1.0 }
+    }
+
+    /// Power of actuators and loads less the rate of the kinetic energy, and the sum of what its
+    /// terms could be, |F| |v|, W: a force across its velocity is rounded as if it were along it.
+    pub(super) fn power_balance(&self) -> (f64, f64) {
+        let (mut sum, mut terms) = (0.0, 0.0);
+        let mut add = |power: f64, max: f64| {
+            sum += power;
+            terms += max;
+        };
+        for (tau, rate) in self.state.tau.iter().zip(&self.state.q_dot) {
+            add(tau * rate, (tau * rate).abs());
+        }
+        let (at, u, a) = (&self.configuration, &self.x_dot, &self.x_ddot);
+        for load in &self.load_wrenches {
+            if let Some(c) = self.dense.bodies[load.body].column {
+                let arm = load.point - vec2(at.x[c], at.x[c + 1]);
+                let v = vec2(u[c], u[c + 1]);
+                add(load.force.dot(v), load.force.norm() * v.norm());
+                let angular_power = u[c + 2] * arm.cross(load.force);
+                add(
+                    angular_power,
+                    (u[c + 2] * arm.norm() * load.force.norm()).abs(),
+                );
+                add(u[c + 2] * load.couple, (u[c + 2] * load.couple).abs());
+            }
+        }
+        for body in &self.dense.bodies {
+            if let Some(c) = body.column {
+                let v = self.dense.center_velocity(body, at, u);
+                let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;
+                let angular_power = body.mass.inertia * u[c + 2] * a[c + 2];
+                add(-v.dot(force), v.norm() * force.norm());
+                add(-angular_power, angular_power.abs());
+            }
+        }
+        (sum, terms)
+    }
+
+    /// What the ground and the loads do less the rate of the momentum, with the sum of absolute
+    /// terms: x, y, and the moment about the ground's moved origin over the size, N.
+    pub(super) fn momentum_balance(&self) -> [(f64, f64, &'static str); 3] {
+        let ground = self.dense.mechanism.ground;
+        let on_ground = self.joint_wrenches.iter().filter(|a| a.body == ground);
+        let on_bodies = self.load_wrenches.iter().filter(|a| a.body != ground);
+        let mut total = NetWrench::of(on_bodies, Vec2::ZERO);
+        // What acts on the ground is the opposite of what the ground does.
+        let by_ground = NetWrench::of(on_ground, Vec2::ZERO);
+        for (total, by_ground) in total.sum.iter_mut().zip(by_ground.sum) {
+            *total -= by_ground;
+        }
+        for (total, by_ground) in total.terms.iter_mut().zip(by_ground.terms) {
+            *total += by_ground;
+        }
+        let (at, u, a) = (&self.configuration, &self.x_dot, &self.x_ddot);
+        for body in &self.dense.bodies {
+            if let Some(c) = body.column {
+                let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;
+                let center = self.dense.center(body, at);
+                let couple = body.mass.inertia * a[c + 2];
+                total.sum[0] -= force.x;
+                total.sum[1] -= force.y;
+                total.sum[2] -= center.cross(force) + couple;
+                total.terms[0] += force.norm();
+                total.terms[2] += center.norm() * force.norm() + couple.abs();
+            }
+        }
+        let size = self.dense.size();
+        [
+            (total.sum[0], total.terms[0], "x"),
+            (total.sum[1], total.terms[0], "y"),
+            (total.sum[2] / size, total.terms[2] / size, "moment"),
+        ]
+    }
+}
+
+/// Everything must be there, and as many as there should be.
+fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Result<(), StateError> {
+    let (bodies, actuators) = (dense.bodies.len(), dense.mechanism.actuators.len());
+    let counts = [
+        ("coordinates", state.q.len(), actuators),
+        ("speeds", state.q_dot.len(), actuators),
+        (
+            "accelerations of coordinates",
+            state.q_ddot.len(),
+            actuators,
+        ),
+        ("poses", state.poses.len(), bodies),
+        ("velocities", state.velocities.len(), bodies),
+        ("accelerations", state.accelerations.len(), bodies),
+        ("reactions", state.reactions.len(), dense.actuator_row()),
+        ("actuator actions", state.tau.len(), actuators),
+    ];
+    for (what, found, expected) in counts {
+        if found != expected {
+            return Err(StateError::Count {
+                what,
+                found,
+                expected,
+            });
+        }
+    }
+    let mut loaded = state.load_wrenches.iter().map(|l| l.body.0);
+    match loaded.find(|&b| b >= bodies) {
+        Some(body) => Err(StateError::Load { body, bodies }),
+        None => Ok(()),
+    }
+}
+
+/// The loads with their points from the ground's moved origin.
+fn shifted_wrenches(dense: &DenseMechanism, state: &ClaimedState) -> Vec<DenseWrench> {
+    let ground = dense.bodies[dense.mechanism.ground].shift;
+    let shifted = state.load_wrenches.iter().map(|load| DenseWrench {
+        body: load.body.0,
+        force: load.force,
+        // A pure couple acts nowhere, and its point, wherever it was put, must not cost digits.
+        point: if load.force == Vec2::ZERO {
+            Vec2::ZERO
+        } else {
+            load.point - ground
+        },
+        couple: load.couple,
+    });
+    shifted.collect()
+}
+
+/// The claimed velocities and accelerations of the moved frames, in dense order.
+fn shifted_motion(dense: &DenseMechanism, state: &ClaimedState) -> (Vec<f64>, Vec<f64>) {
+    let columns = dense.rows.columns();
+    let (mut x_dot, mut x_ddot) = (vec![0.0; columns], vec![0.0; columns]);
+    for (b, body) in dense.bodies.iter().enumerate() {
+        if let Some(c) = body.column {
+            let arm = body.shift.rotate(Vec2::from_angle(state.poses[b][2]));
+            let ([vx, vy, omega], [ax, ay, alpha]) = (state.velocities[b], state.accelerations[b]);
+            let v = vec2(vx, vy) + arm.perp() * omega;
+            let a = vec2(ax, ay) + arm.perp() * alpha - arm * (omega * omega);
+            x_dot[c..c + 3].copy_from_slice(&[v.x, v.y, omega]);
+            x_ddot[c..c + 3].copy_from_slice(&[a.x, a.y, alpha]);
+        }
+    }
+    (x_dot, x_ddot)
+}

@@ -1,0 +1,323 @@
+//! What accuracy costs: the study's truth, its errors and its fronts.
+
+use dwell_dynamics::Method;
+use dwell_geometry::{PositionError, Range};
+use dwell_kinetostatics::{Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
+use dwell_scene::Scene;
+use dwell_study::no_progress;
+use dwell_tests::fixtures::{repository_root, scene};
+use dwell_validation::work_precision::{
+    CombinationResult, CostMeasure, Effort, ErrorQuantity, Evaluation, Evaluator, Integrator,
+    ModelEvaluator, WorkPrecision, measure, measure_with,
+};
+
+/// By method, the order in which its error falls with the number of its steps; a variable one has none.
+fn order(method: Method) -> Option<f64> {
+    match method {
+        Method::Bdf => None,
+        Method::Esdirk34 => Some(4.0),
+        Method::TrBdf2 => Some(2.0),
+        Method::Tsit45 => Some(5.0),
+        Method::Dop853 => Some(8.0),
+    }
+}
+
+fn effort(tolerances: &[i32], tables: &[f64]) -> Effort {
+    Effort {
+        tolerance_exponents: tolerances.to_vec(),
+        table_accuracies: tables.to_vec(),
+        max_steps: 5_000,
+        repetitions: 1,
+    }
+}
+
+fn run_study(name: &str, effort: &Effort) -> WorkPrecision {
+    measure(&scene(name), effort, &no_progress).expect("a study")
+}
+
+/// The exact runs of a method, from the coarsest tolerance on.
+fn exact(found: &WorkPrecision, method: Method) -> Vec<&CombinationResult> {
+    let is_exact = |p: &&CombinationResult| {
+        p.combination.evaluation == Evaluation::Exact
+            && matches!(p.combination.integrator, Integrator::Steps(m, _) if m == method)
+    };
+    found.points.iter().filter(is_exact).collect()
+}
+
+fn result_of(found: &WorkPrecision, integrator: Integrator, name: &str) -> CombinationResult {
+    let matches = |p: &&CombinationResult| {
+        p.combination.integrator == integrator && p.combination.evaluation.name() == name
+    };
+    *found
+        .points
+        .iter()
+        .find(matches)
+        .expect("such a combination")
+}
+
+#[test]
+fn the_truth_is_known_better_than_anything_on_the_front() {
+    let effort = effort(&[-3, -5, -7, -9, -11], &[1e-6]);
+    for name in ["crank-rocker", "single-dwell", "double-pendulum", "boom"] {
+        let found = run_study(name, &effort);
+        for quantity in ErrorQuantity::ALL {
+            let front = found.pareto_front(quantity, CostMeasure::Evaluations);
+            assert!(front.len() > 3, "{name}: {front:?}");
+            for k in front {
+                let point = &found.points[k];
+                assert!(
+                    !found.is_below_reference_error(point, quantity),
+                    "{name}: {quantity:?} of {} is below {:?}",
+                    point.combination.name(),
+                    found.reference.error
+                );
+            }
+        }
+    }
+}
+
+/// A method that obeys its tolerance errs less at a hundredth of it: five times less at least, for the
+/// global error falls unevenly (the worst pair here is 13).
+#[test]
+fn errors_fall_with_the_tolerance() {
+    let effort = effort(&[-5, -7, -9], &[]);
+    for name in ["crank-rocker", "single-dwell", "double-pendulum"] {
+        let found = run_study(name, &effort);
+        for method in Method::ALL {
+            for pair in exact(&found, method).windows(2) {
+                for quantity in ErrorQuantity::ALL {
+                    let [before, after] = [0, 1].map(|k| pair[k].errors.of(quantity));
+                    let at = pair[1].combination.name();
+                    assert!(
+                        after < before / 5.0,
+                        "{name}, {at}: {quantity:?} {before:e} {after:e}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn no_point_is_cheaper_and_better_than_one_of_the_front() {
+    let found = run_study(
+        "single-dwell",
+        &effort(&[-3, -5, -7, -9, -11], &[1e-4, 1e-8]),
+    );
+    for quantity in ErrorQuantity::ALL {
+        for price in [
+            CostMeasure::Evaluations,
+            CostMeasure::Time,
+            CostMeasure::TimeWithBuild,
+        ] {
+            let front = found.pareto_front(quantity, price);
+            assert!(!front.is_empty());
+            for &k in &front {
+                let on_front = &found.points[k];
+                let beats = |other: &&CombinationResult| {
+                    let alike = price != CostMeasure::Evaluations
+                        || other.combination.evaluation == Evaluation::Exact;
+                    let steps = other.combination.integrator != Integrator::Quadrature;
+                    let [cheap, dear] = [other, on_front].map(|p| p.cost.of(price));
+                    let [good, bad] = [other, on_front].map(|p| found.error_bound(p, quantity));
+                    alike && steps && cheap <= dear && good <= bad && (cheap < dear || good < bad)
+                };
+                assert_eq!(
+                    found.points.iter().find(beats),
+                    None,
+                    "against {on_front:?}"
+                );
+            }
+            let errors: Vec<f64> = front
+                .iter()
+                .map(|&k| found.error_bound(&found.points[k], quantity))
+                .collect();
+            assert!(
+                errors.windows(2).all(|pair| pair[1] < pair[0]),
+                "{errors:?}"
+            );
+            let reached = found.cheapest(quantity, price, errors[1]);
+            assert_eq!(reached, Some(front[1]));
+            assert_eq!(found.cheapest(quantity, price, 1e-20), None);
+        }
+    }
+}
+
+/// log error over log steps has the slope of the order, or falls faster while the steps are still few: less one,
+/// for the largest error over a motion is not that of one step, and more two.
+#[test]
+fn the_orders_of_the_methods_are_seen() {
+    let found = run_study("single-dwell", &effort(&[-5, -7, -9, -10], &[]));
+    for method in Method::ALL {
+        let Some(order) = order(method) else { continue };
+        let runs = exact(&found, method);
+        let (first, last) = (runs[0], runs[runs.len() - 1]);
+        let fall = (first.errors.energy / last.errors.energy).ln();
+        let slope = fall / (last.cost.steps as f64 / first.cost.steps as f64).ln();
+        assert!(
+            (order - 1.0..order + 2.0).contains(&slope),
+            "{}: {slope}",
+            method.name()
+        );
+    }
+}
+
+/// The exact model with an inertia that is off by a part.
+struct PerturbedModel(ExactModel, f64);
+
+impl ReducedModel for PerturbedModel {
+    type Workspace = ExactWorkspace;
+
+    fn workspace(&self) -> ExactWorkspace {
+        self.0.workspace()
+    }
+
+    fn reactions(&self) -> usize {
+        self.0.reactions()
+    }
+
+    fn range(&self) -> Range {
+        self.0.range()
+    }
+
+    fn inertia(&self, q: f64, workspace: &mut ExactWorkspace) -> Result<(f64, f64), PositionError> {
+        let (m, half_dm) = self.0.inertia(q, workspace)?;
+        Ok((m * (1.0 + self.1), half_dm))
+    }
+
+    fn inertia_derivatives(
+        &self,
+        q: f64,
+        workspace: &mut ExactWorkspace,
+    ) -> Result<Inertia, PositionError> {
+        self.0.inertia_derivatives(q, workspace)
+    }
+
+    fn coefficients(
+        &self,
+        q: f64,
+        workspace: &mut ExactWorkspace,
+        out: &mut Coefficients,
+    ) -> Result<(), PositionError> {
+        self.0.coefficients(q, workspace, out)
+    }
+}
+
+/// An inertia off by 1e-6 makes a motion that is off by about that: between a hundredth and ten times of it, by
+/// how much the inertia varies and how long the motion lasts; without the fault it errs a thousand times less.
+#[test]
+fn a_fault_in_an_evaluation_is_seen() {
+    const PERTURBATION: f64 = 1e-6;
+    let more = |exact: &ExactModel| -> Vec<Box<dyn Evaluator>> {
+        vec![Box::new(ModelEvaluator {
+            model: PerturbedModel(exact.clone(), PERTURBATION),
+            evaluation: Evaluation::Other("off"),
+            build_time: 0.0,
+        })]
+    };
+    let effort = effort(&[-9, -10, -11], &[]);
+    let found =
+        measure_with(&scene("crank-rocker"), &effort, &more, &no_progress).expect("a study");
+    let integrator = Integrator::Steps(Method::Dop853, 1e-11);
+    let (perturbed, sound) = (
+        result_of(&found, integrator, "off").errors,
+        result_of(&found, integrator, "exact f64").errors,
+    );
+    for quantity in ErrorQuantity::ALL {
+        let [perturbed, sound] = [perturbed, sound].map(|errors| errors.of(quantity));
+        assert!(
+            (1e-2 * PERTURBATION..1e1 * PERTURBATION).contains(&perturbed),
+            "{quantity:?} {perturbed:e}"
+        );
+        assert!(sound < 1e-3 * perturbed, "{quantity:?} {sound:e}");
+    }
+}
+
+/// A table errs by its accuracy, single precision by its rounding: no tolerance helps them beyond that. (The factor is
+/// how errors of m grow over three turns.)
+#[test]
+fn an_evaluation_keeps_what_it_promises() {
+    let found = run_study("crank-rocker", &effort(&[-7, -9, -11], &[1e-4, 1e-6, 1e-8]));
+    let at = |name: &str, tolerance: f64| {
+        result_of(&found, Integrator::Steps(Method::Tsit45, tolerance), name)
+            .errors
+            .coordinate
+    };
+    for accuracy in [1e-6, 1e-8] {
+        let error = at(&format!("table {accuracy:.0e}"), accuracy / 10.0);
+        assert!(error < 300.0 * accuracy, "{accuracy:e}: {error:e}");
+    }
+    let [coarse, exact] = [at("table 1e-6", 1e-7), at("exact f64", 1e-11)];
+    assert!(exact < 1e-3 * coarse, "{exact:e} {coarse:e}");
+    // A table is of one freedom without loads, and is told to be missing elsewhere.
+    let loaded = run_study("double-pendulum", &effort(&[-5, -7], &[1e-6]));
+    assert!(loaded.omitted.iter().any(|why| why.starts_with("tables")));
+}
+
+/// Quadrature of the exact model is the truth itself, at less than any integrator takes for twelve digits.
+#[test]
+fn quadrature_is_told_where_the_motion_is_known_by_its_energy() {
+    let found = run_study("crank-rocker", &effort(&[-9, -11, -13], &[]));
+    let point = found.quadrature().expect("a conservative motion");
+    assert!(found.is_below_reference_error(point, ErrorQuantity::Coordinate));
+    assert!(
+        found
+            .points
+            .iter()
+            .filter(|p| matches!(p.combination.integrator, Integrator::Steps(..)))
+            .all(|p| p.cost.weighted_evaluations > point.cost.weighted_evaluations)
+    );
+    assert!(
+        run_study("slider-crank-friction", &effort(&[-3, -5], &[]))
+            .quadrature()
+            .is_none()
+    );
+}
+
+#[test]
+fn careless_scenes_are_cut_short_or_refused() {
+    let effort = effort(&[-4, -6, -8], &[1e-6]);
+    // The crank is longer than the rest allows to turn, and has no [motion].
+    let shortened = |more: &str| {
+        let text = format!(
+            "[bodies.ground]\npoints = {{ A = [0, 0], D = [4, 0] }}\n[bodies.crank]\n\
+             points = {{ A = [0, 0], B = [3, 0] }}\nmass = 1\ncenter = [1.5, 0]\ninertia = 0.1\n[bodies.coupler]\n\
+             points = {{ B = [0, 0], C = [1.5, 0] }}\n[bodies.rocker]\npoints = {{ D = [0, 0], C = [2, 0] }}\n[joints]\n\
+             A = {{ revolute = [\"ground.A\", \"crank.A\"] }}\nB = {{ revolute = [\"crank.B\", \"coupler.B\"] }}\n\
+             C = {{ revolute = [\"coupler.C\", \"rocker.C\"] }}\nD = {{ revolute = [\"ground.D\", \"rocker.D\"] }}\n\
+             [actuators]\nphi = {{ angle = [\"ground\", \"crank\"] }}\n[assembly]\nphi = 0.4\ncoupler = 0.6\nrocker = 1.8\n{more}"
+        );
+        Scene::parse("short.toml", &text).expect("a scene")
+    };
+    for more in ["", "[motion]\nspeed = 1\nduration = 50"] {
+        let found = measure(&shortened(more), &effort, &no_progress).expect("a study");
+        assert!(found.duration < 2.0, "{}", found.duration);
+        let notes = found.motion_notes.join("; ");
+        assert!(notes.contains("before its coordinate reaches"), "{notes}");
+        assert_eq!(notes.contains("set free"), more.is_empty(), "{notes}");
+        assert!(found.points.len() > 20);
+    }
+    let still = "[bodies.ground]\npoints = { A = [0, 0], D = [4, 0] }\n[bodies.one]\npoints = { A = [0, 0], B = [3, 0] }\n\
+                 [bodies.two]\npoints = { D = [0, 0], B = [2, 0] }\n[joints]\nA = { revolute = [\"ground.A\", \"one.A\"] }\n\
+                 B = { revolute = [\"one.B\", \"two.B\"] }\nD = { revolute = [\"ground.D\", \"two.D\"] }\n[assembly]\n\
+                 one = 0.4\ntwo = 1.8";
+    let still = Scene::parse("still.toml", still).expect("a scene");
+    let refused = measure(&still, &effort, &no_progress).expect_err("nothing moves");
+    assert!(
+        refused.to_string().starts_with("nothing can move"),
+        "{refused}"
+    );
+    // Friction that fades over 1e-4 of a unit speed: some methods may give up, none panics.
+    let path = repository_root().join("validation/slider-crank-friction/scene.toml");
+    let text = std::fs::read_to_string(path).expect("a file");
+    let stiff = text
+        .replace("fade = 0.5", "fade = 1e-4")
+        .replace("fade = 5,", "fade = 1e-4,");
+    let stiff = Scene::parse("stiff.toml", &stiff).expect("a scene");
+    let found = measure(&stiff, &effort, &no_progress).expect("a study");
+    assert!(
+        !found
+            .pareto_front(ErrorQuantity::Energy, CostMeasure::Evaluations)
+            .is_empty()
+    );
+}

@@ -1,0 +1,46 @@
+//! Where the cases are, and how a scene becomes a model.
+
+use dwell_geometry::Reaction;
+use dwell_kinetostatics::{ExactModel, Model};
+use dwell_scene::Scene;
+use std::path::{Path, PathBuf};
+
+/// The repository's folder.
+pub fn repository_root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The cases: folders of `validation/` that hold a scene.
+pub fn case_names() -> Vec<String> {
+    let entries = std::fs::read_dir(repository_root().join("validation")).expect("a folder");
+    let folders = entries.map(|entry| entry.expect("an entry"));
+    let mut names: Vec<String> = folders
+        .filter(|folder| folder.path().join("scene.toml").is_file())
+        .map(|folder| folder.file_name().into_string().expect("a name"))
+        .collect();
+    names.sort();
+    assert!(names.len() >= 25, "{names:?}");
+    names
+}
+
+/// The scene of a case in `validation/`.
+pub fn scene(case: &str) -> Scene {
+    let path = repository_root()
+        .join("validation")
+        .join(case)
+        .join("scene.toml");
+    Scene::read(path).unwrap_or_else(|e| panic!("{case}: {e:?}"))
+}
+
+/// A scene's model with every reaction.
+pub fn model(scene: &Scene) -> ExactModel {
+    model_for(scene, &scene.mechanism.reactions())
+}
+
+/// A scene's model with some reactions.
+pub fn model_for(scene: &Scene, reactions: &[Reaction]) -> ExactModel {
+    let start = scene.assembly.to_configuration();
+    let model = Model::new(&scene.mechanism, &scene.masses, &start, reactions)
+        .unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+    ExactModel::new(model).expect("one actuator")
+}

@@ -1,0 +1,35 @@
+//! The published samples of a reduced model, as the case's reference holds them.
+
+use dwell_scene::Scene;
+use dwell_verify::checks::PublishedSample;
+use serde_json::Value;
+use std::path::Path;
+
+/// The samples of m, ½m′, a and b.
+pub(super) fn samples(folder: &Path, scene: &Scene) -> Vec<PublishedSample> {
+    let text = std::fs::read_to_string(folder.join("case.toml")).expect("a reference");
+    let value: Value = toml::from_str(&text).expect("TOML");
+    let number = |v: &Value| v.as_str().and_then(|s| s.parse::<f64>().ok());
+    let mechanism = &scene.mechanism;
+    let index = |name: &str| {
+        let reactions = mechanism.reactions();
+        reactions
+            .iter()
+            .position(|&r| mechanism.reaction_name(r) == name)
+    };
+    let sample = |s: &Value| {
+        let pairs = s["reactions"].as_object().into_iter().flatten();
+        let reactions = pairs.filter_map(|(name, pair)| {
+            Some((index(name)?, number(&pair["a"])?, number(&pair["b"])?))
+        });
+        Some(PublishedSample {
+            q: number(&s["phi_rad"])?,
+            m: number(&s["m1_kg_m2"]),
+            half_dm: number(&s["half_dm1"]),
+            reactions: reactions.collect(),
+            points: Vec::new(),
+        })
+    };
+    let all = value["samples"].as_array().into_iter().flatten();
+    all.filter_map(sample).collect()
+}

@@ -1,0 +1,201 @@
+//! The study in words: a rounded text that every machine reproduces, and a page with all details.
+
+use super::detection::{CHECKS, Detection};
+use super::operations::{MutationOutcome, MutationResult};
+use super::source::SourceFiles;
+use super::study::Study;
+use super::tallies::Tally;
+use dwell_findings::Check;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// `mutations.txt`: which truths catch what. Digits and counts are left out: they are not the same everywhere, and
+/// each new line of the product changes them.
+pub fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String {
+    let mut out = String::from(HEAD);
+    let _ = writeln!(out, "{:<58}  {:<18} truths", "fault", "on");
+    let _ = writeln!(
+        out,
+        "{:<58}  {:<18} [{}]",
+        "no fault",
+        "all of them",
+        study.without_mutation.check_numbers()
+    );
+    for group in &study.groups {
+        let _ = writeln!(out, "\n{}", group.title);
+        for row in &group.rows {
+            let _ = writeln!(
+                out,
+                "  {:<56}  {:<18} {}",
+                row.description,
+                row.mechanism,
+                row.detection.check_numbers()
+            );
+        }
+    }
+    let _ = writeln!(
+        out,
+        "\nEvery sign, term and factor, by function: the fewest truths that catch a fault that an answer shows"
+    );
+    for (function, tally) in functions {
+        let min_checks = tally.min_checks.map_or("-".to_owned(), |n| n.to_string());
+        let _ = writeln!(out, "  {function:<36} {min_checks:>3}");
+    }
+    out
+}
+
+const HEAD: &str = "Deliberate faults and the independent truths that catch them\n\
+    A truth is named by its number; in brackets where it exceeds its tolerance by less than three digits.\n\n";
+
+/// How many faults, and how many truths.
+pub fn summary(study: &Study) -> String {
+    let named: usize = study.groups.iter().map(|c| c.rows.len()).sum();
+    let checked = study.operation_results.iter().filter_map(detection);
+    let min_checks = checked
+        .clone()
+        .map(Detection::check_count)
+        .min()
+        .unwrap_or(0);
+    let of_named = study
+        .groups
+        .iter()
+        .flat_map(|c| &c.rows)
+        .map(|r| r.detection.check_count());
+    format!(
+        "{named} named faults, each caught by at least {} independent truths.\n\
+         {} faults of single operations: {} change an answer, each caught by at least {min_checks};\n\
+         {} change none, {} end in a refusal.",
+        of_named.min().unwrap_or(0),
+        study.operation_results.len(),
+        checked.count(),
+        study
+            .operation_results
+            .iter()
+            .filter(|s| s.outcome == MutationOutcome::Unchanged)
+            .count(),
+        study
+            .operation_results
+            .iter()
+            .filter(|s| s.outcome == MutationOutcome::NoResult)
+            .count(),
+    )
+}
+
+fn detection(result: &MutationResult) -> Option<&Detection> {
+    match &result.outcome {
+        MutationOutcome::Checked(detection, _) => Some(detection),
+        _ => None,
+    }
+}
+
+/// `mutations.md`.
+pub fn markdown(
+    study: &Study,
+    functions: &BTreeMap<String, Tally>,
+    source: &SourceFiles,
+) -> String {
+    let mut out = String::from(
+        "# Deliberate faults\n\n![Faults and truths](mutations.png)\n\nA fault is a wrapper around what is judged; production \
+         code holds none. A cell is the digits by which the difference exceeds the truth's tolerance; 0: the truth was asked and \
+         sees nothing; empty: it was not asked. Every fault is shown on the machine that shows it to the fewest truths.\n\n",
+    );
+    let _ = writeln!(out, "{}\n", summary(study));
+    for gap in study.gaps() {
+        let _ = writeln!(out, "- **{gap}**");
+    }
+    for (name, mode, keys) in &study.ignored {
+        let _ = writeln!(
+            out,
+            "- On {name} ({mode:?}) these findings fail without a fault and do not count: {}.",
+            keys.join(", ")
+        );
+    }
+    let _ = writeln!(
+        out,
+        "\n## Named faults\n\n| fault | on | of | {} |",
+        column_heads()
+    );
+    let _ = writeln!(out, "|---|---|---|{}", "---|".repeat(CHECKS.len()));
+    let _ = writeln!(
+        out,
+        "| no fault | all | {} | {} |",
+        study.mechanisms,
+        cells(&study.without_mutation)
+    );
+    for group in &study.groups {
+        let _ = writeln!(
+            out,
+            "| **{}** | | | {} |",
+            group.title,
+            "| ".repeat(CHECKS.len() - 1)
+        );
+        for row in &group.rows {
+            let _ = writeln!(
+                out,
+                "| {} | {} | {} | {} |",
+                row.description,
+                row.mechanism,
+                row.mechanisms,
+                cells(&row.detection)
+            );
+        }
+    }
+    let _ = writeln!(
+        out,
+        "\n## Operations, by function\n\nEach operation of the product's own lines goes wrong in every way: another sign, a \
+         term or the whole forgotten, twice, half. The truths' columns say how many faults they catch.\n\n\
+         | function | faults | no answer moves | refused | fewest truths | {} |",
+        column_heads()
+    );
+    let _ = writeln!(out, "|---|---|---|---|---|{}", "---|".repeat(CHECKS.len()));
+    for (function, tally) in functions {
+        let min_checks = tally.min_checks.map_or("-".to_owned(), |n| n.to_string());
+        let caught = tally.detected.map(|n| n.to_string()).join(" | ");
+        let _ = writeln!(
+            out,
+            "| {function} | {} | {} | {} | {min_checks} | {caught} |",
+            tally.mutations, tally.unchanged, tally.no_result
+        );
+    }
+    let _ = writeln!(
+        out,
+        "\n## Faults that no answer shows\n\nThese change nothing that is judged on any machine: a guess of Newton's method or its \
+         Jacobian, a term that is zero by construction, a measure that nothing asks for.\n"
+    );
+    for result in study
+        .operation_results
+        .iter()
+        .filter(|s| s.outcome == MutationOutcome::Unchanged)
+    {
+        let (operation, kind) = (result.operation, result.kind);
+        let _ = writeln!(
+            out,
+            "- {}:{}, {}: `{}`: {} {}",
+            operation.file,
+            operation.line,
+            source.function(operation),
+            source.line(operation),
+            operation.operation.description(),
+            kind.description()
+        );
+    }
+    out
+}
+
+fn cells(detection: &Detection) -> String {
+    let cell = |digits: &Option<f64>| digits.map_or(String::new(), |d| format!("{d:.0}"));
+    detection
+        .digits
+        .iter()
+        .map(cell)
+        .collect::<Vec<_>>()
+        .join(" | ")
+}
+
+fn column_heads() -> String {
+    CHECKS
+        .iter()
+        .map(Check::to_string)
+        .collect::<Vec<_>>()
+        .join(" | ")
+}

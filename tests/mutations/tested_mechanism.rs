@@ -1,0 +1,520 @@
+//! A case with its model, evaluated with or without a slip, and judged by the truths.
+
+use super::detection::{Detection, REQUIRED_CHECKS};
+use super::mutating_scalar::{
+    MutatingScalar, MutationKind, SourceOperation, recording_operations, with_mutation,
+};
+use super::positions::{POSITIONS, poses_along, positions};
+use super::to_f64::{accelerations, pose_to_f64, result_to_f64};
+use dwell_findings::Finding;
+use dwell_geometry::{BodyId, Vec2};
+use dwell_kinetostatics::{InverseDynamics as Kinetostatic, Model, Workspace};
+use dwell_scene::Scene;
+use dwell_verify::{
+    Case, ClaimedState, Coefficients, InverseDynamics, Subject, SubjectError, check_energies,
+    check_states, load_wrenches, verify_all,
+};
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+
+/// Speeds and accelerations of the states, by state and actuator.
+const VELOCITIES: [[f64; 3]; POSITIONS] = [[1.0, -0.6, 0.4], [-0.8, 0.9, -0.5], [0.6, 0.7, 1.1]];
+const ACCELERATIONS: [[f64; 3]; POSITIONS] = [[0.7, 0.5, -0.9], [0.5, -1.1, 0.6], [-1.2, 0.8, 0.7]];
+
+/// A fault in one operation of the product.
+pub type OperationMutation = Option<(SourceOperation, MutationKind)>;
+
+/// How a mechanism is judged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CheckMode {
+    /// Its reduced model, of one coordinate and no load.
+    Reduced,
+    /// Its states under loads, of any number of coordinates.
+    States,
+}
+
+/// A mechanism to be judged.
+pub struct TestedMechanism {
+    pub name: String,
+    pub mode: CheckMode,
+    scene: Scene,
+    model: Model,
+    positions: Vec<Vec<f64>>,
+    /// By position, the frames of all bodies, turns counted from the start.
+    body_poses: Vec<Vec<[f64; 3]>>,
+    start_poses: Vec<[f64; 3]>,
+    /// What is answered without a fault.
+    clean: ComparedValues,
+    clean_states: Vec<ClaimedState>,
+    /// The keys of findings that fail without a fault: too few positions for them, or constraints
+    /// that repeat each other. They judge nothing here.
+    pub ignored_findings: Vec<String>,
+}
+
+/// Everything that is judged, by kind.
+pub type ComparedValues = Vec<Vec<f64>>;
+/// States, and by state the generalised inertias, row by row.
+pub type ClaimedStates = (Vec<ClaimedState>, Vec<Vec<f64>>);
+
+/// An answer that moves by less than this, relative to the largest of its kind, is the same answer:
+/// three digits above what the truths tell from rounding.
+pub const UNCHANGED_TOLERANCE: f64 = 1e-9;
+
+impl TestedMechanism {
+    /// A machine whose answers are known.
+    pub fn new(scene: Scene, mode: CheckMode) -> Self {
+        let name = scene.name.clone();
+        let mut tested = Self::from_scene(scene, mode).unwrap_or_else(|| panic!("{name} is none"));
+        if mode == CheckMode::States {
+            tested.clean_states = tested.states(None).expect("states").0;
+        }
+        tested.clean = tested.compared_values(None).expect("answers");
+        let findings = tested.findings(None, usize::MAX);
+        let failed = findings.into_iter().filter(|f| !f.pass);
+        tested.ignored_findings = failed.map(|f| f.key).collect();
+        tested
+    }
+
+    /// A machine as described; none if it cannot be put together.
+    pub fn from_scene(scene: Scene, mode: CheckMode) -> Option<Self> {
+        let mechanism = &scene.mechanism;
+        let start = scene.assembly.to_configuration();
+        let mut model =
+            Model::new(mechanism, &scene.masses, &start, &mechanism.reactions()).ok()?;
+        if mode == CheckMode::States {
+            model = model.with_loads(scene.loads.clone()).ok()?;
+        }
+        let mut positions = positions(&scene, model.plan());
+        if mode == CheckMode::Reduced {
+            // Judging costs more there.
+            positions.truncate(2);
+        }
+        let (at_start, body_poses) = poses_along(&scene, model.plan(), &positions);
+        Some(Self {
+            name: scene.name.clone(),
+            mode,
+            scene,
+            model,
+            positions,
+            body_poses,
+            start_poses: at_start,
+            clean: Vec::new(),
+            clean_states: Vec::new(),
+            ignored_findings: Vec::new(),
+        })
+    }
+
+    /// What it costs to judge, roughly: dense rows, cubed.
+    pub fn size(&self) -> usize {
+        self.scene.mechanism.bodies.len()
+    }
+
+    /// Every place that an evaluation meets.
+    pub fn operations(&self) -> BTreeSet<SourceOperation> {
+        recording_operations(|| self.compared_values(None)).1
+    }
+
+    /// How far a fault moves the answers, relative to the largest of each kind; none where there is
+    /// no answer at all.
+    pub fn change(&self, mutation: OperationMutation) -> Option<f64> {
+        Some(max_difference(
+            &self.clean,
+            &self.compared_values(mutation)?,
+        ))
+    }
+
+    /// What the truths say.
+    pub fn check(&self, mutation: OperationMutation) -> Detection {
+        self.detection(&self.findings(mutation, REQUIRED_CHECKS))
+    }
+
+    /// Of findings that can judge here.
+    fn detection(&self, findings: &[Finding]) -> Detection {
+        let applicable = findings
+            .iter()
+            .filter(|f| !self.ignored_findings.contains(&f.key));
+        Detection::from_findings(applicable)
+    }
+
+    /// What the truths say of states that are claimed of this machine; nothing where they are its own.
+    pub fn check_claims(&self, mut claimed_states: ClaimedStates) -> Option<Detection> {
+        for (claimed, actual) in claimed_states.0.iter_mut().zip(&self.clean_states) {
+            claimed.load_wrenches.clone_from(&actual.load_wrenches);
+        }
+        if max_difference(&self.clean, &self.values_of(&claimed_states)) <= UNCHANGED_TOLERANCE {
+            return None;
+        }
+        let findings = self.check_states(&claimed_states, usize::MAX);
+        Some(self.detection(&findings))
+    }
+
+    /// The states that this machine claims.
+    pub fn claims(&self) -> Option<ClaimedStates> {
+        self.states(None)
+    }
+
+    /// The accelerations of its states, without all that comes of speeds.
+    pub fn accelerations_without_velocity(&self, claimed: &ClaimedStates) -> Vec<Vec<[f64; 3]>> {
+        let mut workspace = self.model.workspace::<MutatingScalar>();
+        let zero_velocities = vec![MutatingScalar::default(); self.model.plan().actuators()];
+        let lifted = |values: &[f64]| {
+            values
+                .iter()
+                .map(|&v| MutatingScalar::new(v))
+                .collect::<Vec<_>>()
+        };
+        let of = |state: &ClaimedState| {
+            let entered =
+                self.model
+                    .set_state(state.t, &lifted(&state.q), &zero_velocities, &mut workspace);
+            entered.expect("a pose");
+            self.model
+                .set_accelerations(&lifted(&state.q_ddot), &mut workspace);
+            accelerations(&workspace, state.poses.len())
+        };
+        claimed.0.iter().map(of).collect()
+    }
+
+    /// Where it is judged: to be the same for claims of a wrong description.
+    pub fn set_positions(&mut self, positions: &[Vec<f64>]) {
+        self.positions = positions.to_vec();
+        self.clean_states.clear();
+        (_, self.body_poses) = poses_along(&self.scene, self.model.plan(), &self.positions);
+    }
+
+    pub fn positions(&self) -> &[Vec<f64>] {
+        &self.positions
+    }
+
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// What the truths find; the costly ones only where fewer than `enough` others catch it.
+    fn findings(&self, mutation: OperationMutation, enough: usize) -> Vec<Finding> {
+        let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
+        if self.mode == CheckMode::Reduced {
+            let case = Case {
+                mechanism,
+                masses,
+                range: self.model.plan().range(),
+                positions: self.positions.iter().map(|q| q[0]).collect(),
+            };
+            let subject = MutatedSubject {
+                mechanism: self,
+                mutation,
+            };
+            return verify_all(&case, &subject, &[]);
+        }
+        match self.states(mutation) {
+            None => Vec::new(),
+            Some(claimed) => self.check_states(&claimed, enough),
+        }
+    }
+
+    fn check_states(&self, (states, inertias): &ClaimedStates, enough: usize) -> Vec<Finding> {
+        let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
+        let mut findings = check_states(mechanism, masses, &self.start_poses, states);
+        if self.detection(&findings).check_count() < enough {
+            findings.extend(check_energies(
+                mechanism,
+                masses,
+                &self.start_poses,
+                states,
+                inertias,
+            ));
+        }
+        findings
+    }
+
+    fn compared_values(&self, mutation: OperationMutation) -> Option<ComparedValues> {
+        match self.mode {
+            CheckMode::Reduced => {
+                let subject = MutatedSubject {
+                    mechanism: self,
+                    mutation,
+                };
+                let (mut poses, mut inertia, mut forces) = (Vec::new(), Vec::new(), Vec::new());
+                for (q, k) in self.positions.iter().zip(0..) {
+                    let [v, r] = [VELOCITIES[k][0], ACCELERATIONS[k][0]];
+                    poses.extend(subject.poses(q[0]).ok()?.into_iter().flatten());
+                    let at = subject.coefficients(q[0]).ok()?;
+                    inertia.extend([at.m, at.half_dm]);
+                    forces.extend(self.determinate(at.a));
+                    forces.extend(self.determinate(at.b));
+                    let result = subject.inverse_dynamics(q[0], v, r).ok()?;
+                    forces.extend(self.determinate(result.reactions));
+                    forces.push(result.tau);
+                }
+                // What is zero throughout has the scale of its like.
+                Some(vec![poses, inertia, forces])
+            }
+            CheckMode::States => Some(self.values_of(&self.states(mutation)?)),
+        }
+    }
+
+    fn values_of(&self, (states, inertias): &ClaimedStates) -> ComparedValues {
+        let all = |of: fn(&ClaimedState) -> &Vec<[f64; 3]>| {
+            let each = states.iter().flat_map(|s| of(s).iter().flatten().copied());
+            each.collect()
+        };
+        let forces = states.iter().flat_map(|s| {
+            let reactions = self.determinate(s.reactions.clone());
+            reactions.into_iter().chain(s.tau.clone())
+        });
+        vec![
+            all(|s| &s.poses),
+            all(|s| &s.velocities),
+            all(|s| &s.accelerations),
+            forces.collect(),
+            inertias.concat(),
+        ]
+    }
+
+    /// The reactions that the loads determine; the others may be split in any way that balances.
+    fn determinate(&self, reactions: Vec<f64>) -> Vec<f64> {
+        let value_if_determinate =
+            |(k, value): (usize, f64)| self.model.plan().is_determinate(k).then_some(value);
+        reactions
+            .into_iter()
+            .enumerate()
+            .filter_map(value_if_determinate)
+            .collect()
+    }
+
+    /// The states under the loads. What the loads do is told from the right poses and magnitudes.
+    fn states(&self, mutation: OperationMutation) -> Option<ClaimedStates> {
+        let mut workspace = self.model.workspace::<MutatingScalar>();
+        let (mut result, mut unit) = (self.model.result_buffer(), self.model.result_buffer());
+        let n = self.model.plan().actuators();
+        let (mut states, mut inertias) = (Vec::new(), Vec::<Vec<f64>>::new());
+        for (k, q) in self.positions.iter().enumerate() {
+            let t = 0.3 + 0.4 * k as f64;
+            let [q_dot, q_ddot] = [&VELOCITIES[k][..n], &ACCELERATIONS[k][..n]];
+            let done = with_mutation(mutation, || {
+                let lifted = |values: &[f64]| {
+                    values
+                        .iter()
+                        .map(|&v| MutatingScalar::new(v))
+                        .collect::<Vec<_>>()
+                };
+                let (q, v, a) = (lifted(q), lifted(q_dot), lifted(q_ddot));
+                self.model
+                    .kinetostatics(t, &q, &v, &a, &mut workspace, &mut result)
+            });
+            done.ok()?;
+            let state = with_mutation(mutation, || self.state(t, k, &workspace, &result));
+            let mut runs = Vec::new();
+            for i in 0..n {
+                with_mutation(mutation, || {
+                    self.model.mass_matrix_column(i, &mut workspace, &mut unit);
+                });
+                runs.push(result_to_f64(&unit));
+            }
+            // M_ij is the action i at q̈ⱼ = 1 alone.
+            let at = |i: usize, j: usize| runs[j].tau[i];
+            inertias.push((0..n * n).map(|k| at(k / n, k % n)).collect());
+            states.push(state);
+            if k + 1 == self.positions.len() && self.model.frictions().len() == 0 {
+                let mut free = self.free_state(mutation, states.last()?, &runs, &mut workspace)?;
+                free.t += 1e-3;
+                inertias.push(inertias.last()?.clone());
+                states.push(free);
+            }
+        }
+        Some((states, inertias))
+    }
+
+    /// The same state, moving freely: its accelerations from the inertias, and every reaction as one
+    /// line of what the unit runs yield.
+    fn free_state(
+        &self,
+        mutation: OperationMutation,
+        state: &ClaimedState,
+        runs: &[Kinetostatic<f64>],
+        workspace: &mut Workspace<MutatingScalar>,
+    ) -> Option<ClaimedState> {
+        let n = runs.len();
+        let zero_accelerations = vec![MutatingScalar::default(); n];
+        let mut without = self.model.result_buffer();
+        with_mutation(mutation, || {
+            self.model
+                .loaded_inverse_dynamics(&zero_accelerations, workspace, &mut without)
+        })
+        .ok()?;
+        let without = result_to_f64(&without);
+        let q_ddot = solve_accelerations(runs, &without.tau)?;
+        let lifted: Vec<_> = q_ddot.iter().map(|&a| MutatingScalar::new(a)).collect();
+        with_mutation(mutation, || {
+            self.model.set_accelerations(&lifted, workspace);
+        });
+        let mut free = state.clone();
+        free.reactions = without.reactions;
+        for (run, a) in runs.iter().zip(&q_ddot) {
+            for (sum, one) in free.reactions.iter_mut().zip(&run.reactions) {
+                *sum += one * a;
+            }
+        }
+        free.accelerations = with_mutation(mutation, || accelerations(workspace, free.poses.len()));
+        free.tau = vec![0.0; n];
+        free.q_ddot = q_ddot;
+        Some(free)
+    }
+
+    fn state(
+        &self,
+        t: f64,
+        k: usize,
+        workspace: &Workspace<MutatingScalar>,
+        result: &Kinetostatic<MutatingScalar>,
+    ) -> ClaimedState {
+        let (mechanism, n) = (&self.scene.mechanism, self.model.plan().actuators());
+        let states = workspace.states();
+        let mut bodies = self
+            .model
+            .plan()
+            .body_frames(mechanism, &pose_to_f64(self.model.plan(), &workspace.pose));
+        for (pose, right) in bodies.iter_mut().zip(&self.body_poses[k]) {
+            pose[2] += ((right[2] - pose[2]) / TAU).round() * TAU;
+        }
+        let of = |b: usize| (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
+        let velocity = |b: usize| {
+            let (body, origin) = of(b);
+            [origin.velocity.x, origin.velocity.y, body.angular_velocity].map(|v| v.0)
+        };
+        let velocity: Vec<[f64; 3]> = (0..bodies.len()).map(velocity).collect();
+        let loads = match self.clean_states.get(k) {
+            Some(clean) => clean.load_wrenches.clone(),
+            None => {
+                let loads = self.scene.loads.iter().zip(&workspace.loads().magnitude);
+                let wrenches = loads.filter_map(|(load, magnitude)| {
+                    let masses = &self.scene.masses;
+                    load_wrenches(
+                        &load.kind,
+                        magnitude.0,
+                        mechanism.ground,
+                        masses,
+                        &bodies,
+                        &velocity,
+                    )
+                });
+                wrenches.flatten().collect()
+            }
+        };
+        ClaimedState {
+            t,
+            q: self.positions[k].clone(),
+            q_dot: VELOCITIES[k][..n].to_vec(),
+            q_ddot: ACCELERATIONS[k][..n].to_vec(),
+            accelerations: accelerations(workspace, bodies.len()),
+            poses: bodies,
+            velocities: velocity,
+            reactions: result.reactions.iter().map(|r| r.0).collect(),
+            tau: result.tau.iter().map(|r| r.0).collect(),
+            load_wrenches: loads,
+        }
+    }
+}
+
+/// The reduced model of a machine, evaluated in watched numbers.
+struct MutatedSubject<'a> {
+    mechanism: &'a TestedMechanism,
+    mutation: OperationMutation,
+}
+
+impl Subject for MutatedSubject<'_> {
+    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
+        let TestedMechanism { model, scene, .. } = self.mechanism;
+        let mut pose = model.plan().pose();
+        with_mutation(self.mutation, || {
+            model.plan().positions(&[MutatingScalar::new(q)], &mut pose)
+        })
+        .map_err(subject_error(q))?;
+        Ok(model
+            .plan()
+            .body_frames(&scene.mechanism, &pose_to_f64(model.plan(), &pose)))
+    }
+
+    fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
+        let model = &self.mechanism.model;
+        let (mut workspace, mut at) = (model.workspace(), model.coefficient_buffer());
+        with_mutation(self.mutation, || {
+            model.reduce(MutatingScalar::new(q), &mut workspace, &mut at)
+        })
+        .map_err(subject_error(q))?;
+        Ok(Coefficients {
+            m: at.m.0,
+            half_dm: at.half_dm.0,
+            a: at.a.iter().map(|v| v.0).collect(),
+            b: at.b.iter().map(|v| v.0).collect(),
+        })
+    }
+
+    fn inverse_dynamics(
+        &self,
+        q: f64,
+        q_dot: f64,
+        q_ddot: f64,
+    ) -> Result<InverseDynamics, SubjectError> {
+        let model = &self.mechanism.model;
+        let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
+        let [at, v, a] = [q, q_dot, q_ddot].map(|v| [MutatingScalar::new(v)]);
+        with_mutation(self.mutation, || {
+            model.inverse_dynamics(&at, &v, &a, &mut workspace, &mut result)
+        })
+        .map_err(subject_error(q))?;
+        Ok(InverseDynamics {
+            tau: result.tau[0].0,
+            reactions: result.reactions.iter().map(|v| v.0).collect(),
+        })
+    }
+}
+
+fn subject_error<E: std::fmt::Display>(q: f64) -> impl Fn(E) -> SubjectError {
+    move |e| SubjectError {
+        q,
+        message: e.to_string(),
+    }
+}
+
+/// q̈ of Σ runs q̈ + rest = 0, by elimination with the largest pivot.
+fn solve_accelerations(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f64>> {
+    let n = runs.len();
+    let row = |i: usize| {
+        runs.iter()
+            .map(|run| run.tau[i])
+            .chain([-rest[i]])
+            .collect()
+    };
+    let mut rows: Vec<Vec<f64>> = (0..n).map(row).collect();
+    for c in 0..n {
+        let pivot = (c..n).max_by(|&i, &j| rows[i][c].abs().total_cmp(&rows[j][c].abs()))?;
+        rows.swap(c, pivot);
+        let pivot_row = rows[c].clone();
+        for (_, other) in rows.iter_mut().enumerate().filter(|(i, _)| *i != c) {
+            let factor = other[c] / pivot_row[c];
+            other
+                .iter_mut()
+                .zip(&pivot_row)
+                .for_each(|(a, b)| *a -= factor * b);
+        }
+    }
+    (0..n).map(|i| Some(rows[i][n] / rows[i][i])).collect()
+}
+
+/// How far answers are apart, relative to the largest of each kind; infinitely where one is no number.
+fn max_difference(clean: &ComparedValues, found: &ComparedValues) -> f64 {
+    let mut max = 0.0_f64;
+    for (clean, found) in clean.iter().zip(found) {
+        let largest = clean.iter().fold(f64::MIN_POSITIVE, |m, v| m.max(v.abs()));
+        for (c, f) in clean.iter().zip(found).filter(|(c, f)| c != f) {
+            let difference = (f - c).abs() / largest;
+            max = max.max(if difference.is_nan() {
+                f64::INFINITY
+            } else {
+                difference
+            });
+        }
+    }
+    max
+}
