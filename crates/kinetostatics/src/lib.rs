@@ -50,7 +50,7 @@ pub use drive::{Drive, DriveKind, Motor, SpeedController};
 pub use error::{KinetostaticsError, LoadError, ModelError};
 pub use load::{
     AppliedWrench, CompiledSignal, ForceSource, Friction, FrictionContact, Guide, Load, LoadKind,
-    LoadState, Magnitude, Signal,
+    LoadState, MAX_FUNCTION_SIGNALS, Magnitude, MagnitudeFunction, Signal,
 };
 pub use mass::Mass;
 pub use model::{Model, Workspace};

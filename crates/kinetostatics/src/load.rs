@@ -5,6 +5,7 @@
 mod compiled;
 mod couple_points;
 mod friction;
+mod function;
 mod signal;
 mod state;
 mod wrench;
@@ -12,6 +13,7 @@ mod wrench;
 pub(crate) use compiled::CompiledLoads;
 pub(crate) use couple_points::find_couple_points;
 pub use friction::{Friction, FrictionContact};
+pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
 pub use signal::CompiledSignal;
 pub use state::LoadState;
 pub use wrench::{AppliedWrench, ForceSource};
@@ -156,6 +158,8 @@ pub enum Magnitude {
     Law(Signal, Law),
     /// An expression of several signals, one for each variable it was parsed with, in their order.
     Expression(Expression, Vec<Signal>),
+    /// A function of the program that uses the library, of these signals in their order.
+    Function(MagnitudeFunction, Vec<Signal>),
     /// Coulomb friction, from the joint's own reactions.
     Friction(Friction),
     /// The value that [`Workspace::set_magnitude`](crate::Workspace::set_magnitude) was given last: of a drive,
@@ -169,7 +173,9 @@ impl Magnitude {
         match self {
             Self::Constant(_) | Self::Friction(_) => &[],
             Self::Law(signal, _) => std::slice::from_ref(signal),
-            Self::Expression(_, signals) | Self::External(signals) => signals,
+            Self::Expression(_, signals) | Self::Function(_, signals) | Self::External(signals) => {
+                signals
+            }
         }
     }
 }
@@ -211,6 +217,7 @@ impl Load {
             Magnitude::Constant(_)
             | Magnitude::Law(..)
             | Magnitude::Expression(..)
+            | Magnitude::Function(..)
             | Magnitude::External(_) => None,
         }
     }

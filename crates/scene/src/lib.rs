@@ -75,6 +75,7 @@ mod joints;
 mod keys;
 mod kind;
 mod law;
+mod load_functions;
 mod loads;
 mod location;
 mod magnitude;

@@ -308,6 +308,7 @@ fn validate_load(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str>
         Magnitude::Constant(_)
         | Magnitude::Law(..)
         | Magnitude::Expression(..)
+        | Magnitude::Function(..)
         | Magnitude::External(_) => Ok(()),
     }
 }

@@ -51,6 +51,7 @@ impl MultibodySystem {
                 Magnitude::Constant(_)
                 | Magnitude::Law(..)
                 | Magnitude::Expression(..)
+                | Magnitude::Function(..)
                 | Magnitude::External(_) => None,
             })
             .collect()

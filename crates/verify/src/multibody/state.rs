@@ -80,6 +80,10 @@ impl MultibodySystem {
                 let enough = expression.variables().len() <= values.len();
                 enough.then(|| expression.eval(&values))
             }
+            Magnitude::Function(function, signals) => {
+                let signals = signals.iter().map(|s| self.signal(*s, at));
+                Some(function.value(&signals.collect::<Option<Vec<f64>>>()?))
+            }
             Magnitude::Friction(_) | Magnitude::External(_) => None,
         }
     }
