@@ -2,6 +2,7 @@
 
 use dwell_scene::SceneError;
 use dwell_study::StudyError;
+use std::fmt;
 use thiserror::Error;
 
 /// Why a call of this crate fails. Its text names the bodies, joints and coordinates; [`Error::scene_error`] has the
@@ -17,7 +18,7 @@ use thiserror::Error;
 /// let error = m.assemble().unwrap_err();
 /// assert!(error.to_string().contains("crnk"));
 /// ```
-#[derive(Debug, Error)]
+#[derive(Error)]
 pub enum Error {
     /// The scene cannot be read or evaluated, or a sweep cannot be made.
     #[error("{}", all_messages(.0))]
@@ -87,6 +88,13 @@ impl Error {
             name: name.to_owned(),
             help: dwell_scene::choices(name, kind, known),
         }
+    }
+}
+
+/// Its text, because that is what a program shows whose `main` returns this error.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
     }
 }
 
