@@ -37,7 +37,15 @@ impl Scene {
     /// As [`Scene::read`].
     ///
     /// ```
-    /// let scene = dwell::Scene::parse(include_str!("../../../docs/slider.toml"))?;
+    /// let scene = dwell::Scene::parse(
+    ///     r#"
+    ///     bodies.ground.points = { O = [0, 0] }
+    ///     bodies.bob = { points = { O = [0, 0] }, mass = 2.0, center = [0.5, 0] }
+    ///     joints.O = { revolute = ["ground.O", "bob.O"] }
+    ///     actuators.phi = { angle = ["ground", "bob"] }
+    ///     "#,
+    /// )?;
+    /// assert_eq!(scene.value("bob.mass")?, 2.0);
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn parse(text: &str) -> Result<Self, Error> {

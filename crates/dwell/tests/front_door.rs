@@ -200,7 +200,7 @@ fn every_part_is_one_that_the_reader_knows() -> Result<(), Error> {
     );
     m.request_reactions(&["guide", "A.x"]);
     let built = m.assemble()?;
-    assert_eq!(built.scene().title(), "All \"parts\" ");
+    assert_eq!(built.scene().title(), "All \"parts\"");
     let along = built.kinetostatics()?;
     assert!(along.early_stop.is_none());
     let phi = along.column("phi")?;
