@@ -4,7 +4,7 @@
 //! m q̈ + ½m′ q̇² = Σ w_ℓ F_ℓ,    R_k = a_k q̈ + b_k q̇² + Σ c_kℓ F_ℓ
 //! ```
 //!
-//! F is the magnitude that the scene gives; for a damper or friction, the force or moment itself.
+//! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself.
 
 use crate::models::PreparedScene;
 use crate::output::{

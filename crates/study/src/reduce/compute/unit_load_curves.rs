@@ -4,7 +4,9 @@
 //! m q̈ + ½m′ q̇² = Σ w_ℓ F_ℓ,    R_k = a_k q̈ + b_k q̇² + Σ c_kℓ F_ℓ
 //! ```
 //!
-//! F is the magnitude that the scene gives; for a damper or friction, the force or moment itself.
+//! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself. A
+//! separating force is |tooth force| tan α of the sum itself, so that it belongs to one state: its column c is the
+//! response to one newton of it, and its w is zero.
 
 use crate::explain::{StudyError, explain_motion};
 use crate::models::{PreparedScene, loaded_determinate_model};
@@ -32,7 +34,8 @@ pub(crate) fn units(kind: LoadKind) -> [&'static str; 3] {
         | LoadKind::Damper { .. }
         | LoadKind::PointToPointForce { .. }
         | LoadKind::SlideForce(_)
-        | LoadKind::SlideDamper(_) => ["m", "", "m"],
+        | LoadKind::SlideDamper(_)
+        | LoadKind::SeparatingForce(_) => ["m", "", "m"],
     }
 }
 
