@@ -29,17 +29,17 @@ const STAGNATION_TOLERANCE: f64 = 1e-6;
 
 /// A load that depends on the reactions of a joint, compiled for a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct ContactForce {
+pub(crate) struct DependentLoad {
     /// Index of its load.
     pub(crate) load: usize,
     /// Indices of the reactions it depends on; none for a component that it does not need.
     reactions: [Option<usize>; 2],
-    law: ContactLaw,
+    law: ReactionLaw,
 }
 
 /// How a load depends on the reactions of its joint.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum ContactLaw {
+enum ReactionLaw {
     Friction {
         friction: Friction,
         /// The coordinate whose speed is that of the surfaces.
@@ -49,7 +49,7 @@ enum ContactLaw {
     Separating { tangent: f64 },
 }
 
-impl ContactLaw {
+impl ReactionLaw {
     /// g(R), N·m or N, and its derivatives by both components.
     fn force<T: Scalar>(self, reaction: [T; 2]) -> (T, [T; 2]) {
         match self {
@@ -121,7 +121,7 @@ impl<T: Scalar> FrictionWorkspace<T> {
     }
 }
 
-impl ContactForce {
+impl DependentLoad {
     /// The frictions and separating forces among a model's loads whose reactions the model computes.
     pub(crate) fn compile(
         mechanism: &Mechanism,
@@ -134,14 +134,14 @@ impl ContactForce {
                 *index = reactions.iter().position(|r| *r == required);
             }
             let law = match one.magnitude {
-                Magnitude::Friction(friction) => ContactLaw::Friction {
+                Magnitude::Friction(friction) => ReactionLaw::Friction {
                     friction,
                     coordinate: sliding_coordinate(one.kind)?,
                 },
                 // Without its tooth force it is in a model that computes nothing on which it could act.
                 Magnitude::Separating(PressureAngle { angle, .. }) => {
                     indices[0]?;
-                    ContactLaw::Separating {
+                    ReactionLaw::Separating {
                         tangent: angle.tan(),
                     }
                 }
@@ -162,7 +162,7 @@ impl ContactForce {
     /// φ.
     fn factor<T: Scalar>(&self, states: &BodyStates<T>) -> T {
         match self.law {
-            ContactLaw::Friction {
+            ReactionLaw::Friction {
                 friction,
                 coordinate,
             } => {
@@ -172,7 +172,7 @@ impl ContactForce {
                 let slope = (1.0 - tanh * tanh) / speed;
                 velocity.compose(&[tanh, slope, 0.0, 0.0]) * T::from_f64(friction.coefficient)
             }
-            ContactLaw::Separating { tangent } => T::from_f64(-tangent),
+            ReactionLaw::Separating { tangent } => T::from_f64(-tangent),
         }
     }
 
@@ -217,21 +217,23 @@ pub(crate) fn required_reactions(mechanism: &Mechanism, load: &Load) -> Vec<Reac
 /// # Errors
 /// [`KinetostaticsError::SelfLocking`] where there is no unique solution.
 pub(crate) fn solve<T: Scalar>(
-    contact_forces: &[ContactForce],
+    dependent_loads: &[DependentLoad],
     states: &BodyStates<T>,
     frictionless: &[T],
     responses: &[InverseDynamics<T>],
     workspace: &mut FrictionWorkspace<T>,
 ) -> Result<(), KinetostaticsError> {
-    let load = contact_forces.first().map_or(0, |contact| contact.load);
+    let load = dependent_loads
+        .first()
+        .map_or(0, |dependent| dependent.load);
     let self_locking = KinetostaticsError::SelfLocking { load };
-    for (contact, factor) in contact_forces.iter().zip(&mut workspace.friction_factor) {
-        *factor = contact.factor(states);
+    for (dependent, factor) in dependent_loads.iter().zip(&mut workspace.friction_factor) {
+        *factor = dependent.factor(states);
     }
     workspace.force.fill(T::from_f64(0.0));
     let (mut converged, mut last) = (0, f64::INFINITY);
     for _ in 0..MAX_ITERATIONS {
-        let largest = workspace.linearise(contact_forces, frictionless, responses);
+        let largest = workspace.linearise(dependent_loads, frictionless, responses);
         let factored = lu::factor(&mut workspace.jacobian, &mut workspace.pivots);
         if factored.determinant_sign <= 0.0 || factored.pivot_ratio < f64::EPSILON {
             return Err(self_locking);
@@ -260,24 +262,24 @@ impl<T: Scalar> FrictionWorkspace<T> {
     /// Residual and Jacobian of (1) at the current forces, and the largest |φ g|.
     fn linearise(
         &mut self,
-        contact_forces: &[ContactForce],
+        dependent_loads: &[DependentLoad],
         frictionless: &[T],
         responses: &[InverseDynamics<T>],
     ) -> f64 {
-        let n = contact_forces.len();
+        let n = dependent_loads.len();
         let mut largest = 0.0_f64;
-        for (j, contact) in contact_forces.iter().enumerate() {
-            let mut reaction = contact.components(frictionless);
+        for (j, dependent) in dependent_loads.iter().enumerate() {
+            let mut reaction = dependent.components(frictionless);
             for (force, response) in self.force.iter().zip(responses) {
-                let [x, y] = contact.components(&response.reactions);
+                let [x, y] = dependent.components(&response.reactions);
                 reaction[0] += x * *force;
                 reaction[1] += y * *force;
             }
-            let (contact_force, [by_x, by_y]) = contact.law.force(reaction);
+            let (contact_force, [by_x, by_y]) = dependent.law.force(reaction);
             let factor = self.friction_factor[j];
             self.step[j] = -(self.force[j] + factor * contact_force);
             for (k, response) in responses.iter().enumerate() {
-                let [x, y] = contact.components(&response.reactions);
+                let [x, y] = dependent.components(&response.reactions);
                 let diagonal = if j == k { 1.0 } else { 0.0 };
                 self.jacobian[j * n + k] = T::from_f64(diagonal) + factor * (by_x * x + by_y * y);
             }

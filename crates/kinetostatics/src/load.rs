@@ -217,6 +217,23 @@ impl Load {
         has_potential && matches!(self.magnitude, Magnitude::Constant(_))
     }
 
+    /// Whether it can do work in some motion: all but the separating force of teeth.
+    pub fn does_work(&self) -> bool {
+        match self.kind {
+            LoadKind::SeparatingForce(_) => false,
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => true,
+        }
+    }
+
     /// The friction that makes its magnitude, if it is one.
     pub fn friction(&self) -> Option<Friction> {
         match self.magnitude {

@@ -8,7 +8,7 @@ mod workspace;
 pub use workspace::Workspace;
 
 use crate::error::ModelError;
-use crate::friction::{ContactForce, required_reactions};
+use crate::friction::{DependentLoad, required_reactions};
 use crate::load::CompiledLoads;
 use crate::mass::Mass;
 use crate::pass::{GivenMotion, InertialBody, InverseDynamics, PassModel, ReactionSources};
@@ -29,7 +29,7 @@ pub struct Model {
     /// By body; the ground has none.
     pub(crate) masses: Vec<Mass>,
     pub(crate) loads: CompiledLoads,
-    contact_forces: Vec<ContactForce>,
+    dependent_loads: Vec<DependentLoad>,
     /// The configuration in which it was assembled.
     assembly: AssemblyConfiguration,
 }
@@ -67,7 +67,7 @@ impl Model {
             requested: 0,
             masses,
             loads: CompiledLoads::default(),
-            contact_forces: Vec::new(),
+            dependent_loads: Vec::new(),
             assembly: assembly.clone(),
         };
         model.compile_reactions(reactions);
@@ -88,7 +88,7 @@ impl Model {
             }
         }
         self.requested = requested.len();
-        self.contact_forces = ContactForce::compile(&self.mechanism, self.loads(), &reactions);
+        self.dependent_loads = DependentLoad::compile(&self.mechanism, self.loads(), &reactions);
         self.pass_model.reaction_sources =
             ReactionSources::compile(&self.mechanism, &self.pass_model.plan, &reactions);
         self.reactions = reactions;

@@ -105,7 +105,7 @@ impl Model {
         self.set_state(t, q, q_dot, workspace)?;
         self.loaded_inverse_dynamics(q_ddot, workspace, result)?;
         workspace.update_body_accelerations(self);
-        if self.contact_forces.is_empty() {
+        if self.dependent_loads.is_empty() {
             return Ok(());
         }
         let mut responses = std::mem::take(&mut workspace.load_workspace.friction_responses);
@@ -122,8 +122,8 @@ impl Model {
         frictionless: &[T],
         workspace: &mut Workspace<T>,
     ) -> Result<(), KinetostaticsError> {
-        for (response, contact_force) in responses.iter_mut().zip(&self.contact_forces) {
-            self.unit_load_response(contact_force.load, workspace, response)?;
+        for (response, dependent) in responses.iter_mut().zip(&self.dependent_loads) {
+            self.unit_load_response(dependent.load, workspace, response)?;
         }
         self.solve_friction(frictionless, responses, workspace)
     }
@@ -131,7 +131,7 @@ impl Model {
     /// The loads that depend on reactions (frictions, and separating forces where a reaction is computed), by their
     /// indices in [`Model::loads`].
     pub fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.contact_forces.iter().map(|contact| contact.load)
+        self.dependent_loads.iter().map(|dependent| dependent.load)
     }
 
     /// Solves for the [loads that depend on reactions](Model::frictions) at the state set last: `frictionless` are the
@@ -154,14 +154,14 @@ impl Model {
             ..
         } = &mut workspace.load_workspace;
         friction::solve(
-            &self.contact_forces,
+            &self.dependent_loads,
             states,
             frictionless,
             responses,
             friction_workspace,
         )?;
-        for (contact, force) in self.contact_forces.iter().zip(&friction_workspace.force) {
-            loads.magnitude[contact.load] = *force;
+        for (dependent, force) in self.dependent_loads.iter().zip(&friction_workspace.force) {
+            loads.magnitude[dependent.load] = *force;
         }
         self.loads.update_wrenches(states, loads)
     }

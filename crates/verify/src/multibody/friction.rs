@@ -22,7 +22,7 @@ const CONVERGED_CHANGE: f64 = 1e-15;
 
 /// How a load answers to the reactions of its joint.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum ContactLaw {
+pub(super) enum ReactionLaw {
     Friction(Friction),
     Teeth(PressureAngle),
 }
@@ -74,12 +74,12 @@ impl MultibodySystem {
     }
 
     /// The loads that answer to reactions.
-    pub(super) fn frictions(&self) -> Vec<(usize, ContactLaw)> {
+    pub(super) fn frictions(&self) -> Vec<(usize, ReactionLaw)> {
         let loads = self.loads.iter().enumerate();
         loads
             .filter_map(|(i, load)| match load.magnitude {
-                Magnitude::Friction(friction) => Some((i, ContactLaw::Friction(friction))),
-                Magnitude::Separating(teeth) => Some((i, ContactLaw::Teeth(teeth))),
+                Magnitude::Friction(friction) => Some((i, ReactionLaw::Friction(friction))),
+                Magnitude::Separating(teeth) => Some((i, ReactionLaw::Teeth(teeth))),
                 Magnitude::Constant(_)
                 | Magnitude::Law(..)
                 | Magnitude::Expression(..)
@@ -102,10 +102,10 @@ impl MultibodySystem {
     }
 
     /// µ tanh(v/v₀), or −tan α.
-    fn factor(&self, load: usize, law: &ContactLaw, at: &MultibodyState) -> Option<f64> {
+    fn factor(&self, load: usize, law: &ReactionLaw, at: &MultibodyState) -> Option<f64> {
         let friction = match law {
-            ContactLaw::Friction(friction) => friction,
-            ContactLaw::Teeth(teeth) => return Some(-teeth.angle.tan()),
+            ReactionLaw::Friction(friction) => friction,
+            ReactionLaw::Teeth(teeth) => return Some(-teeth.angle.tan()),
         };
         let [_, velocity] = match self.loads.get(load)?.kind {
             LoadKind::SlideForce(guide) => {
@@ -126,10 +126,10 @@ impl MultibodySystem {
     }
 
     /// g or |T|, with its derivative by every row that it depends on.
-    fn contact_force(&self, law: &ContactLaw, reactions: &[f64]) -> (f64, Vec<(usize, f64)>) {
+    fn contact_force(&self, law: &ReactionLaw, reactions: &[f64]) -> (f64, Vec<(usize, f64)>) {
         let friction = match law {
-            ContactLaw::Friction(friction) => friction,
-            ContactLaw::Teeth(teeth) => {
+            ReactionLaw::Friction(friction) => friction,
+            ReactionLaw::Teeth(teeth) => {
                 let row = tooth_row(&self.mechanism, teeth.joint);
                 return row.map_or((f64::NAN, vec![]), |row| {
                     (reactions[row].abs(), vec![(row, reactions[row].signum())])
@@ -169,7 +169,7 @@ impl MultibodyOde<'_> {
     /// The frictions that fit the reactions which they make.
     pub(super) fn solve_friction(
         &self,
-        frictions: &[(usize, ContactLaw)],
+        frictions: &[(usize, ReactionLaw)],
         response: &FrictionResponse,
         at: &MultibodyState,
     ) -> Result<Vec<f64>, MultibodyError> {
