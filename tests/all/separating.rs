@@ -14,7 +14,7 @@ const TOOTHED: [(&str, &[&str]); 2] = [
     ("rack-pinion", &["radius = 20"]),
 ];
 
-/// A case whose teeth have a pressure angle of 20°, and the case itself.
+/// A case whose teeth have a pressure angle of 0.35 rad, and the case itself.
 fn with_and_without(case: &str, teeth: &[&str]) -> [Scene; 2] {
     let path = repository_root().join("validation").join(case);
     let text = std::fs::read_to_string(path.join("scene.toml"));
@@ -22,7 +22,7 @@ fn with_and_without(case: &str, teeth: &[&str]) -> [Scene; 2] {
     let mut text = plain.clone();
     for teeth in teeth {
         assert_eq!(text.matches(teeth).count(), 1, "{case}: {teeth}");
-        text = text.replace(teeth, &format!("{teeth}, pressure-angle = 20"));
+        text = text.replace(teeth, &format!("{teeth}, pressure-angle = 0.35"));
     }
     [text, plain]
         .map(|text| Scene::parse("scene.toml", &text).unwrap_or_else(|e| panic!("{case}: {e}")))

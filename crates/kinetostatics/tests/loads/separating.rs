@@ -6,10 +6,11 @@ use dwell_geometry::{JointId, Vec2, vec2};
 use dwell_kinetostatics::{FreeBodyForces, Load, LoadKind, Magnitude, Model};
 use dwell_scene::Scene;
 
-const ALPHA: f64 = 20.0;
+/// rad, about 20°.
+const ALPHA: f64 = 0.35;
 
 fn tangent() -> f64 {
-    ALPHA.to_radians().tan()
+    ALPHA.tan()
 }
 
 /// Of a hundred newtons: a few units in the last place of each step.
@@ -72,7 +73,7 @@ fn gears(radii: [f64; 2], internal: bool, psi: f64, torque: f64, more: &str) -> 
     )
 }
 
-const WITH_ANGLE: &str = ", pressure-angle = 20";
+const WITH_ANGLE: &str = ", pressure-angle = 0.35";
 
 /// The tooth force turns the second gear against the brake: r₂ T = −M. It is tangential at the pitch point; S pushes the
 /// wheels apart, whichever way T acts.
@@ -91,7 +92,7 @@ fn two_spur_gears_are_pushed_apart_by_both_senses_of_the_torque() {
             let on_second = u.perp() * -tooth + u * separating;
             close(case.pin("B"), -on_second);
             close(case.pin("A"), on_second);
-            let size = tooth.abs() / ALPHA.to_radians().cos();
+            let size = tooth.abs() / ALPHA.cos();
             assert!((case.pin("B").norm() - size).abs() < ROUNDING);
         }
     }
@@ -131,7 +132,7 @@ fn rack(side: f64, force: f64) -> String {
         [joints]
         C = {{ revolute = ["ground.C", "pinion.C"] }}
         guide = {{ prismatic = ["ground.G", "rack.P"], axis = [1, 0] }}
-        mesh = {{ rack = ["rack.P", "pinion.C"], axis = [1, 0], radius = {}, pressure-angle = 20 }}
+        mesh = {{ rack = ["rack.P", "pinion.C"], axis = [1, 0], radius = {}, pressure-angle = 0.35 }}
         [actuators]
         phi = {{ angle = ["ground", "pinion"] }}
         [loads]
@@ -170,8 +171,8 @@ const PLANETARY: &str = r#"
     O = { revolute = ["ground.O", "sun.O"] }
     arm-pin = { revolute = ["ground.O", "arm.O"] }
     C = { revolute = ["arm.C", "planet.C"] }
-    inner = { gear = ["sun.O", "planet.C"], radii = [0.03, 0.02], pressure-angle = 20 }
-    outer = { gear = ["ground.O", "planet.C"], radii = [0.07, 0.02], internal = true, pressure-angle = 25 }
+    inner = { gear = ["sun.O", "planet.C"], radii = [0.03, 0.02], pressure-angle = 0.35 }
+    outer = { gear = ["ground.O", "planet.C"], radii = [0.07, 0.02], internal = true, pressure-angle = 0.44 }
     [actuators]
     phi = { angle = ["ground", "sun"] }
     [assembly]
@@ -188,11 +189,11 @@ fn the_pin_of_a_planet_carries_the_difference_of_two_separating_forces() {
     for q in [0.4, 1.7, -2.2] {
         case.evaluate(0.0, &[q], &[0.0], &[0.0]);
         let tooth = 12.0 / 0.1;
-        let [sun, ring] = [20.0_f64, 25.0].map(|angle| tooth * angle.to_radians().tan());
+        let [sun, ring] = [ALPHA, 0.44].map(|angle| tooth * angle.tan());
         let u = Vec2::from_angle(0.3 * q + case.arm_offset());
         close(case.pin("C"), u.perp() * (-2.0 * tooth) + u * (ring - sun));
         // The ground holds the sun alone.
-        assert!((case.pin("O").norm() - tooth / 20.0_f64.to_radians().cos()).abs() < ROUNDING);
+        assert!((case.pin("O").norm() - tooth / ALPHA.cos()).abs() < ROUNDING);
     }
 }
 
@@ -212,7 +213,7 @@ fn friction_sees_the_separating_force() {
     case.evaluate(0.0, &[0.3], &[-2.0], &[0.0]);
     // The second gear turns with +3 rad/s, and friction brakes it.
     let lever = 0.15 * 0.008 * (3.0_f64 / 0.01).tanh();
-    let cosine = ALPHA.to_radians().cos();
+    let cosine = ALPHA.cos();
     let tooth = -3.0 / (0.02 + lever / cosine);
     assert!((case.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
     let couple = case.magnitude("B.friction");
@@ -227,7 +228,7 @@ fn friction_sees_the_separating_force() {
 const MOVING: &str = include_str!("separating.toml");
 
 fn without_angle(text: &str) -> String {
-    let plain = text.replace(", pressure-angle = 20", "");
+    let plain = text.replace(", pressure-angle = 0.35", "");
     assert_ne!(plain, text);
     plain
 }

@@ -132,7 +132,7 @@ const PRESSURE_ANGLE: KeySchema = key(
     "pressure-angle",
     Number,
     "angle",
-    "Pressure angle of the teeth, above 0° and at most 45°: the teeth push each other apart with |tooth force| × tan(pressure-angle), along the line of centres or normal to the pitch line. The bearings carry this separating force, and the column `<joint>.separating` has it.",
+    "Pressure angle of the teeth, above 0° and at most 45°. The teeth push each other apart with the absolute tooth force × tan(pressure-angle), along the line of centres (of a rack: normal to the pitch line). The bearings carry this separating force; the column `<joint>.separating` is its magnitude.",
     "20",
 )
 .with_default("no separating force");

@@ -9,7 +9,10 @@ fn with_angle(name: &str, teeth: &str) -> dwell_scene::Scene {
     let home = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation");
     let text = std::fs::read_to_string(home.join(name).join("scene.toml")).unwrap();
     assert_eq!(text.matches(teeth).count(), 1);
-    scene(&text.replace(teeth, &format!("{teeth}, pressure-angle = 20")))
+    scene(&text.replace(
+        teeth,
+        &format!("{teeth}, pressure-angle = 0.3490658503988659"),
+    ))
 }
 
 fn table(of: &dwell_scene::Scene, analysis: Analysis) -> Table {
