@@ -109,7 +109,10 @@ impl CompiledDrive {
                     "friction and separating forces act in joints alone, and a drive is not given by another",
                 );
             }
-            Magnitude::Constant(_) | Magnitude::Law(..) | Magnitude::Expression(..) => {}
+            Magnitude::Constant(_)
+            | Magnitude::Law(..)
+            | Magnitude::Expression(..)
+            | Magnitude::Function(..) => {}
         }
         Ok(Self {
             load,

@@ -148,6 +148,7 @@ impl DependentLoad {
                 Magnitude::Constant(_)
                 | Magnitude::Law(..)
                 | Magnitude::Expression(..)
+                | Magnitude::Function(..)
                 | Magnitude::External(_) => return None,
             };
             Some(Self {
@@ -207,6 +208,7 @@ pub(crate) fn required_reactions(mechanism: &Mechanism, load: &Load) -> Vec<Reac
         Magnitude::Constant(_)
         | Magnitude::Law(..)
         | Magnitude::Expression(..)
+        | Magnitude::Function(..)
         | Magnitude::External(_) => Vec::new(),
     }
 }

@@ -254,6 +254,7 @@ impl Load {
             Magnitude::Constant(_)
             | Magnitude::Law(..)
             | Magnitude::Expression(..)
+            | Magnitude::Function(..)
             | Magnitude::Friction(_)
             | Magnitude::External(_) => None,
         }

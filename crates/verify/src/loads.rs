@@ -144,6 +144,7 @@ pub fn magnitude_by_reactions(
         Magnitude::Constant(_)
         | Magnitude::Law(..)
         | Magnitude::Expression(..)
+        | Magnitude::Function(..)
         | Magnitude::Friction(_)
         | Magnitude::External(_) => claimed,
     }

@@ -80,15 +80,11 @@ impl MultibodySystem {
                 let enough = expression.variables().len() <= values.len();
                 enough.then(|| expression.eval(&values))
             }
-<<<<<<< HEAD
             Magnitude::Function(function, signals) => {
                 let signals = signals.iter().map(|s| self.signal(*s, at));
                 Some(function.value(&signals.collect::<Option<Vec<f64>>>()?))
             }
-            Magnitude::Friction(_) | Magnitude::External(_) => None,
-=======
             Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => None,
->>>>>>> abc0101 (Gears and racks: separating force of a pressure angle as a load that depends on the tooth force)
         }
     }
 
@@ -137,6 +133,7 @@ impl MultibodySystem {
                 other @ (Magnitude::Constant(_)
                 | Magnitude::Law(..)
                 | Magnitude::Expression(..)
+                | Magnitude::Function(..)
                 | Magnitude::External(_)) => self.magnitude(other, &at).is_some(),
             }
             .then_some(())
