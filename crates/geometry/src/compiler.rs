@@ -229,7 +229,14 @@ fn check(
     };
     let related = |kind: JointKind| match kind {
         JointKind::Coupling(r) => r < mechanism.couplings.len(),
-        _ => true,
+        JointKind::Revolute
+        | JointKind::Prismatic { .. }
+        | JointKind::Slot { .. }
+        | JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Rack { .. }
+        | JointKind::Rolling { .. }
+        | JointKind::Distance { .. } => true,
     };
     let reason = if mechanism.ground >= bodies
         || !body_pairs.all(|e| e.iter().all(|b| b.0 < bodies))

@@ -194,6 +194,7 @@ impl<'a> ParsedScene<'a> {
         if let Some(f) = section(&fields, "friction", false, diagnostics) {
             loads.extend(friction(&f, &joints, &units, diagnostics));
         }
+        loads.extend(joints.separating_forces());
         let drives = section(&fields, "drives", false, diagnostics).map_or_else(Vec::new, |f| {
             let reader = DriveReader {
                 named_coordinates: &named_coordinates,

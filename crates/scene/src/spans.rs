@@ -48,7 +48,7 @@ pub enum SceneLocation {
     /// What the sweep says of the actuator.
     Swept(ActuatorId),
     /// The name of the k-th of the scene's loads where it is defined: of a friction, that of its joint
-    /// in `[friction]`. After the loads come the drives, as in a model that has them as its last loads.
+    /// in `[friction]`; of a separating force, that of its joint. After the loads come the drives, as in a model that has them as its last loads.
     Load(usize),
     /// How strong the k-th of the scene's loads is, or after them what a drive is given.
     Magnitude(usize),

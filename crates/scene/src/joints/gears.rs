@@ -1,10 +1,11 @@
 //! Gears, racks and rolling wheels.
 
 use super::pairs::{axis, two_radii};
-use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::table_reader::{Entry, SignRule, TableReader, boolean, quantity_with_sign};
+use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::table_reader::{Entry, SignRule, TableReader, angle, boolean, quantity_with_sign};
 use crate::units::Units;
 use dwell_geometry::{JointKind, Vec2};
+use dwell_kinetostatics::PressureAngle;
 
 pub(super) fn gear(
     entry: &Entry<'_>,
@@ -37,6 +38,31 @@ pub(super) fn gear(
         return None;
     }
     Some(JointKind::Gear { radii, internal })
+}
+
+/// The pressure angle of teeth, rad, where the scene gives one.
+pub(super) fn pressure_angle(
+    fields: &TableReader<'_>,
+    units: &Units,
+    diagnostics: &mut Diagnostics,
+) -> Option<(f64, Span)> {
+    let entry = fields.get("pressure-angle")?;
+    let what = format!("the pressure angle of {}", fields.what);
+    let si = angle(
+        entry.value,
+        &units.angle,
+        format_args!("{what}"),
+        diagnostics,
+    )?;
+    if si > 0.0 && si <= PressureAngle::MAX {
+        return Some((si, entry.value.span()));
+    }
+    diagnostics.push(
+        Diagnostic::new(format!("{what} is not between 0° and 45°"))
+            .label(entry.value.span(), format!("in {}", units.angle.name))
+            .help("standard teeth have 20°; leave it out for teeth without a separating force"),
+    );
+    None
 }
 
 /// The axis and the radius of a pinion or wheel that rolls along a line.

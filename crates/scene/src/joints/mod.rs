@@ -8,12 +8,13 @@ use crate::bodies::{Bodies, NamedPoint, TWO_POINTS};
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::keys::JOINTS;
 use crate::kind::kind;
+use crate::loads::ParsedLoad;
 use crate::names::check;
 use crate::table_reader::{Entry, TableReader, array, string};
 use crate::units::Units;
 use crate::wording::shorten;
 use dwell_geometry::{Coupling, Joint, JointId, JointKind};
-use dwell_kinetostatics::Guide;
+use dwell_kinetostatics::{Guide, Load};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -28,6 +29,8 @@ pub(crate) struct ParsedJoint {
     pub(crate) axis: Option<Span>,
     /// The law of a coupling.
     pub(crate) law: Option<Span>,
+    /// The pressure angle of teeth, rad.
+    pub(crate) pressure_angle: Option<(f64, Span)>,
     pub(crate) joint: Option<Joint>,
 }
 
@@ -134,6 +137,21 @@ impl<'a> Joints<'a> {
         })
     }
 
+    /// The separating forces of the teeth that have a pressure angle, in the order of the file.
+    pub(crate) fn separating_forces(&self) -> Vec<ParsedLoad> {
+        let separating = |(k, parsed): (usize, &ParsedJoint)| {
+            let (angle, at) = parsed.pressure_angle.as_ref()?;
+            let load = Load::separating(parsed.joint.as_ref()?, JointId(k), *angle)?;
+            Some(ParsedLoad {
+                key: parsed.key.clone(),
+                magnitude: Some(at.clone()),
+                load: Some(load),
+            })
+        };
+        let joints = self.list.iter().enumerate();
+        joints.filter_map(separating).collect()
+    }
+
     fn names(&self) -> impl Iterator<Item = &str> + Clone {
         self.list.iter().map(|j| j.name.as_str())
     }
@@ -178,6 +196,7 @@ impl<'a> Joints<'a> {
             key,
             axis: None,
             law: None,
+            pressure_angle: None,
             joint: None,
         };
         let what = format!("joint `{}`", shorten(entry.name));
@@ -202,6 +221,9 @@ impl<'a> Joints<'a> {
             return;
         }
         let points = two_points(kind_entry, TWO_POINTS, &fields, bodies, diagnostics);
+        if matches!(kind, "gear" | "rack") {
+            parsed.pressure_angle = gears::pressure_angle(&fields, units, diagnostics);
+        }
         let kind =
             match kind {
                 "prismatic" => pairs::prismatic(entry, &fields, diagnostics),
@@ -254,6 +276,7 @@ impl<'a> Joints<'a> {
                 points: parsed.points.clone(),
                 axis: None,
                 law: None,
+                pressure_angle: None,
             });
         }
     }

@@ -127,6 +127,16 @@ static WELD: TableSchema = table(
     ],
 );
 
+/// The pressure angle of teeth.
+const PRESSURE_ANGLE: KeySchema = key(
+    "pressure-angle",
+    Number,
+    "angle",
+    "Pressure angle of the teeth, above 0° and at most 45°. The teeth push each other apart with the absolute tooth force × tan(pressure-angle), along the line of centres (of a rack: normal to the pitch line). The bearings carry this separating force; the column `<joint>.separating` is its magnitude.",
+    "20",
+)
+.with_default("no separating force");
+
 static GEAR: TableSchema = table(
     "gear",
     "Two gears; other joints keep their centres at their distance, which has to be that of the radii to 0.2 %. They mesh as assembled. Reaction: `tooth`.",
@@ -147,6 +157,7 @@ static GEAR: TableSchema = table(
             "true",
         )
         .with_default("`false`"),
+        PRESSURE_ANGLE,
     ],
 );
 
@@ -173,6 +184,7 @@ static RACK: TableSchema = table(
             "Pitch radius; below zero for a pinion to the right of the axis.",
             "20",
         ),
+        PRESSURE_ANGLE,
     ],
 );
 

@@ -6,7 +6,7 @@ use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_model;
 use dwell_study::explain::explain_position;
-use dwell_verify::{ClaimedState, condition_number, load_wrenches};
+use dwell_verify::{ClaimedState, condition_number, load_wrenches, magnitude_by_reactions};
 use std::f64::consts::TAU;
 
 /// Between two states no coordinate goes farther at once than this, rad, or this part of the size:
@@ -133,10 +133,11 @@ impl<'a> ModelStates<'a> {
         };
         let loads = scene.loads.iter().zip(&self.workspace.loads().magnitude);
         let ground = scene.mechanism.ground;
+        let reactions = &self.result.reactions;
         let loads = loads.filter_map(|(load, &magnitude)| {
             load_wrenches(
                 &load.kind,
-                magnitude,
+                magnitude_by_reactions(load, magnitude, &scene.mechanism, reactions),
                 ground,
                 &scene.masses,
                 &bodies,

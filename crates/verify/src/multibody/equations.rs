@@ -31,7 +31,7 @@ pub(super) struct MultibodySolution {
     state: MultibodyState,
 }
 
-/// What acts, but for friction, and the inertia that answers.
+/// What acts, but for what answers to reactions, and the inertia that answers.
 struct AppliedForces {
     mass: Mat<f64>,
     force: Vec<f64>,
@@ -114,7 +114,7 @@ impl MultibodyOde<'_> {
         }
     }
 
-    /// All loads but frictions; none if a magnitude cannot be told.
+    /// All loads but those that answer to reactions; none if a magnitude cannot be told.
     fn add_loads(
         &self,
         at: &MultibodyState,
@@ -122,7 +122,10 @@ impl MultibodyOde<'_> {
         to: &mut AppliedForces,
     ) -> Option<()> {
         for (i, load) in self.system.loads.iter().enumerate() {
-            if matches!(load.magnitude, Magnitude::Friction(_)) {
+            if matches!(
+                load.magnitude,
+                Magnitude::Friction(_) | Magnitude::Separating(_)
+            ) {
                 continue;
             }
             let magnitude = self.system.magnitude(&load.magnitude, at)?;
