@@ -291,7 +291,7 @@ impl BodyReader<'_> {
             center_at: None,
         };
         let Some(table) = table else { return body };
-        table.reject_unknown_keys(&keys::BODY, self.diagnostics);
+        table.reject_unknown_keys(keys::table("body"), self.diagnostics);
         self.points(&mut body, table);
         self.inertia(&mut body, table);
         body

@@ -12,7 +12,7 @@ use crate::events::EventReader;
 use crate::former_keys::rename_former_keys;
 use crate::friction::friction;
 use crate::joints::Joints;
-use crate::keys;
+use crate::keys::table;
 use crate::loads::{LoadReader, ParsedLoad};
 use crate::magnitude::Magnitudes;
 use crate::motion::{ParsedMotion, calibration};
@@ -30,7 +30,7 @@ impl Scene {
         let text = source.inner();
         let mut root = crate::read::syntax(source)?;
         let mut diagnostics = Diagnostics::new(source);
-        rename_former_keys(root.get_mut(), &keys::SCENE, &mut diagnostics);
+        rename_former_keys(root.get_mut(), table("scene"), &mut diagnostics);
         let parsed = ParsedScene::read(text, root.get_ref(), &mut diagnostics);
         let warnings = diagnostics.warnings();
         match (parsed, diagnostics.into_error()) {
@@ -104,7 +104,7 @@ impl<'a> ParsedScene<'a> {
             );
             return None;
         }
-        fields.reject_unknown_keys(&keys::SCENE, diagnostics);
+        fields.reject_unknown_keys(table("scene"), diagnostics);
         let title = text_of(&fields, "title", diagnostics);
         if let (Some(text), Some(entry)) = (title, fields.get("title"))
             && text.chars().count() > MAX_TITLE_LENGTH

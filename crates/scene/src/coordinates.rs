@@ -3,7 +3,7 @@
 use crate::bodies::{Bodies, TWO_POINTS};
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::joints::Joints;
-use crate::keys;
+use crate::keys::table;
 use crate::names::check;
 use crate::table_reader::{Entry, TableReader, Value, coordinate};
 use crate::units::{Unit, Units};
@@ -252,12 +252,12 @@ fn read_actuator(
     let what = format!("actuator `{}`", shorten(entry.name));
     let fields = TableReader::open(entry, what, diagnostics)?;
     let what = &fields.what;
-    fields.reject_unknown_keys(&keys::ACTUATOR, diagnostics);
+    fields.reject_unknown_keys(table("actuator"), diagnostics);
     let Some(chosen) = fields
-        .one_of(|n| keys::ACTUATOR.contains_key(n), diagnostics)
+        .one_of(|n| table("actuator").contains_key(n), diagnostics)
         .ok()?
     else {
-        if fields.has_unknown_keys(&keys::ACTUATOR) {
+        if fields.has_unknown_keys(table("actuator")) {
             return None;
         }
         diagnostics.push(
@@ -294,12 +294,12 @@ fn read_coordinate(
     let what = format!("coordinate `{}`", shorten(entry.name));
     let fields = TableReader::open(entry, what, diagnostics)?;
     let what = &fields.what;
-    fields.reject_unknown_keys(&keys::COORDINATE, diagnostics);
+    fields.reject_unknown_keys(table("coordinate"), diagnostics);
     let Some(chosen) = fields
-        .one_of(|n| keys::COORDINATE.contains_key(n), diagnostics)
+        .one_of(|n| table("coordinate").contains_key(n), diagnostics)
         .ok()?
     else {
-        if fields.has_unknown_keys(&keys::COORDINATE) {
+        if fields.has_unknown_keys(table("coordinate")) {
             return None;
         }
         diagnostics.push(

@@ -2,7 +2,6 @@
 
 use crate::coordinates::{ParsedActuator, ParsedCoordinates, is_same};
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys::DRIVES;
 use crate::kind::kind;
 use crate::magnitude::{MagnitudeRule, Magnitudes};
 use crate::motion::ParsedMotion;
@@ -60,9 +59,7 @@ impl DriveReader<'_> {
         let Some(fields) = TableReader::open(entry, what, diagnostics) else {
             return parsed;
         };
-        let Some((kind_name, kind_entry)) =
-            kind(&fields, &entry.key, "drive", &DRIVES, diagnostics)
-        else {
+        let Some((kind_name, kind_entry)) = kind(&fields, &entry.key, "drive", diagnostics) else {
             return parsed;
         };
         let what = format_args!("{kind_name} of {}", fields.what);

@@ -3,7 +3,6 @@
 use crate::coordinates::ParsedCoordinates;
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::joints::Joints;
-use crate::keys::EVENT_KINDS;
 use crate::kind::kind;
 use crate::names::check;
 use crate::requests::components;
@@ -39,8 +38,7 @@ impl EventReader<'_> {
     fn event(&self, entry: &Entry<'_>, diagnostics: &mut Diagnostics) -> Option<NamedEvent> {
         let what = format!("event `{}`", shorten(entry.name));
         let fields = TableReader::open(entry, what, diagnostics)?;
-        let (kind_name, kind_entry) =
-            kind(&fields, &entry.key, "event", &EVENT_KINDS, diagnostics)?;
+        let (kind_name, kind_entry) = kind(&fields, &entry.key, "event", diagnostics)?;
         let terminal = match fields.get("stop") {
             None => Some(false),
             Some(e) => {

@@ -2,7 +2,7 @@
 
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::joints::{Joints, kind_name};
-use crate::keys::{PRISMATIC_FRICTION, REVOLUTE_FRICTION};
+use crate::keys::table;
 use crate::loads::ParsedLoad;
 use crate::table_reader::{Entry, SignRule, TableReader, quantity_with_sign};
 use crate::units::{Unit, Units};
@@ -193,8 +193,8 @@ impl ParsedFriction {
 /// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.
 fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, diagnostics: &mut Diagnostics) {
     let table = match kind {
-        JointKind::Revolute => &REVOLUTE_FRICTION,
-        _ => &PRISMATIC_FRICTION,
+        JointKind::Revolute => table("revolute-friction"),
+        _ => table("prismatic-friction"),
     };
     let is_slot = matches!(kind, JointKind::Slot { .. });
     let dry = fields.get("coefficient");

@@ -1,7 +1,7 @@
 //! Tables of several kinds, each told by the one key that names it: joints, loads, drives and events.
 
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys::{Presence, TableSchema};
+use crate::keys::{TableSchema, kinds};
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::list;
 
@@ -11,13 +11,13 @@ pub(crate) fn kind<'f, 'a>(
     fields: &'f TableReader<'a>,
     at: &Span,
     thing: &str,
-    kinds: &[&'static TableSchema],
     diagnostics: &mut Diagnostics,
 ) -> Option<(&'static str, &'f Entry<'a>)> {
+    let kinds = kinds(&format!("{thing}s"));
     let named = |n: &str| kinds.iter().find(|t| t.kind_key() == n);
     let chosen = fields.one_of(|n| named(n).is_some(), diagnostics).ok()?;
     let Some(entry) = chosen else {
-        report_missing_kind(fields, at, thing, kinds, diagnostics);
+        report_missing_kind(fields, at, thing, &kinds, diagnostics);
         return None;
     };
     let table = named(entry.name)?;
@@ -62,8 +62,8 @@ fn report_missing_kind(
     if diagnostics.count() > count {
         return;
     }
-    let keys = kinds.first().map_or(&[][..], |t| t.keys);
-    let needed = keys.iter().filter(|k| k.presence == Presence::Required);
+    let keys = kinds.first().map_or(&[][..], |t| &t.keys);
+    let needed = keys.iter().filter(|k| k.presence.is_none());
     let example: Vec<_> = needed
         .map(|k| format!("{} = {}", k.name, k.example))
         .collect();

@@ -114,7 +114,7 @@ fn sinusoid(
     diagnostics: &mut Diagnostics,
 ) -> Option<Law> {
     let fields = TableReader::open(entry, what, diagnostics)?;
-    fields.reject_unknown_keys(&keys::SINUSOID, diagnostics);
+    fields.reject_unknown_keys(keys::table("sinusoid"), diagnostics);
     let help = "write it as `{ amplitude = 0.3, period = 2.0 }`";
     let numbers = Numbers {
         fields: &fields,
@@ -137,11 +137,11 @@ fn profile(
     let is_trapezoidal = entry.name == "trapezoidal";
     let (table, help) = match is_trapezoidal {
         true => (
-            &keys::TRAPEZOID,
+            keys::table("trapezoidal"),
             "write it as `{ rise = 1.0, duration = 0.5, ramp = 0.1 }`",
         ),
         false => (
-            &keys::PROFILE,
+            keys::table("profile"),
             "write it as `{ rise = 1.0, duration = 0.5 }`",
         ),
     };

@@ -3,7 +3,6 @@
 use crate::bodies::{Bodies, TWO_POINTS};
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::joints::Joints;
-use crate::keys::LOADS;
 use crate::kind::kind;
 use crate::magnitude::{MagnitudeRule, Magnitudes};
 use crate::names::check;
@@ -87,8 +86,7 @@ impl<'r> LoadReader<'r> {
         let Some(fields) = TableReader::open(entry, what, diagnostics) else {
             return parsed;
         };
-        let Some((kind_name, kind_entry)) = kind(&fields, &entry.key, "load", &LOADS, diagnostics)
-        else {
+        let Some((kind_name, kind_entry)) = kind(&fields, &entry.key, "load", diagnostics) else {
             return parsed;
         };
         let (size, unit, sign) = match kind_name {

@@ -129,7 +129,7 @@ impl<'r> Magnitudes<'r> {
         diagnostics: &mut Diagnostics,
     ) -> Option<Magnitude> {
         let fields = TableReader::open(entry, what, diagnostics)?;
-        fields.reject_unknown_keys(&keys::MAGNITUDE, diagnostics);
+        fields.reject_unknown_keys(keys::table("magnitude"), diagnostics);
         let help = "write it as `{ table = [[0, 1], [1, 2]], of = \"phi\" }`";
         let table = fields.require("table", &fields.span, help, diagnostics);
         let signal = match fields.get("of") {

@@ -2,7 +2,7 @@
 
 use crate::coordinates::ParsedActuator;
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys;
+use crate::keys::table;
 use crate::prescribed::law_of;
 use crate::scene::{Calibration, MotionDuration, NamedEvent};
 use crate::table_reader::{Entry, TableReader, Value, number, quantity, string};
@@ -34,7 +34,7 @@ impl<'a> ParsedMotion<'a> {
         units: &Units,
         diagnostics: &mut Diagnostics,
     ) -> Self {
-        fields.reject_unknown_keys(&keys::MOTION, diagnostics);
+        fields.reject_unknown_keys(table("motion"), diagnostics);
         let mut parsed = Self {
             initial_coordinates: vec![None; actuators.len()],
             initial_velocities: vec![None; actuators.len()],
@@ -359,7 +359,7 @@ pub(crate) fn calibration(
     fields: &TableReader<'_>,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Calibration, Span)> {
-    fields.reject_unknown_keys(&keys::CALIBRATION, diagnostics);
+    fields.reject_unknown_keys(table("calibration"), diagnostics);
     let missing = |key: &str, help: &str| {
         Diagnostic::new(format!("[calibration] has no `{key}`"))
             .label(fields.span.clone(), format!("`{key}` is missing"))

@@ -2,7 +2,7 @@
 
 use crate::coordinates::ParsedActuator;
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys;
+use crate::keys::{TableSchema, table};
 use crate::law::{LawDomain, law};
 use crate::scene::{CoordinateSweep, PrescribedMotion};
 use crate::table_reader::{Entry, SignRule, TableReader, Value, array, count, quantity_with_sign};
@@ -33,7 +33,7 @@ pub(crate) struct ParsedSweep {
 /// keys are no names.
 fn by_actuator<'f, 'a>(
     fields: &'f TableReader<'a>,
-    table: &keys::TableSchema,
+    table: &TableSchema,
     actuators: &[ParsedActuator<'_>],
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<Option<&'f Entry<'a>>>> {
@@ -69,7 +69,7 @@ fn by_actuator<'f, 'a>(
             entries[k] = Some(entry);
             continue;
         }
-        let section_keys = table.keys.iter().map(|k| k.name);
+        let section_keys = table.names();
         let names: Vec<&str> = actuators
             .iter()
             .map(|a| a.name)
@@ -102,7 +102,7 @@ impl ParsedPrescribedMotion {
         let duration = fields.require("duration", &fields.span, help, diagnostics);
         let duration = duration.and_then(|e| positive(e, fields, diagnostics));
         let points = points(fields, diagnostics);
-        let Some(entries) = by_actuator(fields, &keys::PRESCRIBED, actuators, diagnostics) else {
+        let Some(entries) = by_actuator(fields, table("prescribed"), actuators, diagnostics) else {
             return Self {
                 prescribed: None,
                 laws: Vec::new(),
@@ -156,15 +156,15 @@ pub(crate) fn law_of(
 ) -> Option<Law> {
     let what = format!("`{}` in {section}", shorten(entry.name));
     let fields = TableReader::open(entry, what, diagnostics)?;
-    fields.reject_unknown_keys(&keys::LAW, diagnostics);
+    fields.reject_unknown_keys(table("law"), diagnostics);
     let Some(chosen) = fields
-        .one_of(|n| keys::LAW.contains_key(n), diagnostics)
+        .one_of(|n| table("law").contains_key(n), diagnostics)
         .ok()?
     else {
-        if fields.has_unknown_keys(&keys::LAW) {
+        if fields.has_unknown_keys(table("law")) {
             return None;
         }
-        let laws = list(keys::LAW.names()).unwrap_or_default();
+        let laws = list(table("law").names()).unwrap_or_default();
         diagnostics.push(
             Diagnostic::new(format!("{} has no law", fields.what))
                 .label(entry.value.span(), "no motion law")
@@ -219,7 +219,7 @@ impl ParsedSweep {
     ) -> Self {
         let before = diagnostics.count();
         let points = points(fields, diagnostics);
-        let Some(entries) = by_actuator(fields, &keys::COORDINATE_SWEEP, actuators, diagnostics)
+        let Some(entries) = by_actuator(fields, table("coordinate-sweep"), actuators, diagnostics)
         else {
             return Self {
                 sweep: None,

@@ -3,7 +3,7 @@
 use crate::bodies::Bodies;
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
 use crate::joints::Joints;
-use crate::keys;
+use crate::keys::table;
 use crate::scene::{DwellRequest, PathPoint, SectionRequest};
 use crate::table_reader::{Entry, TableReader, Value, array, mismatch, number, string};
 use crate::wording::shorten;
@@ -28,7 +28,7 @@ impl ParsedRequests {
         joints: &Joints<'_>,
         diagnostics: &mut Diagnostics,
     ) -> Self {
-        fields.reject_unknown_keys(&keys::REQUESTS, diagnostics);
+        fields.reject_unknown_keys(table("requests"), diagnostics);
         let reactions = fields.get("reactions");
         let paths = fields.get("paths");
         let dwell = fields.get("dwell");
@@ -172,7 +172,7 @@ fn dwell_of(
     diagnostics: &mut Diagnostics,
 ) -> Option<DwellRequest> {
     let fields = TableReader::open(entry, "dwell in [requests]", diagnostics)?;
-    fields.reject_unknown_keys(&keys::DWELL, diagnostics);
+    fields.reject_unknown_keys(table("dwell"), diagnostics);
     let (Some(body), Some(band)) = (fields.get("body"), fields.get("relative-band")) else {
         diagnostics.push(
             Diagnostic::new("dwell in [requests] needs a body and a band")
@@ -246,12 +246,12 @@ fn section_of(
     diagnostics: &mut Diagnostics,
 ) -> Option<SectionRequest> {
     let what = "a section in [requests]";
-    let DeValue::Table(table) = value.get_ref() else {
+    let DeValue::Table(entries) = value.get_ref() else {
         mismatch(value, "a table", format_args!("{what}"), diagnostics);
         return None;
     };
-    let fields = TableReader::new(what, value.span(), table);
-    fields.reject_unknown_keys(&keys::SECTION, diagnostics);
+    let fields = TableReader::new(what, value.span(), entries);
+    fields.reject_unknown_keys(table("section"), diagnostics);
     let help = "write it as `{ body = \"rod\", from = \"B\", to = \"P\" }`";
     let [body, from, to] = ["body", "from", "to"].map(|key| {
         let entry = fields.require(key, &fields.span, help, diagnostics)?;

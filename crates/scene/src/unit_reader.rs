@@ -1,7 +1,7 @@
 //! Reads `[units]`.
 
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys;
+use crate::keys::table;
 use crate::table_reader::{Entry, TableReader, string};
 use crate::units::{ANGLES, KnownUnit, LENGTHS, MASSES, Unit, Units};
 use crate::wording::shorten;
@@ -26,7 +26,7 @@ impl Units {
         let Some(fields) = TableReader::open(entry, "[units]", diagnostics) else {
             return units;
         };
-        fields.reject_unknown_keys(&keys::UNITS, diagnostics);
+        fields.reject_unknown_keys(table("units"), diagnostics);
         let mut one = |key, find: &dyn Fn(&str) -> Option<Unit>, names: &dyn Fn() -> String| {
             let entry = fields.get(key)?;
             let name = string(

@@ -58,19 +58,6 @@ pub(crate) const MASSES: [KnownUnit; 5] = [
 ];
 pub(crate) const ANGLES: [KnownUnit; 2] = [("rad", 1.0, 1.0), ("deg", PI, 180.0)];
 
-const fn names_of<const N: usize>(known: &[KnownUnit; N]) -> [&'static str; N] {
-    let mut names = [""; N];
-    let mut k = 0;
-    while k < N {
-        names[k] = known[k].0;
-        k += 1;
-    }
-    names
-}
-pub(crate) static LENGTH_NAMES: [&str; 7] = names_of(&LENGTHS);
-pub(crate) static MASS_NAMES: [&str; 5] = names_of(&MASSES);
-pub(crate) static ANGLE_NAMES: [&str; 2] = names_of(&ANGLES);
-
 /// The units of one scene.
 #[derive(Debug, Clone)]
 pub(crate) struct Units {

@@ -3,7 +3,7 @@
 use super::Joints;
 use crate::coordinates::{ParsedCoordinates, is_same};
 use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::keys::{COUPLING_LAWS, JOINTS};
+use crate::keys::table;
 use crate::law::{LawDomain, law};
 use crate::table_reader::{TableReader, coordinate, two_strings};
 use crate::units::Units;
@@ -59,16 +59,15 @@ impl Joints<'_> {
                 Some((first, second))
             },
         );
-        let chosen = fields
-            .one_of(|n| COUPLING_LAWS.contains(&n), diagnostics)
-            .ok()?;
+        let table = table("coupling");
+        let laws = table.alternatives();
+        let chosen = fields.one_of(|n| laws.contains(&n), diagnostics).ok()?;
         let Some(chosen) = chosen else {
             // Its other keys have been looked at: a misspelt law is one slip, not two.
-            let kind = JOINTS.iter().find(|t| t.kind_key() == "coupling");
-            if kind.is_some_and(|table| fields.has_unknown_keys(table)) {
+            if fields.has_unknown_keys(table) {
                 return None;
             }
-            let laws = list(COUPLING_LAWS.into_iter()).unwrap_or_default();
+            let laws = list(laws.into_iter()).unwrap_or_default();
             diagnostics.push(
                 Diagnostic::new(format!("{what} has no law"))
                     .label(parsed.key.clone(), "no law")

@@ -6,7 +6,6 @@ mod pairs;
 
 use crate::bodies::{Bodies, NamedPoint, TWO_POINTS};
 use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys::JOINTS;
 use crate::kind::kind;
 use crate::loads::ParsedLoad;
 use crate::names::check;
@@ -204,8 +203,7 @@ impl<'a> Joints<'a> {
             self.list.push(parsed);
             return;
         };
-        let Some((kind, kind_entry)) = kind(&fields, &entry.key, "joint", &JOINTS, diagnostics)
-        else {
+        let Some((kind, kind_entry)) = kind(&fields, &entry.key, "joint", diagnostics) else {
             self.list.push(parsed);
             return;
         };
