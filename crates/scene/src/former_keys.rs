@@ -1,7 +1,7 @@
 //! Former names of keys. They are still read: before anything else looks at the TOML tree, each is replaced by the key's current
 //! name, and a warning names that. The new entry keeps the span of the old one, so that messages point at what is written.
 
-use crate::diagnostics::{Diagnostic, Diagnostics};
+use crate::diagnostics::Diagnostics;
 use crate::keys::{self, KeySchema, TableSchema, ValueShape, kinds};
 use std::borrow::Cow;
 use toml::Spanned;
@@ -11,14 +11,14 @@ use toml::de::{DeTable, DeValue};
 pub(crate) fn rename_former_keys(
     table: &mut DeTable<'_>,
     schema: &'static TableSchema,
-    diagnostics: &mut Diagnostics,
+    log: &Diagnostics,
 ) {
     for key in &schema.keys {
-        rename(table, key, diagnostics);
+        rename(table, key, log);
     }
     for (name, value) in table.iter_mut() {
         if let Some(key) = schema.key(name.get_ref()) {
-            rename_in_value(value, &key.shape, diagnostics);
+            rename_in_value(value, &key.shape, log);
         }
     }
 }
@@ -26,23 +26,23 @@ pub(crate) fn rename_former_keys(
 fn rename_in_value(
     value: &mut Spanned<DeValue<'_>>,
     shape: &'static ValueShape,
-    diagnostics: &mut Diagnostics,
+    log: &Diagnostics,
 ) {
     match (value.get_mut(), shape) {
         (DeValue::Table(table), shape) => {
             if let ValueShape::Kinds(things) = shape {
                 for key in kinds(things).iter().filter_map(|kind| kind.keys.first()) {
-                    rename(table, key, diagnostics);
+                    rename(table, key, log);
                 }
             }
             for schema in schemas_of(table, shape) {
-                rename_former_keys(table, schema, diagnostics);
+                rename_former_keys(table, schema, log);
             }
         }
         (DeValue::Array(values), ValueShape::Tables(id)) => {
             for value in values.iter_mut() {
                 if let DeValue::Table(inner) = value.get_mut() {
-                    rename_former_keys(inner, keys::table(id), diagnostics);
+                    rename_former_keys(inner, keys::table(id), log);
                 }
             }
         }
@@ -71,24 +71,20 @@ pub(crate) fn schemas_of(
     }
 }
 
-fn rename(table: &mut DeTable<'_>, key: &'static KeySchema, diagnostics: &mut Diagnostics) {
-    if let Some(former) = &key.former {
-        let Some((written, value)) = table.remove_entry(former.as_str()) else {
-            return;
-        };
-        if let Some((current, _)) = table.get_key_value(key.name.as_str()) {
-            diagnostics.push(
-                Diagnostic::new(format!("both `{former}` and `{}` are given", key.name))
-                    .label(written.span(), "the former name")
-                    .label(current.span(), "the current name of the same key")
-                    .help(format!("keep `{}` and delete `{former}`", key.name)),
-            );
-            return;
-        }
-        diagnostics.warn_renamed(former, &key.name, written.span());
-        table.insert(
-            Spanned::new(written.span(), Cow::Borrowed(&key.name)),
-            value,
-        );
+fn rename(table: &mut DeTable<'_>, key: &'static KeySchema, log: &Diagnostics) {
+    let Some(former) = &key.former else { return };
+    let Some((written, value)) = table.remove_entry(former.as_str()) else {
+        return;
+    };
+    let (name, span) = (key.name.as_str(), written.span());
+    if let Some((current, _)) = table.get_key_value(name) {
+        return log
+            .error(format!("both `{former}` and `{name}` are given"))
+            .label(&span, "the former name")
+            .label(&current.span(), "the current name of the same key")
+            .help(format!("keep `{name}` and delete `{former}`"))
+            .report();
     }
+    log.warn_renamed(former, name, span.clone());
+    table.insert(Spanned::new(span, Cow::Borrowed(name)), value);
 }

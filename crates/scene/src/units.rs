@@ -12,6 +12,13 @@ pub(crate) struct Unit {
     pub(crate) divisor: f64,
 }
 
+/// A unit of SI, whatever its name.
+pub(crate) static SI: Unit = Unit {
+    name: String::new(),
+    factor: 1.0,
+    divisor: 1.0,
+};
+
 impl Unit {
     pub(crate) fn new(name: &str, factor: f64, divisor: f64) -> Self {
         Self {
@@ -19,11 +26,6 @@ impl Unit {
             factor,
             divisor,
         }
-    }
-
-    /// A unit of SI, whatever its name.
-    pub(crate) fn si_unit() -> Self {
-        Self::new("", 1.0, 1.0)
     }
 
     /// `value` of this unit, in SI.

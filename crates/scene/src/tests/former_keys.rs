@@ -187,3 +187,36 @@ fn an_unknown_name_in_an_expression_is_answered_with_current_names() {
         messages(&text)[0]
     );
 }
+
+#[test]
+fn an_error_names_the_key_as_the_file_has_it() {
+    for (scene, current, wrong, message) in [
+        (
+            MACHINE,
+            "free-length = 77.85",
+            "free = -1",
+            "free of load `coil` is negative",
+        ),
+        (
+            MACHINE,
+            "damping = 100",
+            "constant = -1",
+            "constant of load `shock` is negative",
+        ),
+        (
+            FREE_MOTION,
+            "regularization-speed = 2",
+            "fade = 0",
+            "fade of friction of `slide`",
+        ),
+        (
+            WHOLE,
+            "initial-coordinate = 30",
+            "start = true",
+            "start of [motion]: expected",
+        ),
+    ] {
+        let found = messages(&changed(scene, current, wrong));
+        assert!(found[0].contains(message), "{found:?}");
+    }
+}
