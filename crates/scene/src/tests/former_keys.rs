@@ -201,7 +201,7 @@ fn an_error_names_the_key_as_the_file_has_it() {
             MACHINE,
             "damping = 100",
             "constant = -1",
-            "constant of load `shock` is negative",
+            "constant of load `oil` is negative",
         ),
         (
             FREE_MOTION,
