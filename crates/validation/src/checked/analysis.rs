@@ -11,15 +11,14 @@ use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::ReducedModel;
 use dwell_scene::{MotionDuration, Scene};
-use dwell_study::PreparedScene;
-use dwell_study::SolverSettings;
 use dwell_study::explain::explain_motion;
 use dwell_study::reduce::compute::ReducedCurves;
-use dwell_study::symbolic_findings;
-use dwell_study::{CalibrationResult, find_value};
+use dwell_study::{
+    CalibrationResult, PreparedScene, SolverSettings, find_value, symbolic_findings,
+};
 use dwell_verify::{
-    Case, CheckContext, CheckedFreeMotion, ErrorCurve, FreeMotionCase, Range, check_free_motion,
-    half_dm_curve, reaction_curve, spread,
+    Case, CheckContext, CheckedFreeMotion, CheckedPosition, ErrorCurve, FreeMotionCase, Range,
+    check_free_motion, half_dm_curve, reaction_curve, spread,
 };
 
 /// Positions at which the reduced model is checked.
@@ -28,7 +27,7 @@ const CHECKED_POSITIONS: usize = 24;
 /// would take minutes and show no more.
 const MAX_REVOLUTIONS: usize = 20;
 
-/// What the checks of a case yield.
+/// The results of the checks of a case.
 pub(crate) struct CaseAnalysis<'a> {
     pub(crate) findings: Vec<Finding>,
     /// The checks without findings, and in a few words why.
@@ -60,9 +59,8 @@ pub(crate) fn analyse<'a>(
     reference: &Reference,
     done: &(dyn Fn(&str) + Sync),
 ) -> Result<CaseAnalysis<'a>, ValidationError> {
-    let prepared = is_reduced(scene)
-        .then(|| PreparedScene::new(scene))
-        .transpose()?;
+    let prepared = is_reduced(scene).then(|| PreparedScene::new(scene));
+    let prepared = prepared.transpose()?;
     let (reduced, motion) = rayon::join(
         || check_reduced_model(scene, reference).inspect(|_| done("reduced model")),
         || match &prepared {
@@ -134,7 +132,7 @@ pub(crate) fn analyse<'a>(
     })
 }
 
-/// Whether the reduced model describes the whole case: it knows no loads, drives and laws.
+/// Whether the reduced model describes the whole case: it has no loads, drives and laws.
 fn is_reduced(scene: &Scene) -> bool {
     let motion = scene.motion.as_ref();
     scene.mechanism.actuators.len() == 1
@@ -151,10 +149,10 @@ fn not_applicable(
 ) -> Vec<(Check, &'static str)> {
     let no_closed_form = match scene.mechanism.actuators.len() {
         1 => "no dyads",
-        _ => "several freedoms",
+        _ => "several degrees of freedom",
     };
     let reasons = [
-        (Check::ReleasedConstraint, "reactions shared"),
+        (Check::ReleasedConstraint, "indeterminate reactions"),
         (Check::Period, period.unwrap_or("no period")),
         (Check::ReferenceValues, "no values"),
         (Check::ClosedForms, no_closed_form),
@@ -193,12 +191,9 @@ fn check_reduced_model(
     let mut curves = Vec::new();
     if let Ok(context) = CheckContext::new(&case, &subject) {
         // Where ½m′ is largest, differences have most to get right.
-        let steepest = |s: &&dwell_verify::CheckedPosition| s.reference.half_dm.abs();
-        let position = context
-            .positions
-            .iter()
-            .max_by(|a, b| steepest(a).total_cmp(&steepest(b)));
-        if let Some(position) = position {
+        let slope = |s: &CheckedPosition| s.reference.half_dm.abs();
+        let positions = context.positions.iter();
+        if let Some(position) = positions.max_by(|a, b| slope(a).total_cmp(&slope(b))) {
             let requested = scene.requests.reactions.first();
             let k = requested.and_then(|w| context.reactions.iter().position(|r| r == w));
             curves.extend(half_dm_curve(&context, position));
@@ -224,34 +219,26 @@ fn free_motion_results(
         return Ok((None, None, None));
     };
     let plan = prepared.model.model().plan();
-    let history = History::new(
-        prepared,
-        start,
-        two_periods(motion.duration),
-        &SolverSettings::default(),
-    )?;
-    let checked = match (history.period, motion.duration) {
-        (None, _) => None,
-        (Some(period), length) => {
-            let revolutions = match length {
-                MotionDuration::Periods(n) => n,
-                MotionDuration::Seconds(d) => d / period,
-            };
-            let case = FreeMotionCase {
-                initial_state: start,
-                revolutions: (revolutions.floor() as usize).clamp(1, MAX_REVOLUTIONS),
-                reactions: prepared.reaction_units(),
-                period: reference.period.map(|p| (p, reference.source.clone())),
-            };
-            let checked = check_free_motion(&prepared.model, &case);
-            Some(checked.map_err(|e| explain_motion(scene, plan, &e))?)
-        }
+    let duration = two_periods(motion.duration);
+    let history = History::new(prepared, start, duration, &SolverSettings::default())?;
+    let check = |period: f64| {
+        let revolutions = match motion.duration {
+            MotionDuration::Periods(n) => n,
+            MotionDuration::Seconds(d) => d / period,
+        };
+        let case = FreeMotionCase {
+            initial_state: start,
+            revolutions: (revolutions.floor() as usize).clamp(1, MAX_REVOLUTIONS),
+            reactions: prepared.reaction_units(),
+            period: reference.period.map(|p| (p, reference.source.clone())),
+        };
+        let checked = check_free_motion(&prepared.model, &case);
+        checked.map_err(|e| explain_motion(scene, plan, &e))
     };
-    let request = scene.calibration.as_ref();
-    let calibrated = request
-        .map(|c| find_value(scene, &c.path, c.period))
-        .transpose()?;
-    Ok((checked, calibrated, Some(history)))
+    let checked = history.period.map(check).transpose()?;
+    let calibration = scene.calibration.as_ref();
+    let calibrated = calibration.map(|c| find_value(scene, &c.path, c.period));
+    Ok((checked, calibrated.transpose()?, Some(history)))
 }
 
 /// The duration of the time history: at most two periods, or the whole motion where it is given in seconds.

@@ -1,31 +1,26 @@
-//! How far the findings of a case agree.
+//! The digits of agreement of the findings of a case.
 
-use dwell_findings::Finding;
+use dwell_findings::{Check, Finding};
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
 use dwell_scene::Scene;
 use dwell_study::number_format::count;
 use dwell_study::output::scene_caption;
 
-/// Digits of a number: what agrees exactly has no more.
+/// Digits of a number: exact agreement has no more.
 const MAX_DIGITS: f64 = 16.0;
 
-/// Difference, tolerance and what is between them, of every finding, by truth.
+/// Difference, tolerance and their ratio of every finding, by check.
 pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
-    let mut groups: Vec<Group> = Vec::new();
-    let mut by_check: Vec<&Finding> = findings.iter().collect();
-    by_check.sort_by_key(|finding| finding.check);
-    for finding in by_check {
-        match groups
-            .iter_mut()
-            .find(|group| group.heading == finding.check.to_string())
-        {
-            Some(group) => group.rows.push(row(finding)),
-            None => groups.push(Group {
-                heading: finding.check.to_string(),
-                rows: vec![row(finding)],
-            }),
-        }
-    }
+    let group = |check: Check| Group {
+        heading: check.to_string(),
+        rows: findings
+            .iter()
+            .filter(|f| f.check == check)
+            .map(row)
+            .collect(),
+    };
+    let groups = Check::ALL.map(group).into_iter();
+    let groups = groups.filter(|group| !group.rows.is_empty()).collect();
     let columns = [
         "relative difference",
         "tolerance",
@@ -61,7 +56,7 @@ fn row(finding: &Finding) -> Row {
             0.0 => "0".to_owned(),
             value => format!("{value:.1e}").replace('-', "−"),
         };
-        // Zero has all the digits there are; what is no number has no colour.
+        // Zero has all digits; what is not a number has no colour.
         Cell {
             value: (!value.is_nan()).then(|| (-value.log10()).min(MAX_DIGITS)),
             ..Cell::text_only(text)
