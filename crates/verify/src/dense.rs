@@ -258,7 +258,6 @@ fn attachment_means(mechanism: &mut Mechanism) -> Vec<Vec2> {
         sums[body].0 += *point;
         sums[body].1 += 1;
     });
-    sums.into_iter()
-        .map(|(sum, count)| sum * (1.0 / f64::from(count.max(1))))
-        .collect()
+    let mean = |(sum, count)| sum * (1.0 / f64::from(u32::max(count, 1)));
+    sums.into_iter().map(mean).collect()
 }

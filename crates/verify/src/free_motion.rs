@@ -256,7 +256,9 @@ impl<R: ReducedModel> Motion<'_, R> {
         solution: &Solution,
     ) -> Result<Vec<Finding>, DynamicsError> {
         let (case, orbit, scales) = (self.case, self.orbit, self.scales);
+        use Check::{Period, Power};
         let name = run.method.name();
+        let lower = name.to_lowercase();
         let ([period, energy], reason) = tolerances(run.method);
         // Measured over ten revolutions; the energy error grows in proportion to them.
         let energy = energy * (case.revolutions as f64 / 10.0).max(1.0);
@@ -265,12 +267,7 @@ impl<R: ReducedModel> Motion<'_, R> {
             domain: over(format!("{} revolutions", case.revolutions)),
             tolerance_reason: reason.into(),
             integrated: true,
-            ..Finding::new(
-                &format!("{key}-{}", name.to_lowercase()),
-                check,
-                numbers,
-                tolerance,
-            )
+            ..Finding::new(&format!("{key}-{lower}"), check, numbers, tolerance)
         };
         let late = self.first_revolution_error(solution);
         let drifts = run.drift_over_time.iter();
@@ -288,6 +285,7 @@ impl<R: ReducedModel> Motion<'_, R> {
                 reaction = (difference, state.t);
             }
         }
+        let relative = speed.0 / scales.speed;
         let mut findings = vec![
             Finding {
                 comparison: format!(
@@ -297,19 +295,14 @@ impl<R: ReducedModel> Motion<'_, R> {
                 unit: "s".into(),
                 scale: "the period".into(),
                 worst_at: format!("t = {:.6} s", orbit.period),
-                ..finding("period", Check::Period, [late, late / orbit.period], period)
+                ..finding("period", Period, [late, late / orbit.period], period)
             },
             Finding {
                 comparison: format!("E = ½ m q̇² of {name} with its initial value"),
                 unit: "J".into(),
                 scale: "the energy".into(),
                 worst_at: format!("t = {t:.3} s"),
-                ..finding(
-                    "energy",
-                    Check::Power,
-                    [drift * orbit.energy, drift],
-                    energy,
-                )
+                ..finding("energy", Power, [drift * orbit.energy, drift], energy)
             },
             Finding {
                 comparison: format!("q̇ after each revolution of {name} with q̇ at the start"),
@@ -318,12 +311,7 @@ impl<R: ReducedModel> Motion<'_, R> {
                 worst_at: format!("t = {:.3} s", speed.1),
                 tolerance_reason:
                     "the accuracy required of the energy; the speed errs by half as much".into(),
-                ..finding(
-                    "periodic-velocity",
-                    Check::Period,
-                    [speed.0, speed.0 / scales.speed],
-                    energy,
-                )
+                ..finding("periodic-velocity", Period, [speed.0, relative], energy)
             },
         ];
         let ((relative, absolute, k), t) = reaction;
@@ -336,12 +324,7 @@ impl<R: ReducedModel> Motion<'_, R> {
             worst_at: format!("{reaction}, t = {t:.3} s"),
             tolerance_reason:
                 "the accuracy required of the energy, on which a reaction depends linearly".into(),
-            ..finding(
-                "periodic-reactions",
-                Check::Period,
-                [absolute, relative],
-                energy,
-            )
+            ..finding("periodic-reactions", Period, [absolute, relative], energy)
         }));
         Ok(findings)
     }
@@ -350,27 +333,20 @@ impl<R: ReducedModel> Motion<'_, R> {
 /// The quadrature against a reference value, where there is one.
 fn check_quadrature(case: &FreeMotionCase, orbit: &Orbit) -> Option<Finding> {
     let (reference, source) = case.period.as_ref()?;
-    let period = orbit.period;
+    let (period, points) = (orbit.period, orbit.points);
     let difference = (period - reference).abs();
+    let numbers = [difference, difference / period];
     Some(Finding {
         comparison: format!(
             "T = ∮ √(m / 2E) dq = {period:.14} s with {reference:.14} s ({source})"
         ),
-        domain: format!(
-            "one revolution, {} points of the trapezoid rule",
-            orbit.points
-        ),
+        domain: format!("one revolution, {points} points of the trapezoid rule"),
         unit: "s".into(),
         scale: "the period".into(),
         worst_at: "the whole revolution".into(),
         tolerance_reason:
             "a spectral rule on an exact integrand leaves only the rounding of its sum".into(),
-        ..Finding::new(
-            "period-quadrature",
-            Check::Period,
-            [difference, difference / period],
-            4e-14,
-        )
+        ..Finding::new("period-quadrature", Check::Period, numbers, 4e-14)
     })
 }
 

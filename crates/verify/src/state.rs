@@ -235,11 +235,8 @@ impl<'a> StateChecker<'a> {
                 for c in column..column + 3 {
                     let arm = if c == column + 2 { size } else { 1.0 };
                     let difference = (m.claimed_dot[c] - m.x_dot[c]) * arm;
-                    first.add(
-                        m,
-                        [difference, speed, m.velocity_rounding_bound[c] * arm],
-                        name,
-                    );
+                    let numbers = [difference, speed, m.velocity_rounding_bound[c] * arm];
+                    first.add(m, numbers, name);
                     let difference = (m.claimed_ddot[c] - m.x_ddot[c]) * arm;
                     let error = m.acceleration_rounding_bound[c] * arm;
                     second.add(m, [difference, acceleration, error], name);
@@ -312,11 +309,8 @@ impl<'a> StateChecker<'a> {
         let mut comparisons = ComparisonSet::with_individual_scales("W");
         for m in &self.dense_states {
             let (difference, terms) = m.power_balance();
-            comparisons.add(
-                m,
-                [difference, terms, m.relative_rounding_bound() * terms],
-                "",
-            );
+            let error = m.relative_rounding_bound() * terms;
+            comparisons.add(m, [difference, terms, error], "");
         }
         self.finding(&POWER, comparisons)
     }

@@ -54,10 +54,8 @@ fn reduced_values(reduced: &ReducedAnalysis<'_>) -> String {
         text += &format!("\nperiod {period:.10} s, energy {energy:.9} J\n");
     }
     if let Some(c) = &reduced.calibration {
-        text += &format!(
-            "{} = {:.9} {} gives {} s\n",
-            c.path, c.value, c.unit, c.period
-        );
+        let (path, value, unit, period) = (&c.path, c.value, &c.unit, c.period);
+        text += &format!("{path} = {value:.9} {unit} gives {period} s\n");
     }
     text
 }
@@ -70,9 +68,8 @@ fn state_values(scene: &Scene, checked: &CheckedStates, run: Option<&FreeMotionR
     // All forces are rounded relative to the largest force, all moments relative to the largest moment.
     let joints = reactions.iter().map(|r| r.component.unit());
     let actuators = mechanism.actuators.iter();
-    let units: Vec<&str> = joints
-        .chain(actuators.map(|a| a.coordinate().force_unit()))
-        .collect();
+    let actuators = actuators.map(|a| a.coordinate().force_unit());
+    let units: Vec<&str> = joints.chain(actuators).collect();
     let [forces, moments] = ["N", "N m"].map(|unit| {
         let values = drawn
             .iter()
@@ -120,11 +117,8 @@ fn end_of_motion(scene: &Scene, run: &FreeMotionRun) -> String {
         let all = run.coordinates.iter();
         let max_velocity = all.fold(0.0_f64, |max, at| max.max(at[k][1].abs()));
         let velocity = rounded_to(*velocity, max_velocity);
-        let _ = writeln!(
-            text,
-            "    {} = {q:.7}  velocity = {velocity}",
-            actuator.name
-        );
+        let name = &actuator.name;
+        let _ = writeln!(text, "    {name} = {q:.7}  velocity = {velocity}");
     }
     text
 }

@@ -179,9 +179,8 @@ impl<'a> ModelStates<'a> {
     fn step_to(&mut self, to: &[f64]) -> Result<(), StudyError> {
         let from = self.coordinates.clone();
         let distances = from.iter().zip(to).zip(&self.coordinate_steps);
-        let steps = distances
-            .map(|((a, b), stride)| ((b - a) / stride).abs().ceil())
-            .fold(1.0, f64::max);
+        let counts = distances.map(|((a, b), stride)| ((b - a) / stride).abs().ceil());
+        let steps = counts.fold(1.0, f64::max);
         for k in 1..=steps as usize {
             let fraction = k as f64 / steps;
             let between = from.iter().zip(to).map(|(a, b)| a + fraction * (b - a));
@@ -214,9 +213,8 @@ impl<'a> ModelStates<'a> {
     fn evaluate(&mut self, request: &StateRequest, q_ddot: &[f64]) -> Result<(), StudyError> {
         let StateRequest { t, q, q_dot, .. } = request;
         let (workspace, result) = (&mut self.workspace, &mut self.result);
-        let done = self
-            .model
-            .kinetostatics(*t, q, q_dot, q_ddot, workspace, result);
+        let model = &self.model;
+        let done = model.kinetostatics(*t, q, q_dot, q_ddot, workspace, result);
         done.map_err(|e| self.explain(&e))
     }
 

@@ -141,11 +141,9 @@ impl Reference {
             }
             motion => free_motion(motion).map_err(|e| format!("free_motion: {e}"))?,
         };
+        let source = value["source"].as_str();
         Ok(Self {
-            source: value["source"]
-                .as_str()
-                .unwrap_or("no source given")
-                .to_owned(),
+            source: source.unwrap_or("no source given").to_owned(),
             computed_by: value["computed"].as_str().map(str::to_owned),
             samples,
             period,
@@ -216,9 +214,8 @@ fn read_each<T>(
     read: impl Fn(&Value) -> Result<T, String>,
 ) -> Result<Vec<T>, String> {
     let entries = all.iter().enumerate();
-    entries
-        .map(|(k, entry)| read(entry).map_err(|e| format!("{name}[{k}]: {e}")))
-        .collect()
+    let read = |(k, entry)| read(entry).map_err(|e| format!("{name}[{k}]: {e}"));
+    entries.map(read).collect()
 }
 
 /// Rejects keys that are not known.
@@ -326,9 +323,8 @@ fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, Str
 /// Whether a key gives the angle of a body, such as `theta_guide_rad`. It is not compared: the
 /// points are.
 fn is_angle(key: &str, scene: &Scene) -> bool {
-    let body = key
-        .strip_prefix("theta_")
-        .and_then(|k| k.strip_suffix("_rad"));
+    let body = key.strip_prefix("theta_");
+    let body = body.and_then(|k| k.strip_suffix("_rad"));
     body.is_some_and(|body| scene.mechanism.bodies.iter().any(|b| b.name == body))
 }
 

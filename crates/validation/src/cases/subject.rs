@@ -49,9 +49,8 @@ impl Subject for PlanSubject {
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
         let mut at = self.exact.model().coefficient_buffer();
-        let evaluated = self
-            .exact
-            .coefficients(q, &mut self.exact.workspace(), &mut at);
+        let mut workspace = self.exact.workspace();
+        let evaluated = self.exact.coefficients(q, &mut workspace, &mut at);
         evaluated.map_err(subject_error(q))?;
         Ok(Coefficients {
             m: at.m,
@@ -69,9 +68,8 @@ impl Subject for PlanSubject {
     ) -> Result<InverseDynamics, SubjectError> {
         let model = self.exact.model();
         let (mut workspace, mut out) = (model.workspace(), model.result_buffer());
-        model
-            .inverse_dynamics(&[q], &[q_dot], &[q_ddot], &mut workspace, &mut out)
-            .map_err(subject_error(q))?;
+        let done = model.inverse_dynamics(&[q], &[q_dot], &[q_ddot], &mut workspace, &mut out);
+        done.map_err(subject_error(q))?;
         Ok(InverseDynamics {
             tau: out.tau[0],
             reactions: out.reactions,

@@ -158,10 +158,8 @@ fn not_applicable(
         (Check::ClosedForms, no_closed_form),
     ];
     let has_findings = |check: Check| findings.iter().any(|f| f.check == check);
-    reasons
-        .into_iter()
-        .filter(|&(check, _)| !has_findings(check))
-        .collect()
+    let missing = |&(check, _): &(Check, _)| !has_findings(check);
+    reasons.into_iter().filter(missing).collect()
 }
 
 /// The checks of the reduced model at single positions, on every reaction of every joint. The reduced model does not

@@ -297,6 +297,7 @@ impl FreeMotionRun {
             }
         }
         let complete = self.stop_reason.is_none() && !found.is_empty();
+        let tolerance = published.tolerance;
         Ok(Finding {
             comparison: format!("the state that is reached with its published values ({source})"),
             domain: format!("{} values at t = {} s", found.len(), published.t),
@@ -305,13 +306,8 @@ impl FreeMotionRun {
             worst_at: worst_at.to_owned(),
             tolerance_reason: published.reason.clone(),
             integrated: true,
-            pass: complete && worst[1] <= published.tolerance,
-            ..Finding::new(
-                "published-motion",
-                Check::ReferenceValues,
-                worst,
-                published.tolerance,
-            )
+            pass: complete && worst[1] <= tolerance,
+            ..Finding::new("published-motion", Check::ReferenceValues, worst, tolerance)
         })
     }
 

@@ -121,7 +121,7 @@ fn period_finding(orbit: &Orbit, error: f64, worst_at: String) -> Finding {
         MotionClass::Rotation { .. } => "whole revolution",
         _ => "first and third reversals",
     };
-    let numbers = [error, error / period];
+    let (numbers, tolerance) = ([error, error / period], ERROR_FACTOR * fine);
     Finding {
         comparison: format!(
             "T = ∮ √(m / 2(E − V)) dq = {period:.12} s with the integrator's {event}"
@@ -134,12 +134,7 @@ fn period_finding(orbit: &Orbit, error: f64, worst_at: String) -> Finding {
             "{ERROR_FACTOR} times the tolerance of a step: some tens are reached in a period"
         ),
         integrated: true,
-        ..Finding::new(
-            "period-integrated",
-            Check::Period,
-            numbers,
-            ERROR_FACTOR * fine,
-        )
+        ..Finding::new("period-integrated", Check::Period, numbers, tolerance)
     }
 }
 

@@ -57,10 +57,8 @@ impl RoundingCheck {
         let reactions = reactions.map(|r| (mechanism.reaction_name(r), r.component.unit()));
         let named: Vec<(String, &str)> = actuators.chain(reactions).collect();
         let largest = |unit: &str| {
-            let all = reference
-                .iter()
-                .flatten()
-                .flat_map(|all| named.iter().zip(all));
+            let all = reference.iter().flatten();
+            let all = all.flat_map(|values| named.iter().zip(values));
             let same = all.filter(|((_, of), _)| *of == unit);
             same.fold(0.0_f64, |largest, (_, v)| largest.max(v.value().abs()))
         };

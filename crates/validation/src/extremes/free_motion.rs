@@ -97,10 +97,8 @@ fn solve_revolutions(
     let energy = dd(0.5) * m * dd(speed) * dd(speed);
     let rounding = 4.0 * f64::EPSILON * energy.value();
     let end_energy = runs.final_value(|y| kinetic_energy(model, y), rounding);
-    Ok(vec![
-        scaled_cell(end_angle, angle, TAU),
-        cell(end_energy, energy),
-    ])
+    let angle = scaled_cell(end_angle, angle, TAU);
+    Ok(vec![angle, cell(end_energy, energy)])
 }
 
 /// A row of motions of the crank-rocker: speed, revolutions and options by value.

@@ -58,15 +58,11 @@ fn mass_ratio() -> ParameterSeries {
         four_bar.masses[1].inertia *= ratio;
         four_bar
     };
+    let what = "Four-bar: the coupler's mass and inertia";
     ParameterSeries {
         parameter: ("mass of the coupler over its initial mass", ""),
         reason: "the parameters are sums over the bodies, each of which a well-shaped dyad magnifies by 8; 16 roundings",
-        ..base_series(
-            "mass-ratio",
-            "Four-bar: the coupler's mass and inertia",
-            decades(-12, 12),
-            make,
-        )
+        ..base_series("mass-ratio", what, decades(-12, 12), make)
     }
 }
 

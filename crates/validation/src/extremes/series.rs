@@ -181,7 +181,6 @@ impl ParameterSeries {
 pub(crate) fn decades(from: i32, to: i32) -> Vec<f64> {
     let step = if from < to { 1 } else { -1 };
     let count = (to - from).abs();
-    (0..=count)
-        .map(|k| format!("1e{}", from + step * k).parse().unwrap_or(f64::NAN))
-        .collect()
+    let power = |k| format!("1e{}", from + step * k).parse();
+    (0..=count).map(|k| power(k).unwrap_or(f64::NAN)).collect()
 }

@@ -99,10 +99,8 @@ fn separatrix() -> ParameterSeries {
         let speed = dd(4.0) / (exp_t + dd(1.0) / exp_t);
         let rounding = 2.0 * f64::EPSILON * end.exp();
         let end = |k: usize| runs.final_value(|y| y[k], rounding);
-        Ok(vec![
-            scaled_cell(end(0), angle, PI),
-            scaled_cell(end(1), speed, 2.0),
-        ])
+        let angle = scaled_cell(end(0), angle, PI);
+        Ok(vec![angle, scaled_cell(end(1), speed, 2.0)])
     };
     ParameterSeries {
         figure: FIGURE,

@@ -112,10 +112,8 @@ fn damping() -> ParameterSeries {
         let travel = (fast * one - slow * other) / (fast - slow);
         let speed = dd(c) * (one - other) / (fast - slow);
         let end = |k: usize| runs.final_value(|y| y[k], 16.0 * f64::EPSILON);
-        Ok(vec![
-            scaled_cell(end(0), travel, 1.0),
-            scaled_cell(end(1), speed, 1.0),
-        ])
+        let travel = scaled_cell(end(0), travel, 1.0);
+        Ok(vec![travel, scaled_cell(end(1), speed, 1.0)])
     };
     ParameterSeries {
         figure: FIGURE,
@@ -145,10 +143,8 @@ fn small_rotor() -> ParameterSeries {
         let speed = dd(1.0) - decayed;
         let angle = dd(1.0) - dd(inertia) * speed;
         let end = |k: usize| runs.final_value(|y| y[k], 4.0 * f64::EPSILON);
-        Ok(vec![
-            scaled_cell(end(0), angle, 1.0),
-            scaled_cell(end(1), speed, 1.0),
-        ])
+        let angle = scaled_cell(end(0), angle, 1.0);
+        Ok(vec![angle, scaled_cell(end(1), speed, 1.0)])
     };
     ParameterSeries {
         figure: FIGURE,

@@ -210,10 +210,8 @@ pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Docu
 }
 
 fn cheapest_row(found: &WorkPrecision, quantity: ErrorQuantity, accuracy: f64) -> Vec<String> {
-    let mut row = vec![
-        quantity_name(quantity).to_owned(),
-        format!("{accuracy:.0e}"),
-    ];
+    let mut row = vec![quantity_name(quantity).to_owned()];
+    row.push(format!("{accuracy:.0e}"));
     row.extend(CostMeasure::ALL.map(|measure| cheapest(found, quantity, measure, accuracy)));
     row
 }
@@ -310,11 +308,8 @@ pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
         let _ = writeln!(text, "  left out: {why}");
     }
     if found.omitted.len() > 8 {
-        let _ = writeln!(
-            text,
-            "  and {} more, in the document",
-            found.omitted.len() - 8
-        );
+        let more = found.omitted.len() - 8;
+        let _ = writeln!(text, "  and {more} more, in the document");
     }
     text
 }

@@ -86,10 +86,7 @@ fn snapshot(scene: &Scene, found: &WorkPrecision) -> String {
         let k = found.cheapest(quantity, measure, accuracy);
         let name = k.map_or("none".to_owned(), |k| found.points[k].combination.name());
         let unit = found.unit;
-        let _ = writeln!(
-            text,
-            "  fewest evaluations for {accuracy:.0e} {unit}: {name}"
-        );
+        text += &format!("  fewest evaluations for {accuracy:.0e} {unit}: {name}\n");
     }
     text
 }

@@ -157,18 +157,14 @@ fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, Stu
     let free_scene = FreeMotionSetup::new(scene, &Reference::default())?.scene;
     let mut texts = Vec::new();
     if let Some(motion) = &free_scene.motion {
-        let starts = motion
-            .initial_coordinates
-            .iter()
-            .zip(&motion.initial_velocities);
+        let starts = motion.initial_coordinates.iter();
+        let starts = starts.zip(&motion.initial_velocities);
         let actuators = scene.mechanism.actuators.iter().zip(starts);
         for (actuator, (start, speed)) in actuators.filter(|(_, (_, speed))| **speed != 0.0) {
             let unit = actuator.coordinate().unit();
             let [start, speed] = [start, speed].map(|&v| digits(v, 6));
-            texts.push(format!(
-                "{} = {start} {unit} with {speed} {unit}/s",
-                actuator.name
-            ));
+            let name = &actuator.name;
+            texts.push(format!("{name} = {start} {unit} with {speed} {unit}/s"));
         }
     }
     let starts = texts.join(", ");
@@ -217,12 +213,8 @@ fn bound_duration(
     let mut end = requested;
     if let Some(orbit) = orbit.filter(|orbit| requested > MAX_PERIODS * orbit.period) {
         end = MAX_PERIODS * orbit.period;
-        notes.push(shortened_text(
-            &format!("{MAX_PERIODS} periods, "),
-            end,
-            requested,
-            "",
-        ));
+        let periods = format!("{MAX_PERIODS} periods, ");
+        notes.push(shortened_text(&periods, end, requested, ""));
     }
     let (method, tolerance, max_steps) = PREVIEW_RUN;
     let options = Options {

@@ -124,20 +124,13 @@ pub(crate) fn balances(context: &CheckContext<'_>) -> Vec<Finding> {
             for b in balances {
                 let numbers = [b.difference, scales[b.finding], b.reference_error];
                 let location = || location(context, position.q, motion, b.body);
-                position.record(
-                    &mut worst[b.finding],
-                    numbers,
-                    FINDINGS[b.finding].1,
-                    location,
-                );
+                let ((_, unit), worst) = (FINDINGS[b.finding], &mut worst[b.finding]);
+                position.record(worst, numbers, unit, location);
             }
         }
     }
-    let domain = format!(
-        "{}, each passed in {} motions",
-        context.domain(),
-        MOTIONS.len()
-    );
+    let (domain, count) = (context.domain(), MOTIONS.len());
+    let domain = format!("{domain}, each passed in {count} motions");
     let finding = |((spec, _), worst): (&(FindingSpec<'_>, _), _)| match spec.check {
         Check::NewtonEuler => spec.finding(format!("every body at {domain}"), worst),
         _ => spec.finding(domain.clone(), worst),
@@ -165,9 +158,8 @@ fn balances_in_motion(
     [q_dot, q_ddot]: [f64; 2],
 ) -> Result<Vec<Balance>, SubjectError> {
     let dense = &context.dense;
-    let subject = context
-        .subject
-        .inverse_dynamics(position.q, q_dot, q_ddot)?;
+    let subject = context.subject;
+    let subject = subject.inverse_dynamics(position.q, q_dot, q_ddot)?;
     let at = &position.configuration;
     let wrenches = dense.joint_wrenches(at, &subject.reactions, &[subject.tau]);
     let law = Polynomial::motion(position.q, q_dot, q_ddot);

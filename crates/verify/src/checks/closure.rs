@@ -44,11 +44,8 @@ const NOT_DENSE: FindingSpec<'_> = FindingSpec {
 /// Both findings.
 pub(crate) fn closure(context: &CheckContext<'_>) -> Vec<Finding> {
     let [mut closing] = context.for_each_position(|position, [worst]| {
-        let numbers = [
-            position.closing_correction,
-            1.0,
-            position.pose_rounding_bound,
-        ];
+        let (correction, bound) = (position.closing_correction, position.pose_rounding_bound);
+        let numbers = [correction, 1.0, bound];
         position.record(worst, numbers, "", || context.location(position.q));
         Ok(())
     });

@@ -40,9 +40,8 @@ pub(crate) fn energy_slope(context: &CheckContext<'_>) -> Vec<Finding> {
         let slope = derivatives(DerivativeOrder::First, step, rounding, |h| {
             Some(vec![context.energy_at(position, h)?])
         });
-        let (slope, error) = slope
-            .first()
-            .map_or((f64::NAN, 0.0), |e| (e.value, e.error));
+        let slope = slope.first().map(|e| (e.value, e.error));
+        let (slope, error) = slope.unwrap_or((f64::NAN, 0.0));
         let (location, unit) = (|| context.location(position.q), "kg m2/rad");
         position.record(differences, [half_dm - slope, scale, error], unit, location);
         let by_power = half_dm - position.reference.half_dm;

@@ -56,9 +56,7 @@ const POWER: FindingSpec<'_> = FindingSpec {
 pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
     let count = context.reactions.len();
     let determinate = context.dense.determinate[..count].iter();
-    let determinate = determinate
-        .filter(|&&is_determinate| is_determinate)
-        .count();
+    let determinate = determinate.filter(|&&is| is).count();
     if determinate == 0 {
         return Vec::new();
     }

@@ -191,11 +191,8 @@ impl MultibodyOde<'_> {
         drives.ok_or(not_finite)?;
         let (a, multipliers) = self.solve_with_friction(&at, &point, &mut applied)?;
         let velocities = &self.prescribed_values(t)[1];
-        for (tau, velocity) in multipliers
-            .iter()
-            .zip(velocities)
-            .skip(frames.actuator_row())
-        {
+        let rates = multipliers.iter().zip(velocities);
+        for (tau, velocity) in rates.skip(frames.actuator_row()) {
             applied.power += tau * velocity;
         }
         let derivative = [v, &a, &applied.drive_state_rates, &[applied.power]].concat();

@@ -52,10 +52,7 @@ impl<'a> ComparedSeries<'a> {
     }
 
     fn largest(&self) -> f64 {
-        let values = self
-            .values
-            .iter()
-            .map(|([_, reference], ..)| reference.abs());
+        let values = self.values.iter().map(|([_, value], ..)| value.abs());
         values.fold(0.0, f64::max)
     }
 
@@ -126,9 +123,8 @@ impl MultibodySystem {
         claimed_motion: &[MotionSample],
         reference_motion: &[MotionSample],
     ) -> Result<Vec<Finding>, MultibodyError> {
-        let first = reference_motion
-            .first()
-            .ok_or(MultibodyError::InvalidStart)?;
+        let first = reference_motion.first();
+        let first = first.ok_or(MultibodyError::InvalidStart)?;
         let layout = |s: &MotionSample| {
             let bodies = [s.poses.len(), s.velocities.len()];
             (

@@ -83,14 +83,8 @@ impl MultibodySystem {
     ) -> Vec<BodyWrench> {
         let (ground, masses) = (self.mechanism.ground, &self.masses);
         let wrenches = self.loads.get(load).and_then(|load| {
-            load_wrenches(
-                &load.kind,
-                magnitude,
-                ground,
-                masses,
-                &at.poses,
-                &at.velocities,
-            )
+            let (poses, velocities) = (&at.poses, &at.velocities);
+            load_wrenches(&load.kind, magnitude, ground, masses, poses, velocities)
         });
         wrenches.unwrap_or_default()
     }

@@ -177,9 +177,8 @@ impl<'a> DenseState<'a> {
 
     /// Everything that acts on a body.
     pub(super) fn net_wrench(&self, body: usize) -> NetWrench {
-        let center = self
-            .dense
-            .center(&self.dense.bodies[body], &self.configuration);
+        let body_at = &self.dense.bodies[body];
+        let center = self.dense.center(body_at, &self.configuration);
         let all = self.joint_wrenches.iter().chain(&self.load_wrenches);
         NetWrench::of(all.filter(|a| a.body == body), center)
     }

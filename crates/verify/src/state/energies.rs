@@ -142,9 +142,7 @@ impl StateChecker<'_> {
             }
         }
         let determinate = self.dense.determinate[..actuator_row].iter();
-        let indeterminate = determinate
-            .filter(|&&is_determinate| !is_determinate)
-            .count();
+        let indeterminate = determinate.filter(|&&is| !is).count();
         let mut findings = vec![self.finding(&LAGRANGE, of_actuators)];
         if indeterminate == actuator_row && actuator_row > 0 {
             return findings;

@@ -11,13 +11,10 @@ const MAX_DIGITS: f64 = 16.0;
 
 /// Difference, tolerance and their ratio of every finding, by check.
 pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
+    let of_check = |check| findings.iter().filter(move |f| f.check == check);
     let group = |check: Check| Group {
         heading: check.to_string(),
-        rows: findings
-            .iter()
-            .filter(|f| f.check == check)
-            .map(row)
-            .collect(),
+        rows: of_check(check).map(row).collect(),
     };
     let groups = Check::ALL.map(group).into_iter();
     let groups = groups.filter(|group| !group.rows.is_empty()).collect();
@@ -26,6 +23,7 @@ pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
         "tolerance",
         "tolerance over difference",
     ];
+    let count = count(findings.len(), "finding");
     Figure {
         name: "digits".to_owned(),
         title: "Digits of agreement".to_owned(),
@@ -43,10 +41,7 @@ pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
             }
             .into(),
         ],
-        provenance: format!(
-            "{}, each with its own check and tolerance",
-            count(findings.len(), "finding")
-        ),
+        provenance: format!("{count}, each with its own check and tolerance"),
     }
 }
 
@@ -70,8 +65,9 @@ fn row(finding: &Finding) -> Row {
     };
     let mut difference = part(finding.relative_difference);
     difference.failed = !finding.pass;
+    let tolerance = Some(part(finding.tolerance));
     Row::new(
         finding.key.clone(),
-        vec![Some(difference), Some(part(finding.tolerance)), between],
+        vec![Some(difference), tolerance, between],
     )
 }

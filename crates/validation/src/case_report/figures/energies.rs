@@ -39,13 +39,10 @@ pub(crate) fn energies(scene: &Scene, run: &FreeMotionRun) -> Figure {
         let axis = Axis::new("velocity", format!("{unit}/s"));
         charts.push(chart(format!("Velocity of {name}"), axis, line(1)));
     }
-    let initial_potential = run.steps.first().map_or(0.0, |first| first.potential);
+    let initial = run.steps.first().map_or(0.0, |first| first.potential);
     let lines = vec![
         Series::line("kinetic", curve(&|k| run.steps[k].kinetic)),
-        Series::line(
-            "potential",
-            curve(&|k| run.steps[k].potential - initial_potential),
-        ),
+        Series::line("potential", curve(&|k| run.steps[k].potential - initial)),
         // Often the same curve as another.
         Series::line("work", curve(&|k| run.steps[k].work)).stroke(Stroke::Dashed),
     ];

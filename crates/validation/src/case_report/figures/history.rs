@@ -17,9 +17,7 @@ pub(crate) fn history(
     accuracy: &SolverSettings,
 ) -> Figure {
     let all = &history.run.samples;
-    let drawn = history
-        .period
-        .map(|period| DRAWN_PERIODS * period * (1.0 + 1e-9));
+    let drawn = history.period.map(|t| DRAWN_PERIODS * t * (1.0 + 1e-9));
     let drawn = drawn.unwrap_or(f64::INFINITY);
     let samples = (0..all.len()).filter(|&i| all[i].t - all[0].t <= drawn);
     let samples: Vec<usize> = samples.collect();
@@ -85,10 +83,8 @@ pub(crate) fn history(
             c.path, c.period
         )
     });
-    let text = format!(
-        "No torque. Reactions by R = a q̈ + b q̇².{}",
-        fitted.unwrap_or_default()
-    );
+    let fitted = fitted.unwrap_or_default();
+    let text = format!("No torque. Reactions by R = a q̈ + b q̇².{fitted}");
     Figure {
         name: "motion".to_owned(),
         title: "Free motion".to_owned(),

@@ -81,12 +81,8 @@ pub(crate) fn mechanism(
     let request = scene.requests.dwell.as_ref();
     let dwell = request.map(|d| find_dwell(&range_poses, d.body, d.relative_band, full));
     let mut shapes = paths(scene, &range_poses);
-    shapes.extend(faded_positions(
-        prepared,
-        &range_poses,
-        full,
-        dwell.as_ref(),
-    ));
+    let faded = faded_positions(prepared, &range_poses, full, dwell.as_ref());
+    shapes.extend(faded);
     let mut panels = vec![drawing(shapes)];
     if let Some(dwell) = &dwell {
         panels.push(body_angle_panel(prepared, &range_poses, dwell));
@@ -102,16 +98,14 @@ pub(crate) fn mechanism(
             (d.to - d.from).to_degrees(),
         );
     }
+    let positions = count(range_poses.q.len(), "position");
     let figure = Figure {
         name: "mechanism".to_owned(),
         title: scene.title.clone(),
         caption: caption(prepared, &text),
         columns: 1,
         panels,
-        provenance: format!(
-            "the mechanism at {}",
-            count(range_poses.q.len(), "position")
-        ),
+        provenance: format!("the mechanism at {positions}"),
     };
     Ok((figure, dwell))
 }
@@ -177,19 +171,13 @@ fn dwell_paths(scene: &Scene, range_poses: &RangePoses, dwell: &Dwell) -> Vec<Sh
     let pen = Pen::new(Paint::Ink, 5.0).lightness(0.1);
     let all = range_poses.q.iter().enumerate();
     let within = |offset: f64| {
-        let in_dwell = all
-            .clone()
-            .filter(move |(_, q)| (dwell.from..=dwell.to).contains(&(**q + offset)));
+        let passed = move |q: f64| (dwell.from..=dwell.to).contains(&(q + offset));
+        let in_dwell = all.clone().filter(move |(_, q)| passed(**q));
         in_dwell.map(|(i, _)| i)
     };
     let positions: Vec<usize> = within(0.0).chain(within(TAU)).collect();
-    path_shapes(
-        scene,
-        range_poses,
-        &positions,
-        pen,
-        "paths during the dwell",
-    )
+    let name = "paths during the dwell";
+    path_shapes(scene, range_poses, &positions, pen, name)
 }
 
 fn path_shapes(
@@ -200,9 +188,8 @@ fn path_shapes(
     name: &str,
 ) -> Vec<Shape> {
     let path = |path: &PathPoint| {
-        let points = positions
-            .iter()
-            .map(|&i| range_poses.point(i, path.body.0, path.at));
+        let at = |&i: &usize| range_poses.point(i, path.body.0, path.at);
+        let points = positions.iter().map(at);
         Shape::line(points.collect(), pen).named(name)
     };
     scene.requests.paths.iter().map(path).collect()

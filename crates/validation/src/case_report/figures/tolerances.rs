@@ -103,10 +103,8 @@ pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeM
         )
     };
     let tolerance = || (Axis::log("tolerance", ""), (|r| r.tolerance) as Value);
-    let time = (
-        Axis::log("wall time", "ms"),
-        (|r| r.wall_time * 1e3) as Value,
-    );
+    let milliseconds: Value = |r| r.wall_time * 1e3;
+    let time = (Axis::log("wall time", "ms"), milliseconds);
     let drift: (&str, Value) = ("largest |E / E₀ − 1|", |r| r.drift);
     let period: (&str, Value) = ("relative error of the period", |r| r.period_error);
     let reaction: (&str, Value) = ("largest relative error", |r| r.reaction_error);
