@@ -9,7 +9,8 @@ use dwell_dynamics::{
     DynamicsError, Event, EventKind, Method, Options, Orbit, ReducedCoordinate, ReducedOde,
     ReducedOutputs, ReducedState, Solution, solve_reduced,
 };
-use dwell_findings::{Check, Finding};
+use dwell_findings::Check::{Period, Power};
+use dwell_findings::Finding;
 use dwell_kinetostatics::ReducedModel;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
@@ -56,6 +57,14 @@ pub struct ToleranceRun {
     pub reaction_error: f64,
     /// (time, |E / E₀ − 1|) at the steps.
     pub drift_over_time: Vec<[f64; 2]>,
+}
+
+impl ToleranceRun {
+    /// Time and value of the largest drift.
+    fn largest_drift(&self) -> [f64; 2] {
+        let drifts = self.drift_over_time.iter();
+        drifts.fold([0.0, 0.0], |w, d| if d[1] > w[1] { *d } else { w })
+    }
 }
 
 /// The results.
@@ -178,6 +187,9 @@ impl<'a, R: ReducedModel> ReactionEvaluator<'a, R> {
     }
 }
 
+/// The largest change of the velocity and its time, and that of a reaction as [`ReactionEvaluator::difference`].
+type Periodicity = ((f64, f64), ((f64, f64, usize), f64));
+
 /// A motion with its references.
 struct Motion<'a, R> {
     model: &'a R,
@@ -249,6 +261,25 @@ impl<R: ReducedModel> Motion<'_, R> {
         (duration - self.orbit.period).abs()
     }
 
+    /// The largest change of the velocity after a revolution, and of a reaction with its index, each with its time.
+    fn periodicity(&self, solution: &Solution) -> Result<Periodicity, DynamicsError> {
+        let start = self.case.initial_state;
+        let (mut velocity, mut reaction) = ((0.0, 0.0), ((0.0, 0.0, 0), 0.0));
+        let mut evaluator = ReactionEvaluator::new(self.model);
+        for occurrence in &solution.event_occurrences {
+            let state = ReducedState::from(&occurrence.state);
+            let change = (state.q_dot - start.q_dot).abs();
+            if change > velocity.0 {
+                velocity = (change, state.t);
+            }
+            let difference = evaluator.difference(state, start, self.scales)?;
+            if difference.0 > reaction.0.0 {
+                reaction = (difference, state.t);
+            }
+        }
+        Ok((velocity, reaction))
+    }
+
     /// Period, energy and periodicity of a run at the finest tolerance.
     fn check_run(
         &self,
@@ -256,7 +287,6 @@ impl<R: ReducedModel> Motion<'_, R> {
         solution: &Solution,
     ) -> Result<Vec<Finding>, DynamicsError> {
         let (case, orbit, scales) = (self.case, self.orbit, self.scales);
-        use Check::{Period, Power};
         let name = run.method.name();
         let lower = name.to_lowercase();
         let ([period, energy], reason) = tolerances(run.method);
@@ -270,26 +300,13 @@ impl<R: ReducedModel> Motion<'_, R> {
             ..Finding::new(&format!("{key}-{lower}"), check, numbers, tolerance)
         };
         let late = self.first_revolution_error(solution);
-        let drifts = run.drift_over_time.iter();
-        let [t, drift] = drifts.fold([0.0, 0.0], |w, d| if d[1] > w[1] { *d } else { w });
-        let (mut speed, mut reaction) = ((0.0_f64, 0.0), ((0.0_f64, 0.0, 0), 0.0));
-        let mut evaluator = ReactionEvaluator::new(self.model);
-        for occurrence in &solution.event_occurrences {
-            let state = ReducedState::from(&occurrence.state);
-            let change = (state.q_dot - case.initial_state.q_dot).abs();
-            if change > speed.0 {
-                speed = (change, state.t);
-            }
-            let difference = evaluator.difference(state, case.initial_state, scales)?;
-            if difference.0 > reaction.0.0 {
-                reaction = (difference, state.t);
-            }
-        }
+        let [t, drift] = run.largest_drift();
+        let (speed, reaction) = self.periodicity(solution)?;
         let relative = speed.0 / scales.speed;
         let mut findings = vec![
             Finding {
                 comparison: format!(
-                    "the first revolution of {name}, located on its dense output, with the quadrature"
+                    "the first revolution of {name}, by dense output, with the quadrature"
                 ),
                 domain: over("one revolution".to_owned()),
                 unit: "s".into(),
@@ -316,9 +333,7 @@ impl<R: ReducedModel> Motion<'_, R> {
         ];
         let ((relative, absolute, k), t) = reaction;
         findings.extend(case.reactions.get(k).map(|(reaction, unit)| Finding {
-            comparison: format!(
-                "requested reactions after each revolution of {name} with those at the start"
-            ),
+            comparison: format!("reactions after each revolution of {name} with the initial ones"),
             unit: (*unit).into(),
             scale: "the largest reaction of the unit".into(),
             worst_at: format!("{reaction}, t = {t:.3} s"),
@@ -346,7 +361,7 @@ fn check_quadrature(case: &FreeMotionCase, orbit: &Orbit) -> Option<Finding> {
         worst_at: "the whole revolution".into(),
         tolerance_reason:
             "a spectral rule on an exact integrand leaves only the rounding of its sum".into(),
-        ..Finding::new("period-quadrature", Check::Period, numbers, 4e-14)
+        ..Finding::new("period-quadrature", Period, numbers, 4e-14)
     })
 }
 

@@ -10,8 +10,9 @@ use dwell_kinetostatics::{Guide, LoadKind, Mass};
 /// [x, y, θ] in m, rad and per s; a massless body has no weight, the ground's is left out.
 /// `None` if it names a body that is not there.
 ///
-/// Two points in one place have no line between them: then a spring or damper between them gives
+/// Coincident points have no line between them: then a spring or damper between them gives
 /// forces that are not numbers, unless it is a spring of no free length.
+// Long: an arm for each kind of load.
 pub fn load_wrenches(
     kind: &LoadKind,
     magnitude: f64,

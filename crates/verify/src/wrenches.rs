@@ -110,6 +110,7 @@ impl ActionReaction<'_> {
         }
     }
 
+    // Long: an arm for each kind of joint.
     fn joint(&mut self, joint: &Joint, reaction: &[f64]) {
         let geometry = self.joint_geometry(joint.bodies, joint.points);
         let [first, second] = geometry.points;

@@ -14,7 +14,7 @@ use dwell_scene::{MotionDuration, Scene};
 use dwell_study::explain::explain_motion;
 use dwell_study::reduce::compute::ReducedCurves;
 use dwell_study::{
-    CalibrationResult, PreparedScene, SolverSettings, find_value, symbolic_findings,
+    CalibrationResult, PreparedScene, SolverSettings, StudyError, find_value, symbolic_findings,
 };
 use dwell_verify::{
     Case, CheckContext, CheckedFreeMotion, CheckedPosition, ErrorCurve, FreeMotionCase, Range,
@@ -70,57 +70,35 @@ pub(crate) fn analyse<'a>(
     );
     let ((reduced_findings, error_curves), (motion, calibration, history)) = (reduced?, motion?);
     done("free motion");
-    let (states, (multibody, period)) = rayon::join(
+    let (states, motions) = rayon::join(
         || states::check(scene, reference),
-        || {
-            rayon::join(
-                || multibody::check_free_motion(scene, reference),
-                // The checks of a free motion without loads hold its period already.
-                || match &motion {
-                    Some(_) => Ok(Ok(Vec::new())),
-                    None => period_check::check_case(scene, reference),
-                },
-            )
-        },
+        || check_motions(scene, reference, motion.is_some()),
     );
-    let (states, (free_motion, multibody_findings), period) = (states?, multibody?, period?);
+    let (states, ((free_motion, multibody_findings), period)) = (states?, motions?);
     let rounding = RoundingCheck::new(scene, &states.states)?;
-    let rounding_findings = rounding_check::finding(&rounding).into_iter().collect();
-    let motion_findings = motion.iter().flat_map(|m| m.findings.clone()).collect();
-    let state_findings = states.findings.clone();
-    let period_findings = period.iter().flatten().cloned().collect();
-    // Snapshots list the findings in this order.
-    let groups: [Vec<Finding>; 6] = match prepared {
-        Some(_) => [
+    let mut findings = in_order(
+        prepared.is_some(),
+        [
             reduced_findings,
-            motion_findings,
-            rounding_findings,
-            state_findings,
+            motion.iter().flat_map(|m| m.findings.clone()).collect(),
+            rounding_check::finding(&rounding).into_iter().collect(),
+            states.findings.clone(),
             multibody_findings,
-            period_findings,
+            period.iter().flatten().cloned().collect(),
         ],
-        None => [
-            state_findings,
-            reduced_findings,
-            period_findings,
-            multibody_findings,
-            motion_findings,
-            rounding_findings,
-        ],
-    };
-    let mut findings = groups.concat();
+    );
     reference.apply_tolerances(&mut findings)?;
-    let reduced = match prepared {
-        Some(prepared) => Some(ReducedAnalysis {
+    let analysis = |prepared| -> Result<_, StudyError> {
+        Ok(ReducedAnalysis {
             curves: ReducedCurves::new(&prepared)?,
             prepared,
             error_curves,
             motion,
             calibration,
             history,
-        }),
-        None => None,
+        })
     };
+    let reduced = prepared.map(analysis).transpose()?;
     done("states");
     Ok(CaseAnalysis {
         not_applicable: not_applicable(scene, &findings, period.err()),
@@ -130,6 +108,35 @@ pub(crate) fn analyse<'a>(
         free_motion,
         reduced,
     })
+}
+
+/// The free motion against the multibody equations, and its period: the checks of a free motion without loads hold it
+/// already.
+fn check_motions(
+    scene: &Scene,
+    reference: &Reference,
+    has_period: bool,
+) -> Result<(multibody::CheckedRun, period_check::PeriodFindings), ValidationError> {
+    let (multibody, period) = rayon::join(
+        || multibody::check_free_motion(scene, reference),
+        || match has_period {
+            true => Ok(Ok(Vec::new())),
+            false => period_check::check_case(scene, reference),
+        },
+    );
+    Ok((multibody?, period?))
+}
+
+/// The findings of the reduced model, the free motion, rounding, states, multibody equations and period in the order of
+/// the snapshots.
+fn in_order(reduced: bool, findings: [Vec<Finding>; 6]) -> Vec<Finding> {
+    let order = if reduced {
+        [0, 1, 2, 3, 4, 5]
+    } else {
+        [3, 0, 5, 4, 1, 2]
+    };
+    let mut findings = findings;
+    order.map(|k| std::mem::take(&mut findings[k])).concat()
 }
 
 /// Whether the reduced model describes the whole case: it has no loads, drives and laws.

@@ -213,6 +213,9 @@ impl<'a> StateReader<'a> {
     }
 }
 
+/// A free motion, if the scene has one, with its findings.
+pub(crate) type CheckedRun = (Option<FreeMotionRun>, Vec<Finding>);
+
 /// The findings of a scene's motion: the multibody equations, then its published values. A scene without one is
 /// set free.
 ///
@@ -221,7 +224,7 @@ impl<'a> StateReader<'a> {
 pub(crate) fn check_free_motion(
     scene: &Scene,
     reference: &Reference,
-) -> Result<(Option<FreeMotionRun>, Vec<Finding>), ValidationError> {
+) -> Result<CheckedRun, ValidationError> {
     let Some(run) = free_motion_run(scene)? else {
         let setup = FreeMotionSetup::new(scene, reference)?;
         let Some(mut run) = solve_motion(&setup.scene, None, setup.max_step())? else {

@@ -1,7 +1,7 @@
 //! Edges: the separatrix of a pendulum, and a start at a dead point.
 
 use super::closed_forms::{arc_cosine, dd, elliptic_k, exponential};
-use super::mechanisms::{SliderCrank, mass, rotor};
+use super::mechanisms::{SliderCrank, TestMechanism, mass, rotor};
 use super::run_pair::{loaded_motion, machine};
 use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
 use dwell_dynamics::{
@@ -134,61 +134,70 @@ const DEAD_POINT_MECHANISM: SliderCrank = SliderCrank {
     assembly: [0.0, 0.0],
 };
 
-fn dead_point() -> ParameterSeries {
-    const TOLERANCE: f64 = 1e-10;
-    let run = |distance: f64| -> RunResult {
-        let [crank, rod] = DEAD_POINT_MECHANISM.lengths.map(dd);
-        let travel = (crank + rod - dd(distance)).value();
-        let q = dd(travel);
-        let angle = arc_cosine((q * q + crank * crank - rod * rod) / (dd(2.0) * crank * q));
-        // How far the rod reaches along the guide.
-        let rod_projection = |sin: DoubleDouble| ((rod + crank * sin) * (rod - crank * sin)).sqrt();
-        let slope = |angle: DoubleDouble| {
-            let (sin, cos) = angle.sin_cos();
-            -(crank * sin + crank * crank * sin * cos / rod_projection(sin))
-        };
-        // About 1 rad/s of the crank, away from the dead point.
-        let speed = slope(angle).value();
-        let crank_velocity = dd(speed) / slope(angle);
-        let mut slider_crank = DEAD_POINT_MECHANISM;
-        slider_crank.assembly = [travel, angle.value()];
-        let test = slider_crank.build(true);
-        let description = MachineDescription {
-            mechanism: &test.mechanism,
-            masses: &test.masses,
-            assembly: &test.assembly,
-            loads: &[],
-            drives: &[],
-            reactions: &[],
-        };
-        let end = 2.0;
-        let run = |options: &Options| -> Result<Vec<f64>, Box<dyn std::error::Error>> {
-            let mut atlas = Atlas::new(description)?;
-            let y = vec![travel, speed];
-            let motion = atlas.solve(&OdeState { t: 0.0, y }, end, options, &[])?;
-            if let Some(error) = motion.error {
-                return Err(error.into());
-            }
-            let history = atlas.coordinate_history(&motion, atlas.actuator_coordinate())?;
-            Ok(history.samples.iter().flatten().map(|s| s[0]).collect())
-        };
-        let options = Options {
-            sample_interval: Some(end / 64.0),
-            ..Options::new(Method::Bdf, TOLERANCE)
-        };
-        let first = run(&options)?;
-        let second = run(&estimate::comparison_options(&options))?;
-        let end_angle = angle + crank_velocity * dd(end);
-        let (sin, cos) = end_angle.sin_cos();
-        let reference = crank * cos + rod_projection(sin);
-        let got = first.last().copied().unwrap_or(f64::NAN);
-        // The crank's speed is as well known as the root of its inertia, over 2 s.
-        let exact = test.exact_model(&[])?;
-        let (at, error) = estimate::coefficients_with_errors(exact.model(), travel)?;
-        let rounding = 2.0 * end * error.m / at.m + 4.0 * f64::EPSILON;
-        let error = estimate::of_motion(&first, &second, rounding);
-        Ok(vec![scaled_cell((got, error), reference, 1.0)])
+const DEAD_POINT_TOLERANCE: f64 = 1e-10;
+
+/// The travel after 2 s from a distance to the dead point.
+fn from_dead_point(distance: f64) -> RunResult {
+    let [crank, rod] = DEAD_POINT_MECHANISM.lengths.map(dd);
+    let travel = (crank + rod - dd(distance)).value();
+    let q = dd(travel);
+    let angle = arc_cosine((q * q + crank * crank - rod * rod) / (dd(2.0) * crank * q));
+    // How far the rod reaches along the guide.
+    let rod_projection = |sin: DoubleDouble| ((rod + crank * sin) * (rod - crank * sin)).sqrt();
+    let slope = |angle: DoubleDouble| {
+        let (sin, cos) = angle.sin_cos();
+        -(crank * sin + crank * crank * sin * cos / rod_projection(sin))
     };
+    // About 1 rad/s of the crank, away from the dead point.
+    let speed = slope(angle).value();
+    let crank_velocity = dd(speed) / slope(angle);
+    let mut slider_crank = DEAD_POINT_MECHANISM;
+    slider_crank.assembly = [travel, angle.value()];
+    let test = slider_crank.build(true);
+    let end = 2.0;
+    let run = |options: &Options| travel_history(&test, [travel, speed], end, options);
+    let options = Options {
+        sample_interval: Some(end / 64.0),
+        ..Options::new(Method::Bdf, DEAD_POINT_TOLERANCE)
+    };
+    let first = run(&options)?;
+    let second = run(&estimate::comparison_options(&options))?;
+    let (sin, cos) = (angle + crank_velocity * dd(end)).sin_cos();
+    let reference = crank * cos + rod_projection(sin);
+    let got = first.last().copied().unwrap_or(f64::NAN);
+    // The crank's speed is as well known as the root of its inertia, over 2 s.
+    let exact = test.exact_model(&[])?;
+    let (at, error) = estimate::coefficients_with_errors(exact.model(), travel)?;
+    let rounding = 2.0 * end * error.m / at.m + 4.0 * f64::EPSILON;
+    let error = estimate::of_motion(&first, &second, rounding);
+    Ok(vec![scaled_cell((got, error), reference, 1.0)])
+}
+
+/// The travel of the slider at the samples of a motion from a state.
+fn travel_history(
+    test: &TestMechanism,
+    state: [f64; 2],
+    end: f64,
+    options: &Options,
+) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+    let mut atlas = Atlas::new(MachineDescription {
+        mechanism: &test.mechanism,
+        masses: &test.masses,
+        assembly: &test.assembly,
+        loads: &[],
+        drives: &[],
+        reactions: &[],
+    })?;
+    let (t, y) = (0.0, state.to_vec());
+    let motion = atlas.solve(&OdeState { t, y }, end, options, &[])?;
+    if let Some(error) = motion.error {
+        return Err(error.into());
+    }
+    let history = atlas.coordinate_history(&motion, atlas.actuator_coordinate())?;
+    Ok(history.samples.iter().flatten().map(|s| s[0]).collect())
+}
+
+fn dead_point() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "dead-point".into(),
@@ -201,9 +210,9 @@ fn dead_point() -> ParameterSeries {
               4 tolerances (1e-10), magnified by the coordinate's fold, 1/√δ",
         requirement: Box::new(|at, _| {
             let condition = 3.0 / at;
-            let error = 2000.0 * TOLERANCE / at.sqrt() + 16.0 * f64::EPSILON * condition;
+            let error = 2000.0 * DEAD_POINT_TOLERANCE / at.sqrt() + 16.0 * f64::EPSILON * condition;
             Requirement::from_error(error, condition)
         }),
-        run: Box::new(run),
+        run: Box::new(from_dead_point),
     }
 }

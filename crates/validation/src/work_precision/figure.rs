@@ -66,26 +66,7 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     let front = found.pareto_front(quantity, measure);
     let line = front.iter().map(|&k| at(k)).collect();
     let mut series = vec![Series::line("", line).color(Paint::Grey)];
-    for (i, method) in Method::ALL.into_iter().enumerate() {
-        let of = |selects: &dyn Fn(Evaluation) -> bool| -> Vec<[f64; 2]> {
-            let selected = |k: &usize| {
-                let of = found.points[*k].combination;
-                let own = matches!(of.integrator, Integrator::Steps(own, _) if own == method);
-                own && selects(of.evaluation)
-            };
-            (0..found.points.len()).filter(selected).map(at).collect()
-        };
-        let paint = Paint::Palette(i);
-        let exact = Series::line(method.name(), of(&|e| e == Evaluation::Exact));
-        series.push(exact.stroke(Stroke::LineAndPoints).color(paint));
-        // Counted, the others equal the mechanism itself.
-        if measure != CostMeasure::Evaluations {
-            let tables = Series::line("", of(&|e| matches!(e, Evaluation::Table { .. })));
-            let single = Series::line("", of(&|e| e == Evaluation::SinglePrecision));
-            series.push(tables.stroke(Stroke::Hollow).color(paint));
-            series.push(single.stroke(Stroke::Crosses).color(paint));
-        }
-    }
+    series.extend(method_series(found, measure, &at));
     let reference_error = found.reference.error.of(quantity);
     let mut marks = vec![Mark::Band {
         from: reference_error / AXIS_MARGIN.powi(3),
@@ -134,6 +115,36 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
         ..Chart::default()
     }
     .into()
+}
+
+/// The runs of every method: those of the mechanism itself and, in time, on tables and in single precision.
+fn method_series(
+    found: &WorkPrecision,
+    measure: CostMeasure,
+    at: &dyn Fn(usize) -> [f64; 2],
+) -> Vec<Series> {
+    let mut series = Vec::new();
+    for (i, method) in Method::ALL.into_iter().enumerate() {
+        let of = |selects: &dyn Fn(Evaluation) -> bool| -> Vec<[f64; 2]> {
+            let selected = |k: &usize| {
+                let of = found.points[*k].combination;
+                let own = matches!(of.integrator, Integrator::Steps(own, _) if own == method);
+                own && selects(of.evaluation)
+            };
+            (0..found.points.len()).filter(selected).map(at).collect()
+        };
+        let paint = Paint::Palette(i);
+        let exact = Series::line(method.name(), of(&|e| e == Evaluation::Exact));
+        series.push(exact.stroke(Stroke::LineAndPoints).color(paint));
+        // Counted, the others equal the mechanism itself.
+        if measure != CostMeasure::Evaluations {
+            let tables = Series::line("", of(&|e| matches!(e, Evaluation::Table { .. })));
+            let single = Series::line("", of(&|e| e == Evaluation::SinglePrecision));
+            series.push(tables.stroke(Stroke::Hollow).color(paint));
+            series.push(single.stroke(Stroke::Crosses).color(paint));
+        }
+    }
+    series
 }
 
 /// The axis of the errors, from below the floor to the largest that is one.

@@ -123,18 +123,7 @@ pub fn measure_with(
     let timed = || done("times");
     let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &timed);
     let unit_times = unit_times.map_err(|e| subject.explain(&e))?;
-    let mut points = Vec::new();
-    for (evaluator, combination, run) in trials {
-        // A run that left the range of an evaluator or of the mechanism has no error.
-        match reference.errors(&run.states, &mut evaluator.reactions()) {
-            Ok(errors) => points.push(CombinationResult {
-                combination,
-                errors,
-                cost: cost(evaluator, &run, unit_times.evaluation),
-            }),
-            Err(error) => omitted.push(format!("{}: {error}", combination.name())),
-        }
-    }
+    let points = results(&mut reference, trials, unit_times.evaluation, &mut omitted);
     Ok(WorkPrecision {
         points,
         omitted,
@@ -149,6 +138,27 @@ pub fn measure_with(
         evaluation_time: unit_times.evaluation,
         jacobian_cost: unit_times.jacobian / unit_times.evaluation,
     })
+}
+
+/// Errors and costs of all runs. A run that left the range of an evaluator or of the mechanism has no error.
+fn results(
+    reference: &mut ReferenceSolution<'_>,
+    trials: Vec<Trial<'_>>,
+    evaluation_time: f64,
+    omitted: &mut Vec<String>,
+) -> Vec<CombinationResult> {
+    let mut points = Vec::new();
+    for (evaluator, combination, run) in trials {
+        match reference.errors(&run.states, &mut evaluator.reactions()) {
+            Ok(errors) => points.push(CombinationResult {
+                combination,
+                errors,
+                cost: cost(evaluator, &run, evaluation_time),
+            }),
+            Err(error) => omitted.push(format!("{}: {error}", combination.name())),
+        }
+    }
+    points
 }
 
 /// The runs of one evaluator, with the quadrature where the motion follows from the energy.

@@ -6,7 +6,7 @@ use crate::comparison::{Comparison, FindingSpec, LargestDifference};
 use crate::dense::condition_number;
 use crate::subject::{Subject, SubjectError};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{BodyId, Component, Vec2};
+use dwell_geometry::{BodyId, Component, Reaction, Vec2};
 
 /// A point of a body and where it was published to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,35 +74,13 @@ pub fn published(
     samples: &[PublishedSample],
 ) -> Vec<Finding> {
     let reactions = case.mechanism.reactions();
-    let is_moment = |k: usize| {
-        let reaction = reactions.get(k);
-        reaction.is_some_and(|r| r.component == Component::Moment)
-    };
-    let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
-    let m = largest(&mut samples.iter().filter_map(|s| s.m));
-    let half_dm = largest(&mut samples.iter().filter_map(|s| s.half_dm));
-    let of_unit = |moment: bool, pick: fn(&(usize, f64, f64)) -> f64| {
-        let all = samples.iter().flat_map(|s| &s.reactions);
-        largest(&mut all.filter(|r| is_moment(r.0) == moment).map(pick))
-    };
-    let points = samples.iter().flat_map(|s| &s.points);
-    let coordinate = largest(&mut points.flat_map(|p| [p.position.x, p.position.y]));
-    let scale = |kind: usize, k: usize| match (kind, is_moment(k)) {
-        (0, _) => m,
-        (1, _) => half_dm,
-        (2, false) => of_unit(false, |r| r.1),
-        (2, true) => of_unit(true, |r| r.1).max(m),
-        (3, false) => of_unit(false, |r| r.2),
-        (3, true) => of_unit(true, |r| r.2).max(half_dm),
-        _ => coordinate,
-    };
     let mut worst: [LargestDifference; 5] = Default::default();
     for sample in samples {
         let poses = subject.poses(sample.q).unwrap_or_default();
         let condition_number = condition_number(case.mechanism, &poses);
         let result = compare(case, subject, sample, |kind, k, difference, unit| {
             let comparison = Comparison {
-                numbers: [difference, scale(kind, k), 0.0],
+                numbers: [difference, scale(&reactions, samples, kind, k), 0.0],
                 unit,
                 condition_number,
             };
@@ -141,6 +119,39 @@ pub fn published(
     given.map(finding).collect()
 }
 
+/// The largest published value of a kind; of a and b that of the unit of reaction `k`.
+fn scale(reactions: &[Reaction], samples: &[PublishedSample], kind: usize, k: usize) -> f64 {
+    let is_moment = |k| component(reactions, k) == Some(Component::Moment);
+    let values = |s: &PublishedSample| -> Vec<f64> {
+        let same = s
+            .reactions
+            .iter()
+            .filter(|r| is_moment(r.0) == is_moment(k));
+        match kind {
+            0 => s.m.into_iter().collect(),
+            1 => s.half_dm.into_iter().collect(),
+            2 => same
+                .map(|r| r.1)
+                .chain(s.m.filter(|_| is_moment(k)))
+                .collect(),
+            3 => same
+                .map(|r| r.2)
+                .chain(s.half_dm.filter(|_| is_moment(k)))
+                .collect(),
+            _ => {
+                let points = s.points.iter();
+                points.flat_map(|p| [p.position.x, p.position.y]).collect()
+            }
+        }
+    };
+    let all = samples.iter().flat_map(values);
+    all.fold(0.0, |max: f64, value| max.max(value.abs()))
+}
+
+fn component(reactions: &[Reaction], k: usize) -> Option<Component> {
+    reactions.get(k).map(|r| r.component)
+}
+
 /// Calls `record(kind, index, difference, unit)` for everything in a sample.
 fn compare(
     case: &Case<'_>,
@@ -157,8 +168,7 @@ fn compare(
     }
     let all = case.mechanism.reactions();
     for &(k, a, b) in &sample.reactions {
-        let reaction = all.get(k);
-        let units = coefficient_units(reaction.is_some_and(|r| r.component == Component::Moment));
+        let units = coefficient_units(component(&all, k) == Some(Component::Moment));
         // An index that is not there is a difference that is not a number, and fails.
         let of = |values: &[f64]| values.get(k).copied().unwrap_or(f64::NAN);
         record(2, k, of(&coefficients.a) - a, units[0]);

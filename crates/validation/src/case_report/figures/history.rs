@@ -24,17 +24,7 @@ pub(crate) fn history(
     let curve = |of: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
         samples.iter().map(|&i| [all[i].t, of(i)]).collect()
     };
-    let revolutions = history.run.event_occurrences.iter().map(|o| o.state.t);
-    let revolutions = revolutions.take_while(|t| *t <= drawn).enumerate();
-    let mark = |(k, at): (usize, f64)| Mark::Vertical {
-        at,
-        label: if k == 0 {
-            format!("T = {at:.4} s")
-        } else {
-            String::new()
-        },
-    };
-    let marks: Vec<Mark> = revolutions.map(mark).collect();
+    let marks = revolution_marks(history, drawn);
     let chart = |title: String, label: String, unit: &str, series: Vec<Series>| {
         Panel::from(Chart {
             title,
@@ -50,31 +40,12 @@ pub(crate) fn history(
     let velocity = vec![Series::line("", curve(&|i| all[i].y[1]))];
     let title = format!("Velocity of the {angle}");
     let mut panels = vec![chart(title, format!("d{q}/dt"), "rad/s", velocity)];
-    let reactions = prepared.reaction_units();
+    let named = prepared.reaction_units();
     for (unit, noun) in [("N", "force"), ("N m", "moment")] {
-        let of_unit = (0..reactions.len()).filter(|&k| reactions[k].1 == unit);
-        let of_unit: Vec<usize> = of_unit.collect();
-        let count = of_unit.len();
-        let per_panel = count.div_ceil(count.div_ceil(MAX_CURVES).max(1)).max(1);
-        for group in of_unit.chunks(per_panel).take(2) {
-            let name = |k: usize| reactions[k].0.clone();
-            let line = |&k: &usize| {
-                let name = if group.len() > 1 {
-                    name(k)
-                } else {
-                    String::new()
-                };
-                Series::line(name, curve(&|i| history.rows[i][2 + k]))
-            };
-            let (title, label) = match group {
-                [k] => (format!("Reaction {}", name(*k)), name(*k)),
-                [first, .., last] => (
-                    format!("Reactions {} to {}", name(*first), name(*last)),
-                    format!("reaction {noun}"),
-                ),
-                [] => continue,
-            };
-            panels.push(chart(title, label, unit, group.iter().map(line).collect()));
+        for (title, label, reactions) in reaction_panels(&named, unit, noun) {
+            let line = |(name, k)| Series::line(name, curve(&|i| history.rows[i][2 + k]));
+            let lines = reactions.into_iter().map(line).collect();
+            panels.push(chart(title, label, unit, lines));
         }
     }
     let fitted = prepared.scene.calibration.as_ref().map(|c| {
@@ -93,4 +64,43 @@ pub(crate) fn history(
         panels,
         provenance: format!("reduced model, {}", accuracy.describe()),
     }
+}
+
+/// Title, label and reactions, by name and index, of at most two panels of a unit. One reaction alone needs no name.
+fn reaction_panels(
+    named: &[(String, &str)],
+    unit: &str,
+    noun: &str,
+) -> Vec<(String, String, Vec<(String, usize)>)> {
+    let all = named.iter().enumerate().filter(|(_, (_, of))| *of == unit);
+    let all: Vec<(String, usize)> = all.map(|(k, (name, _))| (name.clone(), k)).collect();
+    let per_panel = all
+        .len()
+        .div_ceil(all.len().div_ceil(MAX_CURVES).max(1))
+        .max(1);
+    let panel = |group: &[(String, usize)]| match group {
+        [(name, k)] => (
+            format!("Reaction {name}"),
+            name.clone(),
+            vec![(String::new(), *k)],
+        ),
+        _ => {
+            let [first, last] = [0, group.len() - 1].map(|k| &group[k].0);
+            let title = format!("Reactions {first} to {last}");
+            (title, format!("reaction {noun}"), group.to_vec())
+        }
+    };
+    all.chunks(per_panel).take(2).map(panel).collect()
+}
+
+/// The ends of the revolutions up to a time.
+fn revolution_marks(history: &History, until: f64) -> Vec<Mark> {
+    let revolutions = history.run.event_occurrences.iter().map(|o| o.state.t);
+    let drawn = revolutions.take_while(|t| *t <= until).enumerate();
+    let mark = |(k, at): (usize, f64)| {
+        let label = format!("T = {at:.4} s");
+        let label = if k == 0 { label } else { String::new() };
+        Mark::Vertical { at, label }
+    };
+    drawn.map(mark).collect()
 }

@@ -7,8 +7,10 @@ use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
 use dwell_study::number_format::count;
-use dwell_verify::{FindingSpec, checks};
+use dwell_verify::FindingSpec;
+use dwell_verify::checks::{ComparedValue, compare_values};
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// Values at states of motion.
 #[derive(Debug, Clone)]
@@ -79,21 +81,13 @@ fn by_actuator(value: &Value, scene: &Scene) -> Result<Vec<f64>, String> {
     actuators.iter().map(|a| number(value, &a.name)).collect()
 }
 
-/// The quantities that share a scale, with the end of their finding's key and their names.
-const KINDS: [(QuantityKind, &str, &str); 5] = [
-    (QuantityKind::Positions, "positions", "angles and positions"),
-    (QuantityKind::Velocities, "velocities", "velocities"),
-    (
-        QuantityKind::Accelerations,
-        "accelerations",
-        "accelerations",
-    ),
-    (QuantityKind::Reactions, "reactions", "reactions"),
-    (
-        QuantityKind::ActuatorForces,
-        "actuator-forces",
-        "actuator forces",
-    ),
+/// The quantities of each finding, with the end of its key.
+const KINDS: [(QuantityKind, &str); 5] = [
+    (QuantityKind::Positions, "positions"),
+    (QuantityKind::Velocities, "velocities"),
+    (QuantityKind::Accelerations, "accelerations"),
+    (QuantityKind::Reactions, "reactions"),
+    (QuantityKind::ActuatorForces, "actuator-forces"),
 ];
 
 impl ReferenceStates {
@@ -113,29 +107,7 @@ impl ReferenceStates {
         model: &mut ModelStates<'_>,
         published: bool,
     ) -> Result<Vec<Finding>, ValidationError> {
-        let mut read_values = Vec::new();
-        let mut unknown = Vec::new();
-        for (k, row) in self.samples.iter().enumerate() {
-            model.evaluate_at(&row.request)?;
-            let condition = model.condition_number();
-            let state = model.evaluated();
-            for (name, expected) in &row.values {
-                let Some(quantity) = StateQuantity::find(scene, name) else {
-                    unknown.push(format!("`{name}`"));
-                    continue;
-                };
-                let unit = quantity.unit(scene);
-                let value = checks::ComparedValue {
-                    location: format!("{name}, sample {}", k + 1),
-                    unit,
-                    value: quantity.value(&state),
-                    expected: *expected,
-                    scale: self.scale(scene, unit),
-                    condition_number: condition,
-                };
-                read_values.push((quantity.kind(), value));
-            }
-        }
+        let (values, unknown) = self.compared_values(scene, model)?;
         let mut over = count(self.samples.len(), "sample");
         if let (true, Some(source)) = (published, &self.source) {
             over += &format!(" of {source}");
@@ -146,12 +118,10 @@ impl ReferenceStates {
         };
         let mut findings = Vec::new();
         if !unknown.is_empty() {
-            unknown.sort();
-            unknown.dedup();
             findings.push(unknown_names(&unknown, &over, prefix));
         }
-        for (kind, key, name) in KINDS {
-            let of_kind = read_values.iter().filter(|(of, _)| *of == kind);
+        for (kind, key) in KINDS {
+            let of_kind = values.iter().filter(|(of, _)| *of == kind);
             let values: Vec<_> = of_kind.map(|(_, value)| value.clone()).collect();
             if values.is_empty() {
                 continue;
@@ -159,25 +129,57 @@ impl ReferenceStates {
             let spec = FindingSpec {
                 key: &format!("{prefix}-{key}"),
                 check: Check::ReferenceValues,
-                comparison: &format!("{name} with {source}"),
+                comparison: &format!("{} with {source}", key.replace('-', " ")),
                 scale: "the largest value of the same unit",
                 tolerance: self.tolerance,
                 tolerance_reason: &self.reason,
             };
-            findings.push(checks::compare_values(&spec, over.clone(), &values));
+            findings.push(compare_values(&spec, over.clone(), &values));
         }
         Ok(findings)
+    }
+
+    /// All values with their kinds, and the names that the scene does not have.
+    fn compared_values(
+        &self,
+        scene: &Scene,
+        model: &mut ModelStates<'_>,
+    ) -> Result<(Vec<(QuantityKind, ComparedValue)>, BTreeSet<String>), ValidationError> {
+        let (mut values, mut unknown) = (Vec::new(), BTreeSet::new());
+        for (k, row) in self.samples.iter().enumerate() {
+            model.evaluate_at(&row.request)?;
+            let condition_number = model.condition_number();
+            let state = model.evaluated();
+            for (name, expected) in &row.values {
+                let Some(quantity) = StateQuantity::find(scene, name) else {
+                    unknown.insert(format!("`{name}`"));
+                    continue;
+                };
+                let unit = quantity.unit(scene);
+                let value = ComparedValue {
+                    location: format!("{name}, sample {}", k + 1),
+                    unit,
+                    value: quantity.value(&state),
+                    expected: *expected,
+                    scale: self.scale(scene, unit),
+                    condition_number,
+                };
+                values.push((quantity.kind(), value));
+            }
+        }
+        Ok((values, unknown))
     }
 }
 
 /// Names that the scene does not have.
-fn unknown_names(unknown: &[String], over: &str, prefix: &str) -> Finding {
+fn unknown_names(unknown: &BTreeSet<String>, over: &str, prefix: &str) -> Finding {
     let key = format!("{prefix}-unknown-names");
-    let count = unknown.len() as f64;
+    let (count, names) = (unknown.len() as f64, unknown.iter().cloned());
+    let names = names.collect::<Vec<_>>().join(", ");
     Finding {
         comparison: "the names of the reference with the quantities of the scene".to_owned(),
         domain: over.to_owned(),
-        worst_at: format!("the scene has no quantity {}", unknown.join(", ")),
+        worst_at: format!("the scene has no quantity {names}"),
         tolerance_reason: "a value that is never compared would be taken for agreement".to_owned(),
         ..Finding::new(&key, Check::ReferenceValues, [count, f64::NAN], 0.0)
     }
