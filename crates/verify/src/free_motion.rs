@@ -287,8 +287,7 @@ impl<R: ReducedModel> Motion<'_, R> {
         solution: &Solution,
     ) -> Result<Vec<Finding>, DynamicsError> {
         let (case, orbit, scales) = (self.case, self.orbit, self.scales);
-        let name = run.method.name();
-        let lower = name.to_lowercase();
+        let (name, lower) = (run.method.name(), run.method.name().to_lowercase());
         let ([period, energy], reason) = tolerances(run.method);
         // Measured over ten revolutions; the energy error grows in proportion to them.
         let energy = energy * (case.revolutions as f64 / 10.0).max(1.0);
@@ -301,8 +300,8 @@ impl<R: ReducedModel> Motion<'_, R> {
         };
         let late = self.first_revolution_error(solution);
         let [t, drift] = run.largest_drift();
-        let (speed, reaction) = self.periodicity(solution)?;
-        let relative = speed.0 / scales.speed;
+        let ((change, after), (reaction, late_at)) = self.periodicity(solution)?;
+        let periodic = [change, change / scales.speed];
         let mut findings = vec![
             Finding {
                 comparison: format!(
@@ -325,18 +324,18 @@ impl<R: ReducedModel> Motion<'_, R> {
                 comparison: format!("q̇ after each revolution of {name} with q̇ at the start"),
                 unit: "rad/s".into(),
                 scale: "the largest speed".into(),
-                worst_at: format!("t = {:.3} s", speed.1),
+                worst_at: format!("t = {after:.3} s"),
                 tolerance_reason:
                     "the accuracy required of the energy; the speed errs by half as much".into(),
-                ..finding("periodic-velocity", Period, [speed.0, relative], energy)
+                ..finding("periodic-velocity", Period, periodic, energy)
             },
         ];
-        let ((relative, absolute, k), t) = reaction;
+        let (relative, absolute, k) = reaction;
         findings.extend(case.reactions.get(k).map(|(reaction, unit)| Finding {
             comparison: format!("reactions after each revolution of {name} with the initial ones"),
             unit: (*unit).into(),
             scale: "the largest reaction of the unit".into(),
-            worst_at: format!("{reaction}, t = {t:.3} s"),
+            worst_at: format!("{reaction}, t = {late_at:.3} s"),
             tolerance_reason:
                 "the accuracy required of the energy, on which a reaction depends linearly".into(),
             ..finding("periodic-reactions", Period, [absolute, relative], energy)
