@@ -29,6 +29,7 @@ mod machine;
 mod machines;
 mod mobility;
 mod motion;
+mod motor;
 mod multibody;
 mod mutations;
 mod orbits;

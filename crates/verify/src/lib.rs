@@ -28,7 +28,7 @@
 //! assert_eq!(ranks.joints.redundant_count(), 0);
 //! ```
 //!
-//! A [`Subject`] is whatever answers for the poses, the reduced coefficients and the reactions of a mechanism with one
+//! A [`Subject`] yields the poses, the reduced coefficients and the reactions of a mechanism with one
 //! degree of freedom; [`verify_all`] checks it:
 //!
 //! ```text

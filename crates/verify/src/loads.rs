@@ -1,17 +1,18 @@
-//! Loads as forces at points and couples, from the words of [`LoadKind`] and the frames of the
-//! bodies: what a producer's generalised forces are held against.
+//! Loads as forces at points and couples, from the definitions of [`LoadKind`] and the frames of the
+//! bodies: the reference for generalised forces.
 
 use crate::body_motion::BodyMotion;
 use crate::wrenches::BodyWrench;
 use dwell_geometry::{BodyId, JointId, Mechanism, Reaction, Vec2};
 use dwell_kinetostatics::{Guide, Load, LoadKind, Magnitude, Mass, Mesh, PitchLines};
 
-/// What a load of the given magnitude does, with the bodies' frames and their velocities
-/// [x, y, θ] in m, rad and per s; a massless body feels no weight, the ground's is left out.
+/// The forces of a load of the given magnitude, with the bodies' frames and their velocities
+/// [x, y, θ] in m, rad and per s; a massless body has no weight, the ground's is left out.
 /// `None` if it names a body that is not there.
 ///
-/// Two points in one place have no line between them: then a spring or damper between them gives
+/// Coincident points have no line between them: then a spring or damper between them gives
 /// forces that are not numbers, unless it is a spring of no free length.
+// Long: an arm for each kind of load.
 pub fn load_wrenches(
     kind: &LoadKind,
     magnitude: f64,
@@ -34,51 +35,38 @@ pub fn load_wrenches(
         });
         exist.then(|| wrenches.into())
     };
+    let force_at = |body: BodyId, point: Vec2, force: Vec2| {
+        Some(BodyWrench {
+            body,
+            force,
+            point: motion.point(body, point)?,
+            couple: 0.0,
+        })
+    };
     // Both bodies at their own points: the force is along the line between these.
     let pull = |bodies: [BodyId; 2], points: [Vec2; 2], on_second: Vec2| {
-        let of = |i: usize, force: Vec2| {
-            Some(BodyWrench {
-                body: bodies[i],
-                force,
-                point: motion.point(bodies[i], points[i])?,
-                couple: 0.0,
-            })
-        };
-        Some(vec![of(0, -on_second)?, of(1, on_second)?])
+        let on_first = force_at(bodies[0], points[0], -on_second)?;
+        Some(vec![on_first, force_at(bodies[1], points[1], on_second)?])
     };
     match *kind {
         LoadKind::Gravity { direction } => {
-            let heavy = masses.iter().enumerate();
-            heavy
-                .filter(|&(b, mass)| b != ground && mass.mass != 0.0)
-                .map(|(b, mass)| {
-                    Some(BodyWrench {
-                        body: BodyId(b),
-                        force: direction * (mass.mass * magnitude),
-                        point: motion.point(BodyId(b), mass.center)?,
-                        couple: 0.0,
-                    })
-                })
-                .collect()
+            let all = masses.iter().enumerate();
+            let heavy = all.filter(|&(b, mass)| b != ground && mass.mass != 0.0);
+            let weight = |(b, mass): (usize, &Mass)| {
+                force_at(BodyId(b), mass.center, direction * (mass.mass * magnitude))
+            };
+            heavy.map(weight).collect()
         }
         LoadKind::Force {
             body,
             point,
             direction,
-            body_fixed: follows,
+            body_fixed,
         } => {
             let rotation = motion.rotation(body)?;
-            let direction = if follows {
-                direction.rotate(rotation)
-            } else {
-                direction
-            };
-            Some(vec![BodyWrench {
-                body,
-                force: direction * magnitude,
-                point: motion.point(body, point)?,
-                couple: 0.0,
-            }])
+            let follower = direction.rotate(rotation);
+            let direction = if body_fixed { follower } else { direction };
+            Some(vec![force_at(body, point, direction * magnitude)?])
         }
         LoadKind::Torque { bodies } => couple(bodies, magnitude),
         LoadKind::Spring {
@@ -94,21 +82,14 @@ pub fn load_wrenches(
             };
             pull(bodies, points, d * (-magnitude * stretch))
         }
-        LoadKind::TorsionSpring {
-            bodies,
-            free_angle: free,
-        } => {
+        LoadKind::TorsionSpring { bodies, free_angle } => {
             let [angle, _] = motion.angle(bodies)?;
-            couple(bodies, -magnitude * (angle - free))
+            couple(bodies, -magnitude * (angle - free_angle))
         }
         LoadKind::Damper { bodies, points } => {
-            let [d, relative_velocity] = motion.gap(bodies, points)?;
+            let [d, rate] = motion.gap(bodies, points)?;
             let line = d * (1.0 / d.norm());
-            pull(
-                bodies,
-                points,
-                line * (-magnitude * relative_velocity.dot(line)),
-            )
+            pull(bodies, points, line * (-magnitude * rate.dot(line)))
         }
         LoadKind::RotationalDamper { bodies } => {
             let [_, rate] = motion.angle(bodies)?;
@@ -196,7 +177,7 @@ fn separating_wrenches(mesh: Mesh, force: f64, motion: &BodyMotion<'_>) -> Optio
     ])
 }
 
-/// A force along a guide: both bodies feel it at the second's point.
+/// A force along a guide: it acts on both bodies at the second's point.
 fn guide_wrenches(guide: Guide, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
     let [first, second] = guide.bodies;
     let on_second = guide.axis.rotate(motion.rotation(first)?) * force;

@@ -1,5 +1,4 @@
-//! Coulomb friction and the separating forces of teeth: how much of each there is, when each answers to reactions that
-//! all of them make.
+//! Coulomb friction and the separating forces of teeth: each depends on reactions, which depend on all of them.
 //!
 //! ```text
 //! F_j = −µ g(R_j) tanh(v/v₀),    R = R⁰ + Σ F_k R^k
@@ -10,6 +9,7 @@
 use super::equations::MultibodyOde;
 use super::state::MultibodyState;
 use super::{MultibodyError, MultibodySystem};
+use crate::body_motion::slide_axis;
 use crate::loads::tooth_row;
 use crate::lu::Lu;
 use dwell_geometry::{Component, JointKind, Reaction};
@@ -35,21 +35,12 @@ pub(super) struct FrictionResponse {
 
 impl MultibodySystem {
     pub(super) fn check_friction(&self, kind: &LoadKind, friction: &Friction) -> bool {
-        let joint = self.mechanism.joints.get(friction.joint.0);
-        joint.is_some_and(|joint| match joint.kind {
-            JointKind::Revolute => {
-                matches!(kind, LoadKind::Torque { bodies } if *bodies == joint.bodies)
-            }
-            JointKind::Prismatic { .. } | JointKind::Slot { .. } => {
-                matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == joint.bodies)
-            }
-            JointKind::Weld { .. }
-            | JointKind::Gear { .. }
-            | JointKind::Rack { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => false,
-        })
+        let Some(joint) = self.mechanism.joints.get(friction.joint.0) else {
+            return false;
+        };
+        let on_pin = matches!(kind, LoadKind::Torque { bodies } if *bodies == joint.bodies);
+        let on_slide = matches!(kind, LoadKind::SlideForce(guide) if guide.bodies == joint.bodies);
+        on_pin && joint.kind == JointKind::Revolute || on_slide && slide_axis(joint.kind).is_some()
     }
 
     /// Whether a separating force is that of the teeth of its joint.
@@ -91,14 +82,10 @@ impl MultibodySystem {
 
     /// The row of a joint's reaction.
     fn reaction_row(&self, friction: &Friction, component: Component) -> Option<usize> {
-        let reaction = Reaction {
-            joint: friction.joint,
-            component,
-        };
-        self.mechanism
-            .reactions()
-            .iter()
-            .position(|r| *r == reaction)
+        let joint = friction.joint;
+        let reactions = self.mechanism.reactions();
+        let wanted = Reaction { joint, component };
+        reactions.iter().position(|r| *r == wanted)
     }
 
     /// µ tanh(v/v₀), or −tan α.
@@ -166,7 +153,7 @@ impl MultibodySystem {
 }
 
 impl MultibodyOde<'_> {
-    /// The frictions that fit the reactions which they make.
+    /// The friction forces that agree with the reactions which they cause.
     pub(super) fn solve_friction(
         &self,
         frictions: &[(usize, ReactionLaw)],
@@ -178,23 +165,19 @@ impl MultibodyOde<'_> {
             return Ok(vec![]);
         }
         let self_locking = MultibodyError::SelfLocking { t: at.t };
-        let friction_factors: Option<Vec<f64>> = frictions
-            .iter()
-            .map(|(load, law)| self.system.factor(*load, law, at))
-            .collect();
-        let friction_factors = friction_factors.ok_or(MultibodyError::NotFinite { t: at.t })?;
+        let factor = |(load, law): &_| self.system.factor(*load, law, at);
+        let factors: Option<Vec<f64>> = frictions.iter().map(factor).collect();
+        let factors = factors.ok_or(MultibodyError::NotFinite { t: at.t })?;
         let mut force = vec![0.0_f64; n];
         for _ in 0..MAX_NEWTON_STEPS {
             let mut reactions = response.frictionless.clone();
             for (force, unit) in force.iter().zip(&response.unit_responses) {
-                reactions
-                    .iter_mut()
-                    .zip(unit)
-                    .for_each(|(r, u)| *r += force * u);
+                let both = reactions.iter_mut().zip(unit);
+                both.for_each(|(r, u)| *r += force * u);
             }
             let mut matrix = Mat::<f64>::identity(n, n);
             let mut step = Mat::zeros(n, 1);
-            for (j, ((_, law), factor)) in frictions.iter().zip(&friction_factors).enumerate() {
+            for (j, ((_, law), factor)) in frictions.iter().zip(&factors).enumerate() {
                 let (contact_force, gradient) = self.system.contact_force(law, &reactions);
                 step[(j, 0)] = -(force[j] + factor * contact_force);
                 for (k, unit) in response.unit_responses.iter().enumerate() {
