@@ -375,8 +375,8 @@ impl<'s> Atlas<'s> {
         } = self.candidates[candidate].clone();
         let machine = &self.charts[from].machine;
         let mut workspace = machine.workspace();
-        machine.evaluate(at.t, &at.y, &mut workspace).ok()?;
-        let states = workspace.inner.states().clone();
+        let mut state = machine.evaluate(at.t, &at.y, &mut workspace).ok()?;
+        let states = state.bodies().clone();
         let [q, q_dot, _] = states.coordinate(measured);
         let mut y = at.y.clone();
         (y[0], y[1]) = (q, q_dot);
@@ -414,10 +414,10 @@ impl<'s> Atlas<'s> {
     /// Whether a chart has the bodies where they are, and measures the angles that loads depend on alike.
     fn matches_pose(&self, chart: &Chart, at: &OdeState, states: &BodyStates) -> bool {
         let mut workspace = chart.machine.workspace();
-        if chart.machine.evaluate(at.t, &at.y, &mut workspace).is_err() {
+        let Ok(mut state) = chart.machine.evaluate(at.t, &at.y, &mut workspace) else {
             return false;
-        }
-        let chart_states = workspace.inner.states();
+        };
+        let chart_states = state.bodies();
         // Beyond the mechanism's bodies come those that its actuator adds.
         let mut bodies = (0..self.description.mechanism.bodies.len()).map(BodyId);
         let counted = |s: &BodyStates, b: BodyId| s.body(b).angle.is_some();

@@ -143,14 +143,13 @@ impl ConservativeSystem for LoadedSystem {
             inverse_dynamics: result,
             ..
         } = self;
-        model.set_state(0.0, &[q], &[0.0], workspace)?;
+        let state = model.kinematic_state(&[q], &[0.0], workspace)?;
+        let state = state.apply_loads(0.0)?;
         let loads = 0..model.loads().len();
-        let potential = loads
-            .filter_map(|load| model.potential_energy(load, workspace))
-            .sum();
-        model.loaded_inverse_dynamics(&[0.0], workspace, result)?;
+        let potential = loads.filter_map(|load| state.potential_energy(load)).sum();
+        let mut state = state.inverse_dynamics(&[0.0], result)?;
         let force = -result.tau[0];
-        model.mass_matrix_column(0, workspace, result);
+        state.mass_matrix_column(0, result);
         Ok(EnergyTerms {
             m: positive_inertia(result.tau[0] + self.flywheel, q)?,
             potential,

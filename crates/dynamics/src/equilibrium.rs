@@ -169,12 +169,12 @@ pub fn static_force_and_potential(
     for &q in coordinates {
         let acceleration = problem.acceleration(q)?;
         let mut state = problem.y.clone();
-        machine.evaluate(0.0, &state, &mut workspace)?;
-        let [kinetic_at_rest, potential] = machine.energy(&workspace);
+        let at_rest = machine.evaluate(0.0, &state, &mut workspace)?;
+        let [kinetic_at_rest, potential] = at_rest.energy();
         state[1] = 1.0;
-        machine.evaluate(0.0, &state, &mut workspace)?;
-        // Led coordinates stand still here, so that all kinetic energy is that of the free one.
-        let inertia = 2.0 * (machine.energy(&workspace)[0] - kinetic_at_rest);
+        let moving = machine.evaluate(0.0, &state, &mut workspace)?;
+        // Prescribed coordinates stand still here, so that all kinetic energy is that of the free one.
+        let inertia = 2.0 * (moving.energy()[0] - kinetic_at_rest);
         found.push([inertia * acceleration, potential]);
     }
     Ok(found)

@@ -68,8 +68,8 @@ pub fn size_flywheel(
     let difference = |cycle: &Cycle| wanted / cycle.fluctuation - 1.0;
     let mut before = (0.0, difference(&cycle));
     let mut workspace = machine.workspace();
-    machine.evaluate(0.0, &cycle.initial_state, &mut workspace)?;
-    let [kinetic, _] = machine.energy(&workspace);
+    let state = machine.evaluate(0.0, &cycle.initial_state, &mut workspace)?;
+    let [kinetic, _] = state.energy();
     let mean = 2.0 * kinetic / cycle.initial_state[1].powi(2);
     let mut inertia = mean * (cycle.fluctuation / wanted - 1.0);
     for _ in 0..MAX_TRIALS {

@@ -85,7 +85,7 @@ pub use error::DynamicsError;
 pub use flywheel::{Flywheel, size_flywheel};
 pub use integrate::integrate;
 pub use machine::{
-    CoordinateMode, Machine, MachineError, MachineWorkspace, NonconservativeSource,
+    CoordinateMode, Machine, MachineError, MachineState, MachineWorkspace, NonconservativeSource,
     loads_with_drives,
 };
 pub use machine_ode::MachineOde;

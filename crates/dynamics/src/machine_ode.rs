@@ -1,7 +1,7 @@
 //! A machine as an ODE system, with its exact Jacobian by dual numbers.
 
 use crate::error::DynamicsError;
-use crate::machine::{Machine, MachineWorkspace};
+use crate::machine::{Machine, MachineState, MachineWorkspace};
 use crate::ode::OdeSystem;
 use dwell_numerics::{Dual, Scalar};
 
@@ -9,8 +9,7 @@ use dwell_numerics::{Dual, Scalar};
 #[derive(Debug)]
 pub struct MachineOde<'m> {
     machine: &'m Machine,
-    /// The last evaluation in plain numbers.
-    pub workspace: MachineWorkspace<f64>,
+    workspace: MachineWorkspace<f64>,
     dual_workspace: MachineWorkspace<Dual>,
     y: Vec<Dual>,
     out: Vec<Dual>,
@@ -24,9 +23,8 @@ impl<'m> MachineOde<'m> {
     /// [`DynamicsError`] where the start cannot be evaluated.
     pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self, DynamicsError> {
         let mut workspace = machine.workspace();
-        machine.evaluate(t, y, &mut workspace)?;
+        let scale = machine.evaluate(t, y, &mut workspace)?.energy_scale();
         let mut error_weights = vec![1.0; machine.state_count()];
-        let scale = machine.energy_scale(&workspace);
         error_weights[machine.work_offset()..].fill(scale);
         let zero = vec![Dual::from_f64(0.0); machine.state_count()];
         Ok(Self {
@@ -45,16 +43,16 @@ impl<'m> MachineOde<'m> {
     }
 }
 
-impl Machine {
+impl MachineState<'_> {
     /// The scale of works, J: the kinetic energy and the work of actuators and drives over one unit of their
     /// coordinates.
-    fn energy_scale(&self, workspace: &MachineWorkspace<f64>) -> f64 {
-        let [kinetic, _] = self.energy(workspace);
-        let forces = workspace
+    fn energy_scale(&self) -> f64 {
+        let [kinetic, _] = self.energy();
+        let forces = self
             .inverse_dynamics()
             .tau
             .iter()
-            .chain(&workspace.drive_forces);
+            .chain(self.drive_forces());
         let scale = kinetic + forces.map(|f| f.abs()).sum::<f64>();
         if scale.is_normal() { scale } else { 1.0 }
     }
@@ -66,8 +64,8 @@ impl OdeSystem for MachineOde<'_> {
     }
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        self.machine.evaluate(t, y, &mut self.workspace)?;
-        self.machine.state_derivative(&self.workspace, out);
+        let state = self.machine.evaluate(t, y, &mut self.workspace)?;
+        state.derivative(out);
         Ok(())
     }
 
@@ -83,10 +81,10 @@ impl OdeSystem for MachineOde<'_> {
                     Dual::from_f64(value)
                 };
             }
-            self.machine
+            let state = self
+                .machine
                 .evaluate(t, &self.y, &mut self.dual_workspace)?;
-            self.machine
-                .state_derivative(&self.dual_workspace, &mut self.out);
+            state.derivative(&mut self.out);
             for (i, rate) in self.out.iter().enumerate() {
                 out[i * n + j] = rate.d;
             }

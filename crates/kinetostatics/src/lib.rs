@@ -53,7 +53,7 @@ pub use load::{
     LoadState, MAX_FUNCTION_SIGNALS, Magnitude, MagnitudeFunction, Signal,
 };
 pub use mass::Mass;
-pub use model::{Model, Workspace};
+pub use model::{EvaluatedState, ForceState, KinematicState, LoadedState, Model, Workspace};
 pub use pass::InverseDynamics;
 pub use reduced::{Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
 pub use results::{

@@ -1,17 +1,18 @@
 //! A mechanism with masses and loads, ready to be evaluated.
 
-mod equation_terms;
 mod kinetostatics;
 mod revolutions;
+pub mod stages;
 mod workspace;
 
+pub use stages::{EvaluatedState, ForceState, KinematicState, LoadedState};
 pub use workspace::Workspace;
 
 use crate::error::ModelError;
 use crate::friction::JointFriction;
 use crate::load::{CompiledLoads, Load};
 use crate::mass::Mass;
-use crate::pass::{GivenMotion, InertialBody, InverseDynamics, PassModel, ReactionSources};
+use crate::pass::{GivenMotion, InverseDynamics, PassModel, ReactionSources};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{AssemblyConfiguration, BodyId, Mechanism, Plan, PositionError, Reaction};
 use dwell_numerics::Scalar;
@@ -30,6 +31,8 @@ pub struct Model {
     pub(crate) masses: Vec<Mass>,
     pub(crate) loads: CompiledLoads,
     joint_frictions: Vec<JointFriction>,
+    /// By actuator: zero, the velocity and acceleration of statics.
+    rest: Vec<f64>,
     /// The configuration in which it was assembled.
     assembly: AssemblyConfiguration,
 }
@@ -68,6 +71,7 @@ impl Model {
             masses,
             loads: CompiledLoads::default(),
             joint_frictions: Vec::new(),
+            rest: vec![0.0; mechanism.actuators.len()],
             assembly: assembly.clone(),
         };
         model.compile_reactions(reactions);
@@ -184,28 +188,6 @@ impl Model {
         pass.evaluate(&self.pass_model, pose, GivenMotion(motion));
         result.read_from(&self.pass_model, pose, pass);
         Ok(())
-    }
-
-    /// Kinetic energy ½ Σ m v² + I ω² at the state set last, J.
-    pub fn kinetic_energy(&self, workspace: &Workspace<f64>) -> f64 {
-        let states = workspace.states();
-        let energy = |body: &InertialBody| {
-            let id = BodyId(body.body);
-            let velocity = states.point(id, self.masses[id.0].center).velocity;
-            let angular_velocity = states.body(id).angular_velocity;
-            0.5 * (body.mass * velocity.dot(velocity)
-                + body.inertia * angular_velocity * angular_velocity)
-        };
-        self.pass_model.inertial_bodies.iter().map(energy).sum()
-    }
-
-    /// [`Model::inertia_sums`] at the pose, velocities and accelerations of the workspace: m and ½m′ by another method,
-    /// in which no reaction takes part.
-    pub fn workspace_inertia_sums(&self, workspace: &Workspace<f64>) -> (f64, f64) {
-        let mut states = BodyStates::new(&self.pass_model.plan);
-        states.fill(&self.pass_model.plan, &workspace.pose, &workspace.motion);
-        let [energy, power] = self.inertia_sums(&states);
-        (energy, power)
     }
 
     /// Σ m v² + I ω² and Σ m v·a + I ω α of some states of the bodies: at unit speed and zero

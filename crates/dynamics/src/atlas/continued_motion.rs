@@ -154,13 +154,8 @@ impl Atlas<'_> {
                     (step, _) => step.is_some(),
                 };
                 let point = if first { &steps[i] } else { &samples[k] };
-                machine.evaluate(point.t, &point.y, &mut workspace)?;
-                if machine.fit_at(point.y.first()).is_none() {
-                    machine
-                        .model
-                        .set_accelerations(&workspace.q_ddot, &mut workspace.inner);
-                }
-                let states = workspace.inner.states();
+                let mut state = machine.evaluate(point.t, &point.y, &mut workspace)?;
+                let states = state.bodies();
                 let mut now = states.coordinate(measured);
                 if let (CoordinateFunction::Angle(bodies), Some((t, before))) = (measured, last) {
                     let counts = |b: BodyId| states.body(b).angle.is_some();

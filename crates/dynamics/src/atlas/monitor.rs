@@ -200,10 +200,9 @@ impl<'a, 's> ChartMonitor<'a, 's> {
     ) -> Result<CandidateSpeeds, DynamicsError> {
         let machine = &self.chart.machine;
         let plan = machine.model.plan();
-        machine.evaluate(at.t, &at.y, &mut self.workspace)?;
-        plan.velocities(&self.workspace.inner.pose, &[1.0], &mut self.unit_motion);
-        self.unit_states
-            .fill(plan, &self.workspace.inner.pose, &self.unit_motion);
+        let state = machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        plan.velocities(state.pose(), &[1.0], &mut self.unit_motion);
+        self.unit_states.fill(plan, state.pose(), &self.unit_motion);
         let candidates = &self.atlas.candidates;
         let present = candidates
             .iter()

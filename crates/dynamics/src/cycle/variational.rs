@@ -12,6 +12,8 @@ pub(super) struct VariationalSystem<'t, 'm> {
     ode: MachineOde<'m>,
     /// Number of columns of S that are integrated.
     sensitivity_columns: usize,
+    /// |q̇| of the last evaluation.
+    speed: f64,
     y: Vec<f64>,
     rhs: Vec<f64>,
     jacobian: Vec<f64>,
@@ -24,10 +26,11 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
         sensitivity_columns: usize,
     ) -> Result<Self, DynamicsError> {
         let n = problem.machine.state_count();
-        let ode = MachineOde::new(problem.machine, 0.0, &problem.machine_state(0.0, x).y)?;
+        let start = problem.machine_state(0.0, x).y;
         Ok(Self {
             problem,
-            ode,
+            ode: MachineOde::new(problem.machine, 0.0, &start)?,
+            speed: start[1].abs(),
             sensitivity_columns,
             y: vec![0.0; n],
             rhs: vec![0.0; n],
@@ -48,6 +51,7 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
         if speed.is_nan() || speed <= 0.0 {
             return Err(DynamicsError::ComesToRest { q: self.y[0] });
         }
+        self.speed = speed;
         self.ode.rhs(x[0], &self.y, &mut self.rhs)?;
         // dt/dt, where the coordinate's rate stood.
         self.rhs[0] = 1.0;
@@ -127,10 +131,7 @@ impl OdeSystem for VariationalSystem<'_, '_> {
     fn error_weight(&self, state: usize) -> f64 {
         match state {
             // The scale of time is about the duration of a cycle.
-            0 => {
-                self.problem.cycle_angle
-                    / self.ode.workspace.q_dot[self.problem.machine.free()[0]].abs()
-            }
+            0 => self.problem.cycle_angle / self.speed,
             state if state < self.rhs.len() => self.ode.error_weight(state),
             _ => 1.0,
         }

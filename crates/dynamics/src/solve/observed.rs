@@ -72,10 +72,9 @@ impl Observed for ObservedMachine<'_> {
         coordinate: CoordinateFunction,
         at: &OdeState,
     ) -> Result<ObservedValue, DynamicsError> {
-        self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
-        let states = self.workspace.inner.states();
-        let [value, rate, _] = states.coordinate(coordinate);
-        let counted = |b: BodyId| states.body(b).angle.is_some();
+        let state = self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        let [value, rate] = state.coordinate(coordinate);
+        let counted = |b: BodyId| state.counts_revolutions(b);
         Ok(ObservedValue {
             value,
             rate,
@@ -87,14 +86,9 @@ impl Observed for ObservedMachine<'_> {
     }
 
     fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64, DynamicsError> {
-        self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
-        self.machine.evaluate_outputs(
-            self.output_model,
-            at.t,
-            &self.workspace,
-            &mut self.output_workspace,
-            &mut self.inverse_dynamics,
-        )?;
-        Ok(self.inverse_dynamics.reactions[index])
+        let state = self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        let (workspace, result) = (&mut self.output_workspace, &mut self.inverse_dynamics);
+        let outputs = state.outputs(self.output_model, workspace, result)?;
+        Ok(outputs.inverse_dynamics().reactions[index])
     }
 }

@@ -4,8 +4,8 @@ use super::{CoordinateFunction, TabulatedCoordinate};
 use crate::machine::Machine;
 use dwell_kinetostatics::table::{InertiaSampler, SlopeSampler, TableBuilder};
 use dwell_kinetostatics::{
-    ExactModel, Inertia, InverseDynamics, KinetostaticsError, Magnitude, Model, TableError,
-    TableQuantity, Workspace,
+    ExactModel, Inertia, InverseDynamics, KinematicState, KinetostaticsError, Magnitude, Model,
+    TableError, TableQuantity, Workspace,
 };
 use dwell_numerics::{Dual, Scalar};
 use std::f64::consts::TAU;
@@ -32,22 +32,29 @@ impl DualModel {
         }
     }
 
-    fn set_configuration(&mut self, q: f64) -> Result<(), TableError> {
-        let one = Dual::from_f64(1.0);
-        self.model
-            .set_kinematic_state(&[Dual::variable(q)], &[one], &mut self.workspace)?;
-        Ok(())
+    fn at(&mut self, q: f64) -> Result<DualState<'_>, TableError> {
+        let (q, one) = (Dual::variable(q), Dual::from_f64(1.0));
+        Ok(DualState {
+            state: self
+                .model
+                .kinematic_state(&[q], &[one], &mut self.workspace)?,
+            inverse_dynamics: &mut self.inverse_dynamics,
+        })
     }
+}
 
-    /// What one unit of a load gives the coordinate.
-    fn unit_load_response(&mut self, load: usize) -> Result<Dual, KinetostaticsError> {
-        self.model
-            .unit_load_response(load, &mut self.workspace, &mut self.inverse_dynamics)?;
-        Ok(-self.inverse_dynamics.tau[0])
-    }
+/// The state at that coordinate.
+struct DualState<'a> {
+    state: KinematicState<'a, Dual>,
+    inverse_dynamics: &'a mut InverseDynamics<Dual>,
+}
 
-    fn measure(&self, measured: CoordinateFunction) -> [Dual; 3] {
-        self.workspace.states().coordinate(measured)
+impl DualState<'_> {
+    /// The generalised force of one unit of a load.
+    fn unit_load_force(&mut self, load: usize) -> Result<Dual, KinetostaticsError> {
+        let result = &mut *self.inverse_dynamics;
+        self.state.unit_load_response(load, result)?;
+        Ok(-result.tau[0])
     }
 }
 
@@ -85,14 +92,11 @@ impl<'a> TotalInertia<'a> {
         if self.rotors.is_empty() {
             return Ok(sum);
         }
-        self.dual_model.set_configuration(q)?;
         // At unit speed and no acceleration s̈ is d²s/dq².
-        let DualModel {
-            model, workspace, ..
-        } = &mut self.dual_model;
-        model.set_accelerations(&[Dual::from_f64(0.0)], workspace);
+        let mut state = self.dual_model.at(q)?.state;
+        let bodies = state.bodies_at(&[Dual::from_f64(0.0)]);
         for &(inertia, measured) in &self.rotors {
-            let [_, slope, bend] = self.dual_model.measure(measured);
+            let [_, slope, bend] = bodies.coordinate(measured);
             sum.m += inertia * slope.v * slope.v;
             sum.half_dm += inertia * slope.v * bend.v;
             sum.half_ddm += inertia * (bend.v * bend.v + slope.v * bend.d);
@@ -157,16 +161,16 @@ impl TotalPotential {
 impl SlopeSampler for TotalPotential {
     fn sample(&mut self, q: f64) -> Result<Inertia, TableError> {
         let model = &self.dual_model.model;
-        model.set_kinematic_state(&[q], &[1.0], &mut self.workspace)?;
+        let state = model.kinematic_state(&[q], &[1.0], &mut self.workspace)?;
         let all = self.loads.iter();
-        let potentials = all.filter_map(|&(load, _)| model.potential_energy(load, &self.workspace));
+        let potentials = all.filter_map(|&(load, _)| state.potential_energy(load));
         let mut sum = Inertia {
             m: potentials.sum(),
             ..Inertia::default()
         };
-        self.dual_model.set_configuration(q)?;
+        let mut state = self.dual_model.at(q)?;
         for &(load, magnitude) in &self.loads {
-            let w = self.dual_model.unit_load_response(load)?;
+            let w = state.unit_load_force(load)?;
             sum.half_dm -= 0.5 * magnitude * w.v;
             sum.half_ddm -= 0.5 * magnitude * w.d;
         }
@@ -208,8 +212,7 @@ impl AuxiliaryColumns {
         measured: CoordinateFunction,
         q: f64,
     ) -> Result<[f64; 2], TableError> {
-        self.dual_model.set_configuration(q)?;
-        let [value, slope, _] = self.dual_model.measure(measured);
+        let [value, slope] = self.dual_model.at(q)?.state.coordinate(measured);
         Ok([value.v, slope.v])
     }
 
@@ -308,20 +311,20 @@ impl AuxiliaryColumns {
 
     /// All columns at a coordinate.
     pub(super) fn fill(&mut self, q: f64, out: &mut [Dual]) -> Result<(), TableError> {
-        self.dual_model.set_configuration(q)?;
+        let mut state = self.dual_model.at(q)?;
         for (out, entry) in out.iter_mut().zip(&self.entries) {
             *out = match *entry {
-                TableQuantity::W { load } => self.dual_model.unit_load_response(load)?,
+                TableQuantity::W { load } => state.unit_load_force(load)?,
                 TableQuantity::S {
                     coordinate: measured,
                 } => {
                     let (coordinate, slope) = self.measured[measured];
-                    let [value, ..] = self.dual_model.measure(coordinate);
+                    let [value, _] = state.state.coordinate(coordinate);
                     value - Dual::variable(q) * Dual::from_f64(slope)
                 }
                 TableQuantity::Ds {
                     coordinate: measured,
-                } => self.dual_model.measure(self.measured[measured].0)[1],
+                } => state.state.coordinate(self.measured[measured].0)[1],
                 _ => Dual::default(),
             };
         }

@@ -97,8 +97,8 @@ impl CompiledLoads {
         }
     }
 
-    /// The magnitudes at time `t` (s). Friction is zero until its reactions are known; an external magnitude
-    /// keeps its value.
+    /// The magnitudes at time `t` (s). Friction is zero until its reactions are known, an external magnitude until it is
+    /// set.
     pub(crate) fn update_magnitudes<T: Scalar>(
         &self,
         t: f64,
@@ -111,6 +111,7 @@ impl CompiledLoads {
         }
         for (i, load) in self.loads.iter().enumerate() {
             if matches!(load.magnitude, Magnitude::External(_)) {
+                out.magnitude[i] = T::from_f64(0.0);
                 continue;
             }
             let magnitude = load.magnitude.eval_at_state(

@@ -71,6 +71,7 @@ impl<'a> ModelSampler<'a> {
     ) -> Result<(), TableError> {
         let model = self.exact.model();
         let q = Dual::variable(q);
+        let mut state = None;
         match quantities.first() {
             None => return Ok(()),
             Some(TableQuantity::A { .. }) => {
@@ -78,15 +79,16 @@ impl<'a> ModelSampler<'a> {
             }
             Some(_) => {
                 let unit = Dual::from_f64(1.0);
-                model.set_kinematic_state(&[q], &[unit], &mut self.workspace)?;
+                state = Some(model.kinematic_state(&[q], &[unit], &mut self.workspace)?);
             }
         }
         let mut evaluated = None;
         for (out, quantity) in out.iter_mut().zip(quantities) {
             if let TableQuantity::W { load } | TableQuantity::C { load, .. } = *quantity
                 && evaluated != Some(load)
+                && let Some(state) = &mut state
             {
-                model.unit_load_response(load, &mut self.workspace, &mut self.result)?;
+                state.unit_load_response(load, &mut self.result)?;
                 evaluated = Some(load);
             }
             *out = match *quantity {

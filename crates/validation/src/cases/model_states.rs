@@ -1,7 +1,9 @@
 //! What a scene's model says of states of motion, under its loads: claims for the judge of states.
 
-use dwell_geometry::{ActuatorId, BodyId, Vec2};
-use dwell_kinetostatics::{InverseDynamics, KinetostaticsError, Model, Workspace};
+use dwell_geometry::{ActuatorId, BodyId, Pose, Vec2};
+use dwell_kinetostatics::{
+    EvaluatedState, InverseDynamics, KinematicState, KinetostaticsError, Model, Workspace,
+};
 use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_model;
@@ -28,8 +30,7 @@ pub(crate) struct StateRequest {
 pub(crate) struct ModelStates<'a> {
     scene: &'a Scene,
     model: Model,
-    workspace: Workspace<f64>,
-    result: InverseDynamics<f64>,
+    reached: ReachedPose,
     /// By body: its angle, rad, whole turns counted on the way from the start.
     angles: Vec<f64>,
     /// Where that is, rad or m, and how far each coordinate goes at once.
@@ -38,13 +39,68 @@ pub(crate) struct ModelStates<'a> {
     assembly_poses: Vec<[f64; 3]>,
 }
 
+/// The pose that was reached, with the memory to evaluate states of motion there.
+#[derive(Debug)]
+struct ReachedPose {
+    pose: Pose<f64>,
+    workspace: Workspace<f64>,
+    result: InverseDynamics<f64>,
+}
+
+impl ReachedPose {
+    fn evaluate<'s>(
+        &'s mut self,
+        scene: &Scene,
+        model: &'s Model,
+        request: &StateRequest,
+        q_ddot: &[f64],
+    ) -> Result<EvaluatedState<'s>, StudyError> {
+        let Self {
+            pose: reached,
+            workspace,
+            result,
+        } = self;
+        let state = kinematic_state(model, reached, &request.q_dot, workspace);
+        let loaded = state.apply_loads(request.t);
+        let evaluated = loaded.and_then(|state| state.evaluate(q_ddot, result));
+        evaluated.map_err(|e| explain(scene, model, &e))
+    }
+}
+
+/// The velocities at a pose.
+fn kinematic_state<'s>(
+    model: &'s Model,
+    reached: &Pose<f64>,
+    q_dot: &[f64],
+    workspace: &'s mut Workspace<f64>,
+) -> KinematicState<'s> {
+    model.given_kinematic_state(q_dot, workspace, |pose, motion| {
+        pose.clone_from(reached);
+        model.plan().velocities(pose, q_dot, motion);
+    })
+}
+
 /// A state of motion that was evaluated.
 #[derive(Debug)]
-pub(crate) struct EvaluatedState<'m> {
+pub(crate) struct StateValues<'m> {
     pub(crate) scene: &'m Scene,
-    pub(crate) workspace: &'m Workspace<f64>,
-    pub(crate) result: &'m InverseDynamics<f64>,
+    pub(crate) state: EvaluatedState<'m>,
+    pub(crate) q_ddot: Vec<f64>,
+    /// By body: its angle with whole revolutions, rad.
     pub(crate) angles: &'m [f64],
+}
+
+impl StateValues<'_> {
+    /// The frames of all bodies.
+    fn body_poses(&self) -> Vec<[f64; 3]> {
+        let plan = self.state.model().plan();
+        plan.body_frames(&self.scene.mechanism, self.state.pose())
+    }
+
+    /// Condition number of the dense rows.
+    pub(crate) fn condition_number(&self) -> f64 {
+        condition_number(&self.scene.mechanism, &self.body_poses())
+    }
 }
 
 impl<'a> ModelStates<'a> {
@@ -62,7 +118,6 @@ impl<'a> ModelStates<'a> {
                 let at = [(SceneLocation::Load(e.load), "this load".to_owned())];
                 scene.error(e.what.to_owned(), None, &at)
             })?;
-        let (workspace, result) = (model.workspace(), model.result_buffer());
         let points = scene.points.iter().flatten();
         let mechanism_size = points.fold(0.0_f64, |m, (_, at)| m.max(at.norm()));
         let step = |a: usize| match model.plan().is_angle(a) {
@@ -78,8 +133,11 @@ impl<'a> ModelStates<'a> {
         };
         let mut model_states = Self {
             scene,
-            workspace,
-            result,
+            reached: ReachedPose {
+                pose: model.plan().pose(),
+                workspace: model.workspace(),
+                result: model.result_buffer(),
+            },
             angles: Vec::new(),
             coordinates: start.q,
             coordinate_steps: (0..model.plan().actuators()).map(step).collect(),
@@ -110,10 +168,16 @@ impl<'a> ModelStates<'a> {
     /// # Errors
     /// As [`ModelStates::evaluate_at`].
     pub(crate) fn state(&mut self, request: &StateRequest) -> Result<ClaimedState, StudyError> {
-        let q_ddot = self.evaluate_at(request)?;
-        let (scene, states) = (self.scene, self.workspace.states());
-        let mut bodies = self.body_poses();
-        for (pose, angle) in bodies.iter_mut().zip(&self.angles) {
+        let values = self.evaluate_at(request)?;
+        let mut bodies = values.body_poses();
+        let StateValues {
+            scene,
+            state,
+            q_ddot,
+            angles,
+        } = values;
+        let states = state.bodies();
+        for (pose, angle) in bodies.iter_mut().zip(angles) {
             pose[2] = *angle;
         }
         let origin_of = |b: usize| (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
@@ -131,7 +195,7 @@ impl<'a> ModelStates<'a> {
                 body.angular_acceleration,
             ]
         };
-        let loads = scene.loads.iter().zip(&self.workspace.loads().magnitude);
+        let loads = scene.loads.iter().zip(&state.loads().magnitude);
         let ground = scene.mechanism.ground;
         let loads = loads.filter_map(|(load, &magnitude)| {
             load_wrenches(
@@ -151,8 +215,8 @@ impl<'a> ModelStates<'a> {
             load_wrenches: loads.flatten().collect(),
             accelerations: (0..bodies.len()).map(acceleration).collect(),
             velocities: velocity,
-            reactions: self.result.reactions.clone(),
-            tau: self.result.tau.clone(),
+            reactions: state.inverse_dynamics().reactions.clone(),
+            tau: state.inverse_dynamics().tau.clone(),
             poses: bodies,
         })
     }
@@ -161,10 +225,13 @@ impl<'a> ModelStates<'a> {
     pub(crate) fn mass_matrix(&mut self) -> Vec<f64> {
         let n = self.coordinate_steps.len();
         let mut run = self.model.result_buffer();
+        let ReachedPose {
+            pose, workspace, ..
+        } = &mut self.reached;
+        let mut state = kinematic_state(&self.model, pose, &vec![0.0; n], workspace);
         let columns: Vec<Vec<f64>> = (0..n)
             .map(|i| {
-                self.model
-                    .mass_matrix_column(i, &mut self.workspace, &mut run);
+                state.mass_matrix_column(i, &mut run);
                 run.tau.clone()
             })
             .collect();
@@ -181,34 +248,30 @@ impl<'a> ModelStates<'a> {
         Ok(self.body_poses())
     }
 
-    /// Condition number of the dense rows at the last state that was gone to.
-    pub(crate) fn condition_number(&self) -> f64 {
-        condition_number(&self.scene.mechanism, &self.body_poses())
-    }
-
-    /// The last state that was gone to.
-    pub(crate) fn evaluated(&self) -> EvaluatedState<'_> {
-        EvaluatedState {
-            scene: self.scene,
-            workspace: &self.workspace,
-            result: &self.result,
-            angles: &self.angles,
-        }
-    }
-
-    /// Goes to a state and evaluates it; yields its accelerations.
+    /// Goes to a state and evaluates it.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when it cannot be reached, or a load has no magnitude or direction
     /// there.
-    pub(crate) fn evaluate_at(&mut self, request: &StateRequest) -> Result<Vec<f64>, StudyError> {
+    pub(crate) fn evaluate_at(
+        &mut self,
+        request: &StateRequest,
+    ) -> Result<StateValues<'_>, StudyError> {
         self.step_to(&request.q)?;
         let q_ddot = match &request.q_ddot {
             Some(given) => given.clone(),
             None => self.free_acceleration(request)?,
         };
-        self.evaluate(request, &q_ddot)?;
-        Ok(q_ddot)
+        let (scene, angles) = (self.scene, &self.angles);
+        let state = self
+            .reached
+            .evaluate(scene, &self.model, request, &q_ddot)?;
+        Ok(StateValues {
+            scene,
+            state,
+            q_ddot,
+            angles,
+        })
     }
 
     /// In straight steps, counting the whole turns of every body.
@@ -240,26 +303,13 @@ impl<'a> ModelStates<'a> {
 
     fn set_coordinates(&mut self, q: &[f64]) -> Result<(), StudyError> {
         let plan = self.model.plan();
-        plan.positions(q, &mut self.workspace.pose)
+        plan.positions(q, &mut self.reached.pose)
             .map_err(|e| explain_position(self.scene, plan, &e))
     }
 
     fn body_poses(&self) -> Vec<[f64; 3]> {
         let plan = self.model.plan();
-        plan.body_frames(&self.scene.mechanism, &self.workspace.pose)
-    }
-
-    fn evaluate(&mut self, request: &StateRequest, q_ddot: &[f64]) -> Result<(), StudyError> {
-        let (workspace, result) = (&mut self.workspace, &mut self.result);
-        let done = self.model.kinetostatics(
-            request.t,
-            &request.q,
-            &request.q_dot,
-            q_ddot,
-            workspace,
-            result,
-        );
-        done.map_err(|e| self.explain(&e))
+        plan.body_frames(&self.scene.mechanism, &self.reached.pose)
     }
 
     /// The acceleration at which the actuator does nothing. What it does is linear in it.
@@ -272,38 +322,41 @@ impl<'a> ModelStates<'a> {
             let message = "a free motion is only that of one actuator".to_owned();
             return Err(self.scene.error(message, None, &[place]).into());
         }
-        self.evaluate(request, &[0.0])?;
-        let at_rest = self.result.tau[0];
-        self.evaluate(request, &[1.0])?;
-        let mut found = -at_rest / (self.result.tau[0] - at_rest);
+        let mut tau = |q_ddot: f64| {
+            let state = self
+                .reached
+                .evaluate(self.scene, &self.model, request, &[q_ddot])?;
+            Ok::<f64, StudyError>(state.inverse_dynamics().tau[0])
+        };
+        let at_rest = tau(0.0)?;
+        let mut found = -at_rest / (tau(1.0)? - at_rest);
         // Once more from there: the difference above is rounded relative to the loads.
-        self.evaluate(request, &[found])?;
+        let rest = tau(found)?;
         if at_rest != 0.0 {
-            found += self.result.tau[0] * found / at_rest;
+            found += rest * found / at_rest;
         }
         Ok(vec![found])
     }
+}
 
-    fn explain(&self, error: &KinetostaticsError) -> StudyError {
-        match error {
-            KinetostaticsError::Position(place) => {
-                explain_position(self.scene, self.model.plan(), place)
-            }
-            other => {
-                let name = other.load().and_then(|l| self.scene.loads.get(l));
-                let name = name.map_or("", |load| &load.name);
-                let at = other
-                    .load()
-                    .map_or(SceneLocation::Whole, SceneLocation::Load);
-                let message = match other {
-                    KinetostaticsError::NoDirection { .. } => {
-                        format!("`{name}` has no direction: its two points coincide")
-                    }
-                    _ => format!("the magnitude of `{name}` is not a finite number"),
-                };
-                let at = [(at, "in a state that is checked".to_owned())];
-                self.scene.error(message, None, &at).into()
-            }
+/// The error with the names of the scene.
+fn explain(scene: &Scene, model: &Model, error: &KinetostaticsError) -> StudyError {
+    match error {
+        KinetostaticsError::Position(place) => explain_position(scene, model.plan(), place),
+        other => {
+            let name = other.load().and_then(|l| scene.loads.get(l));
+            let name = name.map_or("", |load| &load.name);
+            let at = other
+                .load()
+                .map_or(SceneLocation::Whole, SceneLocation::Load);
+            let message = match other {
+                KinetostaticsError::NoDirection { .. } => {
+                    format!("`{name}` has no direction: its two points coincide")
+                }
+                _ => format!("the magnitude of `{name}` is not a finite number"),
+            };
+            let at = [(at, "in a state that is checked".to_owned())];
+            scene.error(message, None, &at).into()
         }
     }
 }

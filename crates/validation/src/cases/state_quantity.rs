@@ -1,6 +1,6 @@
 //! Quantities of a state by the names that tables and references use.
 
-use crate::cases::model_states::EvaluatedState;
+use crate::cases::model_states::StateValues;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Component, Coordinate, JointId, Vec2};
 use dwell_scene::Scene;
@@ -177,8 +177,9 @@ impl StateQuantity {
     }
 
     /// Its value at a moment, SI. What cannot be measured there is no number.
-    pub(crate) fn value(self, evaluated: &EvaluatedState<'_>) -> f64 {
-        let states = evaluated.workspace.states();
+    pub(crate) fn value(self, evaluated: &StateValues<'_>) -> f64 {
+        let states = evaluated.state.bodies();
+        let result = evaluated.state.inverse_dynamics();
         match self {
             Self::BodyAngle(body, DerivativeOrder::Value) => evaluated.angles[body.0],
             Self::BodyAngle(body, DerivativeOrder::Velocity) => states.body(body).angular_velocity,
@@ -208,8 +209,8 @@ impl StateQuantity {
                     DerivativeOrder::Acceleration => acceleration,
                 }
             }
-            Self::Reaction(k, _) => evaluated.result.reactions[k],
-            Self::ActuatorForce(k) => evaluated.result.tau[k],
+            Self::Reaction(k, _) => result.reactions[k],
+            Self::ActuatorForce(k) => result.tau[k],
         }
     }
 }

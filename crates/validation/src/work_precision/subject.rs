@@ -137,12 +137,11 @@ impl Subject {
     /// Refuses what stays at rest: all combinations would be exact.
     fn require_motion(&self) -> Result<(), StudyError> {
         let mut workspace = self.machine.workspace();
-        let evaluated = self
-            .machine
-            .evaluate(0.0, &self.initial_state.y, &mut workspace);
-        evaluated.map_err(|e| self.explain(&e))?;
+        let y = &self.initial_state.y;
+        let state = self.machine.evaluate(0.0, y, &mut workspace);
+        let state = state.map_err(|e| self.explain(&e))?;
         let free = self.machine.free();
-        let is_moving = |&i: &usize| workspace.q_dot[i] != 0.0 || workspace.q_ddot[i] != 0.0;
+        let is_moving = |&i: &usize| state.q_dot()[i] != 0.0 || state.q_ddot()[i] != 0.0;
         if free.iter().any(is_moving) {
             return Ok(());
         }

@@ -177,9 +177,8 @@ impl ReferenceStates {
         let mut read_values = Vec::new();
         let mut unknown = Vec::new();
         for (k, row) in self.samples.iter().enumerate() {
-            model.evaluate_at(&row.request)?;
-            let condition = model.condition_number();
-            let state = model.evaluated();
+            let state = model.evaluate_at(&row.request)?;
+            let condition = state.condition_number();
             for (name, expected) in &row.values {
                 let Some(quantity) = StateQuantity::find(scene, name) else {
                     unknown.push(format!("`{name}`"));
