@@ -16,7 +16,7 @@ mod monitor;
 mod revolutions;
 
 use crate::change_point_fit::{ChangePointFit, ChangePointFitError};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{CoordinateMode, Machine, MachineError, loads_with_drives};
 use crate::machine_ode::MachineOde;
@@ -208,7 +208,7 @@ impl<'s> Atlas<'s> {
         end: f64,
         options: &Options,
         events: &[Event],
-    ) -> Result<ContinuedMotion, DynamicsError> {
+    ) -> Result<ContinuedMotion> {
         self.tighten_tolerance(options.rtol);
         let mut motion = ContinuedMotion::default();
         let mut recorder_state = RecorderState::new(start.t, events);
@@ -287,7 +287,7 @@ impl<'s> Atlas<'s> {
         end: f64,
         options: &Options,
         recorder_state: &mut RecorderState<'_>,
-    ) -> Result<(Solution, Option<ChartExit>), DynamicsError> {
+    ) -> Result<(Solution, Option<ChartExit>)> {
         let current = &self.charts[chart];
         let observed = ObservedMachine::new(&current.machine, &current.output_model);
         let mut recorder = recorder_state.recorder(observed, at)?;

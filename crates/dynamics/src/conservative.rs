@@ -1,7 +1,7 @@
 //! A conservative system of one degree of freedom: its inertia, its potential V and the force −V′ as functions of
 //! its coordinate.
 
-use crate::error::{DynamicsError, positive_inertia};
+use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::machine::Machine;
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{InverseDynamics, Model, ReducedModel, Workspace};
@@ -28,7 +28,7 @@ pub(crate) struct EnergyTerms {
 /// A system of one coordinate whose energy is constant.
 pub(crate) trait ConservativeSystem {
     /// Its inertia, potential and force at `q` (rad or m).
-    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError>;
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms>;
 
     /// The range of the coordinate.
     fn range(&self) -> Range;
@@ -42,7 +42,7 @@ pub(crate) trait ConservativeSystem {
     }
 
     /// The angle after which everything repeats itself, rad; none if it never does.
-    fn period(&mut self, q: f64) -> Result<Option<f64>, DynamicsError> {
+    fn period(&mut self, q: f64) -> Result<Option<f64>> {
         if !self.is_angle() || self.range().limits().is_some() {
             return Ok(None);
         }
@@ -83,7 +83,7 @@ pub(crate) struct UnloadedSystem<'a, R: ReducedModel> {
 }
 
 impl<R: ReducedModel> ConservativeSystem for UnloadedSystem<'_, R> {
-    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError> {
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms> {
         let (m, _) = self.model.inertia(q, &mut self.workspace)?;
         Ok(EnergyTerms {
             m: positive_inertia(m, q)?,
@@ -114,7 +114,7 @@ pub(crate) struct LoadedSystem {
 }
 
 impl LoadedSystem {
-    pub(crate) fn new(machine: &Machine) -> Result<Self, DynamicsError> {
+    pub(crate) fn new(machine: &Machine) -> Result<Self> {
         if machine.model().plan().actuators() != 1 || machine.free() != [0] {
             return Err(DynamicsError::NotConservative {
                 what: "it has not one coordinate, which is free",
@@ -136,7 +136,7 @@ impl LoadedSystem {
 }
 
 impl ConservativeSystem for LoadedSystem {
-    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError> {
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms> {
         let Self {
             model,
             workspace,
@@ -170,7 +170,7 @@ impl ConservativeSystem for LoadedSystem {
 ///
 /// # Errors
 /// [`PositionError::OutOfRange`] if `q` lies outside.
-pub(crate) fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>, DynamicsError> {
+pub(crate) fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>> {
     let Some((from, to)) = range.limits() else {
         return Ok(None);
     };

@@ -13,7 +13,7 @@
 
 mod variational;
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::Machine;
 use crate::machine_ode::MachineOde;
@@ -84,11 +84,7 @@ impl Cycle {
 /// # Errors
 /// [`DynamicsError::NoCycle`], [`DynamicsError::ComesToRest`] where the guess does not complete a cycle, and as of
 /// [`Machine::evaluate`] and [`integrate`].
-pub fn steady_cycle(
-    machine: &Machine,
-    guess: &[f64],
-    options: &Options,
-) -> Result<Cycle, DynamicsError> {
+pub fn steady_cycle(machine: &Machine, guess: &[f64], options: &Options) -> Result<Cycle> {
     let problem = CycleProblem::new(machine, guess, options)?;
     let mut z: Vec<f64> = guess[1..machine.work_offset()].to_vec();
     let mut return_map = problem.return_map(&z)?;
@@ -139,7 +135,7 @@ pub fn initial_transient(
     start: &[f64],
     revolutions: u32,
     options: &Options,
-) -> Result<Vec<f64>, DynamicsError> {
+) -> Result<Vec<f64>> {
     let mut ode = MachineOde::new(machine, 0.0, start)?;
     let from = start[0];
     let distance = TAU * f64::from(revolutions);
@@ -149,7 +145,7 @@ pub fn initial_transient(
             return Ok(StepControl::Continue);
         }
         reached.clone_from(&now.y);
-        let difference = |t: f64| -> Result<f64, DynamicsError> {
+        let difference = |t: f64| -> Result<f64> {
             if t < now.t {
                 dense(t, &mut reached)?;
             } else {
@@ -198,7 +194,7 @@ struct CycleProblem<'m> {
 }
 
 impl<'m> CycleProblem<'m> {
-    fn new(machine: &'m Machine, guess: &[f64], options: &Options) -> Result<Self, DynamicsError> {
+    fn new(machine: &'m Machine, guess: &[f64], options: &Options) -> Result<Self> {
         let none = |what| Err(DynamicsError::NoCycle { what });
         let [free] = *machine.free() else {
             return none("there is not just one free coordinate");
@@ -236,7 +232,7 @@ impl<'m> CycleProblem<'m> {
         x
     }
 
-    fn return_map(&self, z: &[f64]) -> Result<ReturnMap, DynamicsError> {
+    fn return_map(&self, z: &[f64]) -> Result<ReturnMap> {
         let n = self.unknowns();
         let mut x = self.initial_values(z);
         let plain = x.len();
@@ -272,7 +268,7 @@ impl<'m> CycleProblem<'m> {
     }
 
     /// δz of (3).
-    fn newton_step(&self, z: &[f64], return_map: &ReturnMap) -> Result<Vec<f64>, DynamicsError> {
+    fn newton_step(&self, z: &[f64], return_map: &ReturnMap) -> Result<Vec<f64>> {
         let n = z.len();
         let mut matrix = return_map.sensitivity.clone();
         for i in 0..n {
@@ -303,17 +299,12 @@ impl<'m> CycleProblem<'m> {
     }
 
     /// The cycle in full, once its start is known.
-    fn resolve_cycle(
-        &self,
-        z: &[f64],
-        return_map: &ReturnMap,
-        steps: Vec<f64>,
-    ) -> Result<Cycle, DynamicsError> {
+    fn resolve_cycle(&self, z: &[f64], return_map: &ReturnMap, steps: Vec<f64>) -> Result<Cycle> {
         let x = self.initial_values(z);
         let mut system = VariationalSystem::new(self, &x, 0)?;
         let mut ode = MachineOde::new(self.machine, 0.0, &self.machine_state(0.0, &x).y)?;
         let mut rates = vec![0.0; self.machine.state_count()];
-        let mut rise = |point: &OdeState| -> Result<f64, DynamicsError> {
+        let mut rise = |point: &OdeState| -> Result<f64> {
             ode.rhs(point.t, &point.y, &mut rates)?;
             Ok(self.direction * rates[1])
         };
@@ -323,7 +314,7 @@ impl<'m> CycleProblem<'m> {
         let mut extremes = vec![[first.y[0], first.y[1]]];
         let mut samples = vec![first.clone()];
         let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            let mut state_inside = |at: f64| -> Result<OdeState, DynamicsError> {
+            let mut state_inside = |at: f64| -> Result<OdeState> {
                 let mut x = now.y.clone();
                 if at < now.t {
                     dense(at, &mut x)?;
@@ -382,9 +373,9 @@ impl<'m> CycleProblem<'m> {
 }
 
 /// After how many radians the machine moves as before; none if that never happens.
-fn repetition_angle(machine: &Machine, y: &[f64]) -> Result<Option<f64>, DynamicsError> {
+fn repetition_angle(machine: &Machine, y: &[f64]) -> Result<Option<f64>> {
     let mut ode = MachineOde::new(machine, 0.0, y)?;
-    let mut rates = |q: f64| -> Result<Vec<f64>, DynamicsError> {
+    let mut rates = |q: f64| -> Result<Vec<f64>> {
         let mut there = y.to_vec();
         there[0] = q;
         let mut rates = vec![0.0; y.len()];

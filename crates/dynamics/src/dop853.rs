@@ -13,7 +13,7 @@
 
 mod coefficients;
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 
 use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Options, Statistics};
@@ -99,7 +99,7 @@ impl Stepper<'_> {
         end: Option<f64>,
         options: &Options,
         observer: StepObserver<'_>,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         let max_step = options.max_step.unwrap_or(f64::INFINITY);
         let remaining = |t: f64| end.map_or(f64::INFINITY, |end| end - t);
         let mut h = self.initial_step(remaining(self.from.t).min(max_step));
@@ -128,7 +128,7 @@ impl Stepper<'_> {
     }
 
     /// Takes one step of about `h`, or less, and returns what the next may be.
-    fn step(&mut self, mut h: f64, end: Option<f64>) -> Result<f64, DynamicsError> {
+    fn step(&mut self, mut h: f64, end: Option<f64>) -> Result<f64> {
         let t = self.from.t;
         let mut max_factor = MAX_FACTOR;
         let mut failure = None;
@@ -254,12 +254,7 @@ impl<'s> Stages<'s> {
     }
 
     /// A step of `h` by (1), and the rates at its end.
-    fn take_step(
-        &mut self,
-        from: &OdeState,
-        h: f64,
-        to: &mut OdeState,
-    ) -> Result<(), DynamicsError> {
+    fn take_step(&mut self, from: &OdeState, h: f64, to: &mut OdeState) -> Result<()> {
         for (k, (row, node)) in STAGES.iter().zip(&NODES).enumerate() {
             self.set_stage_state(row, from, h);
             self.evaluate_stage(k + 1, from.t + node * h)?;
@@ -291,7 +286,7 @@ impl<'s> Stages<'s> {
     }
 
     /// The rates of a stage, whose state is in `stage`.
-    fn evaluate_stage(&mut self, k: usize, t: f64) -> Result<(), DynamicsError> {
+    fn evaluate_stage(&mut self, k: usize, t: f64) -> Result<()> {
         self.evaluations += 1;
         self.system.rhs(t, &self.stage_state, &mut self.rhs)?;
         for (rates, out) in self.stage_rhs.iter_mut().zip(&self.rhs) {
@@ -340,7 +335,7 @@ impl<'s> Stages<'s> {
     }
 
     /// Makes the interpolant of the step taken, with three more stages.
-    fn build_interpolant(&mut self, from: &OdeState, to: &OdeState) -> Result<(), DynamicsError> {
+    fn build_interpolant(&mut self, from: &OdeState, to: &OdeState) -> Result<()> {
         let h = to.t - from.t;
         for (k, (row, node)) in EXTRA_STAGES.iter().zip(&EXTRA_NODES).enumerate() {
             self.set_stage_state(row, from, h);

@@ -1,7 +1,7 @@
 //! Equilibria of a loaded machine: states with the coordinates at rest and constant drive states. Coulomb friction is
 //! regularised here and vanishes at rest, so it keeps nothing in place.
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::machine::Machine;
 use crate::machine_ode::MachineOde;
 use crate::ode::OdeSystem;
@@ -62,7 +62,7 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
-    fn new(machine: &Machine, y: Vec<f64>) -> Result<Self, DynamicsError> {
+    fn new(machine: &Machine, y: Vec<f64>) -> Result<Self> {
         let state_space = linearise(machine, 0.0, &y)?;
         let eigenvalues = state_space.eigenvalues()?;
         let stability = stability(&eigenvalues);
@@ -111,10 +111,7 @@ fn stability(eigenvalues: &[[f64; 2]]) -> Stability {
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`] where every position is one, or a drive never settles; and what stands
 /// in the way of an evaluation.
-pub fn equilibria(
-    machine: &Machine,
-    [from, to]: [f64; 2],
-) -> Result<Vec<Equilibrium>, DynamicsError> {
+pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilibrium>> {
     let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
         return Err(DynamicsError::NoEquilibrium {
@@ -154,10 +151,7 @@ pub fn equilibria(
 ///
 /// # Errors
 /// As of [`equilibria`].
-pub fn static_force_and_potential(
-    machine: &Machine,
-    coordinates: &[f64],
-) -> Result<Vec<[f64; 2]>, DynamicsError> {
+pub fn static_force_and_potential(machine: &Machine, coordinates: &[f64]) -> Result<Vec<[f64; 2]>> {
     let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
         return Err(DynamicsError::NoEquilibrium {
@@ -184,7 +178,7 @@ pub fn static_force_and_potential(
 ///
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`] where it finds none; and what stands in the way of an evaluation.
-pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium, DynamicsError> {
+pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium> {
     let mut problem = EquilibriumProblem::new(machine)?;
     problem.y.copy_from_slice(y);
     problem.set_at_rest();
@@ -206,7 +200,7 @@ struct EquilibriumProblem<'m> {
 }
 
 impl<'m> EquilibriumProblem<'m> {
-    fn new(machine: &'m Machine) -> Result<Self, DynamicsError> {
+    fn new(machine: &'m Machine) -> Result<Self> {
         if machine.depends_on_time() {
             return Err(DynamicsError::NoEquilibrium {
                 what: "a load, drive or prescribed motion changes with time",
@@ -228,14 +222,14 @@ impl<'m> EquilibriumProblem<'m> {
         self.y[self.machine.work_offset()..].fill(0.0);
     }
 
-    fn ode(&mut self) -> Result<(), DynamicsError> {
+    fn ode(&mut self) -> Result<()> {
         if self.ode.is_none() {
             self.ode = Some(MachineOde::new(self.machine, 0.0, &self.y)?);
         }
         Ok(())
     }
 
-    fn rhs(&mut self) -> Result<(), DynamicsError> {
+    fn rhs(&mut self) -> Result<()> {
         self.ode()?;
         match &mut self.ode {
             Some(ode) => ode.rhs(0.0, &self.y, &mut self.rhs),
@@ -243,7 +237,7 @@ impl<'m> EquilibriumProblem<'m> {
         }
     }
 
-    fn evaluate_jacobian(&mut self) -> Result<(), DynamicsError> {
+    fn evaluate_jacobian(&mut self) -> Result<()> {
         self.ode()?;
         match &mut self.ode {
             Some(ode) => ode.jacobian(0.0, &self.y, &mut self.jacobian),
@@ -252,7 +246,7 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// q̈ at `q`, with the drives settled there.
-    fn acceleration(&mut self, q: f64) -> Result<f64, DynamicsError> {
+    fn acceleration(&mut self, q: f64) -> Result<f64> {
         self.y[0] = q;
         let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
         if drive_states.is_empty() {
@@ -264,7 +258,7 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// dq̈/dq at the last position, where the drives stay settled.
-    fn acceleration_slope(&mut self) -> Result<f64, DynamicsError> {
+    fn acceleration_slope(&mut self) -> Result<f64> {
         self.evaluate_jacobian()?;
         let n = self.machine.state_count();
         let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
@@ -279,7 +273,7 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// The zeros of q̈ between (q, q̈, dq̈/dq) at many q; `size` is the largest q̈.
-    fn zeros(&mut self, samples: &[(f64, f64, f64)], size: f64) -> Result<Vec<f64>, DynamicsError> {
+    fn zeros(&mut self, samples: &[(f64, f64, f64)], size: f64) -> Result<Vec<f64>> {
         let mut zeros = Vec::new();
         zeros.extend((samples[0].1 == 0.0).then_some(samples[0].0));
         for pair in samples.windows(2) {
@@ -307,12 +301,7 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// Solves with a block of the Jacobian in place.
-    fn solve_block(
-        &self,
-        rows: &[usize],
-        columns: &[usize],
-        b: &mut [f64],
-    ) -> Result<(), DynamicsError> {
+    fn solve_block(&self, rows: &[usize], columns: &[usize], b: &mut [f64]) -> Result<()> {
         let n = self.machine.state_count();
         let entry = |&i: &usize| columns.iter().map(move |&j| self.jacobian[i * n + j]);
         let mut block: Vec<f64> = rows.iter().flat_map(entry).collect();
@@ -329,7 +318,7 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// Newton's method: some rates to zero, by some states.
-    fn solve(&mut self, rows: &[usize], columns: &[usize]) -> Result<(), DynamicsError> {
+    fn solve(&mut self, rows: &[usize], columns: &[usize]) -> Result<()> {
         let size = |rates: &[f64]| {
             let squares = rows.iter().map(|&i| rates[i] * rates[i]);
             squares.sum::<f64>().sqrt()

@@ -7,7 +7,7 @@
 //! its step or gives up, and the caller gets the error of that evaluation.
 
 use crate::dop853;
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
 use diffsol::{
@@ -35,7 +35,7 @@ pub fn integrate(
     end: Option<f64>,
     options: &Options,
     observer: StepObserver<'_>,
-) -> Result<Termination, DynamicsError> {
+) -> Result<Termination> {
     options.check()?;
     let n = system.size();
     for &value in std::iter::once(&start.t).chain(&start.y) {
@@ -191,7 +191,7 @@ impl StepLoop<'_> {
         solver: &mut S,
         at: &mut OdeState,
         observer: StepObserver<'_>,
-    ) -> Result<(), DynamicsError>
+    ) -> Result<()>
     where
         E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
         S: OdeSolverMethod<'a, E>,
@@ -216,7 +216,7 @@ impl StepLoop<'_> {
             }
             // A trial point that step control recovered from is no failure.
             self.failure.borrow_mut().take();
-            let mut dense = |t: f64, out: &mut [f64]| -> Result<(), DynamicsError> {
+            let mut dense = |t: f64, out: &mut [f64]| -> Result<()> {
                 let inside = solver.interpolate_inplace(t, &mut scratch);
                 inside.map_err(|e| solver_error(&e, t))?;
                 out.copy_from_slice(scratch.inner().as_slice());

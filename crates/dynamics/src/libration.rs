@@ -14,7 +14,7 @@
 //! integral places the turning points: to the rounding of Q, not of V.
 
 use crate::conservative::{ConservativeSystem, EnergyTerms};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::time_density::TimeDensity;
 use dwell_numerics::fourier::{FourierSeries, MAX_POINTS, SHARP_POINTS, refine_samples};
 use dwell_numerics::panels::Panels;
@@ -39,7 +39,7 @@ impl Libration {
         q: f64,
         kinetic: f64,
         mut turning_points: [f64; 2],
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         for _ in 0..MAX_REFINEMENTS {
             let sampled = SampledLibration::new(system, turning_points, |_| true)?;
             let improved = sampled.improved_turning_points(q, kinetic);
@@ -98,7 +98,7 @@ impl SampledLibration {
         system: &mut dyn ConservativeSystem,
         turning_points: [f64; 2],
         resolved: impl Fn(&Self) -> bool,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let [a, b] = turning_points;
         let half = 0.5 * (b - a);
         let mut sampled = Self {
@@ -238,10 +238,7 @@ impl SampledLibration {
     }
 
     /// dt/ds where equal steps do not resolve it.
-    fn piecewise_time_density(
-        &self,
-        system: &mut dyn ConservativeSystem,
-    ) -> Result<Panels, DynamicsError> {
+    fn piecewise_time_density(&self, system: &mut dyn ConservativeSystem) -> Result<Panels> {
         let [a, b] = self.turning_points;
         let half = 0.5 * (b - a);
         Panels::new(|phase| {

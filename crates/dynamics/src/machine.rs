@@ -21,7 +21,7 @@ mod workspace;
 
 use crate::change_point_fit::FitWindow;
 use crate::drive::{CompiledDrive, DriveError};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, Model, Signal};
 use dwell_laws::Law;
@@ -182,7 +182,7 @@ impl Machine {
         t: f64,
         y: &[T],
         workspace: &'a mut MachineWorkspace<T>,
-    ) -> Result<MachineState<'a, T>, DynamicsError> {
+    ) -> Result<MachineState<'a, T>> {
         let MachineWorkspace {
             inner,
             input_offsets: offsets,
@@ -222,7 +222,7 @@ impl Machine {
         &self,
         state: &mut ForceState<'_, T>,
         equation: &mut EquationWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         let n = self.free.len();
         for (&i, column) in self.free.iter().zip(&mut equation.acceleration_responses) {
             state.mass_matrix_column(i, column);
@@ -270,7 +270,7 @@ impl Machine {
         &self,
         state: &mut ForceState<'_, T>,
         equation: &mut EquationWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         let EquationWorkspace {
             q,
             q_ddot,

@@ -1,6 +1,6 @@
 //! A machine as an ODE system, with its exact Jacobian by dual numbers.
 
-use crate::error::DynamicsError;
+use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
 use crate::ode::OdeSystem;
 use dwell_numerics::{Dual, Scalar};
@@ -20,8 +20,8 @@ impl<'m> MachineOde<'m> {
     /// A machine at its initial state, whose energies are the scale of the works.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the start cannot be evaluated.
-    pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self, DynamicsError> {
+    /// [`DynamicsError`](crate::DynamicsError) where the start cannot be evaluated.
+    pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self> {
         let mut workspace = machine.workspace();
         let scale = machine.evaluate(t, y, &mut workspace)?.energy_scale();
         let mut error_weights = vec![1.0; machine.state_count()];
@@ -63,13 +63,13 @@ impl OdeSystem for MachineOde<'_> {
         self.machine.state_count()
     }
 
-    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let state = self.machine.evaluate(t, y, &mut self.workspace)?;
         state.derivative(out);
         Ok(())
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let n = self.size();
         out.fill(0.0);
         // Nothing depends on the works.

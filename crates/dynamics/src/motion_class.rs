@@ -10,7 +10,7 @@
 //! ends shows a maximum of V within a step.
 
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, limits};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::machine::Machine;
 use crate::ode::ReducedState;
 use dwell_numerics::root;
@@ -70,7 +70,7 @@ pub enum MotionClass {
 ///
 /// # Errors
 /// [`DynamicsError::NotConservative`], or the error of an evaluation.
-pub fn motion_class(machine: &Machine, start: ReducedState) -> Result<MotionClass, DynamicsError> {
+pub fn motion_class(machine: &Machine, start: ReducedState) -> Result<MotionClass> {
     Ok(EnergyScan::new(&mut LoadedSystem::new(machine)?, start)?.1)
 }
 
@@ -104,7 +104,7 @@ impl<'a> EnergyScan<'a> {
     pub(crate) fn new(
         system: &'a mut dyn ConservativeSystem,
         at: ReducedState,
-    ) -> Result<(Self, MotionClass), DynamicsError> {
+    ) -> Result<(Self, MotionClass)> {
         let initial_terms = system.energy_terms(at.q)?;
         let kinetic = 0.5 * initial_terms.m * at.q_dot * at.q_dot;
         if at.q_dot != 0.0 && !kinetic.is_normal() {
@@ -124,7 +124,7 @@ impl<'a> EnergyScan<'a> {
         Ok((scan, class))
     }
 
-    fn motion_class(&mut self, q_dot: f64) -> Result<MotionClass, DynamicsError> {
+    fn motion_class(&mut self, q_dot: f64) -> Result<MotionClass> {
         let range_limits = limits(self.system.range(), self.q)?;
         let period = self.system.period(self.q)?;
         if self.kinetic == 0.0 && self.in_equilibrium(range_limits, period)? {
@@ -180,7 +180,7 @@ impl<'a> EnergyScan<'a> {
         &mut self,
         range_limits: Option<(f64, f64)>,
         period: Option<f64>,
-    ) -> Result<bool, DynamicsError> {
+    ) -> Result<bool> {
         let (from, to) = range_limits.unwrap_or((self.q, self.q + period.unwrap_or(TAU)));
         let mut max_force = 0.0_f64;
         for k in 1..8 {
@@ -191,7 +191,7 @@ impl<'a> EnergyScan<'a> {
     }
 
     /// Kinetic energy, by (1), and the force.
-    fn kinetic_and_force(&mut self, q: f64) -> Result<(f64, f64), DynamicsError> {
+    fn kinetic_and_force(&mut self, q: f64) -> Result<(f64, f64)> {
         let terms = self.system.energy_terms(q)?;
         self.energy_scale = self.energy_scale.max(terms.potential.abs());
         let gained = self.initial_terms.potential - terms.potential;
@@ -224,7 +224,7 @@ impl<'a> EnergyScan<'a> {
         direction: f64,
         range_limits: Option<(f64, f64)>,
         period: Option<f64>,
-    ) -> Result<ScanResult, DynamicsError> {
+    ) -> Result<ScanResult> {
         let end = range_limits.map(|(from, to)| if direction > 0.0 { to } else { from });
         let (mut step, growth, max_steps) = self.scan_steps(range_limits, period);
         let mut before = (self.q, self.kinetic, self.initial_terms.force * direction);
@@ -286,7 +286,7 @@ impl<'a> EnergyScan<'a> {
         &mut self,
         before: (f64, f64, f64),
         now: (f64, f64, f64),
-    ) -> Result<Option<f64>, DynamicsError> {
+    ) -> Result<Option<f64>> {
         if !(before.2 < 0.0 && now.2 >= 0.0) {
             return Ok(None);
         }
@@ -294,11 +294,7 @@ impl<'a> EnergyScan<'a> {
     }
 
     /// The turning point between a point and a coordinate where the kinetic energy is negative.
-    fn turning_point(
-        &mut self,
-        before: (f64, f64, f64),
-        beyond: f64,
-    ) -> Result<f64, DynamicsError> {
+    fn turning_point(&mut self, before: (f64, f64, f64), beyond: f64) -> Result<f64> {
         let from = before.0;
         if self.kinetic == 0.0 && from == self.q {
             // From rest, the kinetic energy over the distance has the force as its limit, and no zero at the

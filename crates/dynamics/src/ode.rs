@@ -1,6 +1,6 @@
 //! Systems of ordinary differential equations, and what their integration hands to an observer.
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
 
 /// A time and a state.
@@ -52,13 +52,13 @@ pub trait OdeSystem {
     ///
     /// # Errors
     /// [`DynamicsError`] where it cannot be evaluated.
-    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError>;
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()>;
 
     /// ∂fᵢ/∂yⱼ into `out`, row by row.
     ///
     /// # Errors
     /// As [`OdeSystem::rhs`].
-    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError>;
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()>;
 
     /// The factor of a state in the absolute tolerance.
     fn error_weight(&self, _state: usize) -> f64 {
@@ -76,12 +76,12 @@ pub enum StepControl {
 }
 
 /// The state at any time within the last step, by the method's interpolant.
-pub type DenseOutput<'d> = &'d mut dyn FnMut(f64, &mut [f64]) -> Result<(), DynamicsError>;
+pub type DenseOutput<'d> = &'d mut dyn FnMut(f64, &mut [f64]) -> Result<()>;
 
 /// A function called after each step with the state before it, the state after it, and the dense output
 /// between the two.
 pub type StepObserver<'w> =
-    &'w mut dyn FnMut(&OdeState, &OdeState, DenseOutput<'_>) -> Result<StepControl, DynamicsError>;
+    &'w mut dyn FnMut(&OdeState, &OdeState, DenseOutput<'_>) -> Result<StepControl>;
 
 /// How an integration ended, and the work it took.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,11 +113,7 @@ pub(crate) fn root_subintervals(
 }
 
 /// The state at a time within a step that ends at `now`.
-pub(crate) fn state_at(
-    t: f64,
-    now: &OdeState,
-    dense: DenseOutput<'_>,
-) -> Result<OdeState, DynamicsError> {
+pub(crate) fn state_at(t: f64, now: &OdeState, dense: DenseOutput<'_>) -> Result<OdeState> {
     let mut state = now.clone();
     if t < now.t {
         dense(t, &mut state.y)?;

@@ -16,7 +16,7 @@
 //! maximum of V or where the inertia is small, it is integrated on panels.
 
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, UnloadedSystem};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::libration::{Libration, phase_of};
 use crate::machine::Machine;
 use crate::motion_class::{EnergyScan, MotionClass};
@@ -69,7 +69,7 @@ impl Orbit {
     /// [`DynamicsError::NoFullRevolution`], [`DynamicsError::AtRest`], [`DynamicsError::EnergyOutOfRange`],
     /// [`DynamicsError::NoInertia`], or [`DynamicsError::NotResolved`] when the inertia varies too
     /// sharply.
-    pub fn new<R: ReducedModel>(model: &R, start: ReducedState) -> Result<Self, DynamicsError> {
+    pub fn new<R: ReducedModel>(model: &R, start: ReducedState) -> Result<Self> {
         Self::to_accuracy(model, start, 0.0)
     }
 
@@ -82,7 +82,7 @@ impl Orbit {
         model: &R,
         start: ReducedState,
         accuracy: f64,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let workspace = model.workspace();
         Self::of_system(&mut UnloadedSystem { model, workspace }, start, accuracy)
     }
@@ -92,7 +92,7 @@ impl Orbit {
     /// # Errors
     /// As [`Orbit::new`]; [`DynamicsError::NotConservative`], [`DynamicsError::AsymptoticMotion`],
     /// [`DynamicsError::Undecided`].
-    pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self, DynamicsError> {
+    pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self> {
         Self::of_system(&mut LoadedSystem::new(machine)?, start, 0.0)
     }
 
@@ -100,7 +100,7 @@ impl Orbit {
         system: &mut dyn ConservativeSystem,
         start: ReducedState,
         accuracy: f64,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let range = system.range();
         let (scan, class) = EnergyScan::new(&mut *system, start)?;
         let (terms, kinetic) = (scan.initial_terms, scan.kinetic);
@@ -132,7 +132,7 @@ impl Orbit {
         (start, terms, kinetic): (ReducedState, EnergyTerms, f64),
         (angle_per_period, class): (f64, MotionClass),
         accuracy: f64,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         // The same position without its whole turns, which would cost it digits.
         let first = start.q % angle_per_period;
         let mut samples: Vec<EnergyTerms> = Vec::new();
@@ -184,7 +184,7 @@ impl Orbit {
         start: ReducedState,
         (terms, kinetic): (EnergyTerms, f64),
         turning_points: [f64; 2],
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let libration = Libration::new(system, start.q, kinetic, turning_points)?;
         let up = libration.phase(start.q);
         let initial_phase = if start.q_dot < 0.0 { TAU - up } else { up };

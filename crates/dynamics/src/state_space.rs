@@ -9,7 +9,7 @@
 //!
 //! from dual numbers: exact to rounding.
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::machine::{Machine, MachineState, MachineWorkspace};
 use dwell_numerics::{Dual, Scalar};
 use faer::Mat;
@@ -35,7 +35,7 @@ pub struct StateSpace {
 ///
 /// # Errors
 /// As [`Machine::evaluate`].
-pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace, DynamicsError> {
+pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace> {
     let (states, inputs) = (machine.work_offset(), machine.drives());
     let mut workspace: MachineWorkspace<Dual> = machine.workspace();
     let mut at: Vec<Dual> = y.iter().map(|&y| Dual::from_f64(y)).collect();
@@ -103,7 +103,7 @@ impl StateSpace {
     ///
     /// # Errors
     /// [`DynamicsError::NoEigenvalues`].
-    pub fn eigenvalues(&self) -> Result<Vec<[f64; 2]>, DynamicsError> {
+    pub fn eigenvalues(&self) -> Result<Vec<[f64; 2]>> {
         let n = self.a.len();
         let flat: Vec<f64> = self.a.iter().flatten().copied().collect();
         eigenvalues(&flat, n)
@@ -111,7 +111,7 @@ impl StateSpace {
 }
 
 /// The eigenvalues of a row-major n×n matrix, the largest real part first.
-pub(crate) fn eigenvalues(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>, DynamicsError> {
+pub(crate) fn eigenvalues(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>> {
     if !matrix.iter().all(|a| a.is_finite()) {
         return Err(DynamicsError::NoEigenvalues);
     }

@@ -1,7 +1,7 @@
 //! A motion through several charts.
 
 use super::Atlas;
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::ode::OdeState;
 use crate::options::Statistics;
 use crate::solve::{EventOccurrence, Solution};
@@ -137,7 +137,7 @@ impl Atlas<'_> {
         &self,
         motion: &ContinuedMotion,
         measured: CoordinateFunction,
-    ) -> Result<CoordinateHistory, DynamicsError> {
+    ) -> Result<CoordinateHistory> {
         let mut history = CoordinateHistory::default();
         let mut last: Option<(f64, [f64; 3])> = None;
         for Segment { chart, solution } in &motion.segments {

@@ -1,7 +1,7 @@
 //! Watches the steps in a chart: whether its coordinate folds, or a change point is passed.
 
 use super::{Atlas, Chart, FOLD_SPEED_RATIO, POSE_TOLERANCE};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 
 use crate::machine::MachineWorkspace;
 use crate::ode::{DenseOutput, OdeState, StepControl, root_subintervals, state_at};
@@ -75,10 +75,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
     }
 
     /// Whether the coordinate folds at a state.
-    pub(super) fn exit_at_fold(
-        &mut self,
-        at: &OdeState,
-    ) -> Result<Option<ChartExit>, DynamicsError> {
+    pub(super) fn exit_at_fold(&mut self, at: &OdeState) -> Result<Option<ChartExit>> {
         if !self.has_limits || self.is_in_fit_window(at) {
             return Ok(None);
         }
@@ -96,8 +93,8 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         now: &OdeState,
         dense: DenseOutput<'_>,
         exit: &mut Option<ChartExit>,
-        step: impl FnOnce(DenseOutput<'_>) -> Result<StepControl, DynamicsError>,
-    ) -> Result<StepControl, DynamicsError> {
+        step: impl FnOnce(DenseOutput<'_>) -> Result<StepControl>,
+    ) -> Result<StepControl> {
         if !self.has_limits {
             return step(dense);
         }
@@ -127,7 +124,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
     }
 
     /// How the chart is left after a good step, if it is.
-    fn exit_after_step(&mut self, now: &OdeState) -> Result<Option<ChartExit>, DynamicsError> {
+    fn exit_after_step(&mut self, now: &OdeState) -> Result<Option<ChartExit>> {
         let q = now.y[0];
         let mut windows = self.chart.machine.fit_windows.iter();
         if let Some(window) = windows.find(|window| window.has_passed(q)) {
@@ -159,7 +156,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         before: &OdeState,
         now: &OdeState,
         dense: DenseOutput<'_>,
-    ) -> Result<Option<ChartExit>, DynamicsError> {
+    ) -> Result<Option<ChartExit>> {
         let mut last = before.clone();
         for t in root_subintervals(before, now) {
             let point = state_at(t, now, dense)?;
@@ -194,10 +191,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
     }
 
     /// How fast the candidates are at a state, from the motion at unit speed.
-    pub(super) fn candidate_speeds(
-        &mut self,
-        at: &OdeState,
-    ) -> Result<CandidateSpeeds, DynamicsError> {
+    pub(super) fn candidate_speeds(&mut self, at: &OdeState) -> Result<CandidateSpeeds> {
         let machine = &self.chart.machine;
         let plan = machine.model.plan();
         let state = machine.evaluate(at.t, &at.y, &mut self.workspace)?;

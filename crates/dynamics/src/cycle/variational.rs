@@ -2,7 +2,7 @@
 //! its sensitivity S to the initial speed and drive states (Hairer, Nørsett and Wanner 1993, I.14).
 
 use super::CycleProblem;
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::machine_ode::MachineOde;
 use crate::ode::OdeSystem;
 
@@ -24,7 +24,7 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
         problem: &'t CycleProblem<'m>,
         x: &[f64],
         sensitivity_columns: usize,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let n = problem.machine.state_count();
         let start = problem.machine_state(0.0, x).y;
         Ok(Self {
@@ -39,7 +39,7 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
     }
 
     /// Evaluates ẏ at a displacement from the start; returns 1/|q̇|.
-    fn evaluate(&mut self, displacement: f64, x: &[f64]) -> Result<f64, DynamicsError> {
+    fn evaluate(&mut self, displacement: f64, x: &[f64]) -> Result<f64> {
         let CycleProblem {
             start_angle: from,
             direction,
@@ -59,7 +59,7 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
     }
 
     /// ∂(ẋ/|q̇|)/∂x of the machine's states, row by row, and 1/|q̇|.
-    fn evaluate_jacobian(&mut self, displacement: f64, x: &[f64]) -> Result<f64, DynamicsError> {
+    fn evaluate_jacobian(&mut self, displacement: f64, x: &[f64]) -> Result<f64> {
         let time_density = self.evaluate(displacement, x)?;
         let n = self.rhs.len();
         self.ode.jacobian(x[0], &self.y, &mut self.jacobian)?;
@@ -81,7 +81,7 @@ impl OdeSystem for VariationalSystem<'_, '_> {
         self.rhs.len() + self.sensitivity_columns * self.problem.unknowns()
     }
 
-    fn rhs(&mut self, displacement: f64, x: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn rhs(&mut self, displacement: f64, x: &[f64], out: &mut [f64]) -> Result<()> {
         let n = self.rhs.len();
         let time_density = if self.sensitivity_columns > 0 {
             let time_density = self.evaluate_jacobian(displacement, x)?;
@@ -105,12 +105,7 @@ impl OdeSystem for VariationalSystem<'_, '_> {
     }
 
     /// The derivatives of S by the state are left out: implicit methods then take a few more Newton iterations.
-    fn jacobian(
-        &mut self,
-        displacement: f64,
-        x: &[f64],
-        out: &mut [f64],
-    ) -> Result<(), DynamicsError> {
+    fn jacobian(&mut self, displacement: f64, x: &[f64], out: &mut [f64]) -> Result<()> {
         self.evaluate_jacobian(displacement, x)?;
         let (n, size, unknowns) = (self.rhs.len(), self.size(), self.problem.unknowns());
         out.fill(0.0);

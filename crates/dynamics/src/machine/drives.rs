@@ -2,7 +2,7 @@
 
 use super::Machine;
 use super::workspace::EquationWorkspace;
-use crate::error::DynamicsError;
+use crate::error::Result;
 use dwell_geometry::body_states::BodyStates;
 use dwell_kinetostatics::{ForceState, KinetostaticsError, LoadedState};
 use dwell_numerics::Scalar;
@@ -18,7 +18,7 @@ impl Machine {
     /// Evaluates the drives' forces and the rates of their states.
     ///
     /// # Errors
-    /// [`DynamicsError::Load`] where a drive's input has no finite value.
+    /// [`DynamicsError::Load`](crate::DynamicsError::Load) where a drive's input has no finite value.
     pub(super) fn evaluate_drives<T: Scalar>(
         &self,
         t: f64,
@@ -26,7 +26,7 @@ impl Machine {
         input_offsets: &[T],
         state: &mut LoadedState<'_, T>,
         equation: &mut EquationWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         for (d, drive) in self.drives.iter().enumerate() {
             let drive_state = drive.state.map(|s| drive_states[s]);
             let input = state.eval_magnitude(drive.load, &drive.input, t)?;
@@ -57,7 +57,7 @@ impl Machine {
         &self,
         state: &mut ForceState<'_, T>,
         equation: &mut EquationWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         self.read_drive_accelerations(state.bodies(), equation);
         for (drive, &bias) in self.drives.iter().zip(&equation.drive_accelerations) {
             if drive.reflected_inertia <= 0.0 {

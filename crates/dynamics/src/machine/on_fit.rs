@@ -3,7 +3,7 @@
 use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState};
 use crate::change_point_fit::{ChangePointFit, FitWorkspace, set_motion};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use dwell_geometry::{Motion, Pose};
 use dwell_kinetostatics::{
     EvaluatedState, ForceState, InverseDynamics, Magnitude, Model, Workspace,
@@ -42,7 +42,7 @@ impl Machine {
         input_offsets: &[T],
         inner: &'a mut Workspace<T>,
         equation: &mut EquationWorkspace<T>,
-    ) -> Result<ForceState<'a, T>, DynamicsError> {
+    ) -> Result<ForceState<'a, T>> {
         let plan = self.model.plan();
         let new = || Box::new(FitWorkspace::new(&self.model));
         let mut workspace = equation.fit_workspace.take().unwrap_or_else(new);
@@ -106,7 +106,7 @@ impl MachineState<'_> {
         output_model: &'o Model,
         workspace: &'o mut Workspace<f64>,
         result: &'o mut InverseDynamics<f64>,
-    ) -> Result<EvaluatedState<'o>, DynamicsError> {
+    ) -> Result<EvaluatedState<'o>> {
         let (q_dot, q_ddot) = (&self.equation.q_dot, &self.equation.q_ddot);
         result.tau.fill(0.0);
         let q = self.equation.q.first().copied().unwrap_or(fit.center);

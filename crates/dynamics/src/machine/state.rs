@@ -2,7 +2,7 @@
 
 use super::workspace::EquationWorkspace;
 use super::{Machine, NonconservativeSource};
-use crate::error::DynamicsError;
+use crate::error::Result;
 use dwell_geometry::body_states::BodyStates;
 use dwell_kinetostatics::{
     EvaluatedState, ForceState, InverseDynamics, KinematicState, Model, Workspace,
@@ -121,13 +121,13 @@ impl MachineState<'_> {
     /// fit, a reaction that is not determined at the change point is not a number.
     ///
     /// # Errors
-    /// [`DynamicsError`] as of [`Machine::evaluate`].
+    /// [`DynamicsError`](crate::DynamicsError) as of [`Machine::evaluate`].
     pub fn outputs<'o>(
         &self,
         output_model: &'o Model,
         workspace: &'o mut Workspace<f64>,
         result: &'o mut InverseDynamics<f64>,
-    ) -> Result<EvaluatedState<'o>, DynamicsError> {
+    ) -> Result<EvaluatedState<'o>> {
         if let Some(fit) = self.machine.fit_at(self.equation.q.first()) {
             return self.outputs_on_fit(fit, output_model, workspace, result);
         }

@@ -1,6 +1,6 @@
 //! The quantities of a moving system that events are functions of.
 
-use crate::error::DynamicsError;
+use crate::error::Result;
 use crate::machine::{Machine, MachineWorkspace};
 use crate::ode::OdeState;
 use dwell_geometry::BodyId;
@@ -15,18 +15,14 @@ pub trait Observed {
     /// A coordinate at a state.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the state cannot be evaluated.
-    fn coordinate(
-        &mut self,
-        coordinate: Self::Coordinate,
-        at: &OdeState,
-    ) -> Result<ObservedValue, DynamicsError>;
+    /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
+    fn coordinate(&mut self, coordinate: Self::Coordinate, at: &OdeState) -> Result<ObservedValue>;
 
     /// A reaction by its index, N or N·m, at a state.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the state cannot be evaluated.
-    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64, DynamicsError>;
+    /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
+    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64>;
 }
 
 /// A value and its rate of change.
@@ -71,7 +67,7 @@ impl Observed for ObservedMachine<'_> {
         &mut self,
         coordinate: CoordinateFunction,
         at: &OdeState,
-    ) -> Result<ObservedValue, DynamicsError> {
+    ) -> Result<ObservedValue> {
         let state = self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
         let [value, rate] = state.coordinate(coordinate);
         let counted = |b: BodyId| state.counts_revolutions(b);
@@ -85,7 +81,7 @@ impl Observed for ObservedMachine<'_> {
         })
     }
 
-    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64, DynamicsError> {
+    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64> {
         let state = self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
         let (workspace, result) = (&mut self.output_workspace, &mut self.inverse_dynamics);
         let outputs = state.outputs(self.output_model, workspace, result)?;

@@ -1,7 +1,7 @@
 //! A machine's table as a system to be integrated, with its exact Jacobian: dual numbers through the pieces.
 
 use super::{LoadEffect, TabulatedCoordinate, TabulatedLoad, TabulatedMachine, TabulatedSignal};
-use crate::error::{DynamicsError, positive_inertia};
+use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::ode::OdeSystem;
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_numerics::{Dual, Scalar};
@@ -62,7 +62,7 @@ impl TabulatedMachine {
     ///
     /// # Errors
     /// [`DynamicsError`] where the start cannot be evaluated.
-    pub fn ode(&self, t: f64, y: &[f64]) -> Result<TabulatedMachineOde<'_>, DynamicsError> {
+    pub fn ode(&self, t: f64, y: &[f64]) -> Result<TabulatedMachineOde<'_>> {
         let mut workspace = TableWorkspace::new(self);
         let [q, q_dot] = [y[0], y[1]];
         let [kinetic, _] = self.energy(q, q_dot)?;
@@ -96,7 +96,7 @@ impl TabulatedMachine {
         y: &[T],
         workspace: &mut TableWorkspace<T>,
         out: &mut [T],
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         let (q, q_dot) = (y[0], y[1]);
         let [m, half_dm] = self.inertia.eval(q)?;
         let mut force = -(half_dm * q_dot * q_dot);
@@ -126,7 +126,7 @@ impl TabulatedMachine {
         t: f64,
         y: &[T],
         workspace: &mut TableWorkspace<T>,
-    ) -> Result<LoadContribution<T>, DynamicsError> {
+    ) -> Result<LoadContribution<T>> {
         let TabulatedLoad {
             load,
             magnitude,
@@ -193,11 +193,11 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         self.machine.state_count()
     }
 
-    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         self.machine.rhs(t, y, &mut self.workspace, out)
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let n = self.size();
         out.fill(0.0);
         // No rate depends on the works.
