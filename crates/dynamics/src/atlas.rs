@@ -23,7 +23,7 @@ use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState};
 use crate::options::Options;
 use crate::solve::{Event, ObservedMachine, RecorderState, Solution};
-use candidates::{Candidate, actuator, candidates, length_scale};
+use candidates::{Candidate, actuator, candidates};
 pub use continued_motion::{
     ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory, Segment,
 };
@@ -105,7 +105,8 @@ pub struct Atlas<'s> {
     tolerance: f64,
     /// By coordinate: the period, rad, after which its branches repeat, where known.
     periods: Vec<(Coordinate, f64)>,
-    length_scale: f64,
+    /// Of the mechanism: the length that lengths are compared with, m.
+    size: f64,
 }
 
 impl<'s> Atlas<'s> {
@@ -114,8 +115,8 @@ impl<'s> Atlas<'s> {
     /// # Errors
     /// [`AtlasError`] where that cannot be built.
     pub fn new(description: MachineDescription<'s>) -> Result<Self, AtlasError> {
-        let length_scale = length_scale(description.mechanism);
-        let candidates = candidates(description.mechanism, length_scale);
+        let size = description.mechanism.size();
+        let candidates = candidates(description.mechanism, size);
         let mut atlas = Self {
             description,
             candidates,
@@ -124,7 +125,7 @@ impl<'s> Atlas<'s> {
             uncrossable: Vec::new(),
             tolerance: f64::INFINITY,
             periods: Vec::new(),
-            length_scale,
+            size,
         };
         if description.mechanism.actuators.len() != 1 {
             return Err(MachineError::CoordinateModes.into());

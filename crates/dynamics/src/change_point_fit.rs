@@ -293,30 +293,21 @@ fn derivative_gap(
         plan.velocities(&pose, &[1.0], &mut motion);
         plan.accelerations(&pose, &[0.0], &mut motion);
         fit.eval(direction * half_width, &mut Vec::new(), &mut values);
-        let (frames, slides) = values.split_at(motion.angular_velocity.len());
-        let frame_derivatives = frames.iter().zip(
-            motion
-                .angular_velocity
-                .iter()
-                .zip(&motion.angular_acceleration),
-        );
-        for ([_, first, second], (velocity, acceleration)) in frame_derivatives {
-            let difference = [
-                (first - velocity) * coordinate_scale,
-                (second - acceleration) * coordinate_scale * coordinate_scale,
-            ];
-            largest = difference
-                .iter()
-                .fold(largest, |max, difference| max.max(difference.abs()));
-        }
-        let slide_derivatives = slides
+        let scaled = |rates, factor: f64| (rates, [factor, coordinate_scale]);
+        let frames = motion
+            .angular_velocity
             .iter()
-            .zip(motion.slide_velocity.iter().zip(&motion.slide_acceleration));
-        for ([_, first, second], (velocity, acceleration)) in slide_derivatives {
-            let difference = [first - velocity, (second - acceleration) * coordinate_scale];
-            largest = difference
-                .iter()
-                .fold(largest, |max, difference| max.max(difference.abs()));
+            .zip(&motion.angular_acceleration);
+        let slides = motion.slide_velocity.iter().zip(&motion.slide_acceleration);
+        let frames = frames.map(|rates| scaled(rates, coordinate_scale));
+        let rates = frames.chain(slides.map(|rates| scaled(rates, 1.0)));
+        for ([_, first, second], ((velocity, acceleration), [one, two])) in values.iter().zip(rates)
+        {
+            let differences = [
+                (first - velocity) * one,
+                (second - acceleration) * one * two,
+            ];
+            largest = differences.iter().fold(largest, |max, d| max.max(d.abs()));
         }
     }
     Ok(largest)

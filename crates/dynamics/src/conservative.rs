@@ -3,17 +3,13 @@
 
 use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::machine::Machine;
+use crate::repetition::{PERIODICITY_TOLERANCE, repetition_angle};
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{InverseDynamics, Model, ReducedModel, Workspace};
 use std::f64::consts::TAU;
 
-/// Revolutions after which a mechanism that has not repeated itself counts as not periodic.
-const MAX_REVOLUTIONS: u32 = 8;
 /// Phases, as parts of a revolution, at which the mechanism is compared with itself some revolutions on.
 const PHASE_FRACTIONS: [f64; 7] = [0.0, 0.131, 0.292, 0.417, 0.583, 0.719, 0.877];
-/// Numbers that differ by less, relatively, count as equal: solutions of large groups differ by some rounding.
-const PERIODICITY_TOLERANCE: f64 = 1e-9;
-
 /// Inertia, potential and force at a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EnergyTerms {
@@ -49,30 +45,15 @@ pub(crate) trait ConservativeSystem {
         if self.is_potential_free() && self.range() == Range::Full {
             return Ok(Some(TAU));
         }
-        let mut here = Vec::with_capacity(PHASE_FRACTIONS.len());
-        for part in PHASE_FRACTIONS {
-            here.push(self.energy_terms(q + TAU * part)?);
-        }
-        let size =
-            |of: fn(&EnergyTerms) -> f64| here.iter().fold(0.0_f64, |s, h| s.max(of(h).abs()));
-        let (potential, force) = (size(|h| h.potential), size(|h| h.force));
-        for revolutions in 1..=MAX_REVOLUTIONS {
-            let period = TAU * f64::from(revolutions);
-            let mut same = true;
-            for (part, h) in PHASE_FRACTIONS.iter().zip(&here) {
-                // Outside its range it does not repeat itself.
-                let Ok(there) = self.energy_terms(q + TAU * part + period) else {
-                    return Ok(None);
-                };
-                same &= (there.m - h.m).abs() <= PERIODICITY_TOLERANCE * h.m
-                    && (there.potential - h.potential).abs() <= PERIODICITY_TOLERANCE * potential
-                    && (there.force - h.force).abs() <= PERIODICITY_TOLERANCE * force;
-            }
-            if same {
-                return Ok(Some(period));
-            }
-        }
-        Ok(None)
+        let close = |a: f64, b: f64, size: f64| (a - b).abs() <= PERIODICITY_TOLERANCE * size;
+        let same = |all: &[EnergyTerms], here: &EnergyTerms, there: &EnergyTerms| {
+            let size =
+                |of: fn(&EnergyTerms) -> f64| all.iter().fold(0.0_f64, |s, h| s.max(of(h).abs()));
+            close(there.m, here.m, here.m)
+                && close(there.potential, here.potential, size(|h| h.potential))
+                && close(there.force, here.force, size(|h| h.force))
+        };
+        repetition_angle(q, &PHASE_FRACTIONS, |q| self.energy_terms(q), same)
     }
 }
 

@@ -193,7 +193,7 @@ pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium> {
 /// A machine at rest.
 struct EquilibriumProblem<'m> {
     machine: &'m Machine,
-    ode: Option<MachineOde<'m>>,
+    ode: MachineOde<'m>,
     y: Vec<f64>,
     rhs: Vec<f64>,
     jacobian: Vec<f64>,
@@ -209,7 +209,7 @@ impl<'m> EquilibriumProblem<'m> {
         let n = machine.state_count();
         Ok(Self {
             machine,
-            ode: None,
+            ode: MachineOde::unscaled(machine),
             y: vec![0.0; n],
             rhs: vec![0.0; n],
             jacobian: vec![0.0; n * n],
@@ -222,27 +222,8 @@ impl<'m> EquilibriumProblem<'m> {
         self.y[self.machine.work_offset()..].fill(0.0);
     }
 
-    fn ode(&mut self) -> Result<()> {
-        if self.ode.is_none() {
-            self.ode = Some(MachineOde::new(self.machine, 0.0, &self.y)?);
-        }
-        Ok(())
-    }
-
     fn rhs(&mut self) -> Result<()> {
-        self.ode()?;
-        match &mut self.ode {
-            Some(ode) => ode.rhs(0.0, &self.y, &mut self.rhs),
-            None => Ok(()),
-        }
-    }
-
-    fn evaluate_jacobian(&mut self) -> Result<()> {
-        self.ode()?;
-        match &mut self.ode {
-            Some(ode) => ode.jacobian(0.0, &self.y, &mut self.jacobian),
-            None => Ok(()),
-        }
+        self.ode.rhs(0.0, &self.y, &mut self.rhs)
     }
 
     /// q̈ at `q`, with the drives settled there.
@@ -259,7 +240,7 @@ impl<'m> EquilibriumProblem<'m> {
 
     /// dq̈/dq at the last position, where the drives stay settled.
     fn acceleration_slope(&mut self) -> Result<f64> {
-        self.evaluate_jacobian()?;
+        self.ode.jacobian(0.0, &self.y, &mut self.jacobian)?;
         let n = self.machine.state_count();
         let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
         let mut response: Vec<f64> = drive_states
@@ -327,7 +308,7 @@ impl<'m> EquilibriumProblem<'m> {
         self.rhs()?;
         let mut residual = size(&self.rhs);
         for _ in 0..MAX_NEWTON_STEPS {
-            self.evaluate_jacobian()?;
+            self.ode.jacobian(0.0, &self.y, &mut self.jacobian)?;
             let mut step: Vec<f64> = rows.iter().map(|&i| -self.rhs[i]).collect();
             self.solve_block(rows, columns, &mut step)?;
             let from = self.y.clone();

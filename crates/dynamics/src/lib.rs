@@ -66,6 +66,7 @@ pub mod ode;
 pub mod options;
 pub mod orbit;
 pub mod reduced_ode;
+mod repetition;
 pub mod solve;
 pub mod state_space;
 pub mod tabulated;

@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
-use crate::ode::OdeSystem;
+use crate::ode::{OdeSystem, dual_jacobian};
 use dwell_numerics::{Dual, Scalar};
 
 /// A machine with the working memory to integrate it, for one thread.
@@ -22,19 +22,23 @@ impl<'m> MachineOde<'m> {
     /// # Errors
     /// [`DynamicsError`](crate::DynamicsError) where the start cannot be evaluated.
     pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self> {
-        let mut workspace = machine.workspace();
-        let scale = machine.evaluate(t, y, &mut workspace)?.energy_scale();
-        let mut error_weights = vec![1.0; machine.state_count()];
-        error_weights[machine.work_offset()..].fill(scale);
+        let mut ode = Self::unscaled(machine);
+        let scale = machine.evaluate(t, y, &mut ode.workspace)?.energy_scale();
+        ode.error_weights[machine.work_offset()..].fill(scale);
+        Ok(ode)
+    }
+
+    /// A machine whose works have no scale, where none is integrated.
+    pub(crate) fn unscaled(machine: &'m Machine) -> Self {
         let zero = vec![Dual::from_f64(0.0); machine.state_count()];
-        Ok(Self {
+        Self {
             machine,
-            workspace,
+            workspace: machine.workspace(),
             dual_workspace: machine.workspace(),
             y: zero.clone(),
             out: zero,
-            error_weights,
-        })
+            error_weights: vec![1.0; machine.state_count()],
+        }
     }
 
     /// The machine.
@@ -70,26 +74,18 @@ impl OdeSystem for MachineOde<'_> {
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        let n = self.size();
-        out.fill(0.0);
+        let Self {
+            machine,
+            dual_workspace: workspace,
+            y: duals,
+            out: rates,
+            ..
+        } = self;
         // Nothing depends on the works.
-        for j in 0..self.machine.work_offset() {
-            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
-                *dual = if i == j {
-                    Dual::variable(value)
-                } else {
-                    Dual::from_f64(value)
-                };
-            }
-            let state = self
-                .machine
-                .evaluate(t, &self.y, &mut self.dual_workspace)?;
-            state.derivative(&mut self.out);
-            for (i, rate) in self.out.iter().enumerate() {
-                out[i * n + j] = rate.d;
-            }
-        }
-        Ok(())
+        dual_jacobian(machine.work_offset(), y, (duals, rates), out, |y, out| {
+            machine.evaluate(t, y, workspace)?.derivative(out);
+            Ok(())
+        })
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -2,6 +2,7 @@
 
 use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
+use dwell_numerics::{Dual, Scalar};
 
 /// A time and a state.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -64,6 +65,31 @@ pub trait OdeSystem {
     fn error_weight(&self, _state: usize) -> f64 {
         1.0
     }
+}
+
+/// The first columns of a Jacobian, row by row into `out`, by dual numbers: `duals` and `rates` are working memory.
+pub(crate) fn dual_jacobian(
+    columns: usize,
+    y: &[f64],
+    (duals, rates): (&mut [Dual], &mut [Dual]),
+    out: &mut [f64],
+    mut rhs: impl FnMut(&[Dual], &mut [Dual]) -> Result<()>,
+) -> Result<()> {
+    out.fill(0.0);
+    for j in 0..columns {
+        for (i, (dual, &value)) in duals.iter_mut().zip(y).enumerate() {
+            *dual = if i == j {
+                Dual::variable(value)
+            } else {
+                Dual::from_f64(value)
+            };
+        }
+        rhs(duals, rates)?;
+        for (i, rate) in rates.iter().enumerate() {
+            out[i * y.len() + j] = rate.d;
+        }
+    }
+    Ok(())
 }
 
 /// What an observer answers after a step.

@@ -140,13 +140,12 @@ impl Orbit {
             samples = refine_samples(samples, |part| {
                 system.energy_terms(first + angle_per_period * part)
             })?;
-            let mut values = Vec::with_capacity(samples.len());
-            let mut max_kinetic = 0.0_f64;
-            for at in &samples {
-                let kinetic_left = kinetic + (terms.potential - at.potential);
-                max_kinetic = max_kinetic.max(kinetic_left);
-                values.push(angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left)).sqrt());
-            }
+            let kinetic_left = |at: &EnergyTerms| kinetic + (terms.potential - at.potential);
+            let density = |at: &EnergyTerms| {
+                angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left(at))).sqrt()
+            };
+            let values: Vec<f64> = samples.iter().map(density).collect();
+            let max_kinetic = samples.iter().map(kinetic_left).fold(0.0, f64::max);
             let points = samples.len();
             let size = values.iter().sum::<f64>() / points as f64;
             let series = FourierSeries::new(&values, size);
@@ -155,8 +154,7 @@ impl Orbit {
             } else if points >= SHARP_POINTS {
                 let panels = Panels::new::<DynamicsError>(|phase| {
                     let at = system.energy_terms(first + angle_per_period * (phase / TAU))?;
-                    let kinetic_left = kinetic + (terms.potential - at.potential);
-                    Ok(angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left)).sqrt())
+                    Ok(density(&at))
                 })?;
                 let taken = points + panels.points;
                 (TimeDensity::Piecewise(panels), taken)

@@ -10,7 +10,7 @@
 //! determinant of its Jacobian is 1 without friction; where it is no longer positive the mechanism jams:
 //! the same state has two accelerations, or none.
 
-use crate::error::KinetostaticsError;
+use crate::error::{KinetostaticsError, Result};
 use crate::load::{Friction, FrictionContact, Load, LoadKind};
 use crate::pass::InverseDynamics;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
@@ -149,7 +149,7 @@ pub(crate) fn solve<T: Scalar>(
     frictionless: &[T],
     responses: &[InverseDynamics<T>],
     workspace: &mut FrictionWorkspace<T>,
-) -> Result<(), KinetostaticsError> {
+) -> Result<()> {
     let load = frictions.first().map_or(0, |friction| friction.load);
     let self_locking = KinetostaticsError::SelfLocking { load };
     for (joint_friction, factor) in frictions.iter().zip(&mut workspace.friction_factor) {

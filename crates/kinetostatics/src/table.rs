@@ -30,6 +30,9 @@ use sampler::ModelSampler;
 use std::fmt;
 use thiserror::Error;
 
+/// A result that fails with a [`TableError`] unless another error is named.
+pub type Result<T, E = TableError> = std::result::Result<T, E>;
+
 /// The domain of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TableDomain {
@@ -205,7 +208,7 @@ impl TabulatedModel {
     ///
     /// # Errors
     /// [`TableError`] when there is nothing to reach over, or the accuracy cannot be kept.
-    pub fn new(exact: &ExactModel, accuracy: f64, domain: TableDomain) -> Result<Self, TableError> {
+    pub fn new(exact: &ExactModel, accuracy: f64, domain: TableDomain) -> Result<Self> {
         let mut builder = TableBuilder::new(exact.range(), domain, accuracy)?;
         let mut sampler = ModelSampler::new(exact);
         let model = exact.model();

@@ -57,7 +57,7 @@ impl Atlas<'_> {
         let coordinate_scale = if current.coordinate.is_angle() {
             1.0
         } else {
-            self.length_scale
+            self.size
         };
         let half_width = coordinate_scale * half_width_for(plan, self.tolerance);
         // Far enough for the branches to have parted.

@@ -2,7 +2,7 @@
 
 use super::{LoadEffect, TabulatedCoordinate, TabulatedLoad, TabulatedMachine, TabulatedSignal};
 use crate::error::{DynamicsError, Result, positive_inertia};
-use crate::ode::OdeSystem;
+use crate::ode::{OdeSystem, dual_jacobian};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_numerics::{Dual, Scalar};
 
@@ -198,24 +198,18 @@ impl OdeSystem for TabulatedMachineOde<'_> {
     }
 
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
-        let n = self.size();
-        out.fill(0.0);
+        let Self {
+            machine,
+            dual_workspace: workspace,
+            y: duals,
+            out: rates,
+            ..
+        } = self;
         // No rate depends on the works.
-        for j in 0..2 + self.machine.drive_state_count {
-            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
-                *dual = if i == j {
-                    Dual::variable(value)
-                } else {
-                    Dual::from_f64(value)
-                };
-            }
-            self.machine
-                .rhs(t, &self.y, &mut self.dual_workspace, &mut self.out)?;
-            for (i, rate) in self.out.iter().enumerate() {
-                out[i * n + j] = rate.d;
-            }
-        }
-        Ok(())
+        let columns = 2 + machine.drive_state_count;
+        dual_jacobian(columns, y, (duals, rates), out, |y, out| {
+            machine.rhs(t, y, workspace, out)
+        })
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -6,7 +6,7 @@ use super::{
     AppliedWrench, CompiledSignal, ForceSource, Load, LoadKind, LoadState, Magnitude,
     find_couple_points,
 };
-use crate::error::{KinetostaticsError, LoadError};
+use crate::error::{KinetostaticsError, LoadError, Result};
 use crate::mass::Mass;
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, Mechanism, Plan, PositionError, Vec2};
@@ -104,7 +104,7 @@ impl CompiledLoads {
         t: f64,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         if T::LANES > 1 && !self.loads.is_empty() {
             // Laws, dry friction and slack springs decide by one value.
             return Err(PositionError::LanesDiverge { q: f64::NAN }.into());
@@ -133,7 +133,7 @@ impl CompiledLoads {
         &self,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
         for (i, load) in self.loads.iter().enumerate() {
@@ -149,7 +149,7 @@ impl CompiledLoads {
         load: usize,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
         let (kind, sign) = match self.loads[load].kind {
@@ -178,7 +178,7 @@ impl CompiledLoads {
         f: T,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         if let LoadKind::Gravity { direction } = kind {
             let pull = direction.cast() * f;
             out.gravity += pull;

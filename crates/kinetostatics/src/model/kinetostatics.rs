@@ -1,7 +1,7 @@
 //! Inverse dynamics with loads: Jᵀ[λ; τ] = M ẍ + h − f, for a prescribed motion at a given time.
 
 use super::{EvaluatedState, Model, Workspace};
-use crate::error::{KinetostaticsError, LoadError};
+use crate::error::{LoadError, Result};
 use crate::load::{CompiledLoads, CompiledSignal, Load};
 use crate::pass::InverseDynamics;
 use dwell_numerics::Scalar;
@@ -45,7 +45,7 @@ impl Model {
     /// Jᵀ[λ; τ] = M ẍ + h − f. All [stages](super::stages) at once.
     ///
     /// # Errors
-    /// [`KinetostaticsError`] when there is no pose at `q`, or a load has no direction or no finite
+    /// [`KinetostaticsError`](crate::KinetostaticsError) when there is no pose at `q`, or a load has no direction or no finite
     /// magnitude there, or friction jams the mechanism.
     pub fn kinetostatics<'a, T: Scalar>(
         &'a self,
@@ -55,7 +55,7 @@ impl Model {
         q_ddot: &[T],
         workspace: &'a mut Workspace<T>,
         result: &'a mut InverseDynamics<T>,
-    ) -> Result<EvaluatedState<'a, T>, KinetostaticsError> {
+    ) -> Result<EvaluatedState<'a, T>> {
         let state = self.kinematic_state(q, q_dot, workspace)?;
         state.apply_loads(t)?.evaluate(q_ddot, result)
     }
@@ -70,7 +70,7 @@ impl Model {
         q: &[f64],
         workspace: &'a mut Workspace<f64>,
         result: &'a mut InverseDynamics<f64>,
-    ) -> Result<EvaluatedState<'a>, KinetostaticsError> {
+    ) -> Result<EvaluatedState<'a>> {
         self.kinetostatics(t, q, &self.rest, &self.rest, workspace, result)
     }
 

@@ -4,7 +4,7 @@
 use super::build::{ColumnSampler, SlopeSampler};
 use super::piecewise::{BETWEEN_NODES, Grid, IntegratedCurve, PiecewiseColumns, TERMS};
 use super::sizing::{MIN_CELLS, Sizing};
-use super::{TableError, TableQuantity};
+use super::{Result, TableError, TableQuantity};
 use dwell_numerics::Dual;
 
 /// Ratio of the bound to the largest error found. Over all cases of validation/ the largest at 10 000
@@ -27,18 +27,14 @@ const OVERSIZED: f64 = 0.05;
 /// A part of a table that can be built with any number of cells and compared with its sampler.
 pub(super) trait Piecewise<S: ?Sized>: Sized {
     /// Builds it on a grid.
-    fn build(grid: Grid, width: usize, source: &mut S) -> Result<Self, TableError>;
+    fn build(grid: Grid, width: usize, source: &mut S) -> Result<Self>;
 
     /// Raises `max_errors` to its errors at some coordinates where these are larger.
-    fn raise_errors(&self, q: &[f64], source: &mut S, most: &mut [f64]) -> Result<(), TableError>;
+    fn raise_errors(&self, q: &[f64], source: &mut S, most: &mut [f64]) -> Result<()>;
 }
 
 impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
-    fn build(
-        grid: Grid,
-        _: usize,
-        sampler: &mut (dyn SlopeSampler + 'a),
-    ) -> Result<Self, TableError> {
+    fn build(grid: Grid, _: usize, sampler: &mut (dyn SlopeSampler + 'a)) -> Result<Self> {
         Self::new(grid, sampler)
     }
 
@@ -47,7 +43,7 @@ impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
         q: &[f64],
         sampler: &mut (dyn SlopeSampler + 'a),
         max_errors: &mut [f64],
-    ) -> Result<(), TableError> {
+    ) -> Result<()> {
         for (&q, exact) in q.iter().zip(sampler.sample_many(q)?) {
             let tabulated = self.eval(q)?;
             raise_to(
@@ -63,11 +59,7 @@ impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
 }
 
 impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
-    fn build(
-        grid: Grid,
-        width: usize,
-        sampler: &mut ColumnSampler<'a>,
-    ) -> Result<Self, TableError> {
+    fn build(grid: Grid, width: usize, sampler: &mut ColumnSampler<'a>) -> Result<Self> {
         Self::new(grid, width, sampler)
     }
 
@@ -76,7 +68,7 @@ impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
         q: &[f64],
         sampler: &mut ColumnSampler<'a>,
         max_errors: &mut [f64],
-    ) -> Result<(), TableError> {
+    ) -> Result<()> {
         let (mut exact, mut tabulated) = (vec![Dual::default(); self.width], vec![0.0; self.width]);
         for &q in q {
             sampler(q, &mut exact)?;
@@ -113,7 +105,7 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     sizing: &Sizing,
     accuracy: f64,
     sampler: &mut S,
-) -> Result<(P, Vec<f64>), TableError> {
+) -> Result<(P, Vec<f64>)> {
     let mut cells = sizing.cells;
     let mut best: Option<(P, Vec<f64>, usize)> = None;
     let mut smallest = (f64::INFINITY, TableQuantity::M);
@@ -160,7 +152,7 @@ fn bounds<S: ?Sized, P: Piecewise<S>>(
     grid: Grid,
     sizing: &Sizing,
     sampler: &mut S,
-) -> Result<Vec<f64>, TableError> {
+) -> Result<Vec<f64>> {
     let mut max_errors = vec![0.0; sizing.scales.len()];
     let cells = 0..grid.cells;
     let between = cells.flat_map(|cell| BETWEEN_NODES.map(|x| grid.coordinate(cell, x)));

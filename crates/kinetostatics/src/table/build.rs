@@ -4,7 +4,7 @@
 use super::bound;
 use super::piecewise::{Grid, IntegratedCurve, PiecewiseColumns};
 use super::sizing::{self, RowSampler, Sizing};
-use super::{Bound, TableDomain, TableError, TableQuantity};
+use super::{Bound, Result, TableDomain, TableError, TableQuantity};
 use crate::reduced::Inertia;
 use dwell_geometry::Range;
 use dwell_numerics::Dual;
@@ -24,20 +24,20 @@ pub trait SlopeSampler {
     ///
     /// # Errors
     /// [`TableError::Exact`] where it has no value.
-    fn sample(&mut self, q: f64) -> Result<Inertia, TableError>;
+    fn sample(&mut self, q: f64) -> Result<Inertia>;
 
     /// The function and half its slope at many coordinates.
     ///
     /// # Errors
     /// [`TableError::Exact`] where it has no value.
-    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>, TableError> {
+    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>> {
         let both = |&q: &f64| self.sample(q).map(|at| [at.m, at.half_dm]);
         q.iter().map(both).collect()
     }
 }
 
 /// Functions with exact derivatives at a coordinate, from which [`PiecewiseColumns`] are built.
-pub type ColumnSampler<'a> = dyn FnMut(f64, &mut [Dual]) -> Result<(), TableError> + 'a;
+pub type ColumnSampler<'a> = dyn FnMut(f64, &mut [Dual]) -> Result<()> + 'a;
 
 /// Builds parts of one table, and records their error bounds.
 #[derive(Debug)]
@@ -52,7 +52,7 @@ impl TableBuilder {
     ///
     /// # Errors
     /// [`TableError`] when there is nothing to reach over, or the accuracy cannot be kept.
-    pub fn new(range: Range, domain: TableDomain, accuracy: f64) -> Result<Self, TableError> {
+    pub fn new(range: Range, domain: TableDomain, accuracy: f64) -> Result<Self> {
         if !(1e-14..=1e-2).contains(&accuracy) {
             return Err(TableError::Accuracy { accuracy });
         }
@@ -82,7 +82,7 @@ impl TableBuilder {
         &mut self,
         quantities: [TableQuantity; 2],
         sampler: &mut dyn SlopeSampler,
-    ) -> Result<IntegratedCurve, TableError> {
+    ) -> Result<IntegratedCurve> {
         // The function over a radian of a turn, or as much of an extent, is of the kind of its half slope.
         let per_revolution = TAU / self.grid.length;
         let scale = |largest: &[f64]| {
@@ -117,7 +117,7 @@ impl TableBuilder {
         quantities: &[TableQuantity],
         same_kind: &dyn Fn(TableQuantity, TableQuantity) -> bool,
         sampler: &mut ColumnSampler<'_>,
-    ) -> Result<PiecewiseColumns, TableError> {
+    ) -> Result<PiecewiseColumns> {
         if quantities.is_empty() {
             return Ok(PiecewiseColumns::empty(self.grid));
         }
@@ -153,7 +153,7 @@ impl TableBuilder {
         quantities: &[TableQuantity],
         scale: &dyn Fn(&[f64]) -> Vec<f64>,
         values: &mut RowSampler<'_>,
-    ) -> Result<Sizing, TableError> {
+    ) -> Result<Sizing> {
         if self.grid.revolutions > 0 {
             require_periodic(self.grid, quantities, scale, values)?;
         }
@@ -179,7 +179,7 @@ impl TableBuilder {
 }
 
 /// The domain as a grid of one cell.
-fn domain_grid(range: Range, domain: TableDomain) -> Result<Grid, TableError> {
+fn domain_grid(range: Range, domain: TableDomain) -> Result<Grid> {
     let (from, to) = match (domain, range.period(), range.limits()) {
         (TableDomain::Full, Some(period), _) => {
             let revolutions = (period / TAU).round() as u32;
@@ -207,7 +207,7 @@ fn require_periodic(
     quantities: &[TableQuantity],
     scale: &dyn Fn(&[f64]) -> Vec<f64>,
     values: &mut RowSampler<'_>,
-) -> Result<(), TableError> {
+) -> Result<()> {
     let here = PERIODICITY_POINTS.map(|part| grid.from + part * grid.length);
     let later = here.map(|q| q + grid.length);
     let (here, later) = (values(&here)?, values(&later)?);

@@ -10,6 +10,8 @@ use std::fmt::Write as _;
 use std::str::{FromStr, Lines};
 use thiserror::Error;
 
+type Result<T> = std::result::Result<T, FileError>;
+
 /// First word of every file.
 const MAGIC: &str = "dwell-table";
 /// The only version so far.
@@ -71,7 +73,7 @@ impl TabulatedModel {
     ///
     /// # Errors
     /// [`FileError::Labels`] for names that do not fit.
-    pub fn to_text(&self, labels: &Labels) -> Result<String, FileError> {
+    pub fn to_text(&self, labels: &Labels) -> Result<String> {
         let [reactions, loads] = self.counts;
         let lists = [&labels.reactions, &labels.loads];
         let mut names = lists.into_iter().flatten();
@@ -128,7 +130,7 @@ impl TabulatedModel {
     ///
     /// # Errors
     /// [`FileError`] for anything that is not a whole table as it was written.
-    pub fn from_text(text: &str) -> Result<(Self, Labels), FileError> {
+    pub fn from_text(text: &str) -> Result<(Self, Labels)> {
         let first = text.lines().next().unwrap_or_default();
         let version = first.strip_prefix(MAGIC).and_then(|v| v.strip_prefix(' '));
         let version = version.ok_or(FileError::NotATable)?;
@@ -177,7 +179,7 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    fn table(mut self) -> Result<(TabulatedModel, Labels), FileError> {
+    fn table(mut self) -> Result<(TabulatedModel, Labels)> {
         self.after_keyword(MAGIC)?;
         let scene = self.after_keyword("scene")?.to_owned();
         let coordinate = self.after_keyword("coordinate")?;
@@ -246,7 +248,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The extent as a grid of one cell.
-    fn grid(&self, domain: &[f64], revolutions: u32) -> Result<Grid, FileError> {
+    fn grid(&self, domain: &[f64], revolutions: u32) -> Result<Grid> {
         let (from, length) = (domain[0], domain[1]);
         let whole = revolutions == 0 || (from == 0.0 && length == TAU * f64::from(revolutions));
         if whole && length > 0.0 && (from + length).is_finite() {
@@ -262,7 +264,7 @@ impl<'a> Reader<'a> {
         keyword: &'static str,
         grid: Grid,
         width: usize,
-    ) -> Result<PiecewiseColumns, FileError> {
+    ) -> Result<PiecewiseColumns> {
         let mut terms = Vec::new();
         if width > 0 {
             for _ in 0..grid.cells {
@@ -280,7 +282,7 @@ impl<'a> Reader<'a> {
     }
 
     /// What follows the word that the next line begins with.
-    fn after_keyword(&mut self, keyword: &'static str) -> Result<&'a str, FileError> {
+    fn after_keyword(&mut self, keyword: &'static str) -> Result<&'a str> {
         self.line += 1;
         let line = self.lines.next().unwrap_or_default();
         let rest = line.strip_prefix(keyword).and_then(|l| l.strip_prefix(' '));
@@ -293,7 +295,7 @@ impl<'a> Reader<'a> {
         count: usize,
         fits: impl Fn(&T) -> bool,
         expected: &'static str,
-    ) -> Result<Vec<T>, FileError> {
+    ) -> Result<Vec<T>> {
         let rest = match count {
             // Without a number there is no blank either.
             0 => {
@@ -316,17 +318,12 @@ impl<'a> Reader<'a> {
             .ok_or_else(|| self.line_error(expected))
     }
 
-    fn numbers(&mut self, keyword: &'static str, count: usize) -> Result<Vec<f64>, FileError> {
+    fn numbers(&mut self, keyword: &'static str, count: usize) -> Result<Vec<f64>> {
         let expected = "finite numbers, as many as the counts say";
         self.list(keyword, count, |n: &f64| n.is_finite(), expected)
     }
 
-    fn counts(
-        &mut self,
-        keyword: &'static str,
-        count: usize,
-        max: usize,
-    ) -> Result<Vec<usize>, FileError> {
+    fn counts(&mut self, keyword: &'static str, count: usize, max: usize) -> Result<Vec<usize>> {
         let whole = |n: &f64| n.fract() == 0.0 && (0.0..=max as f64).contains(n);
         let found = self.list(
             keyword,
@@ -337,15 +334,11 @@ impl<'a> Reader<'a> {
         Ok(found.into_iter().map(|n| n as usize).collect())
     }
 
-    fn count(&mut self, keyword: &'static str, max: usize) -> Result<usize, FileError> {
+    fn count(&mut self, keyword: &'static str, max: usize) -> Result<usize> {
         Ok(self.counts(keyword, 1, max)?[0])
     }
 
-    fn names(
-        &mut self,
-        keyword: &'static str,
-        each: &'static str,
-    ) -> Result<Vec<String>, FileError> {
+    fn names(&mut self, keyword: &'static str, each: &'static str) -> Result<Vec<String>> {
         let count = self.count(keyword, u32::MAX as usize)?;
         let mut names = Vec::new();
         for _ in 0..count {

@@ -6,7 +6,7 @@
 //! integral, and continuous, and so it is with V and ½V′. What a motion gains on the table where it leaves
 //! a cell it has therefore lost where it came in: energy cannot drift.
 
-use super::TableError;
+use super::Result;
 use super::build::{ColumnSampler, SlopeSampler};
 use crate::reduced::Inertia;
 use dwell_geometry::PositionError;
@@ -198,7 +198,7 @@ pub struct IntegratedCurve {
 pub(super) type CellData = (f64, [f64; TERMS]);
 
 impl IntegratedCurve {
-    pub(super) fn new(grid: Grid, sampler: &mut dyn SlopeSampler) -> Result<Self, TableError> {
+    pub(super) fn new(grid: Grid, sampler: &mut dyn SlopeSampler) -> Result<Self> {
         let half = grid.half();
         let mut slopes: Vec<[f64; TERMS]> = Vec::with_capacity(grid.cells);
         // By cell: the function at all places but the first, which the cell before has.
@@ -354,11 +354,7 @@ impl PiecewiseColumns {
         }
     }
 
-    pub(super) fn new(
-        grid: Grid,
-        width: usize,
-        sampler: &mut ColumnSampler<'_>,
-    ) -> Result<Self, TableError> {
+    pub(super) fn new(grid: Grid, width: usize, sampler: &mut ColumnSampler<'_>) -> Result<Self> {
         let mut terms = Vec::with_capacity(grid.cells * TERMS * width);
         let half = grid.half();
         let mut nodes = vec![vec![Dual::default(); width]; NODES];

@@ -1,7 +1,7 @@
 //! Samplers of the exact model, with exact derivatives.
 
 use super::build::SlopeSampler;
-use super::{TableError, TableQuantity};
+use super::{Result, TableQuantity};
 use crate::model::Workspace;
 use crate::pass::InverseDynamics;
 use crate::reduced::{Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
@@ -26,11 +26,11 @@ impl ExactModel {
 }
 
 impl SlopeSampler for InertiaSampler<'_> {
-    fn sample(&mut self, q: f64) -> Result<Inertia, TableError> {
+    fn sample(&mut self, q: f64) -> Result<Inertia> {
         Ok(self.exact.inertia_derivatives(q, &mut self.workspace)?)
     }
 
-    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>, TableError> {
+    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>> {
         self.exact.inertia_batch(q, &mut self.batch);
         if let Some(&(_, error)) = self.batch.errors.first() {
             return Err(error.into());
@@ -68,7 +68,7 @@ impl<'a> ModelSampler<'a> {
         quantities: &[TableQuantity],
         q: f64,
         out: &mut [Dual],
-    ) -> Result<(), TableError> {
+    ) -> Result<()> {
         let model = self.exact.model();
         let q = Dual::variable(q);
         let mut state = None;

@@ -12,8 +12,8 @@
 //! (an ellipse about the extent with half axes (ρ ± 1/ρ)/2; Trefethen 2013, chapter 8), and a piece of p
 //! terms on a cell of half width h errs as (h/2σ)^p.
 
-use super::TableError;
 use super::piecewise::{Grid, TERMS};
+use super::{Result, TableError};
 use std::f64::consts::TAU;
 
 /// Samples of the first try and of the last, powers of two.
@@ -26,7 +26,7 @@ pub(super) const MIN_CELLS: usize = 4;
 const MIN_RELATIVE_SCALE: f64 = 1e-3;
 
 /// What a function of several values gives at many coordinates, one row each.
-pub(super) type RowSampler<'a> = dyn FnMut(&[f64]) -> Result<Vec<Vec<f64>>, TableError> + 'a;
+pub(super) type RowSampler<'a> = dyn FnMut(&[f64]) -> Result<Vec<Vec<f64>>> + 'a;
 
 /// What the values of a table are measured by, and how many cells their coefficients ask for.
 pub(super) struct Sizing {
@@ -42,7 +42,7 @@ pub(super) fn estimate_sizing(
     accuracy: f64,
     scale: &dyn Fn(&[f64]) -> Vec<f64>,
     values: &mut RowSampler<'_>,
-) -> Result<Sizing, TableError> {
+) -> Result<Sizing> {
     let mut samples: Vec<Vec<f64>> = Vec::new();
     loop {
         samples = refine_samples(grid, samples, values)?;
@@ -86,7 +86,7 @@ fn refine_samples(
     grid: Grid,
     known: Vec<Vec<f64>>,
     values: &mut RowSampler<'_>,
-) -> Result<Vec<Vec<f64>>, TableError> {
+) -> Result<Vec<Vec<f64>>> {
     let count = if known.is_empty() {
         MIN_SAMPLES
     } else {

@@ -1,7 +1,7 @@
 //! Everything at one state.
 
 use super::KinematicState;
-use crate::error::KinetostaticsError;
+use crate::error::Result;
 use crate::load::{ForceSource, LoadState};
 use crate::model::{Model, Workspace};
 use crate::pass::InverseDynamics;
@@ -31,7 +31,7 @@ impl Model {
     /// and reactions are given.
     ///
     /// # Errors
-    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
     pub fn given_state<'a, T: Scalar>(
         &'a self,
         q_dot: &[T],
@@ -39,7 +39,7 @@ impl Model {
         workspace: &'a mut Workspace<T>,
         result: &'a InverseDynamics<T>,
         set: impl FnOnce(&mut Pose<T>, &mut Motion<T>),
-    ) -> Result<EvaluatedState<'a, T>, KinetostaticsError> {
+    ) -> Result<EvaluatedState<'a, T>> {
         let mut state = self.given_kinematic_state(q_dot, workspace, set);
         let loads = &mut state.workspace.load_workspace.loads;
         loads.magnitude.copy_from_slice(magnitudes);

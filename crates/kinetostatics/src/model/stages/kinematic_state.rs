@@ -1,7 +1,7 @@
 //! Positions and velocities.
 
 use super::LoadedState;
-use crate::error::KinetostaticsError;
+use crate::error::Result;
 use crate::model::workspace::LoadWorkspace;
 use crate::model::{Model, Workspace};
 use crate::pass::{AtRest, GivenMotion, InertialBody, InverseDynamics, UnitAcceleration};
@@ -78,7 +78,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     }
 
     /// The wrenches of the loads from their magnitudes.
-    pub(super) fn update_wrenches(&mut self) -> Result<(), KinetostaticsError> {
+    pub(super) fn update_wrenches(&mut self) -> Result<()> {
         let LoadWorkspace { states, loads, .. } = &mut self.workspace.load_workspace;
         self.model.loads.update_wrenches(states, loads)
     }
@@ -88,7 +88,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
         &mut self,
         q_ddot: &[T],
         result: &mut InverseDynamics<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         self.update_wrenches()?;
         let Workspace {
             pose,
@@ -133,8 +133,8 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     /// The magnitudes of the loads at time `t` (s).
     ///
     /// # Errors
-    /// [`KinetostaticsError::MagnitudeNotFinite`] where a load has no finite magnitude.
-    pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>, KinetostaticsError> {
+    /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where a load has no finite magnitude.
+    pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>> {
         let LoadWorkspace { states, loads, .. } = &mut self.workspace.load_workspace;
         self.model.loads.update_magnitudes(t, states, loads)?;
         Ok(LoadedState::new(self))
@@ -161,12 +161,12 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     /// to one unit of its resistance (N or N·m).
     ///
     /// # Errors
-    /// [`KinetostaticsError::NoDirection`] where its two points coincide.
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where its two points coincide.
     pub fn unit_load_response(
         &mut self,
         load: usize,
         result: &mut InverseDynamics<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         let Workspace {
             pose,
             pass,

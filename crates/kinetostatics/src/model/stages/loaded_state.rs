@@ -1,7 +1,7 @@
 //! The loads, and inverse dynamics under them.
 
 use super::{EvaluatedState, KinematicState};
-use crate::error::KinetostaticsError;
+use crate::error::{KinetostaticsError, Result};
 use crate::friction;
 use crate::load::{AppliedWrench, ForceSource, Magnitude};
 use crate::model::workspace::LoadWorkspace;
@@ -61,12 +61,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     ///
     /// # Errors
     /// [`KinetostaticsError::MagnitudeNotFinite`] where it has no finite value.
-    pub fn eval_magnitude(
-        &mut self,
-        load: usize,
-        magnitude: &Magnitude,
-        t: f64,
-    ) -> Result<T, KinetostaticsError> {
+    pub fn eval_magnitude(&mut self, load: usize, magnitude: &Magnitude, t: f64) -> Result<T> {
         let LoadWorkspace { states, loads, .. } = &mut self.0.workspace.load_workspace;
         let signals = &self.0.model.loads.compiled_signals[load];
         let value = magnitude.eval_at_state(t, signals, states, &mut loads.signal_workspace);
@@ -81,7 +76,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     ///
     /// # Errors
     /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
-    pub fn wrenches(mut self) -> Result<ForceState<'a, T>, KinetostaticsError> {
+    pub fn wrenches(mut self) -> Result<ForceState<'a, T>> {
         self.0.update_wrenches()?;
         Ok(ForceState(self.0))
     }
@@ -95,7 +90,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
         mut self,
         q_ddot: &[T],
         result: &mut InverseDynamics<T>,
-    ) -> Result<ForceState<'a, T>, KinetostaticsError> {
+    ) -> Result<ForceState<'a, T>> {
         self.0.loaded_pass(q_ddot, result)?;
         Ok(ForceState(self.0))
     }
@@ -109,7 +104,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
         self,
         q_ddot: &[T],
         result: &'a mut InverseDynamics<T>,
-    ) -> Result<EvaluatedState<'a, T>, KinetostaticsError> {
+    ) -> Result<EvaluatedState<'a, T>> {
         let mut state = self.inverse_dynamics(q_ddot, result)?;
         state.0.fill_bodies();
         if !state.model.joint_frictions.is_empty() {
@@ -134,10 +129,7 @@ impl<T: Scalar> ForceState<'_, T> {
     ///
     /// # Errors
     /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
-    pub fn set_magnitudes(
-        &mut self,
-        magnitudes: impl Iterator<Item = (usize, T)>,
-    ) -> Result<(), KinetostaticsError> {
+    pub fn set_magnitudes(&mut self, magnitudes: impl Iterator<Item = (usize, T)>) -> Result<()> {
         let loads = &mut self.0.workspace.load_workspace.loads;
         for (load, magnitude) in magnitudes {
             loads.magnitude[load] = magnitude;
@@ -190,7 +182,7 @@ impl<T: Scalar> ForceState<'_, T> {
         &mut self,
         frictionless: &[T],
         responses: &[InverseDynamics<T>],
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         let LoadWorkspace {
             states,
             loads,
@@ -210,7 +202,7 @@ impl<T: Scalar> ForceState<'_, T> {
         &mut self,
         responses: &mut [InverseDynamics<T>],
         frictionless: &[T],
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         for (load, response) in self.model.frictions().zip(&mut *responses) {
             self.unit_load_response(load, response)?;
         }
