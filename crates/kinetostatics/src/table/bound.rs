@@ -11,17 +11,17 @@ use dwell_numerics::Dual;
 /// other points was 1.7 times that; where the rounding of the exact model decides most,
 /// next to change points, 3.2 times.
 const SAFETY_FACTOR: f64 = 4.0;
-/// Points at which the pieces are looked at again, steps of the golden section: so many by cell, but no
-/// fewer and no more than these.
+/// Further points at which the errors are measured, steps of the golden section: so many for each cell, within
+/// these bounds.
 const CHECK_POINTS_PER_CELL: usize = 32;
 const MIN_CHECK_POINTS: usize = 256;
 const MAX_CHECK_POINTS: usize = 4096;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Most cells: 10 megabytes for m and ½m′.
+/// Highest number of cells: 10 megabytes for m and ½m′.
 pub(super) const MAX_CELLS: usize = 65_536;
 /// Sizes that are tried.
 const MAX_ATTEMPTS: usize = 10;
-/// A table is made again with fewer cells if its bound is this part of the accuracy.
+/// A table is built again with fewer cells if its bound is below this part of the accuracy.
 const OVERSIZED: f64 = 0.05;
 
 /// A part of a table that can be built with any number of cells and compared with its sampler.
@@ -46,12 +46,10 @@ impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
     ) -> Result<()> {
         for (&q, exact) in q.iter().zip(sampler.sample_many(q)?) {
             let tabulated = self.eval(q)?;
+            let pairs = tabulated.into_iter().zip(exact);
             raise_to(
                 max_errors,
-                tabulated
-                    .into_iter()
-                    .zip(exact)
-                    .map(|(tabulated, exact)| tabulated - exact),
+                pairs.map(|(tabulated, exact)| tabulated - exact),
             );
         }
         Ok(())
@@ -73,12 +71,10 @@ impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
         for &q in q {
             sampler(q, &mut exact)?;
             self.eval(q, &mut tabulated, &mut [])?;
+            let pairs = tabulated.iter().zip(&exact);
             raise_to(
                 max_errors,
-                tabulated
-                    .iter()
-                    .zip(&exact)
-                    .map(|(tabulated, exact)| tabulated - exact.v),
+                pairs.map(|(tabulated, exact)| tabulated - exact.v),
             );
         }
         Ok(())
@@ -88,16 +84,12 @@ impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
 fn raise_to(max_errors: &mut [f64], errors: impl Iterator<Item = f64>) {
     for (max_errors, error) in max_errors.iter_mut().zip(errors) {
         // NaN counts as the largest error.
-        let error = if error.is_nan() {
-            f64::INFINITY
-        } else {
-            error.abs()
-        };
-        *max_errors = max_errors.max(error);
+        let finite = !error.is_nan();
+        *max_errors = max_errors.max(if finite { error.abs() } else { f64::INFINITY });
     }
 }
 
-/// The smallest table met whose bound is within the accuracy, and the bounds by entry, as parts of the
+/// The smallest table tried whose bound is within the accuracy, and the bounds by quantity, as parts of the
 /// scales.
 pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     grid: Grid,
@@ -125,13 +117,13 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
         if enough && best.as_ref().is_none_or(|(.., known)| cells < *known) {
             best = Some((piecewise, bounds, cells));
         }
-        // The error goes as the size of a cell to the number of terms; aimed at is half the accuracy.
+        // The error is proportional to the cell's size to the power of the number of terms; half the accuracy is aimed at.
         let next = cells as f64 * (2.0 * part).powf(1.0 / TERMS as f64);
         let next = (next.ceil() as usize).max(MIN_CELLS);
         cells = match (enough, &best) {
             (true, _) if part > OVERSIZED || next >= cells => break,
             (true, _) => next,
-            // One that was too small follows one that was large enough.
+            // A smaller one after one that was large enough does not reach the accuracy.
             (false, Some(_)) => break,
             (false, None) => next.max(cells + cells / 8 + 1),
         };
@@ -146,7 +138,7 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     }
 }
 
-/// The bounds by entry as parts of the scales: from points between the nodes of every cell, and others.
+/// The bounds by quantity as parts of the scales: from points between the nodes of every cell, and others.
 fn bounds<S: ?Sized, P: Piecewise<S>>(
     piecewise: &P,
     grid: Grid,

@@ -119,15 +119,12 @@ pub(super) fn same_kind(exact: &ExactModel, one: TableQuantity, other: TableQuan
             unit(j) == unit(k)
         }
         (
+            TableQuantity::C { load, reaction: j },
             TableQuantity::C {
-                load: l,
-                reaction: j,
-            },
-            TableQuantity::C {
-                load: n,
+                load: other,
                 reaction: k,
             },
-        ) => l == n && unit(j) == unit(k),
+        ) => load == other && unit(j) == unit(k),
         (one, other) => one == other,
     }
 }
