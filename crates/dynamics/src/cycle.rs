@@ -195,7 +195,7 @@ impl<'m> CycleProblem<'m> {
             return none("the guess is at rest");
         }
         let Some(cycle_angle) = cycle_angle(machine, guess)? else {
-            return none("the machine is not the same after any number of turns");
+            return none("the machine does not repeat itself after any number of revolutions");
         };
         Ok(Self {
             machine,

@@ -115,7 +115,7 @@ pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilib
     let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
         return Err(DynamicsError::NoEquilibrium {
-            what: "only the equilibria of one freedom can be found over an interval",
+            what: "equilibria over an interval can be found for one degree of freedom only",
         });
     }
     let mut samples = Vec::with_capacity(SEARCH_STEPS + 1);
@@ -155,7 +155,7 @@ pub fn static_force_and_potential(machine: &Machine, coordinates: &[f64]) -> Res
     let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
         return Err(DynamicsError::NoEquilibrium {
-            what: "only one freedom has a single force over its coordinate",
+            what: "a single force over the coordinate exists for one degree of freedom only",
         });
     }
     let mut workspace = machine.workspace();

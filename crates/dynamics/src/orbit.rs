@@ -87,7 +87,7 @@ impl Orbit {
         Self::of_system(&mut UnloadedSystem { model, workspace }, start, accuracy)
     }
 
-    /// The motion of a machine of one freedom whose loads all have a potential.
+    /// The motion of a machine of one degree of freedom whose loads all have a potential.
     ///
     /// # Errors
     /// As [`Orbit::new`]; [`DynamicsError::NotConservative`], [`DynamicsError::AsymptoticMotion`],
@@ -133,7 +133,7 @@ impl Orbit {
         (angle_per_period, class): (f64, MotionClass),
         accuracy: f64,
     ) -> Result<Self> {
-        // The same position without its whole turns, which would cost it digits.
+        // The same position without its whole revolutions, which would cost digits.
         let first = start.q % angle_per_period;
         let mut samples: Vec<EnergyTerms> = Vec::new();
         loop {
@@ -221,9 +221,8 @@ impl Orbit {
             }
             OrbitKind::Libration(turning_points) => {
                 let up = phase_of(q, turning_points)?;
-                let first = [up, TAU - up, TAU + up]
-                    .into_iter()
-                    .find(|&phase| phase >= self.initial_phase);
+                let mut phases = [up, TAU - up, TAU + up].into_iter();
+                let first = phases.find(|&phase| phase >= self.initial_phase);
                 let [_, time] = self.time_density.eval(first.unwrap_or(2.0 * TAU - up));
                 Some(self.initial_state.t + time - self.time_offset)
             }

@@ -114,7 +114,7 @@ pub enum TableError {
         accuracy: f64,
     },
     /// A domain that is empty, not finite or not inside the range.
-    #[error("a table cannot reach from {from} to {to}: that is empty, or leaves the range")]
+    #[error("a table cannot have the domain from {from} to {to}: it is empty, or leaves the range")]
     Domain {
         /// Lower end, rad or m.
         from: f64,
@@ -122,19 +122,17 @@ pub enum TableError {
         to: f64,
     },
     /// The range has no end and the mechanism is not periodic.
-    #[error("the range has no ends: say from where to where the table is to reach")]
+    #[error("the range has no ends: give the limits of the table's domain")]
     Unbounded,
-    /// A coefficient that is not the same a period later, such as that of a spring that winds up.
-    #[error(
-        "{what} does not come back after a turn: say from where to where the table is to reach"
-    )]
+    /// A coefficient that is not periodic, such as that of a spring that winds up.
+    #[error("{what} is not periodic: give the limits of the table's domain")]
     NotPeriodic {
         /// Which.
         what: TableQuantity,
     },
     /// The coefficients of the series do not fall to the accuracy.
     #[error(
-        "not smooth enough for a table over so much: {points} samples leave {residual:.1e} of the largest value"
+        "not smooth enough for a table over this domain: {points} samples leave {residual:.1e} of the largest value"
     )]
     NotSmooth {
         /// Samples taken.
@@ -143,7 +141,9 @@ pub enum TableError {
         residual: f64,
     },
     /// No number of cells reaches the accuracy.
-    #[error("no table of {accuracy:e}: {what} is known to {reached:.1e} of its largest value")]
+    #[error(
+        "no table of accuracy {accuracy:e}: {what} has an error of {reached:.1e} of its largest value"
+    )]
     NotReached {
         /// The coefficient that is furthest off.
         what: TableQuantity,

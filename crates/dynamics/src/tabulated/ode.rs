@@ -15,7 +15,7 @@ pub struct TabulatedMachineOde<'t> {
     dual_workspace: TableWorkspace<Dual>,
     y: Vec<Dual>,
     out: Vec<Dual>,
-    /// What works are measured by.
+    /// The scale of works, J.
     energy_scale: f64,
 }
 
@@ -29,10 +29,8 @@ struct TableWorkspace<T> {
 
 impl<T: Scalar> TableWorkspace<T> {
     fn new(machine: &TabulatedMachine) -> Self {
-        let counts = machine
-            .tabulated_loads
-            .iter()
-            .map(|load| load.signals.len());
+        let loads = machine.tabulated_loads.iter();
+        let counts = loads.map(|load| load.signals.len());
         let max = counts.max().unwrap_or(0);
         Self {
             columns: vec![T::from_f64(0.0); machine.column_count],
@@ -42,13 +40,13 @@ impl<T: Scalar> TableWorkspace<T> {
     }
 }
 
-/// What a load or drive does at one state.
+/// The contribution of a load or drive at one state.
 struct LoadContribution<T> {
-    /// F of a load, the action of a drive.
+    /// F of a load, or the force of a drive.
     force: T,
-    /// What that gives the coordinate.
+    /// The generalised force.
     generalised_force: T,
-    /// Of a drive with a state of its own: its place among such states, and its rate.
+    /// Of a drive with a state of its own: the index of that state, and its rate.
     drive_state_rate: Option<(usize, T)>,
 }
 
@@ -58,7 +56,7 @@ impl TabulatedMachine {
         2 + self.drive_state_count + self.tabulated_loads.len()
     }
 
-    /// The machine about to move on its table, from a state whose energies give the works their scale.
+    /// The ODE system of the table, from a state whose energies are the scale of the works.
     ///
     /// # Errors
     /// [`DynamicsError`] where the start cannot be evaluated.
@@ -81,11 +79,7 @@ impl TabulatedMachine {
             dual_workspace: TableWorkspace::new(self),
             y: zero.clone(),
             out: zero,
-            energy_scale: if energy_scale.is_normal() {
-                energy_scale
-            } else {
-                1.0
-            },
+            energy_scale: Some(energy_scale).filter(|e| e.is_normal()).unwrap_or(1.0),
         })
     }
 

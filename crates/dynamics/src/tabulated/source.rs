@@ -1,4 +1,4 @@
-//! What a table of a machine is made from: the exact machine, with exact derivatives.
+//! The functions from which a table of a machine is built: the exact machine with exact derivatives.
 
 use super::{CoordinateFunction, TabulatedCoordinate};
 use crate::machine::Machine;
@@ -10,9 +10,9 @@ use dwell_kinetostatics::{
 use dwell_numerics::{Dual, Scalar};
 use std::f64::consts::TAU;
 
-/// Where a measured coordinate is looked at, in parts of the extent.
+/// Points at which a measured coordinate is compared with a straight line, in parts of the domain.
 const DOMAIN_FRACTIONS: [f64; 7] = [0.0, 0.131, 0.292, 0.417, 0.583, 0.719, 0.877];
-/// Slopes nearer than this, as a part of the largest, are one: roundings of a pose.
+/// Slopes that differ by less than this part of the largest are equal to rounding.
 const SLOPE_TOLERANCE: f64 = 1e-12;
 
 /// A model in dual numbers at one coordinate and unit speed.
@@ -61,7 +61,7 @@ impl DualState<'_> {
 /// m and ½m′ of the bodies, rotors and flywheel.
 pub(super) struct TotalInertia<'a> {
     bodies: InertiaSampler<'a>,
-    /// N² J of each rotor, and the coordinate it turns with.
+    /// N² J of each rotor, and the coordinate of its drive.
     rotors: Vec<(f64, CoordinateFunction)>,
     flywheel: f64,
     dual_model: DualModel,
@@ -83,7 +83,7 @@ impl<'a> TotalInertia<'a> {
         }
     }
 
-    /// What the rotors and the flywheel add: N² J (ds/dq)² each.
+    /// The inertia of rotors, N² J (ds/dq)² each, and flywheel.
     fn rotors_and_flywheel(&mut self, q: f64) -> Result<Inertia, TableError> {
         let mut sum = Inertia {
             m: self.flywheel,
@@ -178,22 +178,22 @@ impl SlopeSampler for TotalPotential {
     }
 }
 
-/// Everything else: w of what has no potential, and what magnitudes depend on.
+/// Everything else: w of loads without a potential, and the coordinates on which magnitudes depend.
 pub(super) struct AuxiliaryColumns {
     dual_model: DualModel,
     domain: [f64; 2],
     period: Option<f64>,
     entries: Vec<TableQuantity>,
-    /// By measured entry: the coordinate, and what it gains evenly with q.
+    /// By measured entry: the coordinate, and the slope of its uniform growth with q.
     measured: Vec<(CoordinateFunction, f64)>,
 }
 
 impl AuxiliaryColumns {
-    pub(super) fn new(machine: &Machine, maker: &TableBuilder, loads: &[usize]) -> Self {
+    pub(super) fn new(machine: &Machine, builder: &TableBuilder, loads: &[usize]) -> Self {
         Self {
             dual_model: DualModel::new(machine),
-            domain: maker.domain(),
-            period: maker.period(),
+            domain: builder.domain(),
+            period: builder.period(),
             entries: loads
                 .iter()
                 .map(|&load| TableQuantity::W { load })
@@ -216,7 +216,7 @@ impl AuxiliaryColumns {
         Ok([value.v, slope.v])
     }
 
-    /// A coordinate that follows q in a line, as q itself does; none if it does not.
+    /// A coordinate that is linear in q, as q itself is; none if it is not.
     fn linear_coordinate(
         &mut self,
         measured: CoordinateFunction,
@@ -226,10 +226,8 @@ impl AuxiliaryColumns {
         let (mut max_difference, mut largest) = (0.0_f64, slope.abs());
         for part in DOMAIN_FRACTIONS {
             let [_, other] = self.value_and_slope(measured, from + part * (to - from))?;
-            (max_difference, largest) = (
-                max_difference.max((other - slope).abs()),
-                largest.max(other.abs()),
-            );
+            max_difference = max_difference.max((other - slope).abs());
+            largest = largest.max(other.abs());
         }
         let coordinate = TabulatedCoordinate {
             slope,
@@ -239,7 +237,7 @@ impl AuxiliaryColumns {
         Ok((max_difference <= SLOPE_TOLERANCE * largest).then_some(coordinate))
     }
 
-    /// How to know a coordinate.
+    /// How a coordinate is evaluated.
     pub(super) fn value(
         &mut self,
         measured: CoordinateFunction,
@@ -247,7 +245,7 @@ impl AuxiliaryColumns {
         if let Some(line) = self.linear_coordinate(measured)? {
             return Ok(line);
         }
-        // An angle may gain whole turns with each turn of q.
+        // An angle may gain whole revolutions in each period of q.
         let slope = match (self.period, measured) {
             (Some(period), CoordinateFunction::Angle(_)) => {
                 let [from, _] = self.domain;
@@ -269,7 +267,7 @@ impl AuxiliaryColumns {
         })
     }
 
-    /// How to know its slope.
+    /// How its slope is evaluated.
     pub(super) fn speed(
         &mut self,
         measured: CoordinateFunction,
@@ -293,7 +291,7 @@ impl AuxiliaryColumns {
         })
     }
 
-    /// One more column; its place.
+    /// Adds a column and returns its index.
     fn add_column(&mut self, coordinate: CoordinateFunction, slope: f64, value: bool) -> usize {
         let measured = self.measured.len();
         self.measured.push((coordinate, slope));
