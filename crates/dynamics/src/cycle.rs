@@ -150,10 +150,7 @@ pub fn initial_transient(
         t: 0.0,
         y: start.to_vec(),
     };
-    let termination = integrate(&mut ode, &start, None, options, &mut observer)?;
-    if let Some(error) = termination.error {
-        return Err(error);
-    }
+    integrate(&mut ode, &start, None, options, &mut observer)?.completed()?;
     // The works of the cycle start from zero.
     reached[machine.work_offset()..].fill(0.0);
     Ok(reached)
@@ -318,11 +315,8 @@ impl<'m> CycleProblem<'m> {
             Ok(StepControl::Continue)
         };
         let (end, options) = (Some(self.cycle_angle), &self.options);
-        let termination = integrate(&mut system, &start, end, options, &mut observer)?;
-        if let Some(error) = termination.error {
-            return Err(error);
-        }
-        let end = self.machine_state(self.cycle_angle, &termination.state.y);
+        let end = integrate(&mut system, &start, end, options, &mut observer)?.completed()?;
+        let end = self.machine_state(self.cycle_angle, &end.y);
         let by_speed = |x: &&[f64; 2], y: &&[f64; 2]| x[1].abs().total_cmp(&y[1].abs());
         let slowest = *extremes.iter().min_by(by_speed).unwrap_or(&extremes[0]);
         let fastest = *extremes.iter().max_by(by_speed).unwrap_or(&extremes[0]);

@@ -120,6 +120,13 @@ pub struct Termination {
     pub statistics: Statistics,
 }
 
+impl Termination {
+    /// The last state, if no error ended the integration early.
+    pub(crate) fn completed(self) -> Result<OdeState> {
+        self.error.map_or(Ok(self.state), Err)
+    }
+}
+
 /// The parts of a step between which a change of sign is looked for.
 const ROOT_SUBINTERVALS: usize = 4;
 

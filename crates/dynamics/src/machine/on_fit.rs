@@ -3,7 +3,7 @@
 use super::workspace::EquationWorkspace;
 use super::{Machine, MachineState};
 use crate::change_point_fit::{ChangePointFit, FitWorkspace, set_motion};
-use crate::error::{DynamicsError, Result};
+use crate::error::{Result, positive_inertia};
 use dwell_geometry::{Motion, Pose};
 use dwell_kinetostatics::{
     EvaluatedState, ForceState, InverseDynamics, Magnitude, Model, Workspace,
@@ -76,13 +76,7 @@ impl Machine {
             m += T::from_f64(drive.reflected_inertia) * first * first;
             half_dm += T::from_f64(drive.reflected_inertia) * first * second;
         }
-        let inertia = m.value();
-        if !(inertia > 0.0 && inertia.is_finite()) {
-            return Err(DynamicsError::NoInertia {
-                q: q.value(),
-                m: inertia,
-            });
-        }
+        positive_inertia(m.value(), q.value())?;
         let mut force = zero;
         for wrench in state.wrenches() {
             force += wrench.power(unit_states);

@@ -158,7 +158,6 @@ impl LinkForces {
     /// action that stands between the ends, in the order of their stations.
     pub fn sections(&self, intervals: usize) -> Vec<Section> {
         let n = intervals.max(1);
-        #[allow(clippy::cast_precision_loss, reason = "a number of stations")]
         let even = (0..=n).map(|i| self.length * (i as f64 / n as f64));
         let acted = || {
             let stations = self.point_forces.iter().map(|&(station, ..)| station);

@@ -182,15 +182,18 @@ impl<'a> Reader<'a> {
             .split_once(' ')
             .filter(|(unit, _)| ["rad", "m"].contains(unit))
             .ok_or_else(|| self.line_error("rad or m, and a name"))?;
-        let (is_angle, coordinate) = (unit == "rad", coordinate.to_owned());
-        let reactions = self.names("reactions", "reaction")?;
-        let loads = self.names("loads", "load")?;
+        let labels = Labels {
+            scene,
+            coordinate: coordinate.to_owned(),
+            reactions: self.names("reactions", "reaction")?,
+            loads: self.names("loads", "load")?,
+        };
         let accuracy = self.numbers("accuracy", 1)?[0];
         let domain = self.numbers("extent", 2)?;
         let revolutions = self.count("turns", MAX_REVOLUTIONS as usize)? as u32;
         let grid = self.grid(&domain, revolutions)?;
         let cells = self.counts("cells", 3, MAX_CELLS)?;
-        let counts = [reactions.len(), loads.len()];
+        let counts = [labels.reactions.len(), labels.loads.len()];
         let widths = [2 * counts[0], counts[1] * (1 + counts[0])];
         let none = [false, widths[0] == 0, widths[1] == 0];
         let mut pairs = cells.iter().zip(none);
@@ -216,7 +219,7 @@ impl<'a> Reader<'a> {
         }
         let table = TabulatedModel {
             accuracy,
-            is_angle,
+            is_angle: unit == "rad",
             inertia: IntegratedCurve::from_cell_data(grid.with_cells(cells[0]), cell_data),
             reactions: self.columns("ab", grid.with_cells(cells[1].max(1)), widths[0])?,
             loads: self.columns("wc", grid.with_cells(cells[2].max(1)), widths[1])?,
@@ -227,12 +230,6 @@ impl<'a> Reader<'a> {
             self.line += 1;
             return Err(self.line_error("nothing after the last cell but `check`"));
         }
-        let labels = Labels {
-            scene,
-            coordinate,
-            reactions,
-            loads,
-        };
         Ok((table, labels))
     }
 

@@ -127,7 +127,6 @@ fn a_spring_gives_back_what_it_took_across_the_half_turn() {
         let h = 0.01;
         let fall =
             (8.0 * (around[k - 1] - around[k + 1]) - (around[k - 2] - around[k + 2])) / (12.0 * h);
-        #[allow(clippy::cast_precision_loss, reason = "a position")]
         let q = 2.0 + h * k as f64;
         let [_, angle] = couple(&case, &[q]);
         crossed |= (angle - PI).abs() < 0.02;
