@@ -37,6 +37,9 @@ const MAX_GAP: f64 = 1e-6;
 /// A gap below this is as good as any.
 const GAP_ROUNDING: f64 = 1e-11;
 
+/// A result that fails with a [`ChangePointFitError`] unless another error is named.
+pub(crate) type Result<T, E = ChangePointFitError> = std::result::Result<T, E>;
+
 /// Why a change point cannot be crossed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ChangePointFitError {
@@ -157,7 +160,7 @@ pub(crate) fn extrapolate(
     upwards: bool,
     [from, to]: [f64; 2],
     x: f64,
-) -> Result<Vec<f64>, ChangePointFitError> {
+) -> Result<Vec<f64>> {
     let plan = model.plan();
     let direction = if upwards { 1.0 } else { -1.0 };
     let mut pose = plan.pose();
@@ -194,7 +197,7 @@ impl ChangePointFit {
         branches: [&Model; 2],
         center: f64,
         [half_width, coordinate_scale]: [f64; 2],
-    ) -> Result<Self, ChangePointFitError> {
+    ) -> Result<Self> {
         let available_radius = |model: &Model| match model.plan().range().limits() {
             Some((from, to)) => 0.45 * (to - from),
             None => f64::INFINITY,
@@ -237,7 +240,7 @@ impl ChangePointFit {
         center: f64,
         half_width: f64,
         fit_radius: f64,
-    ) -> Result<PolynomialFit, ChangePointFitError> {
+    ) -> Result<PolynomialFit> {
         let above: Vec<f64> = chebyshev_nodes(half_width, fit_radius, NODES).collect();
         let below: Vec<f64> = above.iter().rev().map(|d| -d).collect();
         let mut samples: Vec<Vec<f64>> = Vec::with_capacity(2 * NODES);
@@ -277,7 +280,7 @@ fn derivative_gap(
     branches: [&Model; 2],
     center: f64,
     [half_width, coordinate_scale]: [f64; 2],
-) -> Result<f64, ChangePointFitError> {
+) -> Result<f64> {
     let mut values = fit.workspace();
     let mut largest = 0.0_f64;
     for (model, direction) in branches.iter().zip([-1.0, 1.0]) {

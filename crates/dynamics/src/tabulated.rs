@@ -24,7 +24,7 @@ use crate::drive::CompiledDrive;
 use crate::machine::{Machine, NonconservativeSource};
 use dwell_geometry::PositionError;
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::table::{Bound, IntegratedCurve, PiecewiseColumns, TableBuilder};
+use dwell_kinetostatics::table::{Bound, IntegratedCurve, PiecewiseColumns, Result, TableBuilder};
 use dwell_kinetostatics::{
     CompiledSignal, ExactModel, Load, LoadKind, Magnitude, TableDomain, TableError, TableQuantity,
 };
@@ -241,11 +241,7 @@ fn load_of(machine: &Machine, source: NonconservativeSource) -> Option<usize> {
 }
 
 impl TabulatedLoad {
-    fn new(
-        machine: &Machine,
-        load: usize,
-        auxiliary: &mut AuxiliaryColumns,
-    ) -> Result<Self, TableError> {
+    fn new(machine: &Machine, load: usize, auxiliary: &mut AuxiliaryColumns) -> Result<Self> {
         let model = machine.model();
         let drive = machine.drives.iter().find(|drive| drive.load == load);
         let (effect, magnitude) = match (drive, &model.loads()[load]) {

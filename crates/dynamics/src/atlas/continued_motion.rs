@@ -2,7 +2,6 @@
 
 use super::Atlas;
 use crate::error::{DynamicsError, Result};
-use crate::ode::OdeState;
 use crate::options::Statistics;
 use crate::solve::{EventOccurrence, Solution};
 use dwell_geometry::BodyId;
@@ -102,12 +101,6 @@ impl ContinuedMotion {
     pub fn statistics(&self) -> Statistics {
         let each = self.segments.iter().map(|s| s.solution.statistics);
         each.fold(Statistics::default(), add_statistics)
-    }
-
-    /// The last state, with the chart it is of.
-    pub fn last_state(&self) -> Option<(usize, &OdeState)> {
-        let segment = self.segments.last()?;
-        Some((segment.chart, segment.solution.steps.last()?))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::candidates::actuator;
 use super::{Atlas, Chart};
 use crate::change_point_fit::{
-    ChangePointFit, ChangePointFitError, FitWindow, extrapolate, half_width_for,
+    ChangePointFit, ChangePointFitError, FitWindow, Result, extrapolate, half_width_for,
 };
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{AssemblyConfiguration, BodyId, Mechanism, RangeLimit};
@@ -40,12 +40,7 @@ impl Atlas<'_> {
     }
 
     /// Builds the fit across a change point, with the chart behind it.
-    fn build_crossing(
-        &mut self,
-        chart: usize,
-        limit: RangeLimit,
-        upwards: bool,
-    ) -> Result<(), ChangePointFitError> {
+    fn build_crossing(&mut self, chart: usize, limit: RangeLimit, upwards: bool) -> Result<()> {
         let current = &self.charts[chart];
         let plan = current.machine.model.plan();
         if current.machine.model.frictions().len() > 0 {
@@ -101,11 +96,7 @@ impl Atlas<'_> {
 
     /// Records that a coordinate returns to a chart after some revolutions (rad); the period that is known
     /// then, if one is.
-    fn record_period(
-        &mut self,
-        chart: usize,
-        angle_shift: f64,
-    ) -> Result<Option<f64>, ChangePointFitError> {
+    fn record_period(&mut self, chart: usize, angle_shift: f64) -> Result<Option<f64>> {
         let coordinate = self.charts[chart].coordinate;
         let mut known = self.periods.iter().filter(|(c, _)| *c == coordinate);
         let known = known.next().map(|(_, period)| *period);
@@ -135,7 +126,7 @@ impl Atlas<'_> {
         next_chart: usize,
         upwards: bool,
         half_width: f64,
-    ) -> Result<(f64, f64), ChangePointFitError> {
+    ) -> Result<(f64, f64)> {
         let plan = self.charts[next_chart].machine.model.plan();
         let [low, high] = plan.range_limits();
         let opposite = if upwards { low } else { high };
@@ -162,7 +153,7 @@ impl Atlas<'_> {
         q: f64,
         angles: &[f64],
         tolerance: f64,
-    ) -> Result<usize, ChangePointFitError> {
+    ) -> Result<usize> {
         let current = &self.charts[chart];
         let (name, coordinate) = (current.name.clone(), current.coordinate);
         let on_branch = |chart: &Chart| {

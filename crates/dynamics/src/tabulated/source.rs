@@ -2,10 +2,10 @@
 
 use super::{CoordinateFunction, TabulatedCoordinate};
 use crate::machine::Machine;
-use dwell_kinetostatics::table::{InertiaSampler, SlopeSampler, TableBuilder};
+use dwell_kinetostatics::table::{InertiaSampler, Result, SlopeSampler, TableBuilder};
 use dwell_kinetostatics::{
     ExactModel, Inertia, InverseDynamics, KinematicState, KinetostaticsError, Magnitude, Model,
-    TableError, TableQuantity, Workspace,
+    TableQuantity, Workspace,
 };
 use dwell_numerics::{Dual, Scalar};
 use std::f64::consts::TAU;
@@ -32,7 +32,7 @@ impl DualModel {
         }
     }
 
-    fn at(&mut self, q: f64) -> Result<DualState<'_>, TableError> {
+    fn at(&mut self, q: f64) -> Result<DualState<'_>> {
         let (q, one) = (Dual::variable(q), Dual::from_f64(1.0));
         Ok(DualState {
             state: self
@@ -84,7 +84,7 @@ impl<'a> TotalInertia<'a> {
     }
 
     /// The inertia of rotors, N² J (ds/dq)² each, and flywheel.
-    fn rotors_and_flywheel(&mut self, q: f64) -> Result<Inertia, TableError> {
+    fn rotors_and_flywheel(&mut self, q: f64) -> Result<Inertia> {
         let mut sum = Inertia {
             m: self.flywheel,
             ..Inertia::default()
@@ -106,7 +106,7 @@ impl<'a> TotalInertia<'a> {
 }
 
 impl SlopeSampler for TotalInertia<'_> {
-    fn sample(&mut self, q: f64) -> Result<Inertia, TableError> {
+    fn sample(&mut self, q: f64) -> Result<Inertia> {
         let (bodies, added) = (self.bodies.sample(q)?, self.rotors_and_flywheel(q)?);
         Ok(Inertia {
             m: bodies.m + added.m,
@@ -115,7 +115,7 @@ impl SlopeSampler for TotalInertia<'_> {
         })
     }
 
-    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>, TableError> {
+    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>> {
         let mut found = self.bodies.sample_many(q)?;
         for ([m, half_dm], &q) in found.iter_mut().zip(q) {
             let added = self.rotors_and_flywheel(q)?;
@@ -159,7 +159,7 @@ impl TotalPotential {
 }
 
 impl SlopeSampler for TotalPotential {
-    fn sample(&mut self, q: f64) -> Result<Inertia, TableError> {
+    fn sample(&mut self, q: f64) -> Result<Inertia> {
         let model = &self.dual_model.model;
         let state = model.kinematic_state(&[q], &[1.0], &mut self.workspace)?;
         let all = self.loads.iter();
@@ -207,11 +207,7 @@ impl AuxiliaryColumns {
     }
 
     /// The value and the slope of a coordinate.
-    fn value_and_slope(
-        &mut self,
-        measured: CoordinateFunction,
-        q: f64,
-    ) -> Result<[f64; 2], TableError> {
+    fn value_and_slope(&mut self, measured: CoordinateFunction, q: f64) -> Result<[f64; 2]> {
         let [value, slope] = self.dual_model.at(q)?.state.coordinate(measured);
         Ok([value.v, slope.v])
     }
@@ -220,7 +216,7 @@ impl AuxiliaryColumns {
     fn linear_coordinate(
         &mut self,
         measured: CoordinateFunction,
-    ) -> Result<Option<TabulatedCoordinate>, TableError> {
+    ) -> Result<Option<TabulatedCoordinate>> {
         let [from, to] = self.domain;
         let [value, slope] = self.value_and_slope(measured, from)?;
         let (mut max_difference, mut largest) = (0.0_f64, slope.abs());
@@ -238,10 +234,7 @@ impl AuxiliaryColumns {
     }
 
     /// How a coordinate is evaluated.
-    pub(super) fn value(
-        &mut self,
-        measured: CoordinateFunction,
-    ) -> Result<TabulatedCoordinate, TableError> {
+    pub(super) fn value(&mut self, measured: CoordinateFunction) -> Result<TabulatedCoordinate> {
         if let Some(line) = self.linear_coordinate(measured)? {
             return Ok(line);
         }
@@ -268,10 +261,7 @@ impl AuxiliaryColumns {
     }
 
     /// How its slope is evaluated.
-    pub(super) fn speed(
-        &mut self,
-        measured: CoordinateFunction,
-    ) -> Result<TabulatedCoordinate, TableError> {
+    pub(super) fn speed(&mut self, measured: CoordinateFunction) -> Result<TabulatedCoordinate> {
         if let Some(line) = self.linear_coordinate(measured)? {
             return Ok(TabulatedCoordinate {
                 slope: 0.0,
@@ -308,7 +298,7 @@ impl AuxiliaryColumns {
     }
 
     /// All columns at a coordinate.
-    pub(super) fn fill(&mut self, q: f64, out: &mut [Dual]) -> Result<(), TableError> {
+    pub(super) fn fill(&mut self, q: f64, out: &mut [Dual]) -> Result<()> {
         let mut state = self.dual_model.at(q)?;
         for (out, entry) in out.iter_mut().zip(&self.entries) {
             *out = match *entry {
