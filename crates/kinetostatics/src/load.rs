@@ -162,7 +162,7 @@ pub enum Magnitude {
     Function(MagnitudeFunction, Vec<Signal>),
     /// Coulomb friction, from the joint's own reactions.
     Friction(Friction),
-    /// The value that [`LoadedState::set_magnitude`](crate::LoadedState::set_magnitude) was given last: of a drive,
+    /// The value given by [`LoadedState::set_magnitude`](crate::LoadedState::set_magnitude), zero until then: of a drive,
     /// which is evaluated outside the model from these signals.
     External(Vec<Signal>),
 }
