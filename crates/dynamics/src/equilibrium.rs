@@ -15,15 +15,15 @@ const SEARCH_STEPS: usize = 512;
 /// Steps of Newton's method, and halvings of one.
 const MAX_NEWTON_STEPS: usize = 100;
 const MAX_HALVINGS: usize = 40;
-/// Most that a coordinate is moved in a step, rad (or m): an angle further on is another place.
+/// Largest change of a coordinate in a step, rad or m.
 const MAX_COORDINATE_STEP: f64 = 0.5;
-/// A step this small, relatively, that comes no nearer is rounding.
+/// A step that does not reduce the residual and is smaller than this, relatively, is rounding.
 const STEP_TOLERANCE: f64 = 1e-9;
-/// A force below this part of the largest is none.
+/// A force below this part of the largest is zero.
 const FORCE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
-/// A real part below this part of the largest eigenvalue is none.
+/// A real part below this part of the largest eigenvalue is zero.
 const DAMPING_TOLERANCE: f64 = 1e-9;
-/// Pivots below this part of the largest leave a matrix without a solution.
+/// With pivots below this part of the largest a matrix is singular.
 const PIVOT_TOLERANCE: f64 = 1e-14;
 
 /// The stability of an equilibrium.
@@ -106,7 +106,7 @@ fn stability(eigenvalues: &[[f64; 2]]) -> Stability {
 
 /// All equilibria of a machine of one free coordinate between two values of it, in their order.
 ///
-/// Of a whole turn, from and to, only one end counts.
+/// Of a whole revolution only one end counts.
 ///
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`] where every position is one, or a drive never settles; and what stands
@@ -132,10 +132,8 @@ pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilib
     let mut zeros = problem.zeros(&samples, size)?;
     let revolutions = (to - from) / TAU;
     let at_both_ends = [zeros.first(), zeros.last()] == [Some(&from), Some(&to)];
-    if at_both_ends
-        && revolutions == revolutions.round()
-        && machine.model().plan().range().period().is_some()
-    {
+    let periodic = machine.model().plan().range().period().is_some();
+    if at_both_ends && revolutions == revolutions.round() && periodic {
         zeros.pop();
     }
     let mut found = Vec::with_capacity(zeros.len());
@@ -146,8 +144,8 @@ pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilib
     Ok(found)
 }
 
-/// What a machine of one free coordinate has at rest at each of some coordinates, the drives settled: the
-/// generalised force, N·m or N, and the potential, J.
+/// The generalised force (N·m or N) and the potential (J) of a machine of one free coordinate at rest, at each of some
+/// coordinates, with the drives settled.
 ///
 /// # Errors
 /// As of [`equilibria`].
@@ -243,10 +241,8 @@ impl<'m> EquilibriumProblem<'m> {
         self.ode.jacobian(0.0, &self.y, &mut self.jacobian)?;
         let n = self.machine.state_count();
         let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
-        let mut response: Vec<f64> = drive_states
-            .iter()
-            .map(|&i| -self.jacobian[i * n])
-            .collect();
+        let entries = drive_states.iter().map(|&i| -self.jacobian[i * n]);
+        let mut response: Vec<f64> = entries.collect();
         self.solve_block(&drive_states, &drive_states, &mut response)?;
         let through = drive_states.iter().zip(&response);
         let more: f64 = through.map(|(&j, dm)| self.jacobian[n + j] * dm).sum();
@@ -264,7 +260,7 @@ impl<'m> EquilibriumProblem<'m> {
             } else if before.1 * now.1 < 0.0 {
                 zeros.extend(root::find(|q| self.acceleration(q), before.0, now.0)?);
             } else if before.1 * before.2 < 0.0 && now.1 * now.2 > 0.0 {
-                // It comes nearer to zero, and goes away from it again.
+                // It approaches zero and leaves it again.
                 let slope = |q: f64| self.acceleration(q).and_then(|_| self.acceleration_slope());
                 let Some(nearest) = root::find(slope, before.0, now.0)? else {
                     continue;
@@ -331,7 +327,7 @@ impl<'m> EquilibriumProblem<'m> {
                 factor *= 0.5;
             }
             if !nearer {
-                // Rounding if the whole step was small, else a dead end.
+                // Rounding if the whole step was small, else Newton's method fails.
                 self.y = from;
                 self.rhs()?;
                 if relative_step <= STEP_TOLERANCE {

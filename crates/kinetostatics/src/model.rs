@@ -48,13 +48,9 @@ impl Model {
         assembly: &AssemblyConfiguration,
         reactions: &[Reaction],
     ) -> Result<Self, ModelError> {
-        let valid = |m: &Mass| {
-            m.mass >= 0.0
-                && m.inertia >= 0.0
-                && m.mass.is_finite()
-                && m.inertia.is_finite()
-                && m.center.is_finite()
-        };
+        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+        let valid =
+            |m: &Mass| not_negative(m.mass) && not_negative(m.inertia) && m.center.is_finite();
         if masses.len() != mechanism.bodies.len() || !masses.iter().all(valid) {
             return Err(ModelError::Masses);
         }
@@ -197,10 +193,8 @@ impl Model {
         for body in &self.pass_model.inertial_bodies {
             let id = BodyId(body.body);
             let center = states.point(id, self.masses[id.0].center);
-            let (w, a) = (
-                states.body(id).angular_velocity,
-                states.body(id).angular_acceleration,
-            );
+            let body_state = states.body(id);
+            let (w, a) = (body_state.angular_velocity, body_state.angular_acceleration);
             let (mass, inertia) = (T::from_f64(body.mass), T::from_f64(body.inertia));
             energy += mass * center.velocity.dot(center.velocity) + inertia * w * w;
             power += mass * center.velocity.dot(center.acceleration) + inertia * w * a;

@@ -54,10 +54,8 @@ impl CompiledLoads {
             let mass = masses.get(body.0).copied()?;
             (mass.mass > 0.0).then_some((body, mass))
         };
-        let weighted_bodies = plan
-            .moving_bodies()
-            .iter()
-            .filter_map(|c| weight(BodyId(c.body)));
+        let bodies = plan.moving_bodies().iter();
+        let weighted_bodies = bodies.filter_map(|c| weight(BodyId(c.body)));
         Ok(Self {
             loads,
             compiled_signals: signals,
@@ -80,6 +78,7 @@ impl CompiledLoads {
             | LoadKind::SlideForce(_)
             | LoadKind::SlideDamper(_) => 2,
         });
+        let signal_counts = self.compiled_signals.iter().map(Vec::len);
         LoadState {
             magnitude: vec![T::from_f64(0.0); self.loads.len()],
             wrenches: Vec::with_capacity(wrench_counts.sum()),
@@ -87,13 +86,7 @@ impl CompiledLoads {
             force: vec![Vec2::zero(); bodies],
             moment: vec![T::from_f64(0.0); bodies],
             subtree_force: vec![Vec2::zero(); plan.moving_bodies().len()],
-            signal_workspace: SignalWorkspace::new(
-                self.compiled_signals
-                    .iter()
-                    .map(Vec::len)
-                    .max()
-                    .unwrap_or(0),
-            ),
+            signal_workspace: SignalWorkspace::new(signal_counts.max().unwrap_or(0)),
         }
     }
 
@@ -114,12 +107,8 @@ impl CompiledLoads {
                 out.magnitude[i] = T::from_f64(0.0);
                 continue;
             }
-            let magnitude = load.magnitude.eval_at_state(
-                t,
-                &self.compiled_signals[i],
-                states,
-                &mut out.signal_workspace,
-            );
+            let (signals, workspace) = (&self.compiled_signals[i], &mut out.signal_workspace);
+            let magnitude = load.magnitude.eval_at_state(t, signals, states, workspace);
             if !magnitude.value().is_finite() {
                 return Err(KinetostaticsError::MagnitudeNotFinite { load: i });
             }

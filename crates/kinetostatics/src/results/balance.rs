@@ -72,10 +72,8 @@ impl EvaluatedState<'_> {
         for body in &self.model.pass_model.inertial_bodies {
             let id = BodyId(body.body);
             let center = states.point(id, self.model.masses[id.0].center);
-            let (w, a) = (
-                states.body(id).angular_velocity,
-                states.body(id).angular_acceleration,
-            );
+            let state = states.body(id);
+            let (w, a) = (state.angular_velocity, state.angular_acceleration);
             let [v, v_dot] = [center.velocity, center.acceleration];
             let terms = [body.mass * v.dot(v_dot), body.inertia * w * a];
             sum.kinetic_energy += 0.5 * (body.mass * v.dot(v) + body.inertia * w * w);
