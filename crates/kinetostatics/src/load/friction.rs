@@ -59,9 +59,8 @@ impl Friction {
                 joint.kind == JointKind::Revolute && kind == LoadKind::Torque { bodies }
             }
             FrictionContact::Guide { .. } => {
-                let kind_of = joint.kind;
                 let slides = matches!(
-                    kind_of,
+                    joint.kind,
                     JointKind::Prismatic { .. } | JointKind::Slot { .. }
                 );
                 slides && matches!(kind, LoadKind::SlideForce(g) if g.bodies == joint.bodies)
