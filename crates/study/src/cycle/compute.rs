@@ -118,14 +118,9 @@ fn cycle_table(
     let mut workspace = machine.workspace();
     let mut rows = Vec::with_capacity(cycle.samples.len());
     for point in &cycle.samples {
-        let evaluated = machine.evaluate(point.t, &point.y, &mut workspace);
-        evaluated.map_err(|e| scene_machine.explain(&e))?;
-        let mut row = vec![
-            point.t,
-            point.y[0],
-            point.y[1],
-            workspace.q_ddot[coordinate],
-        ];
+        let state = machine.evaluate(point.t, &point.y, &mut workspace);
+        let state = state.map_err(|e| scene_machine.explain(&e))?;
+        let mut row = vec![point.t, point.y[0], point.y[1], state.q_ddot()[coordinate]];
         row.extend(&point.y[2..]);
         rows.push(row);
     }

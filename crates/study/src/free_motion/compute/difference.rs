@@ -147,17 +147,12 @@ impl FreeMotionProblem<'_> {
             .map_or(&self.output_model, |chart| &chart.output_model);
         let (mut workspace, mut inverse_dynamics) =
             (output_model.workspace(), output_model.result_buffer());
+        let state = output_model.kinematic_state(&sample.q, &sample.q_dot, &mut workspace)?;
+        let mut state = state.apply_loads(sample.t)?;
         for &(load, magnitude) in &sample.drive_magnitudes {
-            workspace.set_magnitude(load, magnitude);
+            state.set_magnitude(load, magnitude);
         }
-        let TrajectorySample {
-            t,
-            q,
-            q_dot,
-            q_ddot,
-            ..
-        } = sample;
-        output_model.kinetostatics(*t, q, q_dot, q_ddot, &mut workspace, &mut inverse_dynamics)?;
+        state.evaluate(&sample.q_ddot, &mut inverse_dynamics)?;
         Ok(inverse_dynamics.reactions)
     }
 }

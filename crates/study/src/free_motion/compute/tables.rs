@@ -3,7 +3,7 @@
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::trajectory::compute::{BALANCE, ExtraColumn, KINETIC, POTENTIAL, TrajectorySample};
 use dwell_dynamics::{
-    DynamicsError, EventOccurrence, Machine, MachineWorkspace, NonconservativeSource, OdeState,
+    DynamicsError, EventOccurrence, Machine, MachineState, NonconservativeSource, OdeState,
 };
 use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
@@ -25,7 +25,7 @@ impl FreeMotionProblem<'_> {
                 if machine.is_in_fit_window(&point.y) {
                     continue;
                 }
-                machine.evaluate(point.t, &point.y, &mut workspace)?;
+                let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
                 let actuator_coordinate = motion
                     .actuator_coordinates
                     .get(segment)
@@ -36,7 +36,7 @@ impl FreeMotionProblem<'_> {
                     *chart,
                     actuator_coordinate,
                     point,
-                    &workspace,
+                    &state,
                     &mut initial_balance,
                 ));
             }
@@ -54,11 +54,11 @@ impl FreeMotionProblem<'_> {
         chart: usize,
         actuator_coordinate: Option<[f64; 3]>,
         point: &OdeState,
-        workspace: &MachineWorkspace,
+        state: &MachineState<'_>,
         initial_balance: &mut Option<f64>,
     ) -> TrajectorySample {
         let first = machine.work_offset();
-        let [kinetic, potential] = machine.energy(workspace);
+        let [kinetic, potential] = state.energy();
         let works = &point.y[first..];
         let sum = kinetic + potential - works.iter().sum::<f64>();
         let initial = *initial_balance.get_or_insert(sum);
@@ -70,13 +70,13 @@ impl FreeMotionProblem<'_> {
         let drives = count - machine.drives()..count;
         TrajectorySample {
             t: point.t,
-            q: workspace.q.clone(),
-            q_dot: workspace.q_dot.clone(),
-            q_ddot: workspace.q_ddot.clone(),
+            q: state.q().to_vec(),
+            q_dot: state.q_dot().to_vec(),
+            q_ddot: state.q_ddot().to_vec(),
             chart,
             actuator_coordinate,
             drive_magnitudes: drives
-                .map(|load| (load, workspace.inner.loads().magnitude[load]))
+                .map(|load| (load, state.magnitudes()[load]))
                 .collect(),
             extra_values,
         }
@@ -158,18 +158,14 @@ impl FreeMotionProblem<'_> {
             let machine = self.machine(motion, chart);
             let mut workspace = machine.workspace();
             let mut row = vec![o.state.t, (o.event + 1) as f64];
-            if machine
-                .evaluate(o.state.t, &o.state.y, &mut workspace)
-                .is_ok()
-            {
+            if let Ok(state) = machine.evaluate(o.state.t, &o.state.y, &mut workspace) {
                 for actuator in actuators {
                     let measured = CoordinateFunction::find(
                         &self.loaded_scene.mechanism,
                         actuator.coordinate(),
                     );
-                    let [q, q_dot, _] = measured.map_or([f64::NAN; 3], |measured| {
-                        workspace.inner.states().coordinate(measured)
-                    });
+                    let [q, q_dot] =
+                        measured.map_or([f64::NAN; 2], |measured| state.coordinate(measured));
                     row.extend([q, q_dot]);
                 }
             }

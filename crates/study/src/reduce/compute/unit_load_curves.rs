@@ -60,21 +60,22 @@ impl UnitLoadCurves {
                 .any(|load| load.does_work() && load.is_conservative()),
         };
         for &q in q {
-            model
-                .set_state(0.0, &[q], &[1.0], &mut workspace)
-                .map_err(explain)?;
+            let state = model.kinematic_state(&[q], &[1.0], &mut workspace);
+            let state = state
+                .map_err(KinetostaticsError::from)
+                .and_then(|state| state.apply_loads(0.0));
+            let mut state = state.map_err(explain)?;
             let mut row = Vec::with_capacity(curves.loads.len());
             for load in 0..curves.loads.len() {
-                let response =
-                    model.unit_load_response(load, &mut workspace, &mut inverse_dynamics);
+                let response = state.unit_load_response(load, &mut inverse_dynamics);
                 response.map_err(explain)?;
                 let mut values = vec![-inverse_dynamics.tau[0]];
                 values.extend(&inverse_dynamics.reactions);
                 row.push(values);
             }
             curves.rows.push(row);
-            let potentials =
-                (0..curves.loads.len()).filter_map(|l| model.potential_energy(l, &workspace));
+            let loads = 0..curves.loads.len();
+            let potentials = loads.filter_map(|load| state.potential_energy(load));
             curves.potential.push(potentials.sum());
         }
         Ok(Some(curves))

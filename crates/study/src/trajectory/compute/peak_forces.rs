@@ -104,20 +104,20 @@ impl ForceEvaluator<'_> {
         let TrajectorySample {
             q, q_dot, q_ddot, ..
         } = sample;
-        match self.analysis {
+        let state = match self.analysis {
             Analysis::Statics => self.model.statics(t, q, workspace, inverse_dynamics)?,
             _ => self
                 .model
                 .kinetostatics(t, q, q_dot, q_ddot, workspace, inverse_dynamics)?,
-        }
-        if let Some(fault) = self.monitor.off_table(t, workspace.states()) {
+        };
+        if let Some(fault) = self.monitor.off_table(t, state.bodies()) {
             return Err(StopCause::Fault(fault));
         }
         if self.has_couplings {
-            plan.velocities(&workspace.pose, q_dot, &mut self.motion_buffer);
-            plan.accelerations(&workspace.pose, q_ddot, &mut self.motion_buffer);
+            plan.velocities(state.pose(), q_dot, &mut self.motion_buffer);
+            plan.accelerations(state.pose(), q_ddot, &mut self.motion_buffer);
             self.body_states
-                .fill(plan, &workspace.pose, &self.motion_buffer);
+                .fill(plan, state.pose(), &self.motion_buffer);
             if let Some(fault) = self.monitor.discontinuity(&self.body_states) {
                 return Err(StopCause::Fault(fault));
             }

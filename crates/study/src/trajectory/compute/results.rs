@@ -10,8 +10,8 @@ use crate::trajectory::compute::{
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
 use dwell_kinetostatics::{
-    AppliedWrench, ForceSource, FreeBodyForces, InverseDynamics, LoadKind, Model, PowerBalance,
-    Workspace, Wrench,
+    AppliedWrench, EvaluatedState, ForceSource, FreeBodyForces, InverseDynamics, LoadKind, Model,
+    PowerBalance, Workspace, Wrench,
 };
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
@@ -47,17 +47,67 @@ impl TrajectoryResults {
     }
 }
 
+/// The forces at one position.
+struct PositionForces {
+    body_forces: FreeBodyForces,
+    wrenches: Vec<AppliedWrench>,
+    /// By load.
+    magnitudes: Vec<f64>,
+    load_powers: Vec<f64>,
+    /// By joint: the force on its second body, N.
+    joint_forces: Vec<Vec2>,
+    shaking_wrench: Wrench,
+    power_balance: PowerBalance,
+}
+
+impl PositionForces {
+    fn new(scene: &Scene, model: &Model) -> Result<Self, StudyError> {
+        Ok(Self {
+            body_forces: FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?,
+            wrenches: Vec::new(),
+            magnitudes: vec![0.0; scene.loads.len()],
+            load_powers: vec![0.0; scene.loads.len()],
+            joint_forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
+            shaking_wrench: Wrench::default(),
+            power_balance: PowerBalance::default(),
+        })
+    }
+
+    fn read(&mut self, scene: &Scene, state: &EvaluatedState<'_>) {
+        self.body_forces.wrenches(state, &mut self.wrenches);
+        self.joint_forces.fill(Vec2::ZERO);
+        for wrench in &self.wrenches {
+            if let ForceSource::Joint(j) = wrench.source
+                && wrench.body == scene.mechanism.joints[j.0].bodies[1]
+            {
+                self.joint_forces[j.0] += wrench.force;
+            }
+        }
+        let shaking_force = self.body_forces.shaking_force(state, &self.wrenches);
+        let [by_reactions, by_loads] =
+            [shaking_force.from_reactions, shaking_force.loads_on_ground];
+        self.shaking_wrench = Wrench {
+            force: by_reactions.force + by_loads.force,
+            moment: by_reactions.moment + by_loads.moment,
+        };
+        self.power_balance = state.power_balance();
+        state.load_powers(&mut self.load_powers);
+        self.magnitudes.clone_from(&state.loads().magnitude);
+    }
+}
+
 /// Evaluates one position after another.
 struct PositionEvaluator<'a> {
     scene: &'a Scene,
     model: &'a Model,
-    body_forces: FreeBodyForces,
     analysis: Analysis,
     /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
     whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
     workspace: Workspace<f64>,
     inverse_dynamics: InverseDynamics<f64>,
-    wrenches: Vec<AppliedWrench>,
+    forces: PositionForces,
+    /// Of kinematics alone.
+    pose: Pose<f64>,
     motion_buffer: Motion<f64>,
     /// The bodies at the velocities of the trajectory, whatever the analysis.
     body_states: BodyStates,
@@ -66,11 +116,6 @@ struct PositionEvaluator<'a> {
     /// Mean length of a body, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
     size: f64,
     speed_scales: [SpeedScale; 2],
-    load_powers: Vec<f64>,
-    /// By joint: the force on its second body, N.
-    joint_forces: Vec<Vec2>,
-    shaking_wrench: Wrench,
-    power_balance: PowerBalance,
     monitor: TrajectoryMonitor<'a>,
 }
 
@@ -83,9 +128,8 @@ impl<'a> PositionEvaluator<'a> {
     ) -> Result<Self, StudyError> {
         let is_pruned = model.plan().pruned_groups().contains(&true);
         let checks_whole = is_pruned && whole_plan.actuators() > 1;
-        let body_forces = FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?;
         Ok(Self {
-            body_forces,
+            forces: PositionForces::new(scene, model)?,
             scene,
             model,
             analysis,
@@ -94,19 +138,22 @@ impl<'a> PositionEvaluator<'a> {
             speed_scales: [SpeedScale::default(); 2],
             workspace: model.workspace(),
             inverse_dynamics: model.result_buffer(),
-            wrenches: Vec::new(),
+            pose: model.plan().pose(),
             motion_buffer: model.plan().motion(),
             body_states: BodyStates::new(model.plan()),
             unit_speed_states: BodyStates::new(model.plan()),
-            load_powers: vec![0.0; scene.loads.len()],
-            joint_forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
-            shaking_wrench: Wrench::default(),
-            power_balance: PowerBalance::default(),
             monitor: TrajectoryMonitor::new(scene),
         })
     }
 
-    fn evaluate(&mut self, sample: &TrajectorySample, timed: bool) -> Result<(), StopCause> {
+    /// Evaluates the `k`th position, and adds the internal forces there to `links`.
+    fn evaluate(
+        &mut self,
+        k: usize,
+        sample: &TrajectorySample,
+        timed: bool,
+        links: &mut [SectionedLink],
+    ) -> Result<(), StopCause> {
         let plan = self.model.plan();
         let TrajectorySample {
             t,
@@ -122,67 +169,46 @@ impl<'a> PositionEvaluator<'a> {
         let (workspace, inverse_dynamics) = (&mut self.workspace, &mut self.inverse_dynamics);
         // Without time, loads have their value at t = 0.
         let t = if timed { *t } else { 0.0 };
-        match self.analysis {
-            Analysis::Kinematics => plan.positions(q, &mut workspace.pose)?,
-            Analysis::Statics => self.model.statics(t, q, workspace, inverse_dynamics)?,
-            Analysis::Kinetostatics | Analysis::FreeMotion => {
-                for &(load, magnitude) in given {
-                    workspace.set_magnitude(load, magnitude);
-                }
-                self.model
-                    .kinetostatics(t, q, q_dot, q_ddot, workspace, inverse_dynamics)?;
+        let state = match self.analysis {
+            Analysis::Kinematics => {
+                plan.positions(q, &mut self.pose)?;
+                None
             }
-        }
-        if self.analysis != Analysis::Kinematics
-            && let Some(fault) = self.monitor.off_table(t, workspace.states())
+            Analysis::Statics => Some(self.model.statics(t, q, workspace, inverse_dynamics)?),
+            Analysis::Kinetostatics | Analysis::FreeMotion => {
+                let state = self.model.kinematic_state(q, q_dot, workspace)?;
+                let mut state = state.apply_loads(t)?;
+                for &(load, magnitude) in given {
+                    state.set_magnitude(load, magnitude);
+                }
+                Some(state.evaluate(q_ddot, inverse_dynamics)?)
+            }
+        };
+        if let Some(state) = &state
+            && let Some(fault) = self.monitor.off_table(t, state.bodies())
         {
             return Err(StopCause::Fault(fault));
         }
+        let pose = state.as_ref().map_or(&self.pose, |state| state.pose());
         if plan.actuators() == 1 {
-            plan.velocities(&workspace.pose, &[1.0], &mut self.motion_buffer);
-            self.unit_speed_states
-                .fill(plan, &workspace.pose, &self.motion_buffer);
+            plan.velocities(pose, &[1.0], &mut self.motion_buffer);
+            self.unit_speed_states.fill(plan, pose, &self.motion_buffer);
         }
-        plan.velocities(&workspace.pose, q_dot, &mut self.motion_buffer);
-        plan.accelerations(&workspace.pose, q_ddot, &mut self.motion_buffer);
-        self.body_states
-            .fill(plan, &workspace.pose, &self.motion_buffer);
+        plan.velocities(pose, q_dot, &mut self.motion_buffer);
+        plan.accelerations(pose, q_ddot, &mut self.motion_buffer);
+        self.body_states.fill(plan, pose, &self.motion_buffer);
         self.speed_scales = [&self.unit_speed_states, &self.body_states]
             .map(|states| SpeedScale::new(states, self.size));
         if let Some(fault) = self.monitor.discontinuity(&self.body_states) {
             return Err(StopCause::Fault(fault));
         }
-        if self.analysis != Analysis::Kinematics {
-            self.compute_forces();
-        }
-        Ok(())
-    }
-
-    /// Computes joint forces, shaking force and power balance.
-    fn compute_forces(&mut self) {
-        let (model, workspace, inverse_dynamics) =
-            (self.model, &self.workspace, &self.inverse_dynamics);
-        self.body_forces
-            .wrenches(model, workspace, inverse_dynamics, &mut self.wrenches);
-        self.joint_forces.fill(Vec2::ZERO);
-        for wrench in &self.wrenches {
-            if let ForceSource::Joint(j) = wrench.source
-                && wrench.body == self.scene.mechanism.joints[j.0].bodies[1]
-            {
-                self.joint_forces[j.0] += wrench.force;
+        if let Some(state) = &state {
+            self.forces.read(self.scene, state);
+            for link in links {
+                link.add_position(k, &self.forces.body_forces, state, &self.forces.wrenches);
             }
         }
-        let shaking_force = self
-            .body_forces
-            .shaking_force(model, workspace, &self.wrenches);
-        let [by_reactions, by_loads] =
-            [shaking_force.from_reactions, shaking_force.loads_on_ground];
-        self.shaking_wrench = Wrench {
-            force: by_reactions.force + by_loads.force,
-            moment: by_reactions.moment + by_loads.moment,
-        };
-        self.power_balance = model.power_balance(workspace, inverse_dynamics);
-        model.load_powers(workspace, &mut self.load_powers);
+        Ok(())
     }
 
     fn value(&self, quantity: ColumnQuantity, sample: &TrajectorySample) -> f64 {
@@ -227,21 +253,26 @@ impl<'a> PositionEvaluator<'a> {
             ColumnQuantity::TransmissionAngle(dyad) => dyad.angle(states),
             ColumnQuantity::Reaction(k) => self.inverse_dynamics.reactions[k],
             ColumnQuantity::BodyFrameForce(joint, body, axis) => {
-                let local = self.joint_forces[joint.0].rotate_inverse(states.body(body).rotation);
+                let local =
+                    self.forces.joint_forces[joint.0].rotate_inverse(states.body(body).rotation);
                 if axis == 0 { local.x } else { local.y }
             }
-            ColumnQuantity::ForceMagnitude(joint) => self.joint_forces[joint.0].norm(),
-            ColumnQuantity::ForceDirection(joint) => self.joint_forces[joint.0].angle(),
-            ColumnQuantity::ShakingForce(0) => self.shaking_wrench.force.x,
-            ColumnQuantity::ShakingForce(1) => self.shaking_wrench.force.y,
-            ColumnQuantity::ShakingForce(_) => self.shaking_wrench.moment,
-            ColumnQuantity::Power(PowerTerm::Actuators) => self.power_balance.actuators,
-            ColumnQuantity::Power(PowerTerm::Loads) => self.power_balance.loads,
-            ColumnQuantity::Power(PowerTerm::KineticRate) => self.power_balance.kinetic_energy_rate,
-            ColumnQuantity::Power(PowerTerm::Residual) => self.power_balance.residual(),
-            ColumnQuantity::Power(PowerTerm::KineticEnergy) => self.power_balance.kinetic_energy,
+            ColumnQuantity::ForceMagnitude(joint) => self.forces.joint_forces[joint.0].norm(),
+            ColumnQuantity::ForceDirection(joint) => self.forces.joint_forces[joint.0].angle(),
+            ColumnQuantity::ShakingForce(0) => self.forces.shaking_wrench.force.x,
+            ColumnQuantity::ShakingForce(1) => self.forces.shaking_wrench.force.y,
+            ColumnQuantity::ShakingForce(_) => self.forces.shaking_wrench.moment,
+            ColumnQuantity::Power(PowerTerm::Actuators) => self.forces.power_balance.actuators,
+            ColumnQuantity::Power(PowerTerm::Loads) => self.forces.power_balance.loads,
+            ColumnQuantity::Power(PowerTerm::KineticRate) => {
+                self.forces.power_balance.kinetic_energy_rate
+            }
+            ColumnQuantity::Power(PowerTerm::Residual) => self.forces.power_balance.residual(),
+            ColumnQuantity::Power(PowerTerm::KineticEnergy) => {
+                self.forces.power_balance.kinetic_energy
+            }
             ColumnQuantity::LoadForce(k) => self.load_force(k),
-            ColumnQuantity::LoadPower(k) => self.load_powers[k],
+            ColumnQuantity::LoadPower(k) => self.forces.load_powers[k],
             ColumnQuantity::Extra(k) => sample.extra_values[k],
         }
     }
@@ -249,18 +280,17 @@ impl<'a> PositionEvaluator<'a> {
     /// The force of a load along its direction or line, or its moment on its second body.
     fn load_force(&self, k: usize) -> f64 {
         let by_load = || {
-            self.wrenches
-                .iter()
-                .filter(|wrench| wrench.source == ForceSource::Load(k))
+            let wrenches = self.forces.wrenches.iter();
+            wrenches.filter(|wrench| wrench.source == ForceSource::Load(k))
         };
         match self.scene.loads[k].kind {
             LoadKind::Gravity { .. }
             | LoadKind::Force { .. }
             | LoadKind::Torque { .. }
             | LoadKind::PointToPointForce { .. }
-            | LoadKind::SeparatingForce(_) => self.workspace.loads().magnitude[k],
+            | LoadKind::SeparatingForce(_) => self.forces.magnitudes[k],
             LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
-                let line = self.workspace.states().separation(bodies, points).direction;
+                let line = self.body_states.separation(bodies, points).direction;
                 let on_second = by_load().find(|wrench| wrench.body == bodies[1]);
                 match (line, on_second) {
                     (Some(line), Some(wrench)) => wrench.force.dot(line),
@@ -274,9 +304,7 @@ impl<'a> PositionEvaluator<'a> {
             }
             LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
                 let [first, second] = guide.bodies;
-                let axis = guide
-                    .axis
-                    .rotate(self.workspace.states().body(first).rotation);
+                let axis = guide.axis.rotate(self.body_states.body(first).rotation);
                 let on_second = by_load().find(|wrench| wrench.body == second);
                 on_second.map_or(0.0, |wrench| wrench.force.dot(axis))
             }
@@ -391,7 +419,7 @@ pub(crate) fn evaluate_trajectory(
             .and_then(|q| unreachable_error(plan, q, sample.q[0]));
         let done = match unreachable {
             Some(error) => Err(error.into()),
-            None => evaluator.evaluate(&sample, timed),
+            None => evaluator.evaluate(k, &sample, timed, &mut results.sectioned_links),
         };
         if let Err(error) = done {
             let reached = if k > 0 {
@@ -426,19 +454,10 @@ pub(crate) fn evaluate_trajectory(
         let row = results.columns.iter().enumerate().map(value).collect();
         results.rows.push(row);
         results.body_poses.push(evaluator.body_poses());
-        for sectioned_link in &mut results.sectioned_links {
-            sectioned_link.add_position(
-                k,
-                &evaluator.body_forces,
-                evaluator.model,
-                &evaluator.workspace,
-                &evaluator.wrenches,
-            );
-        }
-        if matches!(analysis, Analysis::Kinetostatics | Analysis::FreeMotion)
-            && evaluator.power_balance.scale > 0.0
+        let balance = evaluator.forces.power_balance;
+        if matches!(analysis, Analysis::Kinetostatics | Analysis::FreeMotion) && balance.scale > 0.0
         {
-            let residual = evaluator.power_balance.residual().abs() / evaluator.power_balance.scale;
+            let residual = balance.residual().abs() / balance.scale;
             results.power_residual = results.power_residual.max(residual);
         }
         if let Some(rounding_error) = &mut rounding_error {

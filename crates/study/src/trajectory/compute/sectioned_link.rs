@@ -1,7 +1,7 @@
 //! Internal forces of a link along the trajectory: the sections at the largest bending moment, and the envelope.
 
 use dwell_findings::{Column, Table};
-use dwell_kinetostatics::{AppliedWrench, Distribution, FreeBodyForces, Model, Section, Workspace};
+use dwell_kinetostatics::{AppliedWrench, Distribution, EvaluatedState, FreeBodyForces, Section};
 use dwell_scene::SectionRequest as Request;
 
 /// Intervals along a link.
@@ -34,12 +34,11 @@ impl SectionedLink {
         &mut self,
         k: usize,
         body_forces: &FreeBodyForces,
-        model: &Model,
-        workspace: &Workspace<f64>,
+        state: &EvaluatedState<'_>,
         wrenches: &[AppliedWrench],
     ) {
         let Request { body, points, .. } = self.request;
-        let Some(forces) = body_forces.link_forces(model, body, points, workspace, wrenches) else {
+        let Some(forces) = body_forces.link_forces(state, body, points, wrenches) else {
             return;
         };
         self.distribution = forces.distribution;
