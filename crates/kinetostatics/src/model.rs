@@ -5,7 +5,6 @@ mod revolutions;
 pub mod stages;
 mod workspace;
 
-pub use stages::{EvaluatedState, ForceState, KinematicState, LoadedState};
 pub use workspace::Workspace;
 
 use crate::error::ModelError;

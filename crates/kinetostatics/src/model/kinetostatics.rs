@@ -1,6 +1,7 @@
 //! Inverse dynamics with loads: Jᵀ[λ; τ] = M ẍ + h − f, for a prescribed motion at a given time.
 
-use super::{EvaluatedState, Model, Workspace};
+use super::stages::EvaluatedState;
+use super::{Model, Workspace};
 use crate::error::{LoadError, Result};
 use crate::load::{CompiledLoads, CompiledSignal, Load};
 use crate::pass::InverseDynamics;

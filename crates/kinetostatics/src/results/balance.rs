@@ -2,7 +2,7 @@
 
 use super::FreeBodyForces;
 use crate::load::{AppliedWrench, ForceSource};
-use crate::model::EvaluatedState;
+use crate::model::stages::EvaluatedState;
 use dwell_geometry::{BodyId, Vec2};
 
 /// The power balance at one state: actuators + loads = dE_c/dt, W.

@@ -3,7 +3,8 @@
 
 use crate::error::ModelError;
 use crate::load::{AppliedWrench, ForceSource, find_couple_points};
-use crate::model::{EvaluatedState, Model};
+use crate::model::Model;
+use crate::model::stages::EvaluatedState;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Reaction, Vec2};
 

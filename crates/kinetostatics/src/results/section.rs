@@ -3,7 +3,8 @@
 use super::FreeBodyForces;
 use crate::load::{AppliedWrench, ForceSource, LoadKind};
 use crate::mass::Mass;
-use crate::model::{EvaluatedState, Model};
+use crate::model::Model;
+use crate::model::stages::EvaluatedState;
 use dwell_geometry::{BodyId, Vec2};
 
 /// The assumed distribution of a link's mass along the line.
