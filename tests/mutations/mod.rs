@@ -2,7 +2,7 @@
 //! detect them.
 //!
 //! ```text
-//! mutating_scalar  a number that knows the product's line that computes with it, and computes wrongly there
+//! mutating_scalar  a number that knows the source line that computes with it, and computes wrongly there
 //! operations       every operation of every step goes wrong   ┐
 //! reduced_model    named faults of the reduced model          │  each checked by
 //! claimed_states   named faults of states under loads         │  the independent checks
@@ -16,6 +16,7 @@ pub mod claimed_states;
 pub mod detection;
 pub mod figure;
 pub mod motions;
+mod mutated_model;
 pub mod mutating_scalar;
 pub mod operations;
 mod positions;

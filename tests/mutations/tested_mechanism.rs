@@ -1,6 +1,7 @@
-//! A case with its model, evaluated with or without a slip, and judged by the truths.
+//! A case with its model, evaluated with or without a mutation, and checked.
 
 use super::detection::{Detection, REQUIRED_CHECKS};
+use super::mutated_model::MutatedModel;
 use super::mutating_scalar::{
     MutatingScalar, MutationKind, SourceOperation, recording_operations, with_mutation,
 };
@@ -11,8 +12,7 @@ use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{EvaluatedState, InverseDynamics as Kinetostatic, KinematicState, Model};
 use dwell_scene::Scene;
 use dwell_verify::{
-    Case, ClaimedState, Coefficients, InverseDynamics, Subject, SubjectError, check_energies,
-    check_states, load_wrenches, verify_all,
+    Case, ClaimedState, Subject, check_energies, check_states, load_wrenches, verify_all,
 };
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -21,10 +21,10 @@ use std::f64::consts::TAU;
 const VELOCITIES: [[f64; 3]; POSITIONS] = [[1.0, -0.6, 0.4], [-0.8, 0.9, -0.5], [0.6, 0.7, 1.1]];
 const ACCELERATIONS: [[f64; 3]; POSITIONS] = [[0.7, 0.5, -0.9], [0.5, -1.1, 0.6], [-1.2, 0.8, 0.7]];
 
-/// A fault in one operation of the product.
+/// A mutation of one operation of the code.
 pub type OperationMutation = Option<(SourceOperation, MutationKind)>;
 
-/// How a mechanism is judged.
+/// How a mechanism is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CheckMode {
     /// Its reduced model, of one coordinate and no load.
@@ -33,35 +33,35 @@ pub enum CheckMode {
     States,
 }
 
-/// A mechanism to be judged.
+/// A mechanism to be checked.
 pub struct TestedMechanism {
     pub name: String,
     pub mode: CheckMode,
     scene: Scene,
     model: Model,
     positions: Vec<Vec<f64>>,
-    /// By position, the frames of all bodies, turns counted from the start.
+    /// By position, the frames of all bodies, revolutions counted from the start.
     body_poses: Vec<Vec<[f64; 3]>>,
     start_poses: Vec<[f64; 3]>,
-    /// What is answered without a fault.
+    /// The results without a mutation.
     clean: ComparedValues,
     clean_states: Vec<ClaimedState>,
-    /// The keys of findings that fail without a fault: too few positions for them, or constraints
-    /// that repeat each other. They judge nothing here.
+    /// The keys of findings that fail without a mutation: too few positions for them, or redundant
+    /// constraints. They are ignored here.
     pub ignored_findings: Vec<String>,
 }
 
-/// Everything that is judged, by kind.
+/// Everything that is checked, by kind.
 pub type ComparedValues = Vec<Vec<f64>>;
 /// States, and by state the generalised inertias, row by row.
 pub type ClaimedStates = (Vec<ClaimedState>, Vec<Vec<f64>>);
 
-/// An answer that moves by less than this, relative to the largest of its kind, is the same answer:
-/// three digits above what the truths tell from rounding.
+/// A result that changes by less than this, relative to the largest of its kind, is the same result:
+/// three digits above what the checks distinguish from rounding.
 pub const UNCHANGED_TOLERANCE: f64 = 1e-9;
 
 impl TestedMechanism {
-    /// A machine whose answers are known.
+    /// A mechanism with its results.
     pub fn new(scene: Scene, mode: CheckMode) -> Self {
         let name = scene.name.clone();
         let mut tested = Self::from_scene(scene, mode).unwrap_or_else(|| panic!("{name} is none"));
@@ -75,7 +75,7 @@ impl TestedMechanism {
         tested
     }
 
-    /// A machine as described; none if it cannot be put together.
+    /// A mechanism as described; none if it cannot be assembled.
     pub fn from_scene(scene: Scene, mode: CheckMode) -> Option<Self> {
         let mechanism = &scene.mechanism;
         let start = scene.assembly.to_configuration();
@@ -86,7 +86,7 @@ impl TestedMechanism {
         }
         let mut positions = positions(&scene, model.plan());
         if mode == CheckMode::Reduced {
-            // Judging costs more there.
+            // Checking costs more there.
             positions.truncate(2);
         }
         let (at_start, body_poses) = poses_along(&scene, model.plan(), &positions);
@@ -104,18 +104,18 @@ impl TestedMechanism {
         })
     }
 
-    /// What it costs to judge, roughly: dense rows, cubed.
+    /// What it costs to check, roughly: dense rows, cubed.
     pub fn size(&self) -> usize {
         self.scene.mechanism.bodies.len()
     }
 
-    /// Every place that an evaluation meets.
+    /// Every operation of an evaluation.
     pub fn operations(&self) -> BTreeSet<SourceOperation> {
         recording_operations(|| self.compared_values(None)).1
     }
 
-    /// How far a fault moves the answers, relative to the largest of each kind; none where there is
-    /// no answer at all.
+    /// How far a mutation changes the results, relative to the largest of each kind; none where there is
+    /// no result at all.
     pub fn change(&self, mutation: OperationMutation) -> Option<f64> {
         Some(max_difference(
             &self.clean,
@@ -123,12 +123,12 @@ impl TestedMechanism {
         ))
     }
 
-    /// What the truths say.
+    /// What the checks detect.
     pub fn check(&self, mutation: OperationMutation) -> Detection {
         self.detection(&self.findings(mutation, REQUIRED_CHECKS))
     }
 
-    /// Of findings that can judge here.
+    /// Of findings that are not ignored.
     fn detection(&self, findings: &[Finding]) -> Detection {
         let applicable = findings
             .iter()
@@ -136,7 +136,7 @@ impl TestedMechanism {
         Detection::from_findings(applicable)
     }
 
-    /// What the truths say of states that are claimed of this machine; nothing where they are its own.
+    /// What the checks detect in states that are claimed of this mechanism; nothing where they are its own.
     pub fn check_claims(&self, mut claimed_states: ClaimedStates) -> Option<Detection> {
         for (claimed, actual) in claimed_states.0.iter_mut().zip(&self.clean_states) {
             claimed.load_wrenches.clone_from(&actual.load_wrenches);
@@ -148,12 +148,12 @@ impl TestedMechanism {
         Some(self.detection(&findings))
     }
 
-    /// The states that this machine claims.
+    /// The states that this mechanism claims.
     pub fn claims(&self) -> Option<ClaimedStates> {
         self.states(None)
     }
 
-    /// The accelerations of its states, without all that comes of speeds.
+    /// The accelerations of its states, without their velocity-product terms.
     pub fn accelerations_without_velocity(&self, claimed: &ClaimedStates) -> Vec<Vec<[f64; 3]>> {
         let mut workspace = self.model.workspace::<MutatingScalar>();
         let zero_velocities = vec![MutatingScalar::default(); self.model.plan().actuators()];
@@ -174,7 +174,7 @@ impl TestedMechanism {
         claimed.0.iter().map(of).collect()
     }
 
-    /// Where it is judged: to be the same for claims of a wrong description.
+    /// Where it is checked: to be the same for claims of a wrong description.
     pub fn set_positions(&mut self, positions: &[Vec<f64>]) {
         self.positions = positions.to_vec();
         self.clean_states.clear();
@@ -189,7 +189,7 @@ impl TestedMechanism {
         &self.scene
     }
 
-    /// What the truths find; the costly ones only where fewer than `enough` others catch it.
+    /// The findings; the costly ones only where fewer than `enough` checks catch it.
     fn findings(&self, mutation: OperationMutation, enough: usize) -> Vec<Finding> {
         let (mechanism, masses) = (&self.scene.mechanism, &self.scene.masses);
         if self.mode == CheckMode::Reduced {
@@ -199,11 +199,7 @@ impl TestedMechanism {
                 range: self.model.plan().range(),
                 positions: self.positions.iter().map(|q| q[0]).collect(),
             };
-            let subject = MutatedSubject {
-                mechanism: self,
-                mutation,
-            };
-            return verify_all(&case, &subject, &[]);
+            return verify_all(&case, &self.mutated(mutation), &[]);
         }
         match self.states(mutation) {
             None => Vec::new(),
@@ -226,13 +222,18 @@ impl TestedMechanism {
         findings
     }
 
+    fn mutated(&self, mutation: OperationMutation) -> MutatedModel<'_> {
+        MutatedModel {
+            model: &self.model,
+            scene: &self.scene,
+            mutation,
+        }
+    }
+
     fn compared_values(&self, mutation: OperationMutation) -> Option<ComparedValues> {
         match self.mode {
             CheckMode::Reduced => {
-                let subject = MutatedSubject {
-                    mechanism: self,
-                    mutation,
-                };
+                let subject = self.mutated(mutation);
                 let (mut poses, mut inertia, mut forces) = (Vec::new(), Vec::new(), Vec::new());
                 for (q, k) in self.positions.iter().zip(0..) {
                     let [v, r] = [VELOCITIES[k][0], ACCELERATIONS[k][0]];
@@ -245,7 +246,7 @@ impl TestedMechanism {
                     forces.extend(self.determinate(result.reactions));
                     forces.push(result.tau);
                 }
-                // What is zero throughout has the scale of its like.
+                // Values that are all zero have the scale of their kind.
                 Some(vec![poses, inertia, forces])
             }
             CheckMode::States => Some(self.values_of(&self.states(mutation)?)),
@@ -281,7 +282,7 @@ impl TestedMechanism {
             .collect()
     }
 
-    /// The states under the loads. What the loads do is told from the right poses and magnitudes.
+    /// The states under the loads. The forces of the loads follow from the unmutated poses and magnitudes.
     fn states(&self, mutation: OperationMutation) -> Option<ClaimedStates> {
         let mut workspace = self.model.workspace::<MutatingScalar>();
         let (mut result, mut unit) = (self.model.result_buffer(), self.model.result_buffer());
@@ -309,7 +310,7 @@ impl TestedMechanism {
                 with_mutation(mutation, || evaluated.mass_matrix_column(i, &mut unit));
                 runs.push(result_to_f64(&unit));
             }
-            // M_ij is the action i at q̈ⱼ = 1 alone.
+            // M_ij is the actuator force i at q̈ⱼ = 1 alone.
             let at = |i: usize, j: usize| runs[j].tau[i];
             inertias.push((0..n * n).map(|k| at(k / n, k % n)).collect());
             states.push(state);
@@ -323,8 +324,8 @@ impl TestedMechanism {
         Some((states, inertias))
     }
 
-    /// The same state, moving freely: its accelerations from the inertias, and every reaction as one
-    /// line of what the unit runs yield.
+    /// The same state in free motion: its accelerations from the inertias, and every reaction as a
+    /// sum of the unit accelerations' ones.
     fn free_state(
         &self,
         mutation: OperationMutation,
@@ -409,67 +410,6 @@ impl TestedMechanism {
     }
 }
 
-/// The reduced model of a machine, evaluated in watched numbers.
-struct MutatedSubject<'a> {
-    mechanism: &'a TestedMechanism,
-    mutation: OperationMutation,
-}
-
-impl Subject for MutatedSubject<'_> {
-    fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
-        let TestedMechanism { model, scene, .. } = self.mechanism;
-        let mut pose = model.plan().pose();
-        with_mutation(self.mutation, || {
-            model.plan().positions(&[MutatingScalar::new(q)], &mut pose)
-        })
-        .map_err(subject_error(q))?;
-        Ok(model
-            .plan()
-            .body_frames(&scene.mechanism, &pose_to_f64(model.plan(), &pose)))
-    }
-
-    fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
-        let model = &self.mechanism.model;
-        let (mut workspace, mut at) = (model.workspace(), model.coefficient_buffer());
-        with_mutation(self.mutation, || {
-            model.reduce(MutatingScalar::new(q), &mut workspace, &mut at)
-        })
-        .map_err(subject_error(q))?;
-        Ok(Coefficients {
-            m: at.m.0,
-            half_dm: at.half_dm.0,
-            a: at.a.iter().map(|v| v.0).collect(),
-            b: at.b.iter().map(|v| v.0).collect(),
-        })
-    }
-
-    fn inverse_dynamics(
-        &self,
-        q: f64,
-        q_dot: f64,
-        q_ddot: f64,
-    ) -> Result<InverseDynamics, SubjectError> {
-        let model = &self.mechanism.model;
-        let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
-        let [at, v, a] = [q, q_dot, q_ddot].map(|v| [MutatingScalar::new(v)]);
-        with_mutation(self.mutation, || {
-            model.inverse_dynamics(&at, &v, &a, &mut workspace, &mut result)
-        })
-        .map_err(subject_error(q))?;
-        Ok(InverseDynamics {
-            tau: result.tau[0].0,
-            reactions: result.reactions.iter().map(|v| v.0).collect(),
-        })
-    }
-}
-
-fn subject_error<E: std::fmt::Display>(q: f64) -> impl Fn(E) -> SubjectError {
-    move |e| SubjectError {
-        q,
-        message: e.to_string(),
-    }
-}
-
 /// q̈ of Σ runs q̈ + rest = 0, by elimination with the largest pivot.
 fn solve_accelerations(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f64>> {
     let n = runs.len();
@@ -495,7 +435,7 @@ fn solve_accelerations(runs: &[Kinetostatic<f64>], rest: &[f64]) -> Option<Vec<f
     (0..n).map(|i| Some(rows[i][n] / rows[i][i])).collect()
 }
 
-/// How far answers are apart, relative to the largest of each kind; infinitely where one is no number.
+/// The difference of results, relative to the largest of each kind; infinite where one is not a number.
 fn max_difference(clean: &ComparedValues, found: &ComparedValues) -> f64 {
     let mut max = 0.0_f64;
     for (clean, found) in clean.iter().zip(found) {

@@ -99,8 +99,16 @@ impl CompiledDrive {
             }
         };
         let input = drive.kind.input().clone();
-        if matches!(input, Magnitude::Friction(_) | Magnitude::External(_)) {
-            return Err("the input of a drive is neither friction nor the force of another drive");
+        match input {
+            Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => {
+                return Err(
+                    "the input of a drive is neither a force of a joint nor the force of another drive",
+                );
+            }
+            Magnitude::Constant(_)
+            | Magnitude::Law(..)
+            | Magnitude::Expression(..)
+            | Magnitude::Function(..) => {}
         }
         Ok(Self {
             load,

@@ -84,6 +84,20 @@ impl Default for Finding {
 }
 
 impl Finding {
+    /// The finding of an absolute and a relative difference, which passes where the relative one is within the
+    /// tolerance; its texts are still empty.
+    pub fn new(key: &str, check: Check, [absolute, relative]: [f64; 2], tolerance: f64) -> Self {
+        Self {
+            key: key.to_owned(),
+            check,
+            absolute_difference: absolute,
+            relative_difference: relative,
+            tolerance,
+            pass: relative <= tolerance,
+            ..Self::default()
+        }
+    }
+
     /// The largest admissible tolerance: 100 times the measured difference plus 50 machine epsilons times the
     /// condition number.
     pub fn max_tolerance(&self) -> f64 {

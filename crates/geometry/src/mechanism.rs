@@ -131,6 +131,16 @@ impl Coordinate {
     pub fn is_angle(self) -> bool {
         matches!(self, Self::Angle(_))
     }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        if self.is_angle() { "rad" } else { "m" }
+    }
+
+    /// Unit of the moment or force along it.
+    pub fn force_unit(self) -> &'static str {
+        if self.is_angle() { "N m" } else { "N" }
+    }
 }
 
 /// Two coupled coordinates: `dependent` = law(`independent`). The joint's two bodies are those of `dependent`.

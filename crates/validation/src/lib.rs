@@ -28,6 +28,7 @@ mod checked;
 mod error;
 pub mod extremes;
 mod overview;
+mod report_parts;
 pub mod work_precision;
 
 pub use case_report::validate::validate;

@@ -1,53 +1,37 @@
 //! Everything at once.
 
 use crate::case::Case;
-use crate::checks::{self, PublishedSample};
-use crate::comparison::{FindingSpec, LargestDifference};
+use crate::checks::{
+    PublishedSample, balances, closure, energy_slope, kinetic_energy, published,
+    released_constraint, spectral,
+};
 use crate::context::CheckContext;
 use crate::subject::Subject;
-use dwell_findings::{Check, Finding};
+use dwell_findings::Finding;
 use rayon::prelude::*;
 
-/// Holds a subject against every check, in parallel. The findings come in a fixed order, that of
+/// Compares a subject with every check, in parallel. The findings come in a fixed order, that of
 /// the checks' numbers. If the mechanism itself cannot be written in dense rows, there is one
 /// failed finding that says why.
 pub fn verify_all(
     case: &Case<'_>,
     subject: &dyn Subject,
-    published: &[PublishedSample],
+    samples: &[PublishedSample],
 ) -> Vec<Finding> {
     let context = match CheckContext::new(case, subject) {
         Ok(context) => context,
-        Err(error) => return vec![not_dense(error.to_string())],
+        Err(error) => return vec![closure::not_dense(&error)],
     };
-    let checks: [fn(&CheckContext<'_>) -> Vec<Finding>; 8] = [
-        checks::closure,
-        checks::kinetic_energy,
-        checks::energy_slope,
-        checks::spectral,
-        checks::released_constraint,
-        checks::power,
-        checks::momentum,
-        checks::newton_euler,
+    let checks: [fn(&CheckContext<'_>) -> Vec<Finding>; 6] = [
+        closure::closure,
+        kinetic_energy,
+        energy_slope,
+        spectral,
+        released_constraint,
+        balances,
     ];
-    let mut findings: Vec<Finding> = checks
-        .par_iter()
-        .flat_map_iter(|check| check(&context))
-        .collect();
-    findings.extend(checks::published(case, subject, published));
+    let all = checks.par_iter().flat_map_iter(|check| check(&context));
+    let mut findings: Vec<Finding> = all.collect();
+    findings.extend(published(case, subject, samples));
     findings
-}
-
-fn not_dense(message: String) -> Finding {
-    let mut worst = LargestDifference::default();
-    worst.record_failure(message);
-    FindingSpec {
-        key: "closure",
-        check: Check::ConstraintClosure,
-        comparison: "the mechanism with as many dense rows as it has coordinates",
-        scale: "none",
-        tolerance: 0.0,
-        tolerance_reason: "the checks need a determinate mechanism of one degree of freedom",
-    }
-    .finding("the mechanism as a whole".to_owned(), worst)
 }

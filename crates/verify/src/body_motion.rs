@@ -1,6 +1,21 @@
-//! What loads and laws measure on bodies, from their frames and velocities alone.
+//! Quantities of bodies that loads and laws depend on, from their frames and velocities alone.
 
-use dwell_geometry::{BodyId, Vec2, vec2};
+use dwell_geometry::{BodyId, JointKind, Vec2, vec2};
+
+/// The axis, in the first body, along which a joint has a travel.
+pub(crate) fn slide_axis(kind: JointKind) -> Option<Vec2> {
+    match kind {
+        JointKind::Prismatic { axes } => Some(axes[0]),
+        JointKind::Slot { axis } => Some(axis),
+        JointKind::Revolute
+        | JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Rack { .. }
+        | JointKind::Rolling { .. }
+        | JointKind::Distance { .. }
+        | JointKind::Coupling(_) => None,
+    }
+}
 
 /// The frames [x, y, θ] of all bodies and their velocities, in m, rad and per s. Where a body does not
 /// exist there is no value.
@@ -40,7 +55,7 @@ impl BodyMotion<'_> {
         Some([of(self.poses)?, of(self.velocities)?])
     }
 
-    /// t·(P₂ − P₁) along an axis of the first body, and its rate, in which the axis turns with the body.
+    /// t·(P₂ − P₁) along an axis of the first body, and its rate, in which the axis rotates with the body.
     pub(crate) fn travel(
         &self,
         bodies: [BodyId; 2],

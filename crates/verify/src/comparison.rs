@@ -1,14 +1,14 @@
-//! From single differences to a verdict.
+//! From single differences to a finding.
 
 use crate::subject::SubjectError;
 use dwell_findings::{Check, Finding};
 
 /// How much of the reference's own estimated error the tolerance allows for.
 const REFERENCE_ERROR_FACTOR: f64 = 10.0;
-/// Where the truth itself is worse than this it decides nothing, and the finding fails.
+/// Where the check itself is worse than this it decides nothing, and the finding fails.
 const MAX_WIDENED_TOLERANCE: f64 = 1e-6;
 
-/// The largest difference met so far.
+/// The largest of several differences.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LargestDifference {
     absolute_difference: f64,
@@ -23,34 +23,37 @@ pub(crate) struct LargestDifference {
 
 /// One comparison.
 pub(crate) struct Comparison {
-    /// Subject less truth.
-    pub(crate) difference: f64,
-    /// What it is relative to.
-    pub(crate) scale: f64,
-    /// The reference's own estimated error, in the unit of the difference.
-    pub(crate) reference_error: f64,
-    /// The unit.
+    /// The difference of the subject from the reference, its scale, and the reference's own estimated error.
+    pub(crate) numbers: [f64; 3],
+    /// The unit of all three.
     pub(crate) unit: &'static str,
     /// Condition number of the dense rows there; 1 where it has no meaning.
     pub(crate) condition_number: f64,
 }
 
 impl LargestDifference {
-    /// Takes a comparison in; the place is only written down if it is the worst.
+    /// A failure without any comparison.
+    pub(crate) fn failed(message: String) -> Self {
+        Self {
+            failure: Some(message),
+            ..Self::default()
+        }
+    }
+
+    /// Adds a comparison; its location is only composed if it is the worst.
     pub(crate) fn record(&mut self, comparison: &Comparison, location: impl FnOnce() -> String) {
+        let [difference, scale, reference_error] = comparison.numbers;
         let over_scale = |value: f64| match value.abs() {
             // Zero agrees with zero even where nothing gives a scale.
             0.0 => 0.0,
-            size => size / comparison.scale,
+            size => size / scale,
         };
-        let relative_difference = over_scale(comparison.difference);
+        let relative = over_scale(difference);
         self.count += 1;
-        self.reference_error = self
-            .reference_error
-            .max(over_scale(comparison.reference_error));
-        if self.count == 1 || is_worse(relative_difference, self.relative_difference) {
-            self.absolute_difference = comparison.difference.abs();
-            self.relative_difference = relative_difference;
+        self.reference_error = self.reference_error.max(over_scale(reference_error));
+        if self.count == 1 || is_worse(relative, self.relative_difference) {
+            self.absolute_difference = difference.abs();
+            self.relative_difference = relative;
             self.unit = comparison.unit;
             self.condition_number = comparison.condition_number;
             self.worst_at = location();
@@ -69,19 +72,16 @@ impl LargestDifference {
 
     /// The worse of two.
     pub(crate) fn merge(mut self, other: Self) -> Self {
+        let count = self.count + other.count;
+        let reference_error = self.reference_error.max(other.reference_error);
+        let failure = self.failure.take().or(other.failure.clone());
         let other_is_worse = other.count > 0
             && (self.count == 0 || is_worse(other.relative_difference, self.relative_difference));
-        let (count, reference_error) = (
-            self.count + other.count,
-            self.reference_error.max(other.reference_error),
-        );
-        let failure = self.failure.take().or(other.failure.clone());
-        let larger = if other_is_worse { other } else { self };
         Self {
             count,
             reference_error,
             failure,
-            ..larger
+            ..if other_is_worse { other } else { self }
         }
     }
 }
@@ -95,13 +95,13 @@ fn is_worse(new: f64, old: f64) -> bool {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FindingSpec<'a> {
     /// Short stable key.
-    pub key: &'static str,
+    pub key: &'a str,
     /// The check that it belongs to.
     pub check: Check,
     /// What is compared with what.
-    pub comparison: &'static str,
+    pub comparison: &'a str,
     /// What the relative difference is relative to.
-    pub scale: &'static str,
+    pub scale: &'a str,
     /// Largest relative difference allowed.
     pub tolerance: f64,
     /// Why the tolerance is what it is.
@@ -111,50 +111,34 @@ pub struct FindingSpec<'a> {
 impl FindingSpec<'_> {
     /// The finding over a domain. Ten times the reference's own estimated error replaces the tolerance
     /// where it is larger, up to a limit: next to a dead point every difference is inaccurate, and a
-    /// finding must judge the subject, not the reference. The reason of the tolerance says so.
+    /// finding must check the subject, not the reference. The reason of the tolerance says so.
     pub(crate) fn finding(&self, domain: String, worst: LargestDifference) -> Finding {
         let widened = (REFERENCE_ERROR_FACTOR * worst.reference_error).min(MAX_WIDENED_TOLERANCE);
         let tolerance = self.tolerance.max(widened);
-        let mut tolerance_reason = self.tolerance_reason.to_owned();
+        let mut reason = self.tolerance_reason.to_owned();
         if worst.reference_error > 0.0 {
-            tolerance_reason.push_str(&format!(
-                "; own estimated error {:.0e}",
-                worst.reference_error
-            ));
+            reason += &format!("; own estimated error {:.0e}", worst.reference_error);
         }
         if tolerance > self.tolerance {
-            tolerance_reason.push_str(&format!(
-                ", ten times which replaces the usual {:.0e}",
-                self.tolerance
-            ));
+            let usual = self.tolerance;
+            reason += &format!(", ten times which replaces the usual {usual:.0e}");
         }
-        let mut finding = Finding {
-            key: self.key.into(),
-            check: self.check,
+        let none = || "nothing could be compared".to_owned();
+        let failure = worst.failure.or_else(|| (worst.count == 0).then(none));
+        let numbers = match failure {
+            Some(_) => [f64::NAN; 2],
+            None => [worst.absolute_difference, worst.relative_difference],
+        };
+        Finding {
             comparison: self.comparison.into(),
             domain,
-            absolute_difference: worst.absolute_difference,
             unit: worst.unit.into(),
-            relative_difference: worst.relative_difference,
             scale: self.scale.into(),
-            worst_at: worst.worst_at,
-            tolerance,
-            tolerance_reason,
+            worst_at: failure.unwrap_or(worst.worst_at),
+            tolerance_reason: reason,
             condition_number: worst.condition_number.max(1.0),
-            integrated: false,
-            pass: worst.count > 0 && worst.relative_difference <= tolerance,
-        };
-        let failure = match worst.failure {
-            None if worst.count == 0 => Some("nothing could be compared".to_owned()),
-            failure => failure,
-        };
-        if let Some(message) = failure {
-            finding.pass = false;
-            finding.absolute_difference = f64::NAN;
-            finding.relative_difference = f64::NAN;
-            finding.worst_at = message;
+            ..Finding::new(self.key, self.check, numbers, tolerance)
         }
-        finding
     }
 }
 
@@ -179,9 +163,7 @@ mod tests {
         let mut worst = LargestDifference::default();
         for &difference in differences {
             let comparison = Comparison {
-                difference,
-                scale: 2.0,
-                reference_error,
+                numbers: [difference, 2.0, reference_error],
                 unit: "N",
                 condition_number: 1.0,
             };
@@ -217,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refusal_fails_and_is_told() {
+    fn a_refusal_fails_with_its_message() {
         let mut refused = worst(&[0.0], 0.0);
         refused.record_failure("no answer".into());
         let finding = self::finding(worst(&[0.0], 0.0).merge(refused));
@@ -226,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_blunt_truth_widens_its_tolerance_but_not_for_ever() {
+    fn an_inaccurate_check_widens_its_tolerance_up_to_a_limit() {
         assert!(finding(worst(&[1e-8], 1e-8)).pass);
         assert!(!finding(worst(&[1e-4], 1e-2)).pass);
     }

@@ -14,6 +14,7 @@ use crate::error::DenseError;
 use crate::lu::Lu;
 use dwell_geometry::Vec2;
 use faer::Mat;
+use std::f64::consts::TAU;
 
 /// Newton steps allowed. Quadratic convergence from anything near needs four or five.
 const MAX_NEWTON_STEPS: usize = 25;
@@ -57,54 +58,66 @@ impl DenseMechanism {
         if initial_guess.len() != self.rows.columns() || row_values.len() != self.rows.len() {
             return Err(DenseError::InvalidPoses);
         }
+        let not_closed = |steps, last_step| Err(DenseError::NotClosed { steps, last_step });
         let mut x = initial_guess.to_vec();
         let mut residual = vec![0.0; self.rows.len()];
-        let mut previous_norm = f64::INFINITY;
+        let mut previous = f64::INFINITY;
         for step in 1..=MAX_NEWTON_STEPS {
             let lu = self.factor(&x)?;
             self.rows.residual(&x, row_values, &mut residual);
             let correction = self.solve(&lu, &residual);
-            let correction_norm = self.scaled_norm(&correction);
-            if correction_norm.is_nan() || correction_norm >= MAX_NEWTON_STEP {
-                return Err(DenseError::NotClosed {
-                    steps: step,
-                    last_step: correction_norm,
-                });
+            let norm = self.scaled_norm(&correction);
+            if norm.is_nan() || norm >= MAX_NEWTON_STEP {
+                return not_closed(step, norm);
             }
-            for (x, s) in x.iter_mut().zip(&correction) {
-                *x -= s;
-            }
-            if correction_norm < CONVERGED_STEP
-                || (correction_norm < STALLED_STEP && correction_norm > 0.5 * previous_norm)
-            {
+            x.iter_mut().zip(&correction).for_each(|(x, s)| *x -= s);
+            if norm < CONVERGED_STEP || (norm < STALLED_STEP && norm > 0.5 * previous) {
                 self.rows.residual(&x, row_values, &mut residual);
-                let open_residual = self.largest_residual(&residual);
-                if open_residual.is_nan() || open_residual > MAX_RESIDUAL {
-                    return Err(DenseError::NotClosed {
-                        steps: step,
-                        last_step: correction_norm,
-                    });
+                let open = self.largest_residual(&residual, &self.independent_rows);
+                if open.is_nan() || open > MAX_RESIDUAL {
+                    return not_closed(step, norm);
                 }
-                let lu = self.factor(&x)?;
-                return Ok(ClosedConfiguration {
-                    x,
-                    row_values: row_values.to_vec(),
-                    lu,
-                });
+                let (lu, row_values) = (self.factor(&x)?, row_values.to_vec());
+                return Ok(ClosedConfiguration { x, row_values, lu });
             }
-            previous_norm = correction_norm;
+            previous = norm;
         }
-        Err(DenseError::NotClosed {
-            steps: MAX_NEWTON_STEPS,
-            last_step: previous_norm,
-        })
+        not_closed(MAX_NEWTON_STEPS, previous)
+    }
+
+    /// Closes the frames `poses` of all bodies at the coordinates `q` of the actuators; and how far that moves them,
+    /// relative to the largest coordinate in them.
+    pub(crate) fn close_poses(
+        &self,
+        poses: &[[f64; 3]],
+        q: &[f64],
+    ) -> Result<(ClosedConfiguration, f64), DenseError> {
+        let coordinates = self.coordinates(poses)?;
+        let mut row_values = vec![0.0; self.rows.len()];
+        row_values[self.actuator_row()..].copy_from_slice(q);
+        let closed = self.close(&coordinates, &row_values)?;
+        let moved = coordinates.iter().zip(&closed.x).map(|(s, x)| s - x);
+        let distances = poses.iter().map(|p| p[0].hypot(p[1]));
+        let largest = distances.fold(self.size(), f64::max);
+        let norm = self.scaled_norm(&moved.collect::<Vec<_>>());
+        Ok((closed, norm * self.size() / largest))
+    }
+
+    /// How far two configurations are apart, whole revolutions of a body not counted, rad or sizes.
+    pub(crate) fn distance(&self, one: &ClosedConfiguration, other: &ClosedConfiguration) -> f64 {
+        let both = one.x.iter().zip(&other.x);
+        let mut difference: Vec<f64> = both.map(|(a, b)| a - b).collect();
+        for angle in difference.iter_mut().skip(2).step_by(3) {
+            *angle -= TAU * (*angle / TAU).round();
+        }
+        self.scaled_norm(&difference)
     }
 
     /// Closes the rows at other values on the branch of `from`, starting from `initial_guess`.
     ///
     /// Near a change point two branches almost cross, and a long step across it lands smoothly on
     /// the wrong one: differences would converge to the slope of the crossing and look exact. The
-    /// sign of det J tells the two apart, because it cannot change along a branch.
+    /// sign of det J distinguishes them, because it cannot change along a branch.
     pub fn close_on_branch(
         &self,
         from: &ClosedConfiguration,
@@ -129,19 +142,15 @@ impl DenseMechanism {
         value: f64,
     ) -> Result<ClosedConfiguration, DenseError> {
         let increment = value - from.row_values[row];
-        let initial_guess: Vec<_> = from
-            .x
-            .iter()
-            .zip(direction)
-            .map(|(x, u)| x + u * increment)
-            .collect();
+        let moved = from.x.iter().zip(direction);
+        let initial_guess: Vec<_> = moved.map(|(x, u)| x + u * increment).collect();
         let mut row_values = from.row_values.clone();
         row_values[row] = value;
         self.close_on_branch(from, &initial_guess, &row_values)
     }
 
     /// As [`DenseMechanism::follow`]; where rows repeat each other, by those that are farthest from dependent at `from`:
-    /// any others may become dependent on the way.
+    /// any others may become dependent before the end.
     pub(crate) fn follow_with_best_rows(
         &self,
         from: &ClosedConfiguration,
@@ -176,19 +185,14 @@ impl DenseMechanism {
                 return Ok(here);
             }
             let velocity = self.unit_velocity(&here, row);
-            let remaining = to - here.row_values[row];
-            let mut increment = remaining
-                .abs()
-                .min(MAX_FOLLOW_STEP / self.scaled_norm(&velocity))
-                * remaining.signum();
+            let (value, remaining) = (here.row_values[row], to - here.row_values[row]);
+            let longest = MAX_FOLLOW_STEP / self.scaled_norm(&velocity);
+            let mut increment = remaining.abs().min(longest) * remaining.signum();
             let mut halvings = 0;
             here = loop {
                 // The last step lands on `to` itself, not on a sum that rounds beside it.
-                let value = if increment == remaining {
-                    to
-                } else {
-                    here.row_values[row] + increment
-                };
+                let last = increment == remaining;
+                let value = if last { to } else { value + increment };
                 match self.step_row(&here, row, &velocity, value) {
                     Ok(next) => break next,
                     Err(error) if halvings == 20 || !increment.is_finite() => return Err(error),
@@ -206,18 +210,18 @@ impl DenseMechanism {
     }
 
     /// How fast the rows' imposed value moves the mechanism: the largest |ω|, or |v| per size, of
-    /// any body under the speeds `u`.
+    /// any body at the velocities `u`.
     pub fn scaled_norm(&self, u: &[f64]) -> f64 {
         let bodies = u.chunks_exact(3);
         max_abs(bodies.flat_map(|b| [b[0].hypot(b[1]) / self.size, b[2]]))
     }
 
-    /// The speeds of all coordinates when `row` opens, or the actuator turns, at unit rate and all
+    /// The velocities of all coordinates when `row` opens, or the actuator moves, at unit rate and all
     /// other rows are held: column k of J⁻¹.
     pub fn unit_velocity(&self, at: &ClosedConfiguration, row: usize) -> Vec<f64> {
-        let mut row_velocities = vec![0.0; self.rows.len()];
-        row_velocities[row] = 1.0;
-        self.solve(&at.lu, &row_velocities)
+        let mut rates = vec![0.0; self.rows.len()];
+        rates[row] = 1.0;
+        self.solve(&at.lu, &rates)
     }
 
     /// The unit velocities of every row.
@@ -225,8 +229,10 @@ impl DenseMechanism {
     /// A row that is not solved cannot be opened: nothing moves.
     pub fn unit_velocities(&self, at: &ClosedConfiguration) -> Vec<Vec<f64>> {
         let n = self.independent_rows.len();
-        let scale = |i: usize| self.row_scale[self.independent_rows[i]];
-        let mut right = Mat::from_fn(n, n, |i, j| if i == j { scale(i) } else { 0.0 });
+        let mut right = Mat::zeros(n, n);
+        for (k, &row) in self.independent_rows.iter().enumerate() {
+            right[(k, k)] = self.row_scale[row];
+        }
         at.lu.solve(&mut right);
         let mut velocities = vec![vec![0.0; n]; self.rows.len()];
         for (k, &row) in self.independent_rows.iter().enumerate() {
@@ -253,13 +259,9 @@ impl DenseMechanism {
         self.solve(&at.lu, &right)
     }
 
-    /// The largest residual of any row that is solved, in sizes or rad.
-    fn largest_residual(&self, residual: &[f64]) -> f64 {
-        let scaled = self
-            .independent_rows
-            .iter()
-            .map(|&k| residual[k] * self.row_scale[k]);
-        max_abs(scaled) / self.size
+    /// The largest residual of some rows, in sizes or rad.
+    fn largest_residual(&self, residual: &[f64], rows: &[usize]) -> f64 {
+        max_abs(rows.iter().map(|&k| residual[k] * self.row_scale[k])) / self.size
     }
 
     /// Whether the rows that are not solved close too.
@@ -269,14 +271,10 @@ impl DenseMechanism {
     pub(crate) fn check_redundant_rows(&self, at: &ClosedConfiguration) -> Result<(), DenseError> {
         let mut residual = vec![0.0; self.rows.len()];
         self.rows.residual(&at.x, &at.row_values, &mut residual);
-        let scaled = residual.iter().zip(&self.row_scale).map(|(r, s)| r * s);
-        let open_residual = max_abs(scaled) / self.size;
-        if open_residual <= MAX_RESIDUAL {
-            Ok(())
-        } else {
-            Err(DenseError::RedundantRowsOpen {
-                residual: open_residual,
-            })
+        let all: Vec<usize> = (0..residual.len()).collect();
+        match self.largest_residual(&residual, &all) {
+            open if open <= MAX_RESIDUAL => Ok(()),
+            residual => Err(DenseError::RedundantRowsOpen { residual }),
         }
     }
 
@@ -317,9 +315,9 @@ impl DenseMechanism {
         at: &ClosedConfiguration,
         q: &[f64],
     ) -> Result<Vec<f64>, DenseError> {
-        let independent_part = self.independent_part(&self.scaled_jacobian(&at.x));
-        let transposed = independent_part.transpose().to_owned();
-        let lu = Lu::new(transposed).map_err(|pivot| DenseError::Singular { pivot })?;
+        let rows = self.independent_part(&self.scaled_jacobian(&at.x));
+        let lu = Lu::new(rows.transpose().to_owned());
+        let lu = lu.map_err(|pivot| DenseError::Singular { pivot })?;
         let mut right = Mat::from_fn(q.len(), 1, |c, _| q[c] * self.column_scale(c));
         lu.solve(&mut right);
         let mut multipliers = vec![0.0; self.rows.len()];
@@ -330,14 +328,12 @@ impl DenseMechanism {
     }
 
     fn solve(&self, lu: &Lu, right: &[f64]) -> Vec<f64> {
-        let n = self.independent_rows.len();
-        let mut scaled = Mat::from_fn(n, 1, |i, _| {
-            right[self.independent_rows[i]] * self.row_scale[self.independent_rows[i]]
-        });
+        let rows = &self.independent_rows;
+        let scaled = |i: usize| right[rows[i]] * self.row_scale[rows[i]];
+        let mut scaled = Mat::from_fn(rows.len(), 1, |i, _| scaled(i));
         lu.solve(&mut scaled);
-        (0..n)
-            .map(|c| scaled[(c, 0)] * self.column_scale(c))
-            .collect()
+        let unscaled = (0..rows.len()).map(|c| scaled[(c, 0)] * self.column_scale(c));
+        unscaled.collect()
     }
 }
 

@@ -8,6 +8,7 @@ use crate::dense::DenseMechanism;
 use crate::error::DenseError;
 use crate::subject::{Coefficients, Subject, SubjectError};
 use dwell_geometry::{Component, Reaction};
+use rayon::iter::Either;
 use rayon::prelude::*;
 
 /// The dense mechanism at one sampled position.
@@ -80,33 +81,30 @@ const CONSTANT_SHARE_TOLERANCE: f64 = 1e-12;
 
 impl<'a> CheckContext<'a> {
     /// Closes the mechanism at every position and measures the scales. A position that does not
-    /// close is noted, not an error: the others are still judged.
+    /// close is noted, not an error: the others are still checked.
     pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self, DenseError> {
         let actuators = case.mechanism.actuators.len();
         if actuators != 1 {
             return Err(DenseError::Actuators { actuators });
         }
-        let first_poses = case.positions.first().and_then(|&q| subject.poses(q).ok());
-        let dense = match first_poses {
-            None => DenseMechanism::new(case.mechanism, case.masses)?,
-            // Gears mesh as the subject first shows them: from there on they must keep step.
-            Some(poses) => DenseMechanism::with_meshed_gears(case.mechanism, case.masses, &poses)?,
+        let (mechanism, masses) = (case.mechanism, case.masses);
+        let dense = match case.positions.first().map(|&q| subject.poses(q)) {
+            // Gears mesh as in the subject's first poses: from there on they must keep step.
+            Some(Ok(poses)) => DenseMechanism::with_meshed_gears(mechanism, masses, &poses)?,
+            _ => DenseMechanism::new(mechanism, masses)?,
         };
-        let results: Vec<_> = case
+        let close = |&q: &f64| CheckedPosition::new(&dense, subject, q).map_err(|e| (q, e));
+        let (positions, not_closed): (Vec<_>, Vec<_>) = case
             .positions
             .par_iter()
-            .map(|&q| CheckedPosition::new(&dense, subject, q).map_err(|message| (q, message)))
-            .collect();
-        let (mut positions, mut not_closed) = (Vec::new(), Vec::new());
-        for position in results {
-            match position {
-                Ok(position) => positions.push(position),
-                Err(reason) => not_closed.push(reason),
-            }
-        }
-        let reactions = case.mechanism.reactions();
-        let varying = varying_bodies(&dense, &positions);
-        let scales = scales(&dense, &positions, &varying, &reactions);
+            .map(close)
+            .partition_map(|result| match result {
+                Ok(position) => Either::Left(position),
+                Err(reason) => Either::Right(reason),
+            });
+        let reactions = mechanism.reactions();
+        let varying_bodies = varying_bodies(&dense, &positions);
+        let scales = scales(&dense, &positions, &varying_bodies, &reactions);
         Ok(Self {
             case,
             subject,
@@ -114,25 +112,20 @@ impl<'a> CheckContext<'a> {
             positions,
             not_closed,
             scales,
-            varying_bodies: varying,
+            varying_bodies,
             reactions,
         })
     }
 
     /// `phi = 1.3 rad`.
     pub(crate) fn location(&self, q: f64) -> String {
-        let actuator = self.case.mechanism.actuators.first();
-        let name = actuator.map_or("q", |a| a.name.as_str());
+        let name = &self.case.mechanism.actuators[0].name;
         format!("{name} = {q:.6} {}", self.unit())
     }
 
     /// Unit of the coordinate.
     pub(crate) fn unit(&self) -> &'static str {
-        if self.dense.coordinate_is_angle() {
-            "rad"
-        } else {
-            "m"
-        }
+        self.dense.actuator_coordinate().unit()
     }
 
     /// `phi = 1.3 rad, slide.normal`.
@@ -141,55 +134,58 @@ impl<'a> CheckContext<'a> {
         format!("{}, {name}", self.location(q))
     }
 
-    /// The words for the positions judged.
+    /// The checked positions in words.
     pub(crate) fn domain(&self) -> String {
         let range = match self.case.range.limits() {
-            None => "over a full turn".to_owned(),
+            None => "over a full revolution".to_owned(),
             Some((low, high)) => format!("between {low:.6} and {high:.6} {}", self.unit()),
         };
         format!("{} positions {range}", self.positions.len())
     }
 
-    /// Scale of the a of a reaction.
-    pub(crate) fn a_scale(&self, reaction: usize) -> f64 {
-        self.scales.a[unit_index(self.reactions[reaction])]
+    /// Scales of the a and the b of a reaction.
+    pub(crate) fn coefficient_scales(&self, reaction: usize) -> [f64; 2] {
+        let unit = unit_index(self.reactions[reaction]);
+        [self.scales.a[unit], self.scales.b[unit]]
     }
 
-    /// Scale of the b of a reaction.
-    pub(crate) fn b_scale(&self, reaction: usize) -> f64 {
-        self.scales.b[unit_index(self.reactions[reaction])]
+    /// The mechanism at the coordinate `h` beyond a position, on the same branch.
+    pub(crate) fn stepped(&self, at: &CheckedPosition, h: f64) -> Option<ClosedConfiguration> {
+        let (dense, u) = (&self.dense, at.unit_velocity());
+        let stepped = dense.step_row(&at.configuration, dense.actuator_row(), u, at.q + h);
+        stepped.ok()
     }
 
-    /// Checks every position, in parallel, with one verdict. What the subject cannot answer is
-    /// noted in it.
-    pub(crate) fn for_each_position<F>(&self, compare: F) -> LargestDifference
-    where
-        F: Fn(&CheckedPosition, &mut LargestDifference) -> Result<(), SubjectError> + Sync,
-    {
-        let [worst] = self.for_each_position_into(|position, [worst]| compare(position, worst));
-        worst
+    /// E_c there at q̇ = 1, J.
+    pub(crate) fn energy_at(&self, at: &CheckedPosition, h: f64) -> Option<f64> {
+        let unit_rate = [(self.dense.actuator_row(), 1.0)];
+        Some(self.dense.kinetic_energy(&self.stepped(at, h)?, &unit_rate))
     }
 
-    /// The same with several verdicts at once.
-    pub(crate) fn for_each_position_into<const N: usize, F>(
+    /// m at a position with the row of a reaction opened by `h`.
+    pub(crate) fn opened_m(&self, at: &CheckedPosition, reaction: usize, h: f64) -> Option<f64> {
+        let (dense, w) = (&self.dense, at.unit_velocities.get(reaction)?);
+        let opened = dense.step_row(&at.configuration, reaction, w, h).ok()?;
+        let u = dense.unit_velocity(&opened, dense.actuator_row());
+        Some(dense.inertia(&opened, &u, &u))
+    }
+
+    /// Compares several quantities at every position, in parallel. Where the subject fails to answer, all of them
+    /// fail.
+    pub(crate) fn for_each_position<const N: usize>(
         &self,
-        compare: F,
-    ) -> [LargestDifference; N]
-    where
-        F: Fn(&CheckedPosition, &mut [LargestDifference; N]) -> Result<(), SubjectError> + Sync,
-    {
+        compare: impl Fn(&CheckedPosition, &mut [LargestDifference; N]) -> Result<(), SubjectError>
+        + Sync,
+    ) -> [LargestDifference; N] {
         let empty = || std::array::from_fn(|_| LargestDifference::default());
-        let all: Vec<[LargestDifference; N]> = self
-            .positions
-            .par_iter()
-            .map(|position| {
-                let mut worst = empty();
-                if let Err(error) = compare(position, &mut worst) {
-                    worst.iter_mut().for_each(|w| w.record_error(&error));
-                }
-                worst
-            })
-            .collect();
+        let at = |position| {
+            let mut worst = empty();
+            if let Err(error) = compare(position, &mut worst) {
+                worst.iter_mut().for_each(|w| w.record_error(&error));
+            }
+            worst
+        };
+        let all: Vec<[LargestDifference; N]> = self.positions.par_iter().map(at).collect();
         all.into_iter().fold(empty(), |sum, next| {
             let mut next = next.into_iter();
             sum.map(|w| w.merge(next.next().unwrap_or_default()))
@@ -199,54 +195,42 @@ impl<'a> CheckContext<'a> {
 
 impl CheckedPosition {
     fn new(dense: &DenseMechanism, subject: &dyn Subject, q: f64) -> Result<Self, String> {
-        let failed = |e: DenseError| e.to_string();
         let poses = subject.poses(q).map_err(|e| e.to_string())?;
-        let coordinates = dense.coordinates(&poses).map_err(failed)?;
-        let row = dense.actuator_row();
-        let mut row_values = vec![0.0; row + 1];
-        row_values[row] = q;
-        let configuration = dense.close(&coordinates, &row_values).map_err(failed)?;
+        Self::closed(dense, &poses, q).map_err(|e| e.to_string())
+    }
+
+    fn closed(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self, DenseError> {
+        let (configuration, closing_correction) = dense.close_poses(poses, &[q])?;
         let unit_velocities = dense.unit_velocities(&configuration);
         let reference = dense.coefficients(&configuration, &unit_velocities);
         let (rounding_bound, pose_rounding_bound) =
-            rounding_bounds(dense, &configuration, &reference, &unit_velocities).map_err(failed)?;
-        let condition_number = dense.condition_number(&configuration.x);
-        let correction: Vec<_> = coordinates
-            .iter()
-            .zip(&configuration.x)
-            .map(|(s, x)| s - x)
-            .collect();
-        let largest = poses
-            .iter()
-            .map(|p| p[0].hypot(p[1]))
-            .fold(dense.size(), f64::max);
+            rounding_bounds(dense, &configuration, &reference, &unit_velocities)?;
         Ok(Self {
             q,
-            closing_correction: dense.scaled_norm(&correction) * dense.size() / largest,
+            closing_correction,
+            condition_number: dense.condition_number(&configuration.x),
             configuration,
             unit_velocities,
             reference,
             rounding_bound,
             pose_rounding_bound,
-            condition_number,
         })
     }
 
-    /// A comparison at this position; `reference_error` in the unit of the difference.
-    pub(crate) fn comparison(
+    /// Records a comparison at this position: a difference, its scale and the error of the reference, all in `unit`.
+    pub(crate) fn record(
         &self,
-        difference: f64,
-        scale: f64,
-        reference_error: f64,
+        worst: &mut LargestDifference,
+        numbers: [f64; 3],
         unit: &'static str,
-    ) -> Comparison {
-        Comparison {
-            difference,
-            scale,
-            reference_error,
+        location: impl FnOnce() -> String,
+    ) {
+        let comparison = Comparison {
+            numbers,
             unit,
             condition_number: self.condition_number,
-        }
+        };
+        worst.record(&comparison, location);
     }
 
     /// Rounding of an energy relative to itself, which next to a dead point is not the last place.
@@ -260,9 +244,18 @@ impl CheckedPosition {
         self.pose_rounding_bound.max(f64::EPSILON)
     }
 
-    /// The speeds at q̇ = 1.
+    /// The velocities at q̇ = 1.
     pub fn unit_velocity(&self) -> &[f64] {
         self.unit_velocities.last().map_or(&[], Vec::as_slice)
+    }
+
+    /// What some bodies have in m.
+    pub(crate) fn inertia_share(&self, dense: &DenseMechanism, bodies: &[usize]) -> f64 {
+        let (at, u) = (&self.configuration, self.unit_velocity());
+        bodies
+            .iter()
+            .map(|&b| dense.body_inertia(b, at, u, u))
+            .sum()
     }
 }
 
@@ -274,41 +267,31 @@ fn rounding_bounds(
     unit_velocities: &[Vec<f64>],
 ) -> Result<(Coefficients, f64), DenseError> {
     let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
-    let (rounding_bound, pose_bound) = dense.rounding_bounds(
-        configuration,
-        unit_velocities,
-        &flat(reference),
-        |perturbed| {
-            Ok(flat(&dense.coefficients(
-                perturbed,
-                &dense.unit_velocities(perturbed),
-            )))
-        },
-    )?;
-    let (a, b) = rounding_bound[2..].split_at(reference.a.len());
-    let rounding_bound = Coefficients {
-        m: rounding_bound[0],
-        half_dm: rounding_bound[1],
+    let exact = flat(reference);
+    let (bounds, pose_bound) =
+        dense.rounding_bounds(configuration, unit_velocities, &exact, |at| {
+            Ok(flat(&dense.coefficients(at, &dense.unit_velocities(at))))
+        })?;
+    let (a, b) = bounds[2..].split_at(reference.a.len());
+    let bounds = Coefficients {
+        m: bounds[0],
+        half_dm: bounds[1],
         a: a.to_vec(),
         b: b.to_vec(),
     };
-    Ok((rounding_bound, pose_bound))
+    Ok((bounds, pose_bound))
 }
 
 /// 0 for a force, 1 for a moment.
-pub(crate) fn unit_index(reaction: Reaction) -> usize {
+fn unit_index(reaction: Reaction) -> usize {
     usize::from(reaction.component == Component::Moment)
 }
 
 /// Bodies whose share in m is not the same at all positions.
 fn varying_bodies(dense: &DenseMechanism, positions: &[CheckedPosition]) -> Vec<usize> {
     let varies = |&body: &usize| {
-        let shares = positions.iter().map(|s| {
-            dense.body_inertia(body, &s.configuration, s.unit_velocity(), s.unit_velocity())
-        });
-        let (low, high) = shares.fold((f64::INFINITY, 0.0_f64), |(low, high), share| {
-            (low.min(share), high.max(share))
-        });
+        let shares = positions.iter().map(|s| s.inertia_share(dense, &[body]));
+        let (low, high) = shares.fold((f64::INFINITY, 0.0_f64), |(a, b), m| (a.min(m), b.max(m)));
         high - low > CONSTANT_SHARE_TOLERANCE * high
     };
     (0..dense.bodies.len()).filter(varies).collect()
@@ -322,13 +305,8 @@ fn scales(
 ) -> Scales {
     let mut s = Scales::default();
     for position in positions {
-        let (at, u) = (&position.configuration, position.unit_velocity());
         s.m = s.m.max(position.reference.m);
-        let part: f64 = varying
-            .iter()
-            .map(|&b| dense.body_inertia(b, at, u, u))
-            .sum();
-        s.m_varying = s.m_varying.max(part);
+        s.m_varying = s.m_varying.max(position.inertia_share(dense, varying));
         s.half_dm = s.half_dm.max(position.reference.half_dm.abs());
         for (k, &reaction) in reactions.iter().enumerate() {
             let kind = unit_index(reaction);
@@ -339,7 +317,7 @@ fn scales(
     let varying_or_all = if s.m_varying > 0.0 { s.m_varying } else { s.m };
     s.half_dm = s.half_dm.max(B_MIN_SHARE * varying_or_all);
     // τ is a moment, or a force if the coordinate is a length; the other unit has a floor.
-    let (tau, other, arm) = match dense.coordinate_is_angle() {
+    let (tau, other, arm) = match dense.actuator_coordinate().is_angle() {
         true => (1, 0, dense.size()),
         false => (0, 1, 1.0 / dense.size()),
     };

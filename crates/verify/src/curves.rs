@@ -33,25 +33,20 @@ const DECADES: i32 = 12;
 
 /// The curve for ½ m′ as the slope of E_c, with steps in q. `None` where the subject has no answer.
 pub fn half_dm_curve(context: &CheckContext<'_>, position: &CheckedPosition) -> Option<ErrorCurve> {
-    let reference = context.subject.coefficients(position.q).ok()?.half_dm;
-    let curve = |order| {
-        errors(reference, context.scales.half_dm, |h| {
-            central_difference(order, h, |h| energy(context, position, h))
-        })
-    };
-    Some(ErrorCurve {
-        quantity: "½m′".to_owned(),
-        q: position.q,
-        reference,
-        scale: context.scales.half_dm,
-        second_order: curve(2),
-        fourth_order: curve(4),
-        sixth_order: curve(6),
-    })
+    let half_dm = context.subject.coefficients(position.q).ok()?.half_dm;
+    let scale = context.scales.half_dm;
+    let curve = ErrorCurve::new(
+        "½m′".to_owned(),
+        position.q,
+        half_dm,
+        scale,
+        |order, h| central_difference(order, h, |h| context.energy_at(position, h)),
+    );
+    Some(curve)
 }
 
 /// The curve for b of one reaction as ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂ with the constraint really released.
-/// The step is that of q₁ in rad; the released row opens by as much as turns or moves the
+/// The step is that of q₁ in rad; the released row opens by as much as rotates or moves the
 /// mechanism alike. `None` where the subject has no answer for that reaction.
 pub fn reaction_curve(
     context: &CheckContext<'_>,
@@ -59,66 +54,51 @@ pub fn reaction_curve(
     reaction: usize,
 ) -> Option<ErrorCurve> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
-    let named = *context.reactions.get(reaction)?;
-    let reference = *context
-        .subject
-        .coefficients(position.q)
-        .ok()?
-        .b
-        .get(reaction)?;
-    let scale = context.b_scale(reaction);
+    let name = *context.reactions.get(reaction)?;
+    let name = context.case.mechanism.reaction_name(name);
+    let coefficients = context.subject.coefficients(position.q).ok()?;
+    let reference = *coefficients.b.get(reaction)?;
+    let [_, scale] = context.coefficient_scales(reaction);
     let w = position.unit_velocities.get(reaction)?;
     let per_step = dense.scaled_norm(position.unit_velocity()) / dense.scaled_norm(w);
     let m12 = |h: f64| {
-        let configuration = dense
-            .step_row(
-                &position.configuration,
-                row,
-                position.unit_velocity(),
-                position.q + h,
-            )
-            .ok()?;
+        let configuration = context.stepped(position, h)?;
         let [u1, u2] = [row, reaction].map(|k| dense.unit_velocity(&configuration, k));
         Some(dense.inertia(&configuration, &u1, &u2))
     };
-    let m1 = |h: f64| {
-        let opened = dense
-            .step_row(&position.configuration, reaction, w, h)
-            .ok()?;
-        let u1 = dense.unit_velocity(&opened, row);
-        Some(dense.inertia(&opened, &u1, &u1))
-    };
-    let curve = |order| {
-        errors(reference, scale, |h| {
-            Some(
-                central_difference(order, h, m12)?
-                    - 0.5 * central_difference(order, h * per_step, m1)?,
-            )
-        })
-    };
-    let name = context.case.mechanism.reaction_name(named);
-    Some(ErrorCurve {
-        quantity: format!("{name}, b"),
-        q: position.q,
+    let m1 = |h: f64| context.opened_m(position, reaction, h);
+    let curve = ErrorCurve::new(
+        format!("{name}, b"),
+        position.q,
         reference,
         scale,
-        second_order: curve(2),
-        fourth_order: curve(4),
-        sixth_order: curve(6),
-    })
+        |order, h| {
+            let m12 = central_difference(order, h, m12)?;
+            Some(m12 - 0.5 * central_difference(order, h * per_step, m1)?)
+        },
+    );
+    Some(curve)
 }
 
-fn energy(context: &CheckContext<'_>, position: &CheckedPosition, h: f64) -> Option<f64> {
-    let (dense, row) = (&context.dense, context.dense.actuator_row());
-    let configuration = dense
-        .step_row(
-            &position.configuration,
-            row,
-            position.unit_velocity(),
-            position.q + h,
-        )
-        .ok()?;
-    Some(dense.kinetic_energy(&configuration, &[(row, 1.0)]))
+impl ErrorCurve {
+    fn new(
+        quantity: String,
+        q: f64,
+        reference: f64,
+        scale: f64,
+        difference: impl Fn(u32, f64) -> Option<f64>,
+    ) -> Self {
+        let curve = |order| errors(reference, scale, |h| difference(order, h));
+        Self {
+            quantity,
+            q,
+            reference,
+            scale,
+            second_order: curve(2),
+            fourth_order: curve(4),
+            sixth_order: curve(6),
+        }
+    }
 }
 
 /// Relative errors at the steps the mechanism can take.

@@ -56,6 +56,16 @@ impl DenseMechanism {
         mechanism: &Mechanism,
         masses: &[Mass],
     ) -> Result<Self, DenseError> {
+        Self::with_origins(mechanism, masses, |_, mean| mean)
+    }
+
+    /// The same with the origin of each body at another point of it than the mean of its attachments.
+    pub(crate) fn with_origins(
+        mechanism: &Mechanism,
+        masses: &[Mass],
+        origin: impl Fn(usize, Vec2) -> Vec2,
+    ) -> Result<Self, DenseError> {
+        let size = mechanism.size();
         let mut mechanism = mechanism.clone();
         // References first: what follows indexes by them.
         let columns = ConstraintRows::new(&mechanism)?;
@@ -66,42 +76,34 @@ impl DenseMechanism {
             });
         }
         check_axes(&mechanism)?;
-        let shifts = attachment_means(&mut mechanism);
+        let means = attachment_means(&mut mechanism).into_iter().enumerate();
+        let shifts: Vec<Vec2> = means.map(|(b, mean)| origin(b, mean)).collect();
         for_each_attachment(&mut mechanism, |body, point| *point -= shifts[body]);
-        let bodies: Vec<_> = masses
-            .iter()
-            .zip(shifts)
-            .enumerate()
-            .map(|(b, (mass, shift))| DenseBody {
-                column: columns.column(BodyId(b)),
-                mass: Mass {
-                    // Where nothing has no mass does not matter; far away it would cost digits.
-                    center: if mass.mass == 0.0 {
-                        Vec2::ZERO
-                    } else {
-                        mass.center - shift
-                    },
-                    ..*mass
-                },
+        let body = |(b, (mass, shift)): (usize, (&Mass, Vec2))| {
+            let mut mass = *mass;
+            // The centre of nothing does not matter; far away it would cost digits.
+            mass.center = match mass.mass {
+                0.0 => Vec2::ZERO,
+                _ => mass.center - shift,
+            };
+            let column = columns.column(BodyId(b));
+            DenseBody {
+                column,
+                mass,
                 shift,
-            })
-            .collect();
-        let size = size(&mut mechanism, &bodies);
+            }
+        };
+        let bodies = masses.iter().zip(shifts).enumerate().map(body).collect();
         let rows = ConstraintRows::new(&mechanism)?;
-        let (independent_rows, determinate) = ((0..rows.len()).collect(), vec![true; rows.len()]);
-        let row_scale = rows
-            .angular()
-            .iter()
-            .map(|&angular| if angular { size } else { 1.0 })
-            .collect();
+        let scale = |&angular: &bool| if angular { size } else { 1.0 };
         Ok(Self {
             mechanism,
-            rows,
             bodies,
-            row_scale,
+            row_scale: rows.angular().iter().map(scale).collect(),
             size,
-            independent_rows,
-            determinate,
+            independent_rows: (0..rows.len()).collect(),
+            determinate: vec![true; rows.len()],
+            rows,
         })
     }
 
@@ -112,8 +114,7 @@ impl DenseMechanism {
         Ok(())
     }
 
-    /// The largest distance of an attachment from the middle of its body, or the largest radius,
-    /// m: what a radian is compared with.
+    /// The size of the mechanism, m: what a radian is compared with.
     pub fn size(&self) -> f64 {
         self.size
     }
@@ -123,10 +124,9 @@ impl DenseMechanism {
         self.rows.len() - self.mechanism.actuators.len()
     }
 
-    /// Whether the first actuator's coordinate is an angle.
-    pub(crate) fn coordinate_is_angle(&self) -> bool {
-        let first = self.mechanism.actuators.first();
-        first.is_none_or(|a| a.coordinate().is_angle())
+    /// The coordinate of the only actuator.
+    pub(crate) fn actuator_coordinate(&self) -> Coordinate {
+        self.mechanism.actuators[0].coordinate()
     }
 
     /// Dense coordinates out of the frames of all bodies.
@@ -147,12 +147,25 @@ impl DenseMechanism {
         Ok(x)
     }
 
+    /// Dense velocities out of the frames of all bodies and their rates.
+    pub(crate) fn velocities(&self, poses: &[[f64; 3]], rates: &[[f64; 3]]) -> Vec<f64> {
+        let mut x_dot = vec![0.0; self.rows.columns()];
+        for (b, body) in self.bodies.iter().enumerate() {
+            if let Some(c) = body.column {
+                let arm = body.shift.rotate(Vec2::from_angle(poses[b][2]));
+                let [vx, vy, omega] = rates[b];
+                let v = vec2(vx, vy) + arm.perp() * omega;
+                x_dot[c..c + 3].copy_from_slice(&[v.x, v.y, omega]);
+            }
+        }
+        x_dot
+    }
+
     /// Largest over smallest singular value of the scaled rows at the coordinates `x`; 1 where there is none.
     pub(crate) fn condition_number(&self, x: &[f64]) -> f64 {
         let values = self.scaled_jacobian(x).singular_values();
-        let values = values.unwrap_or_default();
-        match (values.first(), values.last()) {
-            (Some(largest), Some(smallest)) if *smallest > 0.0 => largest / smallest,
+        match values.unwrap_or_default()[..] {
+            [largest, .., smallest] if smallest > 0.0 => largest / smallest,
             _ => 1.0,
         }
     }
@@ -245,32 +258,6 @@ fn attachment_means(mechanism: &mut Mechanism) -> Vec<Vec2> {
         sums[body].0 += *point;
         sums[body].1 += 1;
     });
-    sums.into_iter()
-        .map(|(sum, count)| sum * (1.0 / f64::from(count.max(1))))
-        .collect()
-}
-
-fn size(mechanism: &mut Mechanism, bodies: &[DenseBody]) -> f64 {
-    let mut largest: f64 = 0.0;
-    for_each_attachment(mechanism, |_, point| largest = largest.max(point.norm()));
-    for joint in &mechanism.joints {
-        largest = match joint.kind {
-            JointKind::Gear { radii, .. } => largest.max(radii[0]).max(radii[1]),
-            JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => {
-                largest.max(radius.abs())
-            }
-            JointKind::Distance { length } => largest.max(length),
-            JointKind::Revolute
-            | JointKind::Prismatic { .. }
-            | JointKind::Slot { .. }
-            | JointKind::Weld { .. }
-            | JointKind::Coupling(_) => largest,
-        };
-    }
-    // A single link on a pin has no arms; then its centre of mass gives the size.
-    let centers = bodies.iter().map(|b| b.mass.center.norm());
-    [largest, centers.fold(0.0, f64::max)]
-        .into_iter()
-        .find(|&s| s > 0.0)
-        .unwrap_or(1.0)
+    let mean = |(sum, count)| sum * (1.0 / f64::from(u32::max(count, 1)));
+    sums.into_iter().map(mean).collect()
 }

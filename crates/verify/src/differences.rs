@@ -1,4 +1,4 @@
-//! Derivatives from values alone: central differences at a ladder of steps, extrapolated to step
+//! Derivatives from values alone: central differences at ever shorter steps, extrapolated to step
 //! zero.
 //!
 //! The error of a central difference is a series in h², so the polynomial in h² through several of
@@ -35,7 +35,7 @@ const STEP_RATIO: f64 = 1.6;
 /// Steps taken in any case, and at most; the last is 1/27 or 1/3000 of the first.
 const MIN_STEPS: usize = 8;
 const MAX_STEPS: usize = 18;
-/// The ladder goes on while one more step shrinks some component's estimated error to this part:
+/// More steps are taken while one more shrinks some component's estimated error to this part:
 /// where the first steps were too long for the series to converge, as next to a dead point.
 const MIN_IMPROVEMENT: f64 = 0.5;
 
@@ -74,7 +74,7 @@ where
         if let (Some(plus), Some(minus)) = (f(h), f(-h)) {
             steps.push(h);
             if tables.is_empty() {
-                tables.extend(plus.iter().map(|_| NevilleTable::new()));
+                tables.resize_with(plus.len(), NevilleTable::new);
             }
             let mut improved = false;
             for (c, table) in tables.iter_mut().enumerate() {

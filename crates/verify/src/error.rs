@@ -34,7 +34,7 @@ pub enum DenseError {
         /// Its length.
         length: f64,
     },
-    /// The truths of the reduced model are those of one degree of freedom.
+    /// The checks of the reduced model are those of one degree of freedom.
     #[error("{actuators} actuators: the reduced model is that of one")]
     Actuators {
         /// Number of actuators.

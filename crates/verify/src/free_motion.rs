@@ -1,6 +1,6 @@
-//! The free motion against what needs no integrator: energy (check 4), the period and the whole
-//! time history by quadrature (check 5), and periodicity. Beside the findings it yields the ladder
-//! of tolerances from which cost can be read against error.
+//! The free motion against references that need no integrator: energy (check 4), the period and the whole
+//! time history by quadrature (check 5), and periodicity. It also yields the runs at all
+//! tolerances, from which cost can be read against error.
 
 mod convergence;
 
@@ -9,7 +9,8 @@ use dwell_dynamics::{
     DynamicsError, Event, EventKind, Method, Options, Orbit, ReducedCoordinate, ReducedOde,
     ReducedOutputs, ReducedState, Solution, solve_reduced,
 };
-use dwell_findings::{Check, Finding};
+use dwell_findings::Check::{Period, Power};
+use dwell_findings::Finding;
 use dwell_kinetostatics::ReducedModel;
 use rayon::prelude::*;
 use std::num::NonZeroUsize;
@@ -17,7 +18,7 @@ use std::time::Instant;
 
 /// Tolerance at which the integrators are checked.
 const CHECK_TOLERANCE: f64 = 1e-13;
-/// The finest and the coarsest tolerance of the ladder, as powers of ten.
+/// The finest and the coarsest tolerance, as powers of ten.
 const TOLERANCE_EXPONENTS: std::ops::RangeInclusive<i32> = -13..=-4;
 /// Runs of which the shortest wall time is taken; other threads run beside them.
 const TIMED_RUNS: usize = 3;
@@ -29,7 +30,7 @@ const COMPARED_STATES: usize = 400;
 pub struct FreeMotionCase {
     /// The start.
     pub initial_state: ReducedState,
-    /// Whole turns to follow.
+    /// Revolutions to follow.
     pub revolutions: usize,
     /// By reaction of the model: name and unit.
     pub reactions: Vec<(String, &'static str)>,
@@ -48,7 +49,7 @@ pub struct ToleranceRun {
     pub statistics: dwell_dynamics::Statistics,
     /// Least wall time of three runs, s.
     pub wall_time: f64,
-    /// |time of the first whole turn − period| / period.
+    /// |time of the first revolution − period| / period.
     pub period_error: f64,
     /// Largest |E / E₀ − 1| at the steps.
     pub drift: f64,
@@ -58,12 +59,20 @@ pub struct ToleranceRun {
     pub drift_over_time: Vec<[f64; 2]>,
 }
 
-/// What came out.
+impl ToleranceRun {
+    /// Time and value of the largest drift.
+    fn largest_drift(&self) -> [f64; 2] {
+        let drifts = self.drift_over_time.iter();
+        drifts.fold([0.0, 0.0], |w, d| if d[1] > w[1] { *d } else { w })
+    }
+}
+
+/// The results.
 #[derive(Debug, Clone)]
 pub struct CheckedFreeMotion {
     /// The motion by quadrature.
     pub orbit: Orbit,
-    /// The ladder, by method and then from the coarsest tolerance to the finest.
+    /// By method and then from the coarsest tolerance to the finest.
     pub tolerance_runs: Vec<ToleranceRun>,
     /// Fitted slope of log drift over log tolerance, BDF.
     pub drift_slope: f64,
@@ -81,49 +90,39 @@ pub fn check_free_motion<R: ReducedModel>(
 ) -> Result<CheckedFreeMotion, DynamicsError> {
     let orbit = Orbit::new(model, case.initial_state)?;
     let scales = MotionScales::new(model, case, &orbit)?;
-    let tasks: Vec<(Method, i32)> = [Method::Bdf, Method::Tsit45]
-        .into_iter()
-        .flat_map(|method| {
-            TOLERANCE_EXPONENTS
-                .rev()
-                .map(move |exponent| (method, exponent))
-        })
-        .collect();
-    let runs: Vec<(ToleranceRun, Solution)> = tasks
-        .par_iter()
-        .map(|&(method, exponent)| tolerance_run(model, case, &orbit, &scales, method, exponent))
-        .collect::<Result<_, _>>()?;
-    let drift_slope = fitted_slope(&runs);
+    let motion = Motion {
+        model,
+        case,
+        orbit: &orbit,
+        scales: &scales,
+    };
+    let methods = [Method::Bdf, Method::Tsit45].into_iter();
+    let tasks = methods.flat_map(|m| TOLERANCE_EXPONENTS.rev().map(move |power| (m, power)));
+    let tasks: Vec<(Method, i32)> = tasks.collect();
+    let run = |&(method, exponent): &(Method, i32)| motion.run(method, 10_f64.powi(exponent));
+    let runs: Vec<_> = tasks.par_iter().map(run).collect::<Result<_, _>>()?;
     let mut findings: Vec<Finding> = check_quadrature(case, &orbit).into_iter().collect();
-    for (tolerance_run, solution) in &runs {
-        if tolerance_run.tolerance <= CHECK_TOLERANCE * 1.5 {
-            findings.extend(check_run(
-                model,
-                case,
-                &orbit,
-                &scales,
-                tolerance_run,
-                solution,
-            )?);
+    for (run, solution) in &runs {
+        if run.tolerance <= CHECK_TOLERANCE * 1.5 {
+            findings.extend(motion.check_run(run, solution)?);
         }
     }
-    // Where nothing but rounding drifts (a balanced rotor), there is no slope to judge.
-    if runs.iter().any(|(r, _)| r.drift > 1e-11) {
+    let tolerance_runs: Vec<ToleranceRun> = runs.into_iter().map(|(run, _)| run).collect();
+    let drift_slope = fitted_slope(&tolerance_runs);
+    // Where nothing but rounding drifts (a balanced rotor), there is no slope to check.
+    if tolerance_runs.iter().any(|r| r.drift > 1e-11) {
         findings.push(check_convergence(drift_slope));
     }
     findings.push(check_jacobian(model, case, &orbit)?);
     Ok(CheckedFreeMotion {
-        tolerance_runs: runs
-            .into_iter()
-            .map(|(tolerance_run, _)| tolerance_run)
-            .collect(),
         orbit,
+        tolerance_runs,
         drift_slope,
         findings,
     })
 }
 
-/// The largest speed, reactions and coefficients over a turn.
+/// The largest speed and reactions over a revolution.
 struct MotionScales {
     speed: f64,
     /// By reaction: the largest of its unit.
@@ -147,10 +146,9 @@ impl MotionScales {
             }
         }
         let of_unit = |unit: &str| {
-            let same = case.reactions.iter().zip(&largest);
-            same.filter(|((_, u), _)| *u == unit)
-                .map(|(_, v)| *v)
-                .fold(0.0, f64::max)
+            let all = case.reactions.iter().zip(&largest);
+            let same = all.filter(|((_, u), _)| *u == unit).map(|(_, v)| *v);
+            same.fold(0.0, f64::max)
         };
         let reactions = case.reactions.iter().map(|(_, u)| of_unit(u)).collect();
         Ok(Self { speed, reactions })
@@ -170,7 +168,7 @@ impl<'a, R: ReducedModel> ReactionEvaluator<'a, R> {
         Ok(self.0.reactions.clone())
     }
 
-    /// Largest difference of the reactions in two states, relative to their scales, and whose it is.
+    /// Largest difference of the reactions in two states, relative to their scales and absolute, and of which reaction.
     fn difference(
         &mut self,
         one: ReducedState,
@@ -189,221 +187,195 @@ impl<'a, R: ReducedModel> ReactionEvaluator<'a, R> {
     }
 }
 
-fn tolerance_run<R: ReducedModel>(
-    model: &R,
-    case: &FreeMotionCase,
-    orbit: &Orbit,
-    scales: &MotionScales,
-    method: Method,
-    exponent: i32,
-) -> Result<(ToleranceRun, Solution), DynamicsError> {
-    let tolerance = 10_f64.powi(exponent);
-    let options = Options {
-        // A slow motion must not hide below the absolute tolerance on its speed.
-        atol: tolerance * case.initial_state.q_dot.abs().min(1.0),
-        ..Options::new(method, tolerance)
-    };
-    let revolutions = Event {
-        kind: EventKind::Revolution(ReducedCoordinate),
-        terminal: NonZeroUsize::new(case.revolutions.max(1)),
-    };
-    let timed = || -> Result<(f64, Solution), DynamicsError> {
-        let began = Instant::now();
-        let solution = solve_reduced(model, case.initial_state, None, &options, &[revolutions])?;
-        Ok((began.elapsed().as_secs_f64(), solution.completed()?))
-    };
-    let (mut seconds, solution) = timed()?;
-    // The last step ends at the last revolution, on the dense output: its error is not that of a step.
-    let steps: Vec<ReducedState> = solution.steps.iter().map(ReducedState::from).collect();
-    let steps = &steps[..steps.len().max(2) - 1];
-    for _ in 1..TIMED_RUNS {
-        seconds = seconds.min(timed()?.0);
-    }
-    let mut equation = ReducedOde::new(model);
-    let mut drift_in_time = Vec::with_capacity(steps.len());
-    for state in steps {
-        let energy = equation.kinetic_energy(state.q, state.q_dot)?;
-        drift_in_time.push([state.t, (energy / orbit.energy - 1.0).abs()]);
-    }
-    let mut reaction_evaluator = ReactionEvaluator::new(model);
-    let mut reaction_error = 0.0_f64;
-    if model.reactions() > 0 {
-        for state in steps.iter().step_by(steps.len() / COMPARED_STATES + 1) {
-            let exact = orbit.state_at(state.t);
-            reaction_error =
-                reaction_error.max(reaction_evaluator.difference(*state, exact, scales)?.0);
-        }
-    }
-    let tolerance_run = ToleranceRun {
-        method,
-        tolerance,
-        statistics: solution.statistics,
-        wall_time: seconds,
-        period_error: first_revolution_error(&solution, case, orbit) / orbit.period,
-        drift: drift_in_time.iter().map(|d| d[1]).fold(0.0, f64::max),
-        reaction_error,
-        drift_over_time: drift_in_time,
-    };
-    Ok((tolerance_run, solution))
+/// The largest change of the velocity and its time, and that of a reaction as [`ReactionEvaluator::difference`].
+type Periodicity = ((f64, f64), ((f64, f64, usize), f64));
+
+/// A motion with its references.
+struct Motion<'a, R> {
+    model: &'a R,
+    case: &'a FreeMotionCase,
+    orbit: &'a Orbit,
+    scales: &'a MotionScales,
 }
 
-/// |time of the first whole turn − period|, s.
-fn first_revolution_error(solution: &Solution, case: &FreeMotionCase, orbit: &Orbit) -> f64 {
-    solution.event_occurrences.first().map_or(f64::NAN, |o| {
-        (o.state.t - case.initial_state.t - orbit.period).abs()
-    })
+impl<R: ReducedModel> Motion<'_, R> {
+    fn run(
+        &self,
+        method: Method,
+        tolerance: f64,
+    ) -> Result<(ToleranceRun, Solution), DynamicsError> {
+        let start = self.case.initial_state;
+        let options = Options {
+            // A slow motion must not hide below the absolute tolerance on its speed.
+            atol: tolerance * start.q_dot.abs().min(1.0),
+            ..Options::new(method, tolerance)
+        };
+        let revolutions = Event {
+            kind: EventKind::Revolution(ReducedCoordinate),
+            terminal: NonZeroUsize::new(self.case.revolutions.max(1)),
+        };
+        let timed = || -> Result<(f64, Solution), DynamicsError> {
+            let began = Instant::now();
+            let solution = solve_reduced(self.model, start, None, &options, &[revolutions])?;
+            Ok((began.elapsed().as_secs_f64(), solution.completed()?))
+        };
+        let (mut wall_time, solution) = timed()?;
+        // The last step ends at the last revolution, on the dense output: its error is not that of a step.
+        let steps: Vec<ReducedState> = solution.steps.iter().map(ReducedState::from).collect();
+        let steps = &steps[..steps.len().max(2) - 1];
+        for _ in 1..TIMED_RUNS {
+            wall_time = wall_time.min(timed()?.0);
+        }
+        let mut equation = ReducedOde::new(self.model);
+        let mut drift_over_time = Vec::with_capacity(steps.len());
+        for state in steps {
+            let energy = equation.kinetic_energy(state.q, state.q_dot)?;
+            drift_over_time.push([state.t, (energy / self.orbit.energy - 1.0).abs()]);
+        }
+        let mut evaluator = ReactionEvaluator::new(self.model);
+        let mut reaction_error = 0.0_f64;
+        if self.model.reactions() > 0 {
+            for state in steps.iter().step_by(steps.len() / COMPARED_STATES + 1) {
+                let exact = self.orbit.state_at(state.t);
+                let error = evaluator.difference(*state, exact, self.scales)?.0;
+                reaction_error = reaction_error.max(error);
+            }
+        }
+        let run = ToleranceRun {
+            method,
+            tolerance,
+            statistics: solution.statistics,
+            wall_time,
+            period_error: self.first_revolution_error(&solution) / self.orbit.period,
+            drift: drift_over_time.iter().map(|d| d[1]).fold(0.0, f64::max),
+            reaction_error,
+            drift_over_time,
+        };
+        Ok((run, solution))
+    }
+
+    /// |time of the first revolution − period|, s.
+    fn first_revolution_error(&self, solution: &Solution) -> f64 {
+        let first = solution.event_occurrences.first();
+        let duration = first.map_or(f64::NAN, |o| o.state.t - self.case.initial_state.t);
+        (duration - self.orbit.period).abs()
+    }
+
+    /// The largest change of the velocity after a revolution, and of a reaction with its index, each with its time.
+    fn periodicity(&self, solution: &Solution) -> Result<Periodicity, DynamicsError> {
+        let start = self.case.initial_state;
+        let (mut velocity, mut reaction) = ((0.0, 0.0), ((0.0, 0.0, 0), 0.0));
+        let mut evaluator = ReactionEvaluator::new(self.model);
+        for occurrence in &solution.event_occurrences {
+            let state = ReducedState::from(&occurrence.state);
+            let change = (state.q_dot - start.q_dot).abs();
+            if change > velocity.0 {
+                velocity = (change, state.t);
+            }
+            let difference = evaluator.difference(state, start, self.scales)?;
+            if difference.0 > reaction.0.0 {
+                reaction = (difference, state.t);
+            }
+        }
+        Ok((velocity, reaction))
+    }
+
+    /// Period, energy and periodicity of a run at the finest tolerance.
+    fn check_run(
+        &self,
+        run: &ToleranceRun,
+        solution: &Solution,
+    ) -> Result<Vec<Finding>, DynamicsError> {
+        let (case, orbit, scales) = (self.case, self.orbit, self.scales);
+        let (name, lower) = (run.method.name(), run.method.name().to_lowercase());
+        let ([period, energy], reason) = tolerances(run.method);
+        // Measured over ten revolutions; the energy error grows in proportion to them.
+        let energy = energy * (case.revolutions as f64 / 10.0).max(1.0);
+        let over = |revolutions: String| format!("{revolutions}, tolerance {CHECK_TOLERANCE:.0e}");
+        let finding = |key: &str, check, numbers, tolerance: f64| Finding {
+            domain: over(format!("{} revolutions", case.revolutions)),
+            tolerance_reason: reason.into(),
+            integrated: true,
+            ..Finding::new(&format!("{key}-{lower}"), check, numbers, tolerance)
+        };
+        let late = self.first_revolution_error(solution);
+        let [t, drift] = run.largest_drift();
+        let ((change, after), (reaction, late_at)) = self.periodicity(solution)?;
+        let periodic = [change, change / scales.speed];
+        let mut findings = vec![
+            Finding {
+                comparison: format!(
+                    "the first revolution of {name}, by dense output, with the quadrature"
+                ),
+                domain: over("one revolution".to_owned()),
+                unit: "s".into(),
+                scale: "the period".into(),
+                worst_at: format!("t = {:.6} s", orbit.period),
+                ..finding("period", Period, [late, late / orbit.period], period)
+            },
+            Finding {
+                comparison: format!("E = ½ m q̇² of {name} with its initial value"),
+                unit: "J".into(),
+                scale: "the energy".into(),
+                worst_at: format!("t = {t:.3} s"),
+                ..finding("energy", Power, [drift * orbit.energy, drift], energy)
+            },
+            Finding {
+                comparison: format!("q̇ after each revolution of {name} with q̇ at the start"),
+                unit: "rad/s".into(),
+                scale: "the largest speed".into(),
+                worst_at: format!("t = {after:.3} s"),
+                tolerance_reason:
+                    "the accuracy required of the energy; the speed errs by half as much".into(),
+                ..finding("periodic-velocity", Period, periodic, energy)
+            },
+        ];
+        let (relative, absolute, k) = reaction;
+        findings.extend(case.reactions.get(k).map(|(reaction, unit)| Finding {
+            comparison: format!("reactions after each revolution of {name} with the initial ones"),
+            unit: (*unit).into(),
+            scale: "the largest reaction of the unit".into(),
+            worst_at: format!("{reaction}, t = {late_at:.3} s"),
+            tolerance_reason:
+                "the accuracy required of the energy, on which a reaction depends linearly".into(),
+            ..finding("periodic-reactions", Period, [absolute, relative], energy)
+        }));
+        Ok(findings)
+    }
 }
 
 /// The quadrature against a reference value, where there is one.
 fn check_quadrature(case: &FreeMotionCase, orbit: &Orbit) -> Option<Finding> {
     let (reference, source) = case.period.as_ref()?;
-    let difference = (orbit.period - reference).abs();
-    let relative_difference = difference / orbit.period;
+    let (period, points) = (orbit.period, orbit.points);
+    let difference = (period - reference).abs();
+    let numbers = [difference, difference / period];
     Some(Finding {
-        key: "period-quadrature".into(),
-        check: Check::Period,
         comparison: format!(
-            "T = ∮ √(m / 2E) dq = {:.14} s with {reference:.14} s ({source})",
-            orbit.period
+            "T = ∮ √(m / 2E) dq = {period:.14} s with {reference:.14} s ({source})"
         ),
-        domain: format!("one turn, {} points of the trapezoid rule", orbit.points),
-        absolute_difference: difference,
+        domain: format!("one revolution, {points} points of the trapezoid rule"),
         unit: "s".into(),
-        relative_difference,
         scale: "the period".into(),
-        worst_at: "the whole turn".into(),
-        tolerance: 4e-14,
+        worst_at: "the whole revolution".into(),
         tolerance_reason:
             "a spectral rule on an exact integrand leaves only the rounding of its sum".into(),
-        pass: relative_difference <= 4e-14,
-        ..Finding::default()
+        ..Finding::new("period-quadrature", Period, numbers, 4e-14)
     })
 }
 
-/// What a method is held to at the judged tolerance: period, and energy and periodicity.
+/// Tolerances of a method at the checked tolerance: of the period, and of energy and periodicity.
 fn tolerances(method: Method) -> ([f64; 2], &'static str) {
     match method {
         Method::Bdf | Method::Esdirk34 | Method::TrBdf2 => (
             [1e-10, 1e-9],
             "BDF's energy error grows with time to hundreds of times its tolerance; measured 1e-10 to \
-             2e-10 in ten turns, 1e-11 in a period",
+             2e-10 in ten revolutions, 1e-11 in a period",
         ),
         Method::Tsit45 | Method::Dop853 => (
             [5e-12, 1e-10],
-            "Tsit45 errs by some tens of its tolerance in ten turns; measured 1e-12 to 4e-12, and 1e-13 \
+            "Tsit45 errs by some tens of its tolerance in ten revolutions; measured 1e-12 to 4e-12, and 1e-13 \
              in a period",
         ),
     }
-}
-
-/// Period, energy and periodicity of a run at the finest tolerance.
-fn check_run<R: ReducedModel>(
-    model: &R,
-    case: &FreeMotionCase,
-    orbit: &Orbit,
-    scales: &MotionScales,
-    tolerance_run: &ToleranceRun,
-    solution: &Solution,
-) -> Result<Vec<Finding>, DynamicsError> {
-    let name = tolerance_run.method.name();
-    let lower = name.to_lowercase();
-    let domain = format!(
-        "{} turns, tolerance {CHECK_TOLERANCE:.0e}",
-        case.revolutions
-    );
-    let ([period, energy], tolerance_reason) = tolerances(tolerance_run.method);
-    // Measured over ten turns; the energy error grows in proportion to them.
-    let energy = energy * (case.revolutions as f64 / 10.0).max(1.0);
-    let difference = first_revolution_error(solution, case, orbit);
-    let relative_difference = difference / orbit.period;
-    let mut findings = vec![Finding {
-        key: format!("period-{lower}"),
-        check: Check::Period,
-        comparison: format!(
-            "the first whole turn of {name}, located on its dense output, with the quadrature"
-        ),
-        domain: format!("one turn, tolerance {CHECK_TOLERANCE:.0e}"),
-        absolute_difference: difference,
-        unit: "s".into(),
-        relative_difference,
-        scale: "the period".into(),
-        worst_at: format!("t = {:.6} s", orbit.period),
-        tolerance: period,
-        tolerance_reason: tolerance_reason.into(),
-        integrated: true,
-        pass: relative_difference <= period,
-        ..Finding::default()
-    }];
-    let worst = tolerance_run
-        .drift_over_time
-        .iter()
-        .fold([0.0, 0.0], |w, d| if d[1] > w[1] { *d } else { w });
-    findings.push(Finding {
-        key: format!("energy-{lower}"),
-        check: Check::Power,
-        comparison: format!("E = ½ m q̇² of {name} with its initial value"),
-        domain: domain.clone(),
-        absolute_difference: worst[1] * orbit.energy,
-        unit: "J".into(),
-        relative_difference: worst[1],
-        scale: "the energy".into(),
-        worst_at: format!("t = {:.3} s", worst[0]),
-        tolerance: energy,
-        tolerance_reason: tolerance_reason.into(),
-        integrated: true,
-        pass: worst[1] <= energy,
-        ..Finding::default()
-    });
-    let (mut speed, mut reaction) = ((0.0_f64, 0.0), (0.0_f64, 0.0, 0, 0.0));
-    let mut reaction_evaluator = ReactionEvaluator::new(model);
-    for occurrence in &solution.event_occurrences {
-        let state = ReducedState::from(&occurrence.state);
-        let speed_change = (state.q_dot - case.initial_state.q_dot).abs();
-        if speed_change > speed.0 {
-            speed = (speed_change, state.t);
-        }
-        let (relative, absolute, k) =
-            reaction_evaluator.difference(state, case.initial_state, scales)?;
-        if relative > reaction.0 {
-            reaction = (relative, absolute, k, state.t);
-        }
-    }
-    findings.push(Finding {
-        key: format!("periodic-velocity-{lower}"),
-        check: Check::Period,
-        comparison: format!("q̇ at each whole turn of {name} with q̇ at the start"),
-        domain: domain.clone(),
-        absolute_difference: speed.0,
-        unit: "rad/s".into(),
-        relative_difference: speed.0 / scales.speed,
-        scale: "the largest speed".into(),
-        worst_at: format!("t = {:.3} s", speed.1),
-        tolerance: energy,
-        tolerance_reason: "the accuracy asked of the energy; the speed errs by half as much".into(),
-        integrated: true,
-        pass: speed.0 <= energy * scales.speed,
-        ..Finding::default()
-    });
-    if let Some((name_k, unit)) = case.reactions.get(reaction.2) {
-        findings.push(Finding {
-            key: format!("periodic-reactions-{lower}"),
-            check: Check::Period,
-            comparison: format!(
-                "requested reactions at each whole turn of {name} with those at the start"
-            ),
-            domain,
-            absolute_difference: reaction.1,
-            unit: (*unit).into(),
-            relative_difference: reaction.0,
-            scale: "the largest reaction of the unit".into(),
-            worst_at: format!("{name_k}, t = {:.3} s", reaction.3),
-            tolerance: energy,
-            tolerance_reason:
-                "the accuracy asked of the energy, on which a reaction depends linearly".into(),
-            integrated: true,
-            pass: reaction.0 <= energy,
-            ..Finding::default()
-        });
-    }
-    Ok(findings)
 }

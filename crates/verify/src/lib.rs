@@ -28,7 +28,7 @@
 //! assert_eq!(ranks.joints.redundant_count(), 0);
 //! ```
 //!
-//! A [`Subject`] is whatever answers for the poses, the reduced coefficients and the reactions of a mechanism with one
+//! A [`Subject`] yields the poses, the reduced coefficients and the reactions of a mechanism with one
 //! degree of freedom; [`verify_all`] checks it:
 //!
 //! ```text
@@ -79,7 +79,7 @@ pub use dwell_findings::Finding;
 pub use dwell_geometry::Range;
 pub use error::DenseError;
 pub use free_motion::{CheckedFreeMotion, FreeMotionCase, ToleranceRun, check_free_motion};
-pub use loads::load_wrenches;
+pub use loads::{load_wrenches, magnitude_by_reactions};
 pub use multibody::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 pub use rank::{Rank, Ranks, rank};
 pub use state::{ClaimedState, check_energies, check_states};

@@ -1,17 +1,18 @@
-//! Loads as forces at points and couples, from the words of [`LoadKind`] and the frames of the
-//! bodies: what a producer's generalised forces are held against.
+//! Loads as forces at points and couples, from the definitions of [`LoadKind`] and the frames of the
+//! bodies: the reference for generalised forces.
 
 use crate::body_motion::BodyMotion;
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::{Guide, LoadKind, Mass};
+use dwell_geometry::{BodyId, JointId, Mechanism, Reaction, Vec2};
+use dwell_kinetostatics::{Guide, Load, LoadKind, Magnitude, Mass, Mesh, PitchLines};
 
-/// What a load of the given magnitude does, with the bodies' frames and their velocities
-/// [x, y, θ] in m, rad and per s; a massless body feels no weight, the ground's is left out.
+/// The forces of a load of the given magnitude, with the bodies' frames and their velocities
+/// [x, y, θ] in m, rad and per s; a massless body has no weight, the ground's is left out.
 /// `None` if it names a body that is not there.
 ///
-/// Two points in one place have no line between them: then a spring or damper between them gives
+/// Coincident points have no line between them: then a spring or damper between them gives
 /// forces that are not numbers, unless it is a spring of no free length.
+// Long: an arm for each kind of load.
 pub fn load_wrenches(
     kind: &LoadKind,
     magnitude: f64,
@@ -34,51 +35,38 @@ pub fn load_wrenches(
         });
         exist.then(|| wrenches.into())
     };
+    let force_at = |body: BodyId, point: Vec2, force: Vec2| {
+        Some(BodyWrench {
+            body,
+            force,
+            point: motion.point(body, point)?,
+            couple: 0.0,
+        })
+    };
     // Both bodies at their own points: the force is along the line between these.
     let pull = |bodies: [BodyId; 2], points: [Vec2; 2], on_second: Vec2| {
-        let of = |i: usize, force: Vec2| {
-            Some(BodyWrench {
-                body: bodies[i],
-                force,
-                point: motion.point(bodies[i], points[i])?,
-                couple: 0.0,
-            })
-        };
-        Some(vec![of(0, -on_second)?, of(1, on_second)?])
+        let on_first = force_at(bodies[0], points[0], -on_second)?;
+        Some(vec![on_first, force_at(bodies[1], points[1], on_second)?])
     };
     match *kind {
         LoadKind::Gravity { direction } => {
-            let heavy = masses.iter().enumerate();
-            heavy
-                .filter(|&(b, mass)| b != ground && mass.mass != 0.0)
-                .map(|(b, mass)| {
-                    Some(BodyWrench {
-                        body: BodyId(b),
-                        force: direction * (mass.mass * magnitude),
-                        point: motion.point(BodyId(b), mass.center)?,
-                        couple: 0.0,
-                    })
-                })
-                .collect()
+            let all = masses.iter().enumerate();
+            let heavy = all.filter(|&(b, mass)| b != ground && mass.mass != 0.0);
+            let weight = |(b, mass): (usize, &Mass)| {
+                force_at(BodyId(b), mass.center, direction * (mass.mass * magnitude))
+            };
+            heavy.map(weight).collect()
         }
         LoadKind::Force {
             body,
             point,
             direction,
-            body_fixed: follows,
+            body_fixed,
         } => {
             let rotation = motion.rotation(body)?;
-            let direction = if follows {
-                direction.rotate(rotation)
-            } else {
-                direction
-            };
-            Some(vec![BodyWrench {
-                body,
-                force: direction * magnitude,
-                point: motion.point(body, point)?,
-                couple: 0.0,
-            }])
+            let follower = direction.rotate(rotation);
+            let direction = if body_fixed { follower } else { direction };
+            Some(vec![force_at(body, point, direction * magnitude)?])
         }
         LoadKind::Torque { bodies } => couple(bodies, magnitude),
         LoadKind::Spring {
@@ -94,21 +82,14 @@ pub fn load_wrenches(
             };
             pull(bodies, points, d * (-magnitude * stretch))
         }
-        LoadKind::TorsionSpring {
-            bodies,
-            free_angle: free,
-        } => {
+        LoadKind::TorsionSpring { bodies, free_angle } => {
             let [angle, _] = motion.angle(bodies)?;
-            couple(bodies, -magnitude * (angle - free))
+            couple(bodies, -magnitude * (angle - free_angle))
         }
         LoadKind::Damper { bodies, points } => {
-            let [d, relative_velocity] = motion.gap(bodies, points)?;
+            let [d, rate] = motion.gap(bodies, points)?;
             let line = d * (1.0 / d.norm());
-            pull(
-                bodies,
-                points,
-                line * (-magnitude * relative_velocity.dot(line)),
-            )
+            pull(bodies, points, line * (-magnitude * rate.dot(line)))
         }
         LoadKind::RotationalDamper { bodies } => {
             let [_, rate] = motion.angle(bodies)?;
@@ -123,10 +104,80 @@ pub fn load_wrenches(
             let [_, rate] = motion.travel(guide.bodies, guide.points, guide.axis)?;
             guide_wrenches(guide, -magnitude * rate, &motion)
         }
+        LoadKind::SeparatingForce(mesh) => separating_wrenches(mesh, magnitude, &motion),
     }
 }
 
-/// A force along a guide: both bodies feel it at the second's point.
+/// The magnitude of a load that answers to claimed reactions (in the order of [`Mechanism::reactions`]); of every
+/// other load, what is claimed of it. Where the teeth of gears have a pressure angle α, the force between them is
+/// inclined by α to the tooth force, so that its other part is tan α times that.
+pub fn magnitude_by_reactions(
+    load: &Load,
+    claimed: f64,
+    mechanism: &Mechanism,
+    reactions: &[f64],
+) -> f64 {
+    match &load.magnitude {
+        Magnitude::Separating(teeth) => {
+            let tooth = tooth_row(mechanism, teeth.joint).and_then(|row| reactions.get(row));
+            tooth.map_or(f64::NAN, |force| force.abs() * teeth.angle.tan())
+        }
+        Magnitude::Constant(_)
+        | Magnitude::Law(..)
+        | Magnitude::Expression(..)
+        | Magnitude::Function(..)
+        | Magnitude::Friction(_)
+        | Magnitude::External(_) => claimed,
+    }
+}
+
+/// The row of the tooth force of a joint.
+pub(crate) fn tooth_row(mechanism: &Mechanism, joint: JointId) -> Option<usize> {
+    let is_tooth =
+        |r: &Reaction| r.joint == joint && r.component == dwell_geometry::Component::Tooth;
+    mechanism.reactions().iter().position(is_tooth)
+}
+
+/// The forces on two bodies whose teeth push each other apart: of gears along the line of centres, away from where the
+/// pitch circles touch; of a rack along the perpendicular from its pitch line to the pinion's centre.
+fn separating_wrenches(mesh: Mesh, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
+    let [first, second] = mesh.bodies;
+    let center = motion.point(second, mesh.points[1])?;
+    let [gap, _] = motion.gap(mesh.bodies, mesh.points)?;
+    let (at, away) = match mesh.pitch {
+        PitchLines::Circles { radii, internal } => {
+            let line = gap * (1.0 / gap.norm());
+            let first_center = motion.point(first, mesh.points[0])?;
+            // Seen from the first gear, the circles touch beyond the second only if the second is in its ring.
+            let touch = if internal && radii[0] < radii[1] {
+                -radii[0]
+            } else {
+                radii[0]
+            };
+            (
+                first_center + line * touch,
+                if internal { -line } else { line },
+            )
+        }
+        PitchLines::Line { axis, .. } => {
+            let t = axis.rotate(motion.rotation(first)?);
+            let from_line = gap - t * t.dot(gap);
+            (center - from_line, from_line * (1.0 / from_line.norm()))
+        }
+    };
+    let wrench = |body, force| BodyWrench {
+        body,
+        force,
+        point: at,
+        couple: 0.0,
+    };
+    Some(vec![
+        wrench(first, -(away * force)),
+        wrench(second, away * force),
+    ])
+}
+
+/// A force along a guide: it acts on both bodies at the second's point.
 fn guide_wrenches(guide: Guide, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
     let [first, second] = guide.bodies;
     let on_second = guide.axis.rotate(motion.rotation(first)?) * force;

@@ -1,5 +1,5 @@
-//! One dense factorisation that says when it is not to be trusted: faer's does not report a
-//! singular matrix, it divides by the zero pivot.
+//! A dense LU factorisation that refuses singular matrices: faer's does not report
+//! them, it divides by the zero pivot.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
@@ -54,11 +54,7 @@ impl Lu {
             largest = largest.max(pivot);
         }
         if n > 0 && smallest <= SMALLEST_PIVOT * largest {
-            return Err(if largest > 0.0 {
-                smallest / largest
-            } else {
-                0.0
-            });
+            return Err(smallest / largest.max(f64::MIN_POSITIVE));
         }
         Ok(Self {
             factors,

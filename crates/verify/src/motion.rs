@@ -1,7 +1,7 @@
 //! Mechanics of the dense mechanism: velocities and accelerations of the centres of mass, kinetic
 //! energy and momentum.
 //!
-//! With u and w two sets of speeds of all coordinates at one configuration,
+//! With u and w two sets of velocities of all coordinates at one configuration,
 //!
 //! ```text
 //! ⟨u, w⟩ = Σ m v_G(u)·v_G(w) + I ω(u) ω(w)                   (1)
@@ -20,19 +20,16 @@ use dwell_geometry::{Vec2, vec2};
 impl DenseMechanism {
     /// ⟨u, w⟩ of the whole mechanism, eq. (1), kg m² for two speeds per rad/s.
     pub fn inertia(&self, at: &ClosedConfiguration, u: &[f64], w: &[f64]) -> f64 {
-        (0..self.bodies.len())
-            .map(|b| self.body_inertia(b, at, u, w))
-            .sum()
+        let bodies = 0..self.bodies.len();
+        bodies.map(|b| self.body_inertia(b, at, u, w)).sum()
     }
 
     /// The share of one body in ⟨u, w⟩.
     pub fn body_inertia(&self, body: usize, at: &ClosedConfiguration, u: &[f64], w: &[f64]) -> f64 {
         let of = &self.bodies[body];
         of.column.map_or(0.0, |c| {
-            let v = self
-                .center_velocity(of, at, u)
-                .dot(self.center_velocity(of, at, w));
-            of.mass.mass * v + of.mass.inertia * (u[c + 2] * w[c + 2])
+            let [u_g, w_g] = [u, w].map(|speeds| self.center_velocity(of, at, speeds));
+            of.mass.mass * u_g.dot(w_g) + of.mass.inertia * (u[c + 2] * w[c + 2])
         })
     }
 
@@ -89,19 +86,15 @@ impl DenseMechanism {
         at: &ClosedConfiguration,
         unit_velocities: &[Vec<f64>],
     ) -> Coefficients {
-        let (released_velocities, actuator_velocities) =
-            unit_velocities.split_at(self.actuator_row());
-        let u = actuator_velocities.first().map_or(&[][..], Vec::as_slice);
+        let (released, driven) = unit_velocities.split_at(self.actuator_row());
+        let u = driven.first().map_or(&[][..], Vec::as_slice);
         let x_ddot = self.acceleration(at, u, &vec![0.0; self.rows.len()]);
         let power = |w: &[f64]| self.inertia_power(at, w, u, &x_ddot);
         Coefficients {
             m: self.inertia(at, u, u),
             half_dm: power(u),
-            a: released_velocities
-                .iter()
-                .map(|w| self.inertia(at, u, w))
-                .collect(),
-            b: released_velocities.iter().map(|w| power(w)).collect(),
+            a: released.iter().map(|w| self.inertia(at, u, w)).collect(),
+            b: released.iter().map(|w| power(w)).collect(),
         }
     }
 
@@ -118,26 +111,21 @@ impl DenseMechanism {
     ) -> Vec<Extrapolated> {
         let positions = |configuration: &ClosedConfiguration| -> Vec<f64> {
             let moving = self.bodies.iter().filter_map(|b| Some((b, b.column?)));
-            moving
-                .flat_map(|(body, c)| {
-                    let center = self.center(body, configuration);
-                    [center.x, center.y, configuration.x[c + 2]]
-                })
-                .collect()
+            let position = |(body, c): (&DenseBody, usize)| {
+                let center = self.center(body, configuration);
+                [center.x, center.y, configuration.x[c + 2]]
+            };
+            moving.flat_map(position).collect()
         };
         let middle = positions(at);
         let actuator_row = self.actuator_row();
         let mut row_values = at.row_values.clone();
-        derivatives(
-            DerivativeOrder::Second(&middle),
-            first_step,
-            rounding,
-            |t| {
-                actuator_values(t, &mut row_values[actuator_row..]);
-                let configuration = self.close_on_branch(at, &at.x, &row_values).ok()?;
-                Some(positions(&configuration))
-            },
-        )
+        let order = DerivativeOrder::Second(&middle);
+        derivatives(order, first_step, rounding, |t| {
+            actuator_values(t, &mut row_values[actuator_row..]);
+            let configuration = self.close_on_branch(at, &at.x, &row_values).ok()?;
+            Some(positions(&configuration))
+        })
     }
 
     /// Where a body's centre of mass is, from the ground's moved origin.

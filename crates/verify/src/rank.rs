@@ -1,14 +1,14 @@
-//! The rank of the dense rows: what a mechanism can do, and what holds it twice.
+//! The rank of the dense rows: degrees of freedom and redundant constraints.
 //!
 //! With the rows scaled to order one, A = U Σ Vᵀ, and r singular values above zero:
 //!
 //! ```text
 //! A v = 0     the last n − r columns of V: motions that every row allows     (1)
-//! uᵀ A = 0    the last m − r columns of U: rows that say the same            (2)
+//! uᵀ A = 0    the last m − r columns of U: dependent rows                    (2)
 //! ```
 //!
 //! A body that no motion of (1) moves is held; a row with no part in any of (2) has a determinate
-//! multiplier. Both are told from the whole null space, so that they do not hang on which vectors
+//! multiplier. Both follow from the whole null space, so that they do not depend on which vectors
 //! span it.
 
 use crate::dense::DenseMechanism;
@@ -23,7 +23,7 @@ const ZERO_SINGULAR_VALUE: f64 = 1e-9;
 /// A body or row has a part in a null space of orthonormal vectors from here on.
 const NULL_SPACE_PART: f64 = 1e-6;
 
-/// What the rows of one kind leave free, and what they say twice.
+/// What the rows of one kind leave free, and which of them are redundant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rank {
     /// Number of rows.
@@ -88,47 +88,31 @@ pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks, DenseErr
 
 fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank, DenseError> {
     let (rows, columns) = matrix.shape();
-    let svd = matrix
-        .svd()
-        .map_err(|_| DenseError::Singular { pivot: f64::NAN })?;
-    let values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
-    let largest = values.first().copied().unwrap_or(0.0);
-    let rank = values
-        .iter()
-        .filter(|&&s| s > ZERO_SINGULAR_VALUE * largest)
-        .count();
-    let squared_motion = |c: usize| {
-        (c..c + 3)
-            .map(|c| squared_null_space_part(svd.V(), c, rank))
-            .sum::<f64>()
+    let svd = matrix.svd();
+    let svd = svd.map_err(|_| DenseError::Singular { pivot: f64::NAN })?;
+    let singular_values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
+    let largest = singular_values.first().copied().unwrap_or(0.0);
+    let is_zero = |&&s: &&f64| s <= ZERO_SINGULAR_VALUE * largest;
+    let rank = singular_values.len() - singular_values.iter().filter(is_zero).count();
+    // What some rows have in the null space: the square sum of their entries in the columns from `rank` on.
+    let in_null_space = |vectors: MatRef<'_, f64>, rows: std::ops::Range<usize>| {
+        let square = |i: usize, j: usize| vectors[(i, j)] * vectors[(i, j)];
+        let row = |i| (rank..vectors.ncols()).map(|j| square(i, j)).sum::<f64>();
+        rows.map(row).sum::<f64>() > NULL_SPACE_PART * NULL_SPACE_PART
     };
-    let bodies = dense.bodies.iter().enumerate();
-    let movable_bodies = bodies
-        .filter(|(_, body)| {
-            body.column
-                .is_some_and(|c| squared_motion(c) > NULL_SPACE_PART * NULL_SPACE_PART)
-        })
-        .map(|(b, _)| BodyId(b))
-        .collect();
+    let moves = |c: usize| in_null_space(svd.V(), c..c + 3);
+    let movable = |&b: &usize| dense.bodies[b].column.is_some_and(moves);
+    let bodies = 0..dense.bodies.len();
     Ok(Rank {
         rows,
         columns,
         rank,
-        movable_bodies,
+        movable_bodies: bodies.filter(movable).map(BodyId).collect(),
         dependent_rows: (0..rows)
-            .filter(|&k| {
-                squared_null_space_part(svd.U(), k, rank) > NULL_SPACE_PART * NULL_SPACE_PART
-            })
+            .filter(|&k| in_null_space(svd.U(), k..k + 1))
             .collect(),
-        singular_values: values,
+        singular_values,
     })
-}
-
-/// The square of what row `i` has in the columns from `rank` on.
-fn squared_null_space_part(vectors: MatRef<'_, f64>, i: usize, rank: usize) -> f64 {
-    (rank..vectors.ncols())
-        .map(|j| vectors[(i, j)] * vectors[(i, j)])
-        .sum()
 }
 
 #[cfg(test)]

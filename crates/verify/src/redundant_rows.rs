@@ -44,43 +44,47 @@ impl DenseMechanism {
         Ok(dense)
     }
 
-    /// Rows of which none is made up of the others, the actuators' among them; by Gram and Schmidt,
-    /// always with the one that is farthest from those before.
+    /// The rows that are solved where rows repeat each other, the actuators' among them.
     pub(crate) fn select_independent_rows(&self, x: &[f64]) -> Vec<usize> {
+        let all: Vec<usize> = (0..self.rows.len()).collect();
+        self.independent_rows_of(&all, self.actuator_row(), x)
+    }
+
+    /// Those of some rows of which none is made up of the others: by Gram and Schmidt, first those from `preferred` on,
+    /// then always the one that is farthest from those before.
+    pub(crate) fn independent_rows_of(
+        &self,
+        candidates: &[usize],
+        preferred: usize,
+        x: &[f64],
+    ) -> Vec<usize> {
         let matrix = self.scaled_jacobian(x);
-        let rows = 0..matrix.nrows();
-        let mut remaining_rows: Vec<Vec<f64>> = rows
-            .map(|i| (0..matrix.ncols()).map(|j| matrix[(i, j)]).collect())
-            .collect();
+        let row = |&i: &usize| (i, (0..matrix.ncols()).map(|j| matrix[(i, j)]).collect());
+        let mut remaining: Vec<(usize, Vec<f64>)> = candidates.iter().map(row).collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let mut independent_rows: Vec<usize> = Vec::new();
-        while independent_rows.len() < matrix.ncols() {
-            let next_actuator = (self.actuator_row()..remaining_rows.len())
-                .find(|row| !independent_rows.contains(row));
-            let farthest = || {
-                let size = |row: &usize| dot(&remaining_rows[*row], &remaining_rows[*row]);
-                let others =
-                    (0..remaining_rows.len()).filter(|row| !independent_rows.contains(row));
-                others.max_by(|a, b| size(a).total_cmp(&size(b)))
-            };
-            let Some(next) = next_actuator.or_else(farthest) else {
+        let mut independent = Vec::new();
+        while independent.len() < matrix.ncols() {
+            let size = |k: &usize| dot(&remaining[*k].1, &remaining[*k].1);
+            let farthest = || (0..remaining.len()).max_by(|i, j| size(i).total_cmp(&size(j)));
+            let first_preferred = remaining.iter().position(|(row, _)| *row >= preferred);
+            let Some(next) = first_preferred.or_else(farthest) else {
                 break;
             };
-            let length = dot(&remaining_rows[next], &remaining_rows[next]).sqrt();
+            let (row, values) = remaining.remove(next);
+            let length = dot(&values, &values).sqrt();
             // What is left of a row of order one is rounding.
             if length.is_nan() || length < INDEPENDENCE_TOLERANCE {
                 break;
             }
-            let unit: Vec<f64> = remaining_rows[next].iter().map(|v| v / length).collect();
-            for row in &mut remaining_rows {
-                let projection = dot(row, &unit);
-                row.iter_mut()
-                    .zip(&unit)
-                    .for_each(|(v, u)| *v -= projection * u);
+            let unit: Vec<f64> = values.iter().map(|v| v / length).collect();
+            for (_, other) in &mut remaining {
+                let part = dot(other, &unit);
+                let both = other.iter_mut().zip(&unit);
+                both.for_each(|(v, u)| *v -= part * u);
             }
-            independent_rows.push(next);
+            independent.push(row);
         }
-        independent_rows.sort_unstable();
-        independent_rows
+        independent.sort_unstable();
+        independent
     }
 }

@@ -1,4 +1,4 @@
-//! What rounding does to anything that is read off a closed configuration.
+//! The effect of rounding on everything that is computed in a closed configuration.
 
 use crate::constraint_closing::ClosedConfiguration;
 use crate::dense::DenseMechanism;
@@ -29,19 +29,14 @@ impl DenseMechanism {
         let factor = EXPECTED_SHARE * f64::EPSILON / PROBE_STEP;
         for (row, (direction, scale)) in unit_velocities.iter().zip(&self.row_scale).enumerate() {
             let opened = PROBE_STEP * self.size / scale;
-            let perturbed = self.step_row(
-                configuration,
-                row,
-                direction,
-                configuration.row_values[row] + opened,
-            )?;
-            for ((bounds, perturbed), exact) in
-                bounds.iter_mut().zip(values(&perturbed)?).zip(exact)
-            {
-                *bounds += factor * (perturbed - exact).abs();
+            let value = configuration.row_values[row] + opened;
+            let perturbed = self.step_row(configuration, row, direction, value)?;
+            let moved = values(&perturbed)?.into_iter().zip(exact);
+            for (bound, (perturbed, exact)) in bounds.iter_mut().zip(moved) {
+                *bound += factor * (perturbed - exact).abs();
             }
-            pose_bound +=
-                EXPECTED_SHARE * f64::EPSILON * self.scaled_norm(direction) * self.size / scale;
+            let norm = self.scaled_norm(direction);
+            pose_bound += EXPECTED_SHARE * f64::EPSILON * norm * self.size / scale;
         }
         Ok((bounds, pose_bound))
     }

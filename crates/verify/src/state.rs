@@ -12,7 +12,7 @@
 //! Σ F of the ground + Σ f = Σ m a_G, and its moments         (6)  check 7
 //! ```
 //!
-//! In (4) the reactions are forces at points, told from the words of their components, and the
+//! In (4) the reactions are forces at points, by the definitions of their components, and the
 //! accelerations once the claimed ones, once second differences of positions along
 //! q(t) = q + q̇ t + ½ q̈ t², closed without any velocity. (5) and (6) take the dense motion. (3)
 //! and the acts of (4) to (6) share nothing but the poses.
@@ -25,13 +25,15 @@ pub use energies::check_energies;
 
 use crate::comparison::{FindingSpec, LargestDifference};
 use crate::dense::DenseMechanism;
+use crate::differences::NO_ESTIMATE;
 use crate::error::DenseError;
 use crate::wrenches::BodyWrench;
 use comparison_set::ComparisonSet;
 use dense_state::DenseState;
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{Component, Mechanism};
+use dwell_geometry::{Component, Mechanism, Reaction};
 use dwell_kinetostatics::Mass;
+use rayon::iter::Either;
 use rayon::prelude::*;
 
 /// A claimed state. What is given by body is in the order of [`Mechanism::bodies`], the ground
@@ -46,7 +48,7 @@ pub struct ClaimedState {
     pub q_dot: Vec<f64>,
     /// Their accelerations, rad/s² or m/s².
     pub q_ddot: Vec<f64>,
-    /// The frame [x, y, θ] of every body, m and rad; θ counted where turns are felt.
+    /// The frame [x, y, θ] of every body, m and rad; θ counted over whole revolutions where joints depend on them.
     pub poses: Vec<[f64; 3]>,
     /// Its rates, m/s and rad/s.
     pub velocities: Vec<[f64; 3]>,
@@ -54,9 +56,9 @@ pub struct ClaimedState {
     pub accelerations: Vec<[f64; 3]>,
     /// The reactions in the order of [`Mechanism::reactions`], N or N·m.
     pub reactions: Vec<f64>,
-    /// What the actuators do, N·m or N.
+    /// The actuator forces, N·m or N.
     pub tau: Vec<f64>,
-    /// What the loads do.
+    /// The forces and couples of the loads.
     pub load_wrenches: Vec<BodyWrench>,
 }
 
@@ -73,14 +75,13 @@ pub fn check_states(
 ) -> Vec<Finding> {
     match DenseMechanism::with_meshed_gears(mechanism, masses, assembly_poses) {
         Ok(dense) => StateChecker::new(&dense, mechanism, states).findings(),
-        Err(error) => vec![not_dense(&POSES, error.to_string())],
+        Err(error) => vec![not_dense(&POSES, &error)],
     }
 }
 
-fn not_dense(spec: &FindingSpec<'_>, message: String) -> Finding {
-    let mut worst = LargestDifference::default();
-    worst.record_failure(message);
-    spec.finding("0 states".to_owned(), worst)
+fn not_dense(spec: &FindingSpec<'_>, error: &DenseError) -> Finding {
+    let failed = LargestDifference::failed(error.to_string());
+    spec.finding("0 states".to_owned(), failed)
 }
 
 const POSES: FindingSpec<'_> = FindingSpec {
@@ -109,19 +110,16 @@ const VELOCITIES: FindingSpec<'_> = FindingSpec {
 };
 const ACCELERATIONS: FindingSpec<'_> = FindingSpec {
     key: "state-accelerations",
-    check: Check::ConstraintClosure,
     comparison: "the accelerations of all bodies with the solution of J x_ddot = q_ddot - curvature",
     scale: "the largest acceleration or squared velocity over the size",
-    tolerance: 1e-12,
-    tolerance_reason: VELOCITIES.tolerance_reason,
+    ..VELOCITIES
 };
 const REACTIONS: FindingSpec<'_> = FindingSpec {
     key: "state-reactions",
     check: Check::ReleasedConstraint,
-    comparison: "reactions and actuator actions with the dense solution of J^T lambda = M x_ddot + h - f",
+    comparison: "reactions and actuator forces with the dense solution of J^T lambda = M x_ddot + h - f",
     scale: "the largest of them or of the forces they balance, moments over the size",
-    tolerance: 1e-12,
-    tolerance_reason: VELOCITIES.tolerance_reason,
+    ..VELOCITIES
 };
 const NEWTON_EULER: FindingSpec<'_> = FindingSpec {
     key: "state-newton-euler",
@@ -133,27 +131,24 @@ const NEWTON_EULER: FindingSpec<'_> = FindingSpec {
 };
 const NEWTON_EULER_DIFFERENCES: FindingSpec<'_> = FindingSpec {
     key: "state-newton-euler-differences",
-    check: Check::NewtonEuler,
     comparison: "forces and moments on each body with m a_G and I alpha, positions differenced twice",
-    scale: NEWTON_EULER.scale,
     tolerance: 2e-11,
     tolerance_reason: "rounding of the positions over the square of the shortest time step used",
+    ..NEWTON_EULER
 };
 const POWER: FindingSpec<'_> = FindingSpec {
     key: "state-power",
     check: Check::Power,
     comparison: "the power of actuators and loads with the rate of the kinetic energy",
     scale: "the sum of |force| |velocity| of the state",
-    tolerance: 1e-12,
-    tolerance_reason: NEWTON_EULER.tolerance_reason,
+    ..NEWTON_EULER
 };
 const MOMENTUM: FindingSpec<'_> = FindingSpec {
     key: "state-momentum",
     check: Check::Momentum,
     comparison: "what the ground and the loads do with the rate of the momentum",
     scale: "the sum of absolute terms of the state",
-    tolerance: 1e-12,
-    tolerance_reason: NEWTON_EULER.tolerance_reason,
+    ..NEWTON_EULER
 };
 
 struct StateChecker<'a> {
@@ -170,19 +165,13 @@ impl<'a> StateChecker<'a> {
         mechanism: &'a Mechanism,
         states: &'a [ClaimedState],
     ) -> Self {
-        let all: Vec<Result<DenseState<'a>, String>> = states
-            .par_iter()
-            .map(|state| {
-                DenseState::new(dense, state).map_err(|error| format!("t = {} s: {error}", state.t))
-            })
-            .collect();
-        let (mut dense_states, mut failures) = (Vec::new(), Vec::new());
-        for one in all {
-            match one {
-                Ok(one) => dense_states.push(one),
-                Err(reason) => failures.push(reason),
-            }
-        }
+        let of = |state: &'a ClaimedState| {
+            DenseState::new(dense, state).map_err(|error| format!("t = {} s: {error}", state.t))
+        };
+        let (dense_states, failures) = states.par_iter().map(of).partition_map(|one| match one {
+            Ok(one) => Either::Left(one),
+            Err(reason) => Either::Right(reason),
+        });
         Self {
             dense,
             mechanism,
@@ -197,23 +186,31 @@ impl<'a> StateChecker<'a> {
         findings.extend(self.motions());
         findings.push(self.reactions());
         findings.extend(self.newton_euler());
-        findings.push(self.power());
-        findings.push(self.momentum());
+        findings.extend([self.power(), self.momentum()]);
         findings
+    }
+
+    fn finding(&self, spec: &FindingSpec<'_>, comparisons: ComparisonSet) -> Finding {
+        comparisons.finding(spec, &self.failures, self.state_count)
+    }
+
+    /// By row, the actuators' after the reactions': whether its multiplier is a moment, and its name.
+    fn rows(&self) -> Vec<(bool, String)> {
+        let mechanism = self.mechanism;
+        let of_reaction =
+            |r: Reaction| (r.component == Component::Moment, mechanism.reaction_name(r));
+        let joints = mechanism.reactions().into_iter().map(of_reaction);
+        let actuators = mechanism.actuators.iter();
+        let actuators = actuators.map(|a| (a.coordinate().is_angle(), a.name.clone()));
+        joints.chain(actuators).collect()
     }
 
     fn poses(&self) -> Finding {
         let mut comparisons = ComparisonSet::new("");
         for m in &self.dense_states {
-            comparisons.add(
-                m,
-                m.closing_correction,
-                m.pose_rounding_bound,
-                1.0,
-                location(m),
-            );
+            comparisons.add(m, [m.closing_correction, 1.0, m.pose_rounding_bound], "");
         }
-        comparisons.finding(&POSES, &self.failures, self.state_count)
+        self.finding(&POSES, comparisons)
     }
 
     fn branch(&self) -> Finding {
@@ -221,9 +218,9 @@ impl<'a> StateChecker<'a> {
         let positive = |m: &DenseState<'_>| m.configuration.lu.positive();
         for m in &self.dense_states {
             let other = self.dense_states.first().map(positive) != Some(positive(m));
-            comparisons.add(m, f64::from(u8::from(other)), 0.0, 1.0, location(m));
+            comparisons.add(m, [f64::from(u8::from(other)), 1.0, 0.0], "");
         }
-        comparisons.finding(&BRANCH, &self.failures, self.state_count)
+        self.finding(&BRANCH, comparisons)
     }
 
     /// Velocities and accelerations of the moved frames, (1) and (2).
@@ -231,127 +228,80 @@ impl<'a> StateChecker<'a> {
         let size = self.dense.size();
         let (mut first, mut second) = (ComparisonSet::new("m/s"), ComparisonSet::new("m/s2"));
         for m in &self.dense_states {
-            let (velocity_scale, acceleration_scale) = (
-                m.scaled_norm(&m.x_dot) * size,
-                m.scaled_norm(&m.x_ddot) * size,
-            );
+            let [speed, acceleration] = [&m.x_dot, &m.x_ddot].map(|x| m.scaled_norm(x) * size);
+            let acceleration = acceleration.max(speed * speed / size);
             for (body, column) in m.moving_bodies() {
-                let at = || format!("{}, {}", location(m), self.mechanism.bodies[body].name);
-                let of = |comparisons: &mut ComparisonSet,
-                          claimed: &[f64],
-                          dense: &[f64],
-                          reference_error: &[f64],
-                          scale| {
-                    for c in column..column + 3 {
-                        let arm = if c == column + 2 { size } else { 1.0 };
-                        comparisons.add(
-                            m,
-                            (claimed[c] - dense[c]) * arm,
-                            reference_error[c] * arm,
-                            scale,
-                            at(),
-                        );
-                    }
-                };
-                of(
-                    &mut first,
-                    &m.claimed_dot,
-                    &m.x_dot,
-                    &m.velocity_rounding_bound,
-                    velocity_scale,
-                );
-                let scale = acceleration_scale.max(velocity_scale * velocity_scale / size);
-                of(
-                    &mut second,
-                    &m.claimed_ddot,
-                    &m.x_ddot,
-                    &m.acceleration_rounding_bound,
-                    scale,
-                );
+                let name = &self.mechanism.bodies[body].name;
+                for c in column..column + 3 {
+                    let arm = if c == column + 2 { size } else { 1.0 };
+                    let difference = (m.claimed_dot[c] - m.x_dot[c]) * arm;
+                    let numbers = [difference, speed, m.velocity_rounding_bound[c] * arm];
+                    first.add(m, numbers, name);
+                    let difference = (m.claimed_ddot[c] - m.x_ddot[c]) * arm;
+                    let error = m.acceleration_rounding_bound[c] * arm;
+                    second.add(m, [difference, acceleration, error], name);
+                }
             }
         }
         [
-            first.finding(&VELOCITIES, &self.failures, self.state_count),
-            second.finding(&ACCELERATIONS, &self.failures, self.state_count),
+            self.finding(&VELOCITIES, first),
+            self.finding(&ACCELERATIONS, second),
         ]
     }
 
     fn reactions(&self) -> Finding {
         let size = self.dense.size();
-        let reactions = self.mechanism.reactions();
-        let joints = reactions.iter().map(|&r| {
-            (
-                r.component == Component::Moment,
-                self.mechanism.reaction_name(r),
-            )
-        });
-        let actuators = self.mechanism.actuators.iter();
-        let rows: Vec<(bool, String)> = joints
-            .chain(actuators.map(|a| (a.coordinate().is_angle(), a.name.clone())))
-            .collect();
+        let rows = self.rows();
         let mut comparisons = ComparisonSet::new("N");
         for m in &self.dense_states {
             let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
             for (k, (claimed, (moment, name))) in claimed.zip(&rows).enumerate() {
-                // Of a reaction that is not determined, (4) judges what it does with the others.
+                // Of a reaction that is not determined, (4) checks what it does with the others.
                 if !self.dense.determinate[k] {
                     continue;
                 }
                 let arm = if *moment { 1.0 / size } else { 1.0 };
-                let (dense, reference_error) =
-                    (m.multipliers[k] * arm, m.multiplier_rounding_bound[k] * arm);
-                let at = format!("{}, {name}", location(m));
-                comparisons.add(
-                    m,
-                    claimed * arm - dense,
-                    reference_error,
-                    largest_force.max(dense.abs()),
-                    at,
-                );
+                let dense = m.multipliers[k] * arm;
+                let error = m.multiplier_rounding_bound[k] * arm;
+                let scale = largest_force.max(dense.abs());
+                comparisons.add(m, [claimed * arm - dense, scale, error], name);
             }
         }
-        comparisons.finding(&REACTIONS, &self.failures, self.state_count)
+        self.finding(&REACTIONS, comparisons)
     }
 
     /// Check 8, by claimed accelerations and by positions alone.
     fn newton_euler(&self) -> [Finding; 2] {
         let (mut claimed, mut differenced) = (ComparisonSet::new("N"), ComparisonSet::new("N"));
         let size = self.dense.size();
-        let from_positions: Vec<_> = self
-            .dense_states
-            .par_iter()
-            .map(DenseState::second_differences)
-            .collect();
+        let states = self.dense_states.par_iter();
+        let from_positions: Vec<_> = states.map(DenseState::second_differences).collect();
         for (m, second) in self.dense_states.iter().zip(from_positions) {
             for (i, (body, _)) in m.moving_bodies().enumerate() {
                 let name = &self.mechanism.bodies[body].name;
                 let net = m.net_wrench(body);
-                let exact = m.inertia_forces(body);
-                let inertia = self.dense.bodies[body].mass;
-                for (c, exact) in exact.into_iter().enumerate() {
-                    let arm = if c == 2 { 1.0 / size } else { 1.0 };
+                let Mass { mass, inertia, .. } = self.dense.bodies[body].mass;
+                for (c, exact) in m.inertia_forces(body).into_iter().enumerate() {
+                    let (arm, inertia) = match c {
+                        2 => (1.0 / size, inertia),
+                        _ => (1.0, mass),
+                    };
                     let terms = net.terms[c] * arm;
-                    let reference_error = m.pose_rounding_bound * terms;
+                    let error = m.pose_rounding_bound * terms;
                     let scale = terms + exact.abs() * arm;
-                    let at = || format!("{}, {name}", location(m));
-                    claimed.add(m, (net.sum[c] - exact) * arm, reference_error, scale, at());
-                    let factor = if c == 2 {
-                        inertia.inertia
-                    } else {
-                        inertia.mass
-                    } * arm;
-                    let (value, error) = second
-                        .get(3 * i + c)
-                        .map_or((f64::NAN, f64::NAN), |s| (s.value, s.error));
-                    let difference = net.sum[c] * arm - factor * value;
-                    differenced.add(m, difference, reference_error + factor * error, scale, at());
+                    claimed.add(m, [(net.sum[c] - exact) * arm, scale, error], name);
+                    let factor = inertia * arm;
+                    let second = second.get(3 * i + c).copied().unwrap_or(NO_ESTIMATE);
+                    let difference = net.sum[c] * arm - factor * second.value;
+                    let error = error + factor * second.error;
+                    differenced.add(m, [difference, scale, error], name);
                 }
             }
         }
         [
-            claimed.finding(&NEWTON_EULER, &self.failures, self.state_count),
-            differenced.finding(&NEWTON_EULER_DIFFERENCES, &self.failures, self.state_count),
+            self.finding(&NEWTON_EULER, claimed),
+            self.finding(&NEWTON_EULER_DIFFERENCES, differenced),
         ]
     }
 
@@ -359,37 +309,22 @@ impl<'a> StateChecker<'a> {
         let mut comparisons = ComparisonSet::with_individual_scales("W");
         for m in &self.dense_states {
             let (difference, terms) = m.power_balance();
-            comparisons.add(
-                m,
-                difference,
-                m.relative_rounding_bound() * terms,
-                terms,
-                location(m),
-            );
+            let error = m.relative_rounding_bound() * terms;
+            comparisons.add(m, [difference, terms, error], "");
         }
-        comparisons.finding(&POWER, &self.failures, self.state_count)
+        self.finding(&POWER, comparisons)
     }
 
     fn momentum(&self) -> Finding {
         let mut comparisons = ComparisonSet::with_individual_scales("N");
         for m in &self.dense_states {
             for (difference, terms, what) in m.momentum_balance() {
-                let reference_error = m.relative_rounding_bound() * terms;
-                comparisons.add(
-                    m,
-                    difference,
-                    reference_error,
-                    terms,
-                    format!("{}, {what}", location(m)),
-                );
+                let error = m.relative_rounding_bound() * terms;
+                comparisons.add(m, [difference, terms, error], what);
             }
         }
-        comparisons.finding(&MOMENTUM, &self.failures, self.state_count)
+        self.finding(&MOMENTUM, comparisons)
     }
-}
-
-fn location(m: &DenseState<'_>) -> String {
-    format!("t = {} s", m.state.t)
 }
 
 /// Why a state cannot be measured.

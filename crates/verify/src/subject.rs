@@ -1,4 +1,4 @@
-//! What is checked: anything that answers for a mechanism of one degree of freedom.
+//! What is checked: anything that yields the results of a mechanism of one degree of freedom.
 
 /// Why a subject could not answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -6,7 +6,7 @@
 pub struct SubjectError {
     /// The coordinate it was asked at, rad.
     pub q: f64,
-    /// What went wrong, in words that read after "failed to answer:".
+    /// Why, as it reads after "failed to answer:".
     pub message: String,
 }
 
@@ -24,12 +24,12 @@ pub struct Coefficients {
     pub b: Vec<f64>,
 }
 
-/// What the actuator and the joints do in a given state, without loads.
+/// Actuator force and reactions in a given state, without loads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InverseDynamics {
-    /// The actuator's action on its second body, N·m.
+    /// The actuator force on its second body, N·m.
     pub tau: f64,
-    /// Every reaction, the action of the joint's first body on its second, N or N·m.
+    /// Every reaction, of the joint's first body on its second, N or N·m.
     pub reactions: Vec<f64>,
 }
 
@@ -42,7 +42,7 @@ pub trait Subject: Sync {
     /// The reduced coefficients at `q`.
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError>;
 
-    /// The actions at (`q`, `q_dot`, `q_ddot`) in rad, rad/s, rad/s².
+    /// Forces at (`q`, `q_dot`, `q_ddot`) in rad, rad/s, rad/s².
     fn inverse_dynamics(
         &self,
         q: f64,

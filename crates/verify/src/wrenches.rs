@@ -1,11 +1,12 @@
-//! What the joints and the actuators do, as forces at points and couples: told from the words of
-//! [`Component`](dwell_geometry::Component) and from where the bodies are, never from the rows.
+//! The forces of joints and actuators at points, and couples: from the definitions of
+//! [`Component`](dwell_geometry::Component) and the positions of the bodies, never from the rows.
 
+use crate::body_motion::slide_axis;
 use crate::constraint_closing::ClosedConfiguration;
 use crate::dense::DenseMechanism;
 use dwell_geometry::{BodyId, Coordinate, Joint, JointId, JointKind, Vec2, vec2};
 
-/// The action of a load on one body. A load between two bodies has two of them.
+/// The force of a load on one body. A load between two bodies has two of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BodyWrench {
     /// The body.
@@ -18,7 +19,7 @@ pub struct BodyWrench {
     pub couple: f64,
 }
 
-/// One action on one body: a force at a point of the plane, and a couple.
+/// One force on one body at a point of the plane, and a couple.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct DenseWrench {
     pub(crate) body: usize,
@@ -65,14 +66,14 @@ impl NetWrench {
     }
 }
 
-/// Gathers actions in pairs: the first body acts on the second, and feels the opposite.
+/// Gathers forces in pairs: that of the first body on the second, and the opposite on the first.
 struct ActionReaction<'a> {
     dense: &'a DenseMechanism,
     at: &'a ClosedConfiguration,
     wrenches: Vec<DenseWrench>,
 }
 
-/// A joint's two points and its first body's turn, in the plane.
+/// A joint's two points and its first body's rotation, in the plane.
 struct JointGeometry {
     bodies: [BodyId; 2],
     points: [Vec2; 2],
@@ -109,6 +110,7 @@ impl ActionReaction<'_> {
         }
     }
 
+    // Long: an arm for each kind of joint.
     fn joint(&mut self, joint: &Joint, reaction: &[f64]) {
         let geometry = self.joint_geometry(joint.bodies, joint.points);
         let [first, second] = geometry.points;
@@ -134,7 +136,7 @@ impl ActionReaction<'_> {
                 } else {
                     -line
                 };
-                // Turns the second gear counter-clockwise.
+                // Rotates the second gear counter-clockwise.
                 let force = outwards.perp() * tooth;
                 self.force(&geometry, force, second + outwards * radii[1]);
             }
@@ -154,9 +156,8 @@ impl ActionReaction<'_> {
                     return;
                 };
                 // No work is lost: what the law gives to one coordinate it takes from the other.
-                let slope = relation
-                    .law
-                    .eval(self.coordinate_value(relation.independent))[1];
+                let value = self.coordinate_value(relation.independent);
+                let slope = relation.law.eval(value)[1];
                 self.force_along(relation.dependent, generalised_force);
                 self.force_along(relation.independent, -slope * generalised_force);
             }
@@ -179,23 +180,13 @@ impl ActionReaction<'_> {
     /// The joint that a travel belongs to, and its axis in the first body.
     fn slide_axis(&self, joint: JointId) -> Option<(JointGeometry, Vec2)> {
         let joint = self.dense.mechanism.joints.get(joint.0)?;
-        let axis = match joint.kind {
-            JointKind::Prismatic { axes } => axes[0],
-            JointKind::Slot { axis } => axis,
-            JointKind::Revolute
-            | JointKind::Weld { .. }
-            | JointKind::Gear { .. }
-            | JointKind::Rack { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => return None,
-        };
+        let axis = slide_axis(joint.kind)?;
         let geometry = self.joint_geometry(joint.bodies, joint.points);
         let axis = axis.rotate(geometry.rotation);
         Some((geometry, axis))
     }
 
-    /// An action along a coordinate, of its first body on its second: it does positive work when
+    /// A force along a coordinate, of its first body on its second: it does positive work when
     /// the coordinate grows.
     fn force_along(&mut self, coordinate: Coordinate, generalised_force: f64) {
         match coordinate {
@@ -236,7 +227,7 @@ fn unit(v: Vec2) -> Vec2 {
 }
 
 impl DenseMechanism {
-    /// Everything the joints and the actuators do, body by body, the ground among them.
+    /// All forces of joints and actuators on bodies, the ground among them.
     pub(crate) fn joint_wrenches(
         &self,
         at: &ClosedConfiguration,

@@ -1,5 +1,5 @@
-//! Every truth holds for a correct subject, on mechanisms of every kind that is described so far,
-//! and holds to the numbers it claims. `--nocapture` prints the table of measured differences.
+//! Every check passes for a correct subject, on mechanisms of every kind that is described so far,
+//! with the tolerances that it states. `--nocapture` prints the table of measured differences.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]
 
@@ -42,11 +42,12 @@ fn assert_at_most(findings: &[Finding], bounds: &[(&str, f64)]) {
     }
 }
 
-/// What the truths promise on an ordinary mechanism.
+/// The tolerances on an ordinary mechanism.
 const USUAL: [(&str, f64); 12] = [
     ("closure", 1e-13),
     ("m-energy", 1e-14),
-    ("m-energy-varying", 2e-14),
+    // Ten times its rounding, which is proportional to the size of the mechanism.
+    ("m-energy-varying", 3e-14),
     ("half-dm-differences", 1e-11),
     ("half-dm-power", 1e-13),
     ("a-released", 1e-13),

@@ -64,7 +64,8 @@ impl Joint {
         Self(Keys::new("distance", [first, second]).with("length", length))
     }
 
-    /// Two gears with their centres and pitch radii, m. Its reaction is `tooth`, N.
+    /// Two gears with their centres and pitch radii, m. Its reaction is `tooth`, N. Further keys: `internal`, and
+    /// `pressure-angle` (rad), with which the teeth push each other apart.
     ///
     /// ```
     /// let mesh = dwell::Joint::gear("crank.A", "wheel.C", [0.03, 0.02]);
@@ -74,7 +75,7 @@ impl Joint {
     }
 
     /// A straight rack with a point of its pitch line and the line's direction, and a pinion with its centre and pitch
-    /// radius, m. Its reaction is `tooth`, N.
+    /// radius, m. Its reaction is `tooth`, N. A further key: `pressure-angle` (rad).
     ///
     /// ```
     /// let mesh = dwell::Joint::rack("piston.P", "wheel.C", [1.0, 0.0], 0.02);

@@ -64,7 +64,16 @@ pub(super) fn load_angles(description: &MachineDescription<'_>) -> Vec<[BodyId; 
         .collect();
     angles.extend(description.loads.iter().filter_map(|load| match load.kind {
         LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
-        _ => None,
+        LoadKind::Gravity { .. }
+        | LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::Spring { .. }
+        | LoadKind::Damper { .. }
+        | LoadKind::RotationalDamper { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::SlideForce(_)
+        | LoadKind::SlideDamper(_)
+        | LoadKind::SeparatingForce(_) => None,
     }));
     angles
 }

@@ -45,8 +45,8 @@ impl Magnitude {
         self.eval(&numbers[..signals.len()], &values[..signals.len()])
     }
 
-    /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction and external
-    /// magnitudes are zero.
+    /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction, separating
+    /// forces and external magnitudes are zero.
     pub fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
         match (self, numbers) {
             (Self::Constant(value), _) => T::from_f64(*value),
@@ -56,7 +56,7 @@ impl Magnitude {
                 eval_expression(expression, numbers, values)
             }
             (Self::Function(function, _), numbers) => function.eval(numbers, values),
-            (Self::Friction(_) | Self::External(_), _) => T::from_f64(0.0),
+            (Self::Friction(_) | Self::Separating(_) | Self::External(_), _) => T::from_f64(0.0),
         }
     }
 }

@@ -21,10 +21,28 @@ impl Model {
     pub fn with_loads(mut self, loads: Vec<Load>) -> Result<Self, LoadError> {
         let plan = &self.pass_model.plan;
         self.loads = CompiledLoads::compile(&self.mechanism, plan, &self.masses, loads)?;
+        self.require_determinate_teeth()?;
         self.count_load_angles()?;
         let requested = self.reactions[..self.requested].to_vec();
         self.compile_reactions(&requested);
         Ok(self)
+    }
+
+    /// Refuses a separating force whose tooth force is statically indeterminate: it has no value.
+    fn require_determinate_teeth(&self) -> Result<(), LoadError> {
+        let reactions = self.mechanism.reactions();
+        let is_indeterminate = |load: &Load| {
+            let tooth_force = load.pressure_angle().map(|teeth| teeth.tooth_force());
+            let mut found = (0..reactions.len()).filter(|&k| Some(reactions[k]) == tooth_force);
+            found.any(|k| !self.pass_model.plan.is_determinate(k))
+        };
+        match self.loads().iter().position(is_indeterminate) {
+            Some(load) => Err(LoadError {
+                load,
+                what: "its tooth force is statically indeterminate (redundant constraints share the load), so its separating force has no value",
+            }),
+            None => Ok(()),
+        }
     }
 
     /// The compiled signals of a load's magnitude, in the order of its [signals](crate::Magnitude::signals).
@@ -74,9 +92,10 @@ impl Model {
         self.kinetostatics(t, q, &self.rest, &self.rest, workspace, result)
     }
 
-    /// The loads that are frictions, by their indices in [`Model::loads`].
+    /// The loads that depend on reactions (frictions, and separating forces where a reaction is computed), by their
+    /// indices in [`Model::loads`].
     pub fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.joint_frictions.iter().map(|friction| friction.load)
+        self.dependent_loads.iter().map(|dependent| dependent.load)
     }
 
     /// Whether a load has a potential energy.

@@ -41,7 +41,7 @@ impl Model {
     pub fn workspace<T: Scalar>(&self) -> Workspace<T> {
         let plan = self.plan();
         let rest = vec![T::from_f64(0.0); plan.actuators()];
-        let frictions = self.joint_frictions.len();
+        let frictions = self.dependent_loads.len();
         Workspace {
             pose: plan.pose(),
             motion: plan.motion(),

@@ -4,6 +4,7 @@ use super::figures::Dwell;
 use super::finding_text::tolerances_block;
 use crate::cases::reference::Reference;
 use crate::checked::analysis::CaseAnalysis;
+use crate::report_parts::{figure_blocks, table};
 use dwell_report::{Block, Document, Figure};
 use dwell_scene::Scene;
 use dwell_study::CalibrationResult;
@@ -45,11 +46,7 @@ pub(super) fn document(
         blocks.push(tolerance_runs_block(motion));
     }
     blocks.push(Block::Heading("Figures".to_owned()));
-    blocks.extend(figures.iter().map(|figure| Block::Figure {
-        file: format!("{}/{}.png", scene.name, figure.name),
-        alt: figure.title.clone(),
-        caption: figure.caption.clone(),
-    }));
+    blocks.extend(figure_blocks(&scene.name, figures, true));
     blocks.push(Block::Text(provenance_line(scene)));
     Document {
         title: scene.title.clone(),
@@ -73,21 +70,19 @@ fn findings_sentence(reference: &Reference, analysis: &CaseAnalysis<'_>) -> Stri
 
 fn calibration_sentence(c: &CalibrationResult) -> String {
     format!(
-        "`{}` is fitted to the period of {} s, so that the period is no finding. The fit gives **{:.12} {}** for \
+        "`{}` is fitted to the period of {} s, so that the period is not a finding. The fit gives **{:.12} {}** for \
          {} s; the scene has the rounded value {} {}, for which the period is {:.12} s.",
         c.path, c.period, c.value, c.unit, c.period, c.current, c.unit, c.current_period
     )
 }
 
 fn dwell_sentence(scene: &Scene, dwell: &Dwell) -> String {
+    let body = scene.mechanism.body_name(dwell.body);
+    let [variation, swing] = [dwell.variation, dwell.swing].map(f64::to_degrees);
+    let [from, to] = [dwell.from, dwell.to].map(f64::to_degrees);
     format!(
-        "Dwell: the angle of `{}` varies by {:.3}° (of {:.2}° over the whole range) while the actuator moves from {:.1}° to \
-         {:.1}°.",
-        scene.mechanism.body_name(dwell.body),
-        dwell.variation.to_degrees(),
-        dwell.swing.to_degrees(),
-        dwell.from.to_degrees(),
-        dwell.to.to_degrees()
+        "Dwell: the angle of `{body}` varies by {variation:.3}° (of {swing:.2}° over the whole range) while the actuator \
+         moves from {from:.1}° to {to:.1}°."
     )
 }
 
@@ -119,8 +114,5 @@ fn tolerance_runs_block(motion: &CheckedFreeMotion) -> Block {
             format!("{:.0}", r.drift / r.tolerance),
         ]
     };
-    Block::Table {
-        header: header.map(str::to_owned).to_vec(),
-        rows: motion.tolerance_runs.iter().map(row).collect(),
-    }
+    table(&header, motion.tolerance_runs.iter().map(row))
 }

@@ -1,11 +1,11 @@
-//! Findings in words.
+//! Findings as text.
 
 use dwell_findings::Finding;
 use dwell_report::Block;
 use dwell_scene::Scene;
 use dwell_study::number_format::count;
 
-/// A failed finding in words: the check, where it fails, and by how much.
+/// A failed finding as text: the check, where it fails, and by how much.
 pub(crate) fn describe_failure(finding: &Finding) -> [String; 3] {
     let location = match finding.domain.is_empty() {
         true => finding.worst_at.clone(),

@@ -110,14 +110,12 @@ pub(super) fn tables(reduced: &ReducedAnalysis<'_>) -> Vec<(&'static str, Table)
         tables.push(("motion", history.table(prepared)));
     }
     if let Some(motion) = &reduced.motion {
-        tables.push((
-            "work-precision-bdf",
-            tolerance_runs_table(motion, Method::Bdf),
-        ));
-        tables.push((
-            "work-precision-tsit45",
-            tolerance_runs_table(motion, Method::Tsit45),
-        ));
+        for (name, method) in [
+            ("work-precision-bdf", Method::Bdf),
+            ("work-precision-tsit45", Method::Tsit45),
+        ] {
+            tables.push((name, tolerance_runs_table(motion, method)));
+        }
     }
     tables
 }

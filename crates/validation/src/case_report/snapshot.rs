@@ -38,38 +38,24 @@ fn reduced_values(reduced: &ReducedAnalysis<'_>) -> String {
     for k in 0..8 {
         // Inside the range: next to its ends a machine's own rounding would show.
         let q = from + (to - from) * (f64::from(k) + 0.5) / 8.0;
-        if prepared
-            .model
-            .coefficients(q, &mut workspace, &mut at)
-            .is_err()
-        {
+        let found = prepared.model.coefficients(q, &mut workspace, &mut at);
+        if found.is_err() {
             continue;
         }
-        text += &format!(
-            "q = {}  m = {}  half_dm = {}\n",
-            to_seven_decimals(q),
-            to_seven_decimals(at.m),
-            to_seven_decimals(at.half_dm)
-        );
-        for ((name, _), (a, b)) in prepared.reaction_units().iter().zip(at.a.iter().zip(&at.b)) {
-            text += &format!(
-                "    {name}  a = {}  b = {}\n",
-                to_seven_decimals(*a),
-                to_seven_decimals(*b)
-            );
+        let [q, m, half_dm] = [q, at.m, at.half_dm].map(to_seven_decimals);
+        text += &format!("q = {q}  m = {m}  half_dm = {half_dm}\n");
+        for ((name, _), (&a, &b)) in prepared.reaction_units().iter().zip(at.a.iter().zip(&at.b)) {
+            let [a, b] = [a, b].map(to_seven_decimals);
+            text += &format!("    {name}  a = {a}  b = {b}\n");
         }
     }
     if let Some(motion) = &reduced.motion {
-        text += &format!(
-            "\nperiod {:.10} s, energy {:.9} J\n",
-            motion.orbit.period, motion.orbit.energy
-        );
+        let (period, energy) = (motion.orbit.period, motion.orbit.energy);
+        text += &format!("\nperiod {period:.10} s, energy {energy:.9} J\n");
     }
     if let Some(c) = &reduced.calibration {
-        text += &format!(
-            "{} = {:.9} {} gives {} s\n",
-            c.path, c.value, c.unit, c.period
-        );
+        let (path, value, unit, period) = (&c.path, c.value, &c.unit, c.period);
+        text += &format!("{path} = {value:.9} {unit} gives {period} s\n");
     }
     text
 }
@@ -80,54 +66,40 @@ fn state_values(scene: &Scene, checked: &CheckedStates, run: Option<&FreeMotionR
     let reactions = mechanism.reactions();
     let drawn = &checked.states[..checked.drawn_count];
     // All forces are rounded relative to the largest force, all moments relative to the largest moment.
-    let scale = |unit: &str| {
-        let joints = reactions.iter().enumerate();
-        let joints = joints.filter(|(_, r)| r.component.unit() == unit);
-        let of = |k: usize| {
-            drawn
-                .iter()
-                .fold(0.0, |m: f64, s| m.max(s.reactions[k].abs()))
-        };
-        let of_joints = joints.map(|(k, _)| of(k)).fold(0.0, f64::max);
-        let drives = mechanism.actuators.iter().enumerate();
-        let drives = drives.filter(|(_, a)| a.coordinate().is_angle() == (unit == "N m"));
-        let of = |k: usize| drawn.iter().fold(0.0, |m: f64, s| m.max(s.tau[k].abs()));
-        drives.map(|(k, _)| of(k)).fold(of_joints, f64::max)
-    };
-    let [forces, moments] = ["N", "N m"].map(scale);
+    let joints = reactions.iter().map(|r| r.component.unit());
+    let actuators = mechanism.actuators.iter();
+    let actuators = actuators.map(|a| a.coordinate().force_unit());
+    let units: Vec<&str> = joints.chain(actuators).collect();
+    let [forces, moments] = ["N", "N m"].map(|unit| {
+        let values = drawn
+            .iter()
+            .flat_map(|s| units.iter().zip(s.reactions.iter().chain(&s.tau)));
+        let same = values.filter(|(of, _)| **of == unit);
+        same.fold(0.0, |max: f64, (_, value)| max.max(value.abs()))
+    });
+    let scale = |unit: &str| if unit == "N" { forces } else { moments };
     let mut text = format!("{}\n", checked.motion_text);
     // Writing to a string cannot fail.
     for k in 0..PRINTED_STATES.min(drawn.len()) {
         // Between the ends, where a motion may begin with a jump.
         let state = &drawn[(2 * k + 1) * (drawn.len() - 1) / (2 * PRINTED_STATES)];
-        let _ = writeln!(
-            text,
-            "t = {}",
-            rounded_to(state.t, drawn[drawn.len() - 1].t)
-        );
-        for (actuator, (q, tau)) in mechanism
-            .actuators
-            .iter()
-            .zip(state.q.iter().zip(&state.tau))
-        {
-            let angle = actuator.coordinate().is_angle();
-            let tau = rounded_to(*tau, if angle { moments } else { forces });
-            let _ = writeln!(text, "    {} = {q:.7}  action = {tau}", actuator.name);
+        let t = rounded_to(state.t, drawn[drawn.len() - 1].t);
+        let _ = writeln!(text, "t = {t}");
+        let values = state.q.iter().zip(&state.tau);
+        for (actuator, (q, tau)) in mechanism.actuators.iter().zip(values) {
+            let tau = rounded_to(*tau, scale(actuator.coordinate().force_unit()));
+            let _ = writeln!(text, "    {} = {q:.7}  force = {tau}", actuator.name);
         }
         let requested = scene.requests.reactions.iter();
         for &reaction in requested.filter(|r| !checked.indeterminate.contains(r)) {
             let Some(k) = reactions.iter().position(|&r| r == reaction) else {
                 continue;
             };
-            let unit = reaction.component.unit();
-            let value = rounded_to(
-                state.reactions[k],
-                if unit == "N" { forces } else { moments },
-            );
+            let value = rounded_to(state.reactions[k], scale(reaction.component.unit()));
             let _ = writeln!(text, "    {} = {value}", mechanism.reaction_name(reaction));
         }
     }
-    // With steps set by the workbench, the end depends on them.
+    // Of a scene that is set free, the end depends on the steps.
     if let Some(run) = run.filter(|run| run.setup.is_empty()) {
         text += &end_of_motion(scene, run);
     }
@@ -140,17 +112,13 @@ fn end_of_motion(scene: &Scene, run: &FreeMotionRun) -> String {
         return String::new();
     };
     let mut text = format!("free motion, t = {}\n", rounded_to(last.t, last.t));
-    let actuators = scene
-        .mechanism
-        .actuators
-        .iter()
-        .zip(coordinates)
-        .enumerate();
-    for (k, (actuator, [q, speed])) in actuators {
+    let actuators = scene.mechanism.actuators.iter().zip(coordinates);
+    for (k, (actuator, [q, velocity])) in actuators.enumerate() {
         let all = run.coordinates.iter();
         let max_velocity = all.fold(0.0_f64, |max, at| max.max(at[k][1].abs()));
-        let speed = rounded_to(*speed, max_velocity);
-        let _ = writeln!(text, "    {} = {q:.7}  speed = {speed}", actuator.name);
+        let velocity = rounded_to(*velocity, max_velocity);
+        let name = &actuator.name;
+        let _ = writeln!(text, "    {name} = {q:.7}  velocity = {velocity}");
     }
     text
 }
@@ -162,12 +130,13 @@ fn to_seven_decimals(value: f64) -> String {
 
 /// To seven digits after the first digit of `max_abs`, without a sign on zero.
 fn rounded_to(value: f64, max_abs: f64) -> String {
-    let decimals = if max_abs > 0.0 && max_abs.is_finite() {
-        7.0 - max_abs.log10().floor()
+    let is_scale = max_abs > 0.0 && max_abs.is_finite();
+    let magnitude = if is_scale {
+        max_abs.log10().floor()
     } else {
-        7.0
+        0.0
     };
-    let decimals = decimals.clamp(0.0, 30.0) as usize;
+    let decimals = (7.0 - magnitude).clamp(0.0, 30.0) as usize;
     without_sign_on_zero(format!("{value:.decimals$}"))
 }
 

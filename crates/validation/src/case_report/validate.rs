@@ -9,13 +9,11 @@ use super::validation::Validation;
 use crate::cases::reference::Reference;
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
-use dwell_report::TableExport as _;
-use dwell_report::{Figure, Files};
+use crate::report_parts::draw_figures;
+use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::Scene;
-use dwell_study::SolverSettings;
 use dwell_study::output::signed_png;
-use dwell_study::{Outcome, Progress, Step};
-use rayon::prelude::*;
+use dwell_study::{Outcome, Progress, SolverSettings, Step, reduce};
 use std::path::Path;
 
 /// Steps of the progress bar for one case: three of the analysis and two of the report.
@@ -31,23 +29,17 @@ pub fn validate(
     folder: &Path,
     progress: Progress<'_>,
 ) -> Result<Validation, ValidationError> {
-    let done = |what: &str| {
-        progress(Step {
-            total: PROGRESS_STEPS,
-            done: what,
-        });
-    };
+    let total = PROGRESS_STEPS;
+    let done = |what: &str| progress(Step { total, done: what });
     let reference = Reference::read(folder, scene)?;
     let analysis = analyse(scene, &reference, &done)?;
     let (figures, dwell) = case_figures(scene, &analysis)?;
-    let draw = |figure| signed_png(scene, figure);
-    let images: Vec<Vec<u8>> = figures.par_iter().map(draw).collect::<Result<_, _>>()?;
-    done("figures");
     let mut files = Files::new();
     let name = &scene.name;
-    for (figure, image) in figures.iter().zip(images) {
-        files.add(format!("{name}/{}.png", figure.name), image);
-    }
+    draw_figures(&mut files, name, &figures, |figure| {
+        signed_png(scene, figure)
+    })?;
+    done("figures");
     for (file, table) in analysis.reduced.iter().flat_map(tables) {
         files.add(format!("{name}/{file}.csv"), table.csv()?);
     }
@@ -113,12 +105,9 @@ fn reduced_figures(
 ) -> Result<(Vec<Figure>, Option<Dwell>), ValidationError> {
     let prepared = &reduced.prepared;
     let (drawing, dwell) = figures::mechanism(prepared)?;
-    let mut figures = vec![
-        drawing,
-        dwell_study::reduce::figures::reduced(prepared, &reduced.curves),
-    ];
+    let mut figures = vec![drawing, reduce::figures::reduced(prepared, &reduced.curves)];
     // The caption of the last one says which reactions are left out.
-    figures.extend(dwell_study::reduce::figures::coefficients(prepared, &reduced.curves).0);
+    figures.extend(reduce::figures::coefficients(prepared, &reduced.curves).0);
     if let Some(history) = &reduced.history {
         let settings = SolverSettings::default();
         figures.push(figures::history(prepared, history, &settings));

@@ -1,4 +1,4 @@
-//! What a scene's model says of states of motion, under its loads: claims for the judge of states.
+//! States of motion by a scene's model, under its loads: the claims that the checks of states are applied to.
 
 use dwell_geometry::{ActuatorId, BodyId, Pose, Vec2};
 use dwell_kinetostatics::{
@@ -6,17 +6,17 @@ use dwell_kinetostatics::{
 };
 use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
-use dwell_study::explain::explain_model;
 use dwell_study::explain::explain_position;
-use dwell_verify::{ClaimedState, condition_number, load_wrenches};
+use dwell_study::models::loaded_model;
+use dwell_verify::{ClaimedState, condition_number, load_wrenches, magnitude_by_reactions};
 use std::f64::consts::TAU;
 
-/// Between two states no coordinate goes farther at once than this, rad, or this part of the size:
-/// then no body turns by half a turn, and whole turns are counted.
+/// Between two positions no coordinate changes by more than this, rad, or this part of the size:
+/// then no body rotates by half a revolution, and whole revolutions are counted.
 const MAX_COORDINATE_STEP: f64 = 0.1;
 
-/// A state of motion that is asked about: time (s), coordinates, speeds and accelerations (rad or
-/// m, per s, per s²). Without accelerations it is that of free motion: the actuators do nothing.
+/// A state of motion to be evaluated: time (s), coordinates, velocities and accelerations (rad or
+/// m, per s, per s²). Without accelerations it is one of free motion: without actuator forces.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct StateRequest {
     pub(crate) t: f64,
@@ -25,15 +25,15 @@ pub(crate) struct StateRequest {
     pub(crate) q_ddot: Option<Vec<f64>>,
 }
 
-/// A scene's model with every reaction, under its loads, walking from state to state.
+/// A scene's model with every reaction, under its loads, stepping from state to state.
 #[derive(Debug)]
 pub(crate) struct ModelStates<'a> {
     scene: &'a Scene,
     model: Model,
     reached: ReachedPose,
-    /// By body: its angle, rad, whole turns counted on the way from the start.
+    /// By body: its angle, rad, whole revolutions counted from the assembly on.
     angles: Vec<f64>,
-    /// Where that is, rad or m, and how far each coordinate goes at once.
+    /// The coordinates, rad or m, and the largest step of each.
     coordinates: Vec<f64>,
     coordinate_steps: Vec<f64>,
     assembly_poses: Vec<[f64; 3]>,
@@ -52,17 +52,12 @@ impl ReachedPose {
         &'s mut self,
         scene: &Scene,
         model: &'s Model,
-        request: &StateRequest,
+        StateRequest { t, q_dot, .. }: &StateRequest,
         q_ddot: &[f64],
     ) -> Result<EvaluatedState<'s>, StudyError> {
-        let Self {
-            pose: reached,
-            workspace,
-            result,
-        } = self;
-        let state = kinematic_state(model, reached, &request.q_dot, workspace);
-        let loaded = state.apply_loads(request.t);
-        let evaluated = loaded.and_then(|state| state.evaluate(q_ddot, result));
+        let state = kinematic_state(model, &self.pose, q_dot, &mut self.workspace);
+        let loaded = state.apply_loads(*t);
+        let evaluated = loaded.and_then(|state| state.evaluate(q_ddot, &mut self.result));
         evaluated.map_err(|e| explain(scene, model, &e))
     }
 }
@@ -104,32 +99,16 @@ impl StateValues<'_> {
 }
 
 impl<'a> ModelStates<'a> {
-    /// Compiles a scene for all reactions, and stands at the start.
+    /// Compiles a scene for all reactions, at its assembly.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when the mechanism cannot be put together or a load does not fit.
     pub(crate) fn new(scene: &'a Scene) -> Result<Self, StudyError> {
-        let start = scene.assembly.to_configuration();
-        let mechanism = &scene.mechanism;
-        let model = Model::new(mechanism, &scene.masses, &start, &mechanism.reactions())
-            .map_err(|e| explain_model(scene, &e))?
-            .with_loads(scene.loads.clone())
-            .map_err(|e| {
-                let at = [(SceneLocation::Load(e.load), "this load".to_owned())];
-                scene.error(e.what.to_owned(), None, &at)
-            })?;
-        let points = scene.points.iter().flatten();
-        let mechanism_size = points.fold(0.0_f64, |m, (_, at)| m.max(at.norm()));
+        let model = loaded_model(scene)?;
+        let size = scene.mechanism.size();
         let step = |a: usize| match model.plan().is_angle(a) {
             true => MAX_COORDINATE_STEP,
-            false => {
-                MAX_COORDINATE_STEP
-                    * if mechanism_size > 0.0 {
-                        mechanism_size
-                    } else {
-                        1.0
-                    }
-            }
+            false => MAX_COORDINATE_STEP * size,
         };
         let mut model_states = Self {
             scene,
@@ -139,18 +118,15 @@ impl<'a> ModelStates<'a> {
                 result: model.result_buffer(),
             },
             angles: Vec::new(),
-            coordinates: start.q,
+            coordinates: scene.assembly.coordinates.clone(),
             coordinate_steps: (0..model.plan().actuators()).map(step).collect(),
             assembly_poses: Vec::new(),
             model,
         };
-        model_states.set_coordinates(&model_states.coordinates.clone())?;
+        model_states.set_coordinates(&scene.assembly.coordinates)?;
         model_states.assembly_poses = model_states.body_poses();
-        model_states.angles = model_states
-            .assembly_poses
-            .iter()
-            .map(|pose| pose[2])
-            .collect();
+        let angles = model_states.assembly_poses.iter().map(|pose| pose[2]);
+        model_states.angles = angles.collect();
         Ok(model_states)
     }
 
@@ -163,65 +139,47 @@ impl<'a> ModelStates<'a> {
         &self.assembly_poses
     }
 
-    /// The state's own account, for the judge.
+    /// A state as it is claimed.
     ///
     /// # Errors
     /// As [`ModelStates::evaluate_at`].
     pub(crate) fn state(&mut self, request: &StateRequest) -> Result<ClaimedState, StudyError> {
         let values = self.evaluate_at(request)?;
         let mut bodies = values.body_poses();
-        let StateValues {
-            scene,
-            state,
-            q_ddot,
-            angles,
-        } = values;
-        let states = state.bodies();
-        for (pose, angle) in bodies.iter_mut().zip(angles) {
+        let (scene, state) = (values.scene, &values.state);
+        let (states, result) = (state.bodies(), state.inverse_dynamics());
+        for (pose, angle) in bodies.iter_mut().zip(values.angles) {
             pose[2] = *angle;
         }
-        let origin_of = |b: usize| (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
-        let velocity: Vec<_> = (0..bodies.len())
-            .map(|b| {
-                let (body, origin) = origin_of(b);
-                [origin.velocity.x, origin.velocity.y, body.angular_velocity]
-            })
-            .collect();
-        let acceleration = |b: usize| {
-            let (body, origin) = origin_of(b);
-            [
-                origin.acceleration.x,
-                origin.acceleration.y,
-                body.angular_acceleration,
-            ]
+        let rates = |b: usize| {
+            let (body, origin) = (states.body(BodyId(b)), states.point(BodyId(b), Vec2::ZERO));
+            let (v, a) = (origin.velocity, origin.acceleration);
+            let velocity = [v.x, v.y, body.angular_velocity];
+            (velocity, [a.x, a.y, body.angular_acceleration])
         };
+        let (velocities, accelerations): (Vec<_>, Vec<_>) = (0..bodies.len()).map(rates).unzip();
         let loads = scene.loads.iter().zip(&state.loads().magnitude);
-        let ground = scene.mechanism.ground;
+        let (ground, masses) = (scene.mechanism.ground, &scene.masses);
+        let reactions = &result.reactions;
         let loads = loads.filter_map(|(load, &magnitude)| {
-            load_wrenches(
-                &load.kind,
-                magnitude,
-                ground,
-                &scene.masses,
-                &bodies,
-                &velocity,
-            )
+            let magnitude = magnitude_by_reactions(load, magnitude, &scene.mechanism, reactions);
+            load_wrenches(&load.kind, magnitude, ground, masses, &bodies, &velocities)
         });
         Ok(ClaimedState {
             t: request.t,
             q: request.q.clone(),
             q_dot: request.q_dot.clone(),
-            q_ddot,
             load_wrenches: loads.flatten().collect(),
-            accelerations: (0..bodies.len()).map(acceleration).collect(),
-            velocities: velocity,
-            reactions: state.inverse_dynamics().reactions.clone(),
-            tau: state.inverse_dynamics().tau.clone(),
+            q_ddot: values.q_ddot,
+            velocities,
+            accelerations,
+            reactions: reactions.clone(),
+            tau: result.tau.clone(),
             poses: bodies,
         })
     }
 
-    /// The generalised inertias at the last state that was gone to, by unit runs, row by row.
+    /// The generalised inertias at the last state, by unit accelerations, row by row.
     pub(crate) fn mass_matrix(&mut self) -> Vec<f64> {
         let n = self.coordinate_steps.len();
         let mut run = self.model.result_buffer();
@@ -229,12 +187,11 @@ impl<'a> ModelStates<'a> {
             pose, workspace, ..
         } = &mut self.reached;
         let mut state = kinematic_state(&self.model, pose, &vec![0.0; n], workspace);
-        let columns: Vec<Vec<f64>> = (0..n)
-            .map(|i| {
-                state.mass_matrix_column(i, &mut run);
-                run.tau.clone()
-            })
-            .collect();
+        let column = |i: usize| {
+            state.mass_matrix_column(i, &mut run);
+            run.tau.clone()
+        };
+        let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
         let at = |k: usize| columns[k % n][k / n];
         (0..n * n).map(at).collect()
     }
@@ -248,7 +205,7 @@ impl<'a> ModelStates<'a> {
         Ok(self.body_poses())
     }
 
-    /// Goes to a state and evaluates it.
+    /// Steps to a state and evaluates it.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when it cannot be reached, or a load has no magnitude or direction
@@ -274,23 +231,20 @@ impl<'a> ModelStates<'a> {
         })
     }
 
-    /// In straight steps, counting the whole turns of every body.
+    /// In equal steps, counting the whole revolutions of every body.
     fn step_to(&mut self, to: &[f64]) -> Result<(), StudyError> {
         let from = self.coordinates.clone();
         let distances = from.iter().zip(to).zip(&self.coordinate_steps);
-        let steps = distances
-            .map(|((a, b), stride)| ((b - a) / stride).abs().ceil())
-            .fold(1.0, f64::max);
+        let counts = distances.map(|((a, b), stride)| ((b - a) / stride).abs().ceil());
+        let steps = counts.fold(1.0, f64::max);
         for k in 1..=steps as usize {
             let fraction = k as f64 / steps;
-            let there = |(a, b): (&f64, &f64)| {
-                if fraction == 1.0 {
-                    *b
-                } else {
-                    a + fraction * (b - a)
-                }
+            let between = from.iter().zip(to).map(|(a, b)| a + fraction * (b - a));
+            let q = if fraction == 1.0 {
+                to.to_vec()
+            } else {
+                between.collect()
             };
-            let q: Vec<f64> = from.iter().zip(to).map(there).collect();
             self.set_coordinates(&q)?;
             let poses = self.body_poses();
             for (angle, pose) in self.angles.iter_mut().zip(poses) {
@@ -312,28 +266,25 @@ impl<'a> ModelStates<'a> {
         plan.body_frames(&self.scene.mechanism, &self.reached.pose)
     }
 
-    /// The acceleration at which the actuator does nothing. What it does is linear in it.
+    /// The acceleration without actuator force, which is linear in it.
     fn free_acceleration(&mut self, request: &StateRequest) -> Result<Vec<f64>, StudyError> {
         if self.coordinate_steps.len() != 1 {
-            let place = (
-                SceneLocation::Actuator(ActuatorId(0)),
-                "one of several".to_owned(),
-            );
+            let actuator = SceneLocation::Actuator(ActuatorId(0));
             let message = "a free motion is only that of one actuator".to_owned();
-            return Err(self.scene.error(message, None, &[place]).into());
+            let label = (actuator, "one of several".to_owned());
+            return Err(self.scene.error(message, None, &[label]).into());
         }
-        let mut tau = |q_ddot: f64| {
-            let state = self
-                .reached
-                .evaluate(self.scene, &self.model, request, &[q_ddot])?;
-            Ok::<f64, StudyError>(state.inverse_dynamics().tau[0])
+        let (scene, model, reached) = (self.scene, &self.model, &mut self.reached);
+        let mut tau = |q_ddot: f64| -> Result<f64, StudyError> {
+            let state = reached.evaluate(scene, model, request, &[q_ddot])?;
+            Ok(state.inverse_dynamics().tau[0])
         };
         let at_rest = tau(0.0)?;
         let mut found = -at_rest / (tau(1.0)? - at_rest);
         // Once more from there: the difference above is rounded relative to the loads.
-        let rest = tau(found)?;
+        let remaining = tau(found)?;
         if at_rest != 0.0 {
-            found += rest * found / at_rest;
+            found += remaining * found / at_rest;
         }
         Ok(vec![found])
     }
@@ -341,22 +292,19 @@ impl<'a> ModelStates<'a> {
 
 /// The error with the names of the scene.
 fn explain(scene: &Scene, model: &Model, error: &KinetostaticsError) -> StudyError {
-    match error {
-        KinetostaticsError::Position(place) => explain_position(scene, model.plan(), place),
-        other => {
-            let name = other.load().and_then(|l| scene.loads.get(l));
-            let name = name.map_or("", |load| &load.name);
-            let at = other
-                .load()
-                .map_or(SceneLocation::Whole, SceneLocation::Load);
-            let message = match other {
-                KinetostaticsError::NoDirection { .. } => {
-                    format!("`{name}` has no direction: its two points coincide")
-                }
-                _ => format!("the magnitude of `{name}` is not a finite number"),
-            };
-            let at = [(at, "in a state that is checked".to_owned())];
-            scene.error(message, None, &at).into()
-        }
+    if let KinetostaticsError::Position(error) = error {
+        return explain_position(scene, model.plan(), error);
     }
+    let load = error.load().and_then(|l| Some((l, scene.loads.get(l)?)));
+    let (location, name) = load.map_or((SceneLocation::Whole, ""), |(l, load)| {
+        (SceneLocation::Load(l), &load.name)
+    });
+    let message = match error {
+        KinetostaticsError::NoDirection { .. } => {
+            format!("`{name}` has no direction: its two points coincide")
+        }
+        _ => format!("the magnitude of `{name}` is not a finite number"),
+    };
+    let label = (location, "in a state that is checked".to_owned());
+    scene.error(message, None, &[label]).into()
 }

@@ -1,4 +1,4 @@
-//! What a case knows of itself: `case.toml` beside its scene, with reference numbers, their source and tolerances.
+//! The reference of a case: `case.toml` beside its scene, with reference numbers, their source and tolerances.
 
 mod states;
 mod tolerances;
@@ -43,7 +43,7 @@ pub(crate) struct Reference {
     path: String,
 }
 
-/// What is known of a free motion at one time.
+/// Known values of a free motion at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct PublishedState {
     /// Time, s.
@@ -52,11 +52,11 @@ pub(crate) struct PublishedState {
     pub(crate) values: Vec<(String, f64)>,
     /// Largest difference, as a part of the largest value of the kind.
     pub(crate) tolerance: f64,
-    /// Why so much.
+    /// Its reason.
     pub(crate) reason: String,
 }
 
-/// What the file holds. The words are for people, and so are numbers of other quantities.
+/// The keys of the file. Text is for readers, and so are numbers of other quantities.
 const KEYS: [&str; 12] = [
     "title",
     "source",
@@ -71,12 +71,12 @@ const KEYS: [&str; 12] = [
     "published",
     "truths",
 ];
-/// What a sample holds beside points, such as `P_m`, and angles, such as `theta_guide_rad`.
+/// The keys of a sample besides points, such as `P_m`, and angles, such as `theta_guide_rad`.
 const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
 
 impl Reference {
     /// Reads the file of a case; an absent one is an empty reference. A key that is not known
-    /// is an error: what is given and never compared would pass for agreement.
+    /// is an error: a value that is never compared would be taken for agreement.
     pub(crate) fn read(folder: &Path, scene: &Scene) -> Result<Self, ValidationError> {
         let path = folder.join(FILE);
         if !path.exists() {
@@ -92,10 +92,8 @@ impl Reference {
         let mut value: Value = toml::from_str(text).map_err(|e| {
             let before = e.span().and_then(|span| text.get(..span.start));
             let line = before.map_or(1, |before| before.lines().count().max(1));
-            wrong(format!(
-                "line {line}: not valid TOML: {}",
-                e.message().trim_end()
-            ))
+            let message = e.message().trim_end();
+            wrong(format!("line {line}: not valid TOML: {message}"))
         })?;
         let notes = rename_quantities(&mut value, scene);
         let read = Self::from_value(&value, scene).map_err(wrong)?;
@@ -111,32 +109,20 @@ impl Reference {
     /// # Errors
     /// [`ValidationError::Reference`] where a tolerance is given for no finding.
     pub(crate) fn apply_tolerances(&self, findings: &mut [Finding]) -> Result<(), ValidationError> {
+        let path = self.path.clone();
         let applied = self.tolerances.apply(findings);
-        applied.map_err(|reason| ValidationError::Reference {
-            path: self.path.clone(),
-            reason,
-        })
+        applied.map_err(|reason| ValidationError::Reference { path, reason })
     }
 
     fn from_value(value: &Value, scene: &Scene) -> Result<Self, String> {
         let fields = object(value, "the file")?;
-        let is_known = |key: &str| KEYS.contains(&key);
-        if let Some(key) = fields.keys().find(|key| !is_known(key)) {
-            return Err(format!(
-                "unknown key `{key}`; known are {}",
-                KEYS.join(", ")
-            ));
-        }
+        check_keys(fields, &KEYS)?;
         let has_values = |s: &Value| s.get("values").is_some();
         let all = list(value, "samples")?;
         let (states, samples) = if all.iter().any(has_values) {
             (read_states(value, scene)?, Vec::new())
         } else {
-            let read = |(k, s)| sample(s, scene).map_err(|e| format!("samples[{k}]: {e}"));
-            (
-                None,
-                all.iter().enumerate().map(read).collect::<Result<_, _>>()?,
-            )
+            (None, read_each("samples", all, |s| sample(s, scene))?)
         };
         let published = match &value["published"] {
             Value::Null => None,
@@ -155,11 +141,9 @@ impl Reference {
             }
             motion => free_motion(motion).map_err(|e| format!("free_motion: {e}"))?,
         };
+        let source = value["source"].as_str();
         Ok(Self {
-            source: value["source"]
-                .as_str()
-                .unwrap_or("no source given")
-                .to_owned(),
+            source: source.unwrap_or("no source given").to_owned(),
             computed_by: value["computed"].as_str().map(str::to_owned),
             samples,
             period,
@@ -204,26 +188,45 @@ fn free_motion(value: &Value) -> Result<(Option<f64>, Vec<PublishedState>), Stri
         return Err("neither `period_s` nor `states` is given".to_owned());
     }
     let state = |state: &Value| {
-        let values = object(&state["values"], "`values`")?;
-        let read_value = |(name, value): (&String, &Value)| {
-            let number = parse(value).ok_or_else(|| format!("`{name}` is not a number: {value}"));
-            Ok::<_, String>((name.clone(), number?))
-        };
         Ok(PublishedState {
             t: number(state, "t")?,
-            values: values
-                .iter()
-                .map(read_value)
-                .collect::<Result<_, String>>()?,
+            values: named_values(&state["values"])?,
             tolerance: number(value, "relative")?,
             reason: value["reason"].as_str().unwrap_or("as given").to_owned(),
         })
     };
-    let states = states.iter().enumerate().map(|(k, s)| {
-        let read: Result<PublishedState, String> = state(s);
-        read.map_err(|e| format!("states[{k}]: {e}"))
-    });
-    Ok((period, states.collect::<Result<_, _>>()?))
+    Ok((period, read_each("states", states, state)?))
+}
+
+/// The values of quantities by name.
+fn named_values(value: &Value) -> Result<Vec<(String, f64)>, String> {
+    let read = |(name, value): (&String, &Value)| match parse(value) {
+        Some(number) => Ok((name.clone(), number)),
+        None => Err(format!("`{name}` is not a number: {value}")),
+    };
+    object(value, "`values`")?.iter().map(read).collect()
+}
+
+/// Reads each entry of a list; an error names the entry.
+fn read_each<T>(
+    name: &str,
+    all: &[Value],
+    read: impl Fn(&Value) -> Result<T, String>,
+) -> Result<Vec<T>, String> {
+    let entries = all.iter().enumerate();
+    let read = |(k, entry)| read(entry).map_err(|e| format!("{name}[{k}]: {e}"));
+    entries.map(read).collect()
+}
+
+/// Rejects keys that are not known.
+fn check_keys(fields: &Map<String, Value>, known: &[&str]) -> Result<(), String> {
+    match fields.keys().find(|key| !known.contains(&key.as_str())) {
+        Some(key) => Err(format!(
+            "unknown key `{key}`; known are {}",
+            known.join(", ")
+        )),
+        None => Ok(()),
+    }
 }
 
 /// The entries of a key that may be absent.
@@ -299,18 +302,15 @@ fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, Str
     if value.is_null() {
         return Ok(Vec::new());
     }
-    let names: Vec<String> = {
-        let mechanism = &scene.mechanism;
-        let all = mechanism.reactions().into_iter();
-        all.map(|r| mechanism.reaction_name(r)).collect()
-    };
+    let mechanism = &scene.mechanism;
+    let all = mechanism.reactions().into_iter();
+    let names: Vec<String> = all.map(|r| mechanism.reaction_name(r)).collect();
     let pair = |(name, pair): (&String, &Value)| {
-        let k = names.iter().position(|n| n == name).ok_or_else(|| {
-            format!(
-                "the scene has no reaction `{name}`; it has {}",
-                names.join(", ")
-            )
-        })?;
+        let none = || {
+            let known = names.join(", ");
+            format!("the scene has no reaction `{name}`; it has {known}")
+        };
+        let k = names.iter().position(|n| n == name).ok_or_else(none)?;
         let wrong = |e: String| format!("reaction `{name}`: {e}");
         object(pair, "it").map_err(wrong)?;
         let (a, b) = (number(pair, "a"), number(pair, "b"));
@@ -323,18 +323,17 @@ fn reactions(value: &Value, scene: &Scene) -> Result<Vec<(usize, f64, f64)>, Str
 /// Whether a key gives the angle of a body, such as `theta_guide_rad`. It is not compared: the
 /// points are.
 fn is_angle(key: &str, scene: &Scene) -> bool {
-    let body = key
-        .strip_prefix("theta_")
-        .and_then(|k| k.strip_suffix("_rad"));
+    let body = key.strip_prefix("theta_");
+    let body = body.and_then(|k| k.strip_suffix("_rad"));
     body.is_some_and(|body| scene.mechanism.bodies.iter().any(|b| b.name == body))
 }
 
-/// A point is published by its name alone, such as `P_m`: any body that has it will do.
+/// A point is published by its name alone, such as `P_m`: the first body that has it is meant.
 fn point(key: &str, at: &Value, scene: &Scene) -> Result<PublishedPoint, String> {
     let Some(name) = key.strip_suffix("_m") else {
+        let known = SAMPLE_KEYS.join(", ");
         return Err(format!(
-            "unknown key `{key}`; known are {}, and points such as `P_m`",
-            SAMPLE_KEYS.join(", ")
+            "unknown key `{key}`; known are {known}, and points such as `P_m`"
         ));
     };
     let found = scene.points.iter().enumerate().find_map(|(body, points)| {
@@ -342,15 +341,13 @@ fn point(key: &str, at: &Value, scene: &Scene) -> Result<PublishedPoint, String>
         Some((BodyId(body), *local))
     });
     let (body, local) = found.ok_or_else(|| format!("the scene has no point `{name}`"))?;
-    match at.as_array().map(Vec::as_slice) {
-        Some([x, y]) => match (parse(x), parse(y)) {
-            (Some(x), Some(y)) => Ok(PublishedPoint {
-                body,
-                local,
-                position: Vec2 { x, y },
-            }),
-            _ => Err(format!("`{key}` is not a pair of numbers: {at}")),
-        },
+    let coordinates = at.as_array().into_iter().flatten().map(parse);
+    match coordinates.collect::<Vec<_>>()[..] {
+        [Some(x), Some(y)] => Ok(PublishedPoint {
+            body,
+            local,
+            position: Vec2 { x, y },
+        }),
         _ => Err(format!("`{key}` is not a pair of numbers: {at}")),
     }
 }

@@ -6,18 +6,18 @@ use dwell_geometry::{BodyId, Component, Coordinate, JointId, Vec2};
 use dwell_scene::Scene;
 use dwell_study::former_names;
 
-/// How often a quantity is differentiated with time.
+/// The time derivative of a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum DerivativeOrder {
-    /// Not at all: an angle or a place.
+    /// None: an angle or a position.
     Value,
-    /// Once.
+    /// The first.
     Velocity,
-    /// Twice.
+    /// The second.
     Acceleration,
 }
 
-/// What a name stands for.
+/// A quantity of a state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum StateQuantity {
     /// Angle of a body, and its rates.
@@ -28,14 +28,14 @@ pub(crate) enum StateQuantity {
     Coordinate(Coordinate, DerivativeOrder),
     /// A reaction, by its index in the mechanism.
     Reaction(usize, Component),
-    /// What an actuator does.
+    /// An actuator force.
     ActuatorForce(usize),
 }
 
 /// Quantities that are compared relative to the largest of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum QuantityKind {
-    /// Angles and places.
+    /// Angles and positions.
     Positions,
     /// Their first rates.
     Velocities,
@@ -43,8 +43,19 @@ pub(crate) enum QuantityKind {
     Accelerations,
     /// Reactions of joints.
     Reactions,
-    /// Actions of actuators.
+    /// Actuator forces.
     ActuatorForces,
+}
+
+impl DerivativeOrder {
+    /// One of a value and its two derivatives.
+    fn of<T>(self, [value, velocity, acceleration]: [T; 3]) -> T {
+        match self {
+            Self::Value => value,
+            Self::Velocity => velocity,
+            Self::Acceleration => acceleration,
+        }
+    }
 }
 
 fn derivative_order(name: &str) -> Option<DerivativeOrder> {
@@ -79,21 +90,14 @@ fn point_component(name: &str) -> Option<(DerivativeOrder, bool)> {
 }
 
 impl StateQuantity {
-    /// What a name stands for in a scene; none if it has no such quantity.
+    /// The quantity of a name in a scene; none if it has no such quantity.
     pub(crate) fn find(scene: &Scene, name: &str) -> Option<Self> {
+        let coordinate = |name, order| Some(Self::Coordinate(scene.coordinate(name)?, order));
         let Some((whose, what)) = name.split_once('.') else {
-            return Some(Self::Coordinate(
-                scene.coordinate(name)?,
-                DerivativeOrder::Value,
-            ));
+            return coordinate(name, DerivativeOrder::Value);
         };
         Self::of_body(scene, whose, what)
-            .or_else(|| {
-                Some(Self::Coordinate(
-                    scene.coordinate(whose)?,
-                    derivative_order(what)?,
-                ))
-            })
+            .or_else(|| coordinate(whose, derivative_order(what)?))
             .or_else(|| Self::of_joint(scene, whose, what, name))
             .or_else(|| {
                 let mut actuators = scene.mechanism.actuators.iter();
@@ -140,11 +144,11 @@ impl StateQuantity {
         match self {
             Self::BodyAngle(_, order)
             | Self::PointCoordinate(_, _, order, _)
-            | Self::Coordinate(_, order) => match order {
-                DerivativeOrder::Value => QuantityKind::Positions,
-                DerivativeOrder::Velocity => QuantityKind::Velocities,
-                DerivativeOrder::Acceleration => QuantityKind::Accelerations,
-            },
+            | Self::Coordinate(_, order) => order.of([
+                QuantityKind::Positions,
+                QuantityKind::Velocities,
+                QuantityKind::Accelerations,
+            ]),
             Self::Reaction(..) => QuantityKind::Reactions,
             Self::ActuatorForce(_) => QuantityKind::ActuatorForces,
         }
@@ -152,62 +156,42 @@ impl StateQuantity {
 
     /// Its unit.
     pub(crate) fn unit(self, scene: &Scene) -> &'static str {
-        let of = |angle: bool, order: DerivativeOrder| match (angle, order) {
-            (true, DerivativeOrder::Value) => "rad",
-            (true, DerivativeOrder::Velocity) => "rad/s",
-            (true, DerivativeOrder::Acceleration) => "rad/s2",
-            (false, DerivativeOrder::Value) => "m",
-            (false, DerivativeOrder::Velocity) => "m/s",
-            (false, DerivativeOrder::Acceleration) => "m/s2",
-        };
+        const ANGLES: [&str; 3] = ["rad", "rad/s", "rad/s2"];
+        const LENGTHS: [&str; 3] = ["m", "m/s", "m/s2"];
         match self {
-            Self::BodyAngle(_, order) => of(true, order),
-            Self::PointCoordinate(_, _, order, _) => of(false, order),
-            Self::Coordinate(coordinate, order) => of(coordinate.is_angle(), order),
+            Self::BodyAngle(_, order) => order.of(ANGLES),
+            Self::PointCoordinate(_, _, order, _) => order.of(LENGTHS),
+            Self::Coordinate(c, order) => order.of(if c.is_angle() { ANGLES } else { LENGTHS }),
             Self::Reaction(_, component) => component.unit(),
-            Self::ActuatorForce(actuator) => {
-                let actuator_coordinate = scene.mechanism.actuators[actuator].coordinate();
-                if actuator_coordinate.is_angle() {
-                    "N m"
-                } else {
-                    "N"
-                }
-            }
+            Self::ActuatorForce(k) => scene.mechanism.actuators[k].coordinate().force_unit(),
         }
     }
 
-    /// Its value at a moment, SI. What cannot be measured there is no number.
+    /// Its value in a state, SI; not a number where it does not exist.
     pub(crate) fn value(self, evaluated: &StateValues<'_>) -> f64 {
         let states = evaluated.state.bodies();
         let result = evaluated.state.inverse_dynamics();
         match self {
-            Self::BodyAngle(body, DerivativeOrder::Value) => evaluated.angles[body.0],
-            Self::BodyAngle(body, DerivativeOrder::Velocity) => states.body(body).angular_velocity,
-            Self::BodyAngle(body, DerivativeOrder::Acceleration) => {
-                states.body(body).angular_acceleration
+            Self::BodyAngle(body, order) => {
+                let state = states.body(body);
+                order.of([
+                    evaluated.angles[body.0],
+                    state.angular_velocity,
+                    state.angular_acceleration,
+                ])
             }
             Self::PointCoordinate(body, at, order, is_y) => {
                 let point = states.point(body, at);
-                let vector = match order {
-                    DerivativeOrder::Value => point.position,
-                    DerivativeOrder::Velocity => point.velocity,
-                    DerivativeOrder::Acceleration => point.acceleration,
-                };
+                let vector = order.of([point.position, point.velocity, point.acceleration]);
                 if is_y { vector.y } else { vector.x }
             }
-            // Whole turns are counted by body.
+            // Whole revolutions are counted by body.
             Self::Coordinate(Coordinate::Angle([one, two]), DerivativeOrder::Value) => {
                 evaluated.angles[two.0] - evaluated.angles[one.0]
             }
             Self::Coordinate(coordinate, order) => {
                 let found = CoordinateFunction::find(&evaluated.scene.mechanism, coordinate);
-                let [value, speed, acceleration] =
-                    found.map_or([f64::NAN; 3], |found| states.coordinate(found));
-                match order {
-                    DerivativeOrder::Value => value,
-                    DerivativeOrder::Velocity => speed,
-                    DerivativeOrder::Acceleration => acceleration,
-                }
+                order.of(found.map_or([f64::NAN; 3], |found| states.coordinate(found)))
             }
             Self::Reaction(k, _) => result.reactions[k],
             Self::ActuatorForce(k) => result.tau[k],

@@ -48,8 +48,8 @@ impl Subject for PlanSubject {
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
-        let mut workspace = self.exact.workspace();
         let mut at = self.exact.model().coefficient_buffer();
+        let mut workspace = self.exact.workspace();
         let evaluated = self.exact.coefficients(q, &mut workspace, &mut at);
         evaluated.map_err(subject_error(q))?;
         Ok(Coefficients {
@@ -67,19 +67,12 @@ impl Subject for PlanSubject {
         q_ddot: f64,
     ) -> Result<InverseDynamics, SubjectError> {
         let model = self.exact.model();
-        let mut workspace = model.workspace();
-        let mut inverse_dynamics = model.result_buffer();
-        let evaluated = model.inverse_dynamics(
-            &[q],
-            &[q_dot],
-            &[q_ddot],
-            &mut workspace,
-            &mut inverse_dynamics,
-        );
-        evaluated.map_err(subject_error(q))?;
+        let (mut workspace, mut out) = (model.workspace(), model.result_buffer());
+        let done = model.inverse_dynamics(&[q], &[q_dot], &[q_ddot], &mut workspace, &mut out);
+        done.map_err(subject_error(q))?;
         Ok(InverseDynamics {
-            tau: inverse_dynamics.tau[0],
-            reactions: inverse_dynamics.reactions,
+            tau: out.tau[0],
+            reactions: out.reactions,
         })
     }
 }

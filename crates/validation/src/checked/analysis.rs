@@ -11,15 +11,14 @@ use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::ReducedModel;
 use dwell_scene::{MotionDuration, Scene};
-use dwell_study::PreparedScene;
-use dwell_study::SolverSettings;
 use dwell_study::explain::explain_motion;
 use dwell_study::reduce::compute::ReducedCurves;
-use dwell_study::symbolic_findings;
-use dwell_study::{CalibrationResult, find_value};
+use dwell_study::{
+    CalibrationResult, PreparedScene, SolverSettings, StudyError, find_value, symbolic_findings,
+};
 use dwell_verify::{
-    Case, CheckContext, CheckedFreeMotion, ErrorCurve, FreeMotionCase, Range, check_free_motion,
-    half_dm_curve, reaction_curve, spread,
+    Case, CheckContext, CheckedFreeMotion, CheckedPosition, ErrorCurve, FreeMotionCase, Range,
+    check_free_motion, half_dm_curve, reaction_curve, spread,
 };
 
 /// Positions at which the reduced model is checked.
@@ -28,7 +27,7 @@ const CHECKED_POSITIONS: usize = 24;
 /// would take minutes and show no more.
 const MAX_REVOLUTIONS: usize = 20;
 
-/// What the checks of a case yield.
+/// The results of the checks of a case.
 pub(crate) struct CaseAnalysis<'a> {
     pub(crate) findings: Vec<Finding>,
     /// The checks without findings, and in a few words why.
@@ -60,9 +59,8 @@ pub(crate) fn analyse<'a>(
     reference: &Reference,
     done: &(dyn Fn(&str) + Sync),
 ) -> Result<CaseAnalysis<'a>, ValidationError> {
-    let prepared = is_reduced(scene)
-        .then(|| PreparedScene::new(scene))
-        .transpose()?;
+    let prepared = is_reduced(scene).then(|| PreparedScene::new(scene));
+    let prepared = prepared.transpose()?;
     let (reduced, motion) = rayon::join(
         || check_reduced_model(scene, reference).inspect(|_| done("reduced model")),
         || match &prepared {
@@ -72,57 +70,35 @@ pub(crate) fn analyse<'a>(
     );
     let ((reduced_findings, error_curves), (motion, calibration, history)) = (reduced?, motion?);
     done("free motion");
-    let (states, (multibody, period)) = rayon::join(
+    let (states, motions) = rayon::join(
         || states::check(scene, reference),
-        || {
-            rayon::join(
-                || multibody::check_free_motion(scene, reference),
-                // The checks of a free motion without loads hold its period already.
-                || match &motion {
-                    Some(_) => Ok(Ok(Vec::new())),
-                    None => period_check::check_case(scene, reference),
-                },
-            )
-        },
+        || check_motions(scene, reference, motion.is_some()),
     );
-    let (states, (free_motion, multibody_findings), period) = (states?, multibody?, period?);
+    let (states, ((free_motion, multibody_findings), period)) = (states?, motions?);
     let rounding = RoundingCheck::new(scene, &states.states)?;
-    let rounding_findings = rounding_check::finding(&rounding).into_iter().collect();
-    let motion_findings = motion.iter().flat_map(|m| m.findings.clone()).collect();
-    let state_findings = states.findings.clone();
-    let period_findings = period.iter().flatten().cloned().collect();
-    // Snapshots list the findings in this order.
-    let groups: [Vec<Finding>; 6] = match prepared {
-        Some(_) => [
+    let mut findings = in_order(
+        prepared.is_some(),
+        [
             reduced_findings,
-            motion_findings,
-            rounding_findings,
-            state_findings,
+            motion.iter().flat_map(|m| m.findings.clone()).collect(),
+            rounding_check::finding(&rounding).into_iter().collect(),
+            states.findings.clone(),
             multibody_findings,
-            period_findings,
+            period.iter().flatten().cloned().collect(),
         ],
-        None => [
-            state_findings,
-            reduced_findings,
-            period_findings,
-            multibody_findings,
-            motion_findings,
-            rounding_findings,
-        ],
-    };
-    let mut findings = groups.concat();
+    );
     reference.apply_tolerances(&mut findings)?;
-    let reduced = match prepared {
-        Some(prepared) => Some(ReducedAnalysis {
+    let analysis = |prepared| -> Result<_, StudyError> {
+        Ok(ReducedAnalysis {
             curves: ReducedCurves::new(&prepared)?,
             prepared,
             error_curves,
             motion,
             calibration,
             history,
-        }),
-        None => None,
+        })
     };
+    let reduced = prepared.map(analysis).transpose()?;
     done("states");
     Ok(CaseAnalysis {
         not_applicable: not_applicable(scene, &findings, period.err()),
@@ -134,7 +110,36 @@ pub(crate) fn analyse<'a>(
     })
 }
 
-/// Whether the reduced model describes the whole case: it knows no loads, drives and laws.
+/// The free motion against the multibody equations, and its period: the checks of a free motion without loads hold it
+/// already.
+fn check_motions(
+    scene: &Scene,
+    reference: &Reference,
+    has_period: bool,
+) -> Result<(multibody::CheckedRun, period_check::PeriodFindings), ValidationError> {
+    let (multibody, period) = rayon::join(
+        || multibody::check_free_motion(scene, reference),
+        || match has_period {
+            true => Ok(Ok(Vec::new())),
+            false => period_check::check_case(scene, reference),
+        },
+    );
+    Ok((multibody?, period?))
+}
+
+/// The findings of the reduced model, the free motion, rounding, states, multibody equations and period in the order of
+/// the snapshots.
+fn in_order(reduced: bool, findings: [Vec<Finding>; 6]) -> Vec<Finding> {
+    let order = if reduced {
+        [0, 1, 2, 3, 4, 5]
+    } else {
+        [3, 0, 5, 4, 1, 2]
+    };
+    let mut findings = findings;
+    order.map(|k| std::mem::take(&mut findings[k])).concat()
+}
+
+/// Whether the reduced model describes the whole case: it has no loads, drives and laws.
 fn is_reduced(scene: &Scene) -> bool {
     let motion = scene.motion.as_ref();
     scene.mechanism.actuators.len() == 1
@@ -151,19 +156,17 @@ fn not_applicable(
 ) -> Vec<(Check, &'static str)> {
     let no_closed_form = match scene.mechanism.actuators.len() {
         1 => "no dyads",
-        _ => "several freedoms",
+        _ => "several degrees of freedom",
     };
     let reasons = [
-        (Check::ReleasedConstraint, "reactions shared"),
+        (Check::ReleasedConstraint, "indeterminate reactions"),
         (Check::Period, period.unwrap_or("no period")),
         (Check::ReferenceValues, "no values"),
         (Check::ClosedForms, no_closed_form),
     ];
     let has_findings = |check: Check| findings.iter().any(|f| f.check == check);
-    reasons
-        .into_iter()
-        .filter(|&(check, _)| !has_findings(check))
-        .collect()
+    let missing = |&(check, _): &(Check, _)| !has_findings(check);
+    reasons.into_iter().filter(missing).collect()
 }
 
 /// The checks of the reduced model at single positions, on every reaction of every joint. The reduced model does not
@@ -193,12 +196,9 @@ fn check_reduced_model(
     let mut curves = Vec::new();
     if let Ok(context) = CheckContext::new(&case, &subject) {
         // Where ½m′ is largest, differences have most to get right.
-        let steepest = |s: &&dwell_verify::CheckedPosition| s.reference.half_dm.abs();
-        let position = context
-            .positions
-            .iter()
-            .max_by(|a, b| steepest(a).total_cmp(&steepest(b)));
-        if let Some(position) = position {
+        let slope = |s: &CheckedPosition| s.reference.half_dm.abs();
+        let positions = context.positions.iter();
+        if let Some(position) = positions.max_by(|a, b| slope(a).total_cmp(&slope(b))) {
             let requested = scene.requests.reactions.first();
             let k = requested.and_then(|w| context.reactions.iter().position(|r| r == w));
             curves.extend(half_dm_curve(&context, position));
@@ -224,34 +224,26 @@ fn free_motion_results(
         return Ok((None, None, None));
     };
     let plan = prepared.model.model().plan();
-    let history = History::new(
-        prepared,
-        start,
-        two_periods(motion.duration),
-        &SolverSettings::default(),
-    )?;
-    let checked = match (history.period, motion.duration) {
-        (None, _) => None,
-        (Some(period), length) => {
-            let revolutions = match length {
-                MotionDuration::Periods(n) => n,
-                MotionDuration::Seconds(d) => d / period,
-            };
-            let case = FreeMotionCase {
-                initial_state: start,
-                revolutions: (revolutions.floor() as usize).clamp(1, MAX_REVOLUTIONS),
-                reactions: prepared.reaction_units(),
-                period: reference.period.map(|p| (p, reference.source.clone())),
-            };
-            let checked = check_free_motion(&prepared.model, &case);
-            Some(checked.map_err(|e| explain_motion(scene, plan, &e))?)
-        }
+    let duration = two_periods(motion.duration);
+    let history = History::new(prepared, start, duration, &SolverSettings::default())?;
+    let check = |period: f64| {
+        let revolutions = match motion.duration {
+            MotionDuration::Periods(n) => n,
+            MotionDuration::Seconds(d) => d / period,
+        };
+        let case = FreeMotionCase {
+            initial_state: start,
+            revolutions: (revolutions.floor() as usize).clamp(1, MAX_REVOLUTIONS),
+            reactions: prepared.reaction_units(),
+            period: reference.period.map(|p| (p, reference.source.clone())),
+        };
+        let checked = check_free_motion(&prepared.model, &case);
+        checked.map_err(|e| explain_motion(scene, plan, &e))
     };
-    let request = scene.calibration.as_ref();
-    let calibrated = request
-        .map(|c| find_value(scene, &c.path, c.period))
-        .transpose()?;
-    Ok((checked, calibrated, Some(history)))
+    let checked = history.period.map(check).transpose()?;
+    let calibration = scene.calibration.as_ref();
+    let calibrated = calibration.map(|c| find_value(scene, &c.path, c.period));
+    Ok((checked, calibrated.transpose()?, Some(history)))
 }
 
 /// The duration of the time history: at most two periods, or the whole motion where it is given in seconds.

@@ -1,4 +1,4 @@
-//! A free motion for a scene without `[motion]`: about one revolution, or one swing.
+//! A free motion for a scene without `[motion]`: about one revolution, or one oscillation.
 
 use crate::cases::reference::Reference;
 use crate::checked::multibody::FreeMotionRun;
@@ -8,26 +8,26 @@ use dwell_study::models::compile_model;
 use dwell_study::number_format::digits;
 use std::f64::consts::TAU;
 
-/// What is left of a motion that ends by itself, and of the range next to a limit position, where everything
+/// The part that is kept of a motion that ends by itself, and the margin at a limit position, where everything
 /// grows.
 const KEPT_FRACTION: f64 = 0.9;
 const RANGE_MARGIN: f64 = 0.02;
-/// Steps of the integrator at least: a long one would hide a whole turn.
+/// Steps of the integrator at least: a long one would hide a whole revolution.
 const MIN_STEPS: f64 = 100.0;
 
-/// A scene with a motion of its own making.
+/// A scene that is given a free motion.
 pub(crate) struct FreeMotionSetup {
     pub(crate) scene: Scene,
     actuator: usize,
-    /// A whole turn, rad, or the width of the range, m.
+    /// A revolution, rad, or the width of the range, m.
     full_travel: f64,
     /// Where the motion is cut: the range, or the sweep, without its margins.
     allowed_range: [f64; 2],
 }
 
 impl FreeMotionSetup {
-    /// Sets every actuator free: the swept one, or else the first, in the middle of its sweep or where the
-    /// mechanism is put together, with the speed of the sweep, else the fastest of the reference, else 1 rad/s
+    /// Sets every actuator free: the swept one, or else the first, in the middle of its sweep or at
+    /// assembly, with the speed of the sweep, else the fastest of the reference, else 1 rad/s
     /// or m/s; the others at rest.
     ///
     /// # Errors
@@ -46,22 +46,19 @@ impl FreeMotionSetup {
         }
         let speed = sweep.map(|sweep| sweep.speed);
         let speed = speed.or_else(|| reference.max_velocity()).unwrap_or(1.0);
-        let points = scene.points.iter().flatten();
-        let size = points.fold(0.0_f64, |max, (_, at)| max.max(at.norm()));
-        let full_travel = match plan.range().limits() {
+        let limits = plan.range().limits().filter(|_| plan.actuators() == 1);
+        let full_travel = match limits {
             _ if plan.is_angle(actuator) => TAU,
-            Some((from, to)) if plan.actuators() == 1 => to - from,
-            _ if size > 0.0 => size,
-            _ => 1.0,
+            Some((from, to)) => to - from,
+            None => scene.mechanism.size(),
         };
         let sweep_range = sweep.and_then(|sweep| sweep.range);
-        let limits = plan.range().limits().filter(|_| plan.actuators() == 1);
-        let allowed_range = match (sweep_range, limits) {
-            (Some([a, b]), _) | (None, Some((a, b))) => {
+        let allowed_range = match sweep_range.or(limits.map(|(a, b)| [a, b])) {
+            Some([a, b]) => {
                 let margin = RANGE_MARGIN * (b - a).abs();
                 [a.min(b) + margin, a.max(b) - margin]
             }
-            _ => [f64::NEG_INFINITY, f64::INFINITY],
+            None => [f64::NEG_INFINITY, f64::INFINITY],
         };
         let count = start.len();
         let mut velocities = vec![0.0; count];
@@ -91,13 +88,13 @@ impl FreeMotionSetup {
         }
     }
 
-    /// Ends a run after one turn or one swing, and short of where it stopped by itself; says so.
+    /// Ends a run after one revolution or one oscillation, and short of its own end; describes it.
     pub(crate) fn truncate(&self, run: &mut FreeMotionRun) {
         let stop_reason = run.stop_reason.take();
         let end = run.steps.last().map_or(0.0, |last| last.t);
         let of = |k: usize| run.coordinates[k][self.actuator];
-        let (mut reversals, mut kept_steps, mut cause) =
-            (0, run.steps.len(), "the time of one turn");
+        let (mut reversals, mut kept_steps) = (0, run.steps.len());
+        let mut cause = "the time of one revolution";
         for k in 1..run.steps.len() {
             reversals += usize::from(of(k)[1] * of(k - 1)[1] < 0.0);
             let [low, high] = self.allowed_range;
@@ -106,9 +103,12 @@ impl FreeMotionSetup {
             let before_end = limit || stops;
             let over = [
                 (limit, "short of a limit position or the end of the sweep"),
-                (stops, "short of where it stops"),
-                ((of(k)[0] - of(0)[0]).abs() >= self.full_travel, "one turn"),
-                (reversals > 2, "one swing"),
+                (stops, "short of its end"),
+                (
+                    (of(k)[0] - of(0)[0]).abs() >= self.full_travel,
+                    "one revolution",
+                ),
+                (reversals > 2, "one oscillation"),
             ];
             if let Some((_, text)) = over.into_iter().find(|(over, _)| *over) {
                 (kept_steps, cause) = (k + usize::from(!before_end), text);
@@ -122,19 +122,12 @@ impl FreeMotionSetup {
         };
         let [q, speed] = first[self.actuator];
         let actuator = &self.scene.mechanism.actuators[self.actuator];
-        let unit = if actuator.coordinate().is_angle() {
-            "rad"
-        } else {
-            "m"
-        };
+        let (name, unit) = (&actuator.name, actuator.coordinate().unit());
+        let ([q, speed], end) = ([q, speed].map(|v| digits(v, 6)), digits(last.t, 4));
         run.setup = format!(
-            "set free at {} = {} {unit} with {} {unit}/s, until t = {} s: {cause}",
-            actuator.name,
-            digits(q, 6),
-            digits(speed, 6),
-            digits(last.t, 4)
+            "set free at {name} = {q} {unit} with {speed} {unit}/s, until t = {end} s: {cause}"
         );
-        if let Some(reason) = stop_reason.filter(|_| cause.starts_with("short of where")) {
+        if let Some(reason) = stop_reason.filter(|_| cause == "short of its end") {
             run.setup += &format!(" ({})", reason.lines().next().unwrap_or(""));
         }
     }

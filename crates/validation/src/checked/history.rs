@@ -11,15 +11,15 @@ use dwell_study::SolverSettings;
 use dwell_study::StudyError;
 use dwell_study::explain::explain_motion;
 
-/// Samples of a motion's table: a thousand to a turn, or in all where there is no whole turn.
+/// Samples of a motion's table: a thousand to a revolution, or in all where there is no whole revolution.
 const SAMPLES: f64 = 1000.0;
-/// Most samples of a table: what is longer than a hundred turns is sampled less densely.
+/// Most samples of a table: a motion of more than a hundred revolutions is sampled less densely.
 const MAX_SAMPLES: f64 = 100_000.0;
-/// A motion with everything that is tabulated of it.
+/// A motion with the values of its table.
 #[derive(Debug, Clone)]
 pub(crate) struct History {
     pub(crate) run: Solution,
-    /// Time of a turn, s, where it has one.
+    /// Time of a revolution, s, where it has one.
     pub(crate) period: Option<f64>,
     /// By sample: q̈ (rad/s²), energy (J), then the requested reactions.
     pub(crate) rows: Vec<Vec<f64>>,
@@ -47,7 +47,7 @@ impl History {
         let model = &prepared.model;
         let period = match Orbit::new(model, start) {
             Ok(orbit) => Some(orbit.period),
-            // Without a period, the motion can still be followed for a given time.
+            // Without a period, the motion can still be integrated for a given time.
             Err(
                 DynamicsError::NoFullRevolution { .. }
                 | DynamicsError::AtRest
@@ -96,11 +96,8 @@ impl History {
         ];
         let reactions = prepared.reaction_units();
         columns.extend(reactions.into_iter().map(|(n, u)| Column::new(n, u)));
-        let row = |(s, rest): (&OdeState, &Vec<f64>)| {
-            let mut row = vec![s.t, s.y[0], s.y[1]];
-            row.extend(rest);
-            row
-        };
+        let row =
+            |(s, rest): (&OdeState, &Vec<f64>)| [&[s.t, s.y[0], s.y[1]], rest.as_slice()].concat();
         Table {
             columns,
             rows: self.run.samples.iter().zip(&self.rows).map(row).collect(),

@@ -4,8 +4,7 @@ use crate::cases::reference::{PublishedState, Reference};
 use crate::checked::free_motion_setup::FreeMotionSetup;
 use crate::error::ValidationError;
 use dwell_dynamics::{
-    CoordinateMode, DynamicsError, Machine, MachineError, Method, OdeState, Options, Orbit,
-    loads_with_drives,
+    CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Orbit, loads_with_drives,
 };
 use dwell_findings::{Check, Finding};
 use dwell_geometry::body_states::CoordinateFunction;
@@ -13,9 +12,9 @@ use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
 use dwell_scene::{MotionDuration, Scene};
 use dwell_study::StudyError;
-use dwell_study::explain::explain_motion;
-use dwell_study::explain::{explain_machine, explain_model};
+use dwell_study::explain::{explain_machine, explain_motion};
 use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
+use dwell_study::models::loaded_model;
 use dwell_verify::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 use std::f64::consts::TAU;
 
@@ -24,21 +23,21 @@ const METHOD: Method = Method::Tsit45;
 const TOLERANCE: f64 = 1e-13;
 /// The most periods that are compared.
 const MAX_PERIODS: f64 = 2.0;
-/// Instants at which the motion is held against the multibody equations.
+/// Instants at which the motion is compared with the multibody equations.
 const CHECKED_INSTANTS: usize = 40;
-/// What is left to do for a free actuator, as a part of the largest reaction: rounding.
+/// The residual force of a free actuator that is rounding, as a part of the largest reaction.
 const ZERO_FORCE: f64 = 1e-10;
 
 /// A free motion, step by step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FreeMotionRun {
-    /// Every step of the integration, the start first: what is claimed of it.
+    /// Every step of the integration, the start first, as it is claimed.
     pub steps: Vec<MotionSample>,
     /// By step and actuator: coordinate (rad or m) and speed (per s).
     pub coordinates: Vec<Vec<[f64; 2]>>,
     /// Why it ended early, if it did.
     pub stop_reason: Option<String>,
-    /// How the workbench set the motion of a scene without `[motion]`; else empty.
+    /// The free motion of a scene without `[motion]` in words; else empty.
     pub setup: String,
 }
 
@@ -82,14 +81,12 @@ fn solve_motion(
         ..Options::new(METHOD, TOLERANCE)
     };
     let motion_segments = free.solve(scene, duration, &options)?;
-    let output_model = output_model(&scene_with_drives)?;
+    let output_model = loaded_model(&scene_with_drives)?;
     let explain = |e: &DynamicsError| explain_motion(&scene_with_drives, output_model.plan(), e);
-    let mut run = collect_steps(scene, &free.machine, &output_model, &motion_segments)
-        .map_err(|e| explain(&e))?;
-    run.stop_reason = motion_segments
-        .failure
-        .as_ref()
-        .map(|e| explain(e).to_string());
+    let run = collect_steps(scene, &free.machine, &output_model, &motion_segments);
+    let mut run = run.map_err(|e| explain(&e))?;
+    let failure = motion_segments.failure.as_ref();
+    run.stop_reason = failure.map(|e| explain(e).to_string());
     Ok(Some(run))
 }
 
@@ -101,22 +98,7 @@ pub(crate) fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
     Ok(scene_with_drives)
 }
 
-/// The model with all loads and reactions.
-fn output_model(scene_with_drives: &Scene) -> Result<Model, StudyError> {
-    let start = scene_with_drives.assembly.to_configuration();
-    let mechanism = &scene_with_drives.mechanism;
-    Model::new(
-        mechanism,
-        &scene_with_drives.masses,
-        &start,
-        &mechanism.reactions(),
-    )
-    .map_err(|e| explain_model(scene_with_drives, &e))?
-    .with_loads(scene_with_drives.loads.clone())
-    .map_err(|e| explain_machine(scene_with_drives, MachineError::from(e)))
-}
-
-/// Every step, leg by leg. Within the window of a bridge nothing is known of the reactions.
+/// Every step, segment by segment. Within the window of a change point's fit there are no reactions.
 fn collect_steps(
     scene: &Scene,
     machine: &Machine,
@@ -130,7 +112,7 @@ fn collect_steps(
             (&chart.machine, &chart.output_model)
         });
         let mut reader = StateReader::new(scene, machine, output_model);
-        // A leg begins with the state in which the last one ended.
+        // A segment begins with the state in which the last one ended.
         for point in solution.steps.iter().skip(usize::from(k > 0)) {
             if !machine.is_in_fit_window(&point.y) {
                 reader.append_state(point, &mut run)?;
@@ -140,7 +122,7 @@ fn collect_steps(
     Ok(run)
 }
 
-/// Reads everything off a state of a machine.
+/// Evaluates states of a machine.
 struct StateReader<'a> {
     scene: &'a Scene,
     machine: &'a Machine,
@@ -162,7 +144,7 @@ impl<'a> StateReader<'a> {
         }
     }
 
-    /// Adds a state to the run. Angles go on from those before: no step turns a body by half a turn.
+    /// Adds a state to the run. Angles go on from those before: no step rotates a body by half a revolution.
     fn append_state(
         &mut self,
         at: &OdeState,
@@ -172,25 +154,23 @@ impl<'a> StateReader<'a> {
         let state = machine.evaluate(at.t, &at.y, &mut self.workspace)?;
         let (workspace, result) = (&mut self.output_workspace, &mut self.result);
         let outputs = state.outputs(self.output_model, workspace, result)?;
-        let states = outputs.bodies();
+        let (states, result) = (outputs.bodies(), outputs.inverse_dynamics());
         let unwrapped = |angle: f64, last: Option<f64>| match last {
             Some(last) => angle + ((last - angle) / TAU).round() * TAU,
             None => angle,
         };
         let last = run.steps.last();
-        // There are more states: of what the lowering and the charts add.
-        let all = (0..self.scene.mechanism.bodies.len()).map(BodyId);
-        let body_pose = |body: BodyId| {
-            let position = states.point(body, Vec2::ZERO).position;
-            let state = states.body(body);
+        // There are more bodies: those that the lowering and the charts add.
+        let motion_of = |b: usize| {
+            let (body, state) = (BodyId(b), states.body(BodyId(b)));
+            let origin = states.point(body, Vec2::ZERO);
             let angle = state.angle.unwrap_or_else(|| state.rotation.angle());
-            let last = last.map(|sample| sample.poses[body.0][2]);
-            [position.x, position.y, unwrapped(angle, last)]
+            let angle = unwrapped(angle, last.map(|sample| sample.poses[b][2]));
+            let (x, v) = (origin.position, origin.velocity);
+            ([x.x, x.y, angle], [v.x, v.y, state.angular_velocity])
         };
-        let body_velocity = |body: BodyId| {
-            let velocity = states.point(body, Vec2::ZERO).velocity;
-            [velocity.x, velocity.y, states.body(body).angular_velocity]
-        };
+        let bodies = 0..self.scene.mechanism.bodies.len();
+        let (poses, velocities) = bodies.map(motion_of).unzip();
         let previous = run.coordinates.last();
         let actuators = self.scene.mechanism.actuators.iter().enumerate();
         let coordinate = |(k, actuator): (usize, &dwell_geometry::Actuator)| {
@@ -204,10 +184,10 @@ impl<'a> StateReader<'a> {
         let [kinetic, potential] = state.energy();
         let sample = MotionSample {
             t: at.t,
-            poses: all.clone().map(body_pose).collect(),
-            velocities: all.map(body_velocity).collect(),
-            reactions: outputs.inverse_dynamics().reactions.clone(),
-            tau: residual_actuator_forces(machine, outputs.inverse_dynamics()),
+            poses,
+            velocities,
+            reactions: result.reactions.clone(),
+            tau: residual_actuator_forces(machine, result),
             drive_forces: state.drive_forces().to_vec(),
             kinetic,
             potential,
@@ -220,7 +200,7 @@ impl<'a> StateReader<'a> {
     }
 }
 
-/// What the actuators do: nothing is left for one that is free, but for rounding.
+/// The actuator forces; that of a free actuator is zero but for rounding.
 fn residual_actuator_forces(machine: &Machine, result: &InverseDynamics<f64>) -> Vec<f64> {
     let reactions = result.reactions.iter();
     let max = reactions.fold(1.0_f64, |max, r| max.max(r.abs()));
@@ -233,7 +213,10 @@ fn residual_actuator_forces(machine: &Machine, result: &InverseDynamics<f64>) ->
     tau
 }
 
-/// The findings of a scene's motion: the multibody equations, then what is known of it. A scene without one is
+/// A free motion, if the scene has one, with its findings.
+pub(crate) type CheckedRun = (Option<FreeMotionRun>, Vec<Finding>);
+
+/// The findings of a scene's motion: the multibody equations, then its published values. A scene without one is
 /// set free.
 ///
 /// # Errors
@@ -241,7 +224,7 @@ fn residual_actuator_forces(machine: &Machine, result: &InverseDynamics<f64>) ->
 pub(crate) fn check_free_motion(
     scene: &Scene,
     reference: &Reference,
-) -> Result<(Option<FreeMotionRun>, Vec<Finding>), ValidationError> {
+) -> Result<CheckedRun, ValidationError> {
     let Some(run) = free_motion_run(scene)? else {
         let setup = FreeMotionSetup::new(scene, reference)?;
         let Some(mut run) = solve_motion(&setup.scene, None, setup.max_step())? else {
@@ -265,29 +248,27 @@ pub(crate) fn check_free_motion(
 
 impl FreeMotionRun {
     /// The values of the last step by name, each with its unit.
-    fn final_values(&self, scene: &Scene) -> Vec<(String, &'static str, f64)> {
+    fn final_values(&self, scene: &Scene) -> Vec<(String, String, f64)> {
         let (Some(step), Some(coordinates)) = (self.steps.last(), self.coordinates.last()) else {
             return Vec::new();
         };
         let mut values = Vec::new();
         for (actuator, [q, speed]) in scene.mechanism.actuators.iter().zip(coordinates) {
-            let [unit, of_speed] = match actuator.coordinate().is_angle() {
-                true => ["rad", "rad/s"],
-                false => ["m", "m/s"],
-            };
-            values.push((actuator.name.clone(), unit, *q));
-            values.push((format!("{}.velocity", actuator.name), of_speed, *speed));
+            let unit = actuator.coordinate().unit();
+            values.push((actuator.name.clone(), unit.to_owned(), *q));
+            let velocity = format!("{}.velocity", actuator.name);
+            values.push((velocity, format!("{unit}/s"), *speed));
         }
         let reactions = scene.mechanism.reactions();
         let named = reactions.iter().zip(&step.reactions).map(|(&r, value)| {
             let name = scene.mechanism.reaction_name(r);
-            (name, r.component.unit(), *value)
+            (name, r.component.unit().to_owned(), *value)
         });
         values.extend(named);
         values
     }
 
-    /// Holds the last step against what is known of it.
+    /// Compares the last step with its published values.
     fn compare_published(
         &self,
         scene: &Scene,
@@ -297,57 +278,47 @@ impl FreeMotionRun {
         let values = self.final_values(scene);
         let mut found = Vec::new();
         for (name, expected) in &published.values {
-            let Some((_, unit, value)) = values.iter().find(|(known_name, ..)| known_name == name)
-            else {
+            let Some((_, unit, value)) = values.iter().find(|(known, ..)| known == name) else {
                 return Err(ValidationError::Reference {
                     path: format!("{}: free_motion", scene.name),
                     reason: format!("`{name}` is no actuator, velocity or reaction"),
                 });
             };
-            found.push((name, *unit, *value, *expected));
+            found.push((name, unit, *value, *expected));
         }
         let scale = |unit: &str| {
-            let same_unit = found
-                .iter()
-                .filter(|(_, known_name, ..)| *known_name == unit);
-            same_unit.fold(0.0_f64, |max, (.., expected)| max.max(expected.abs()))
+            let same = found.iter().filter(|(_, of, ..)| *of == unit);
+            same.fold(0.0_f64, |max, (.., expected)| max.max(expected.abs()))
         };
-        let mut finding = Finding {
-            key: "published-motion".into(),
-            check: Check::ReferenceValues,
-            comparison: format!("the state that is reached with its published values ({source})"),
-            domain: format!("{} values at t = {} s", found.len(), published.t),
-            absolute_difference: 0.0,
-            unit: String::new(),
-            relative_difference: 0.0,
-            scale: "the largest published value of the unit".into(),
-            worst_at: "none".into(),
-            tolerance: published.tolerance,
-            tolerance_reason: published.reason.clone(),
-            integrated: true,
-            ..Finding::default()
-        };
+        let (mut worst, mut worst_unit, mut worst_at) = ([0.0; 2], "", "none");
         for (name, unit, value, expected) in &found {
             let absolute = (value - expected).abs();
             let relative = absolute / scale(unit);
             // What is not a number is the worst there is.
-            if relative >= finding.relative_difference || relative.is_nan() {
-                (finding.absolute_difference, finding.relative_difference) = (absolute, relative);
-                (finding.unit, finding.worst_at) = ((*unit).to_owned(), (*name).clone());
+            if relative >= worst[1] || relative.is_nan() {
+                (worst, worst_unit, worst_at) = ([absolute, relative], unit, name);
             }
         }
-        finding.pass = self.stop_reason.is_none()
-            && !found.is_empty()
-            && finding.relative_difference <= published.tolerance;
-        Ok(finding)
+        let complete = self.stop_reason.is_none() && !found.is_empty();
+        let tolerance = published.tolerance;
+        Ok(Finding {
+            comparison: format!("the state that is reached with its published values ({source})"),
+            domain: format!("{} values at t = {} s", found.len(), published.t),
+            unit: worst_unit.to_owned(),
+            scale: "the largest published value of the unit".into(),
+            worst_at: worst_at.to_owned(),
+            tolerance_reason: published.reason.clone(),
+            integrated: true,
+            pass: complete && worst[1] <= tolerance,
+            ..Finding::new("published-motion", Check::ReferenceValues, worst, tolerance)
+        })
     }
 
-    /// Holds the run against the multibody equations of a scene: its own, but for deliberate faults.
+    /// Compares the run with the multibody equations of a scene: its own, but for deliberate faults.
     pub fn check(&self, scene: &Scene) -> Vec<Finding> {
         let last = self.steps.len().saturating_sub(1);
-        let mut instants: Vec<usize> = (0..=CHECKED_INSTANTS)
-            .map(|k| k * last / CHECKED_INSTANTS)
-            .collect();
+        let instants = (0..=CHECKED_INSTANTS).map(|k| k * last / CHECKED_INSTANTS);
+        let mut instants: Vec<usize> = instants.collect();
         instants.dedup();
         let claimed: Vec<MotionSample> = instants.iter().map(|&k| self.steps[k].clone()).collect();
         let outcome = multibody_system(scene).and_then(|system| check_motion(&system, &claimed));
@@ -367,13 +338,8 @@ fn multibody_system(scene: &Scene) -> Result<MultibodySystem, MultibodyError> {
         prescribed.unwrap_or(CoordinateMode::Free)
     };
     let modes: Vec<CoordinateMode> = laws.map(mode).collect();
-    MultibodySystem::new(
-        &scene.mechanism,
-        &scene.masses,
-        &scene.loads,
-        &modes,
-        &scene.drives,
-    )
+    let (masses, loads) = (&scene.masses, &scene.loads);
+    MultibodySystem::new(&scene.mechanism, masses, loads, &modes, &scene.drives)
 }
 
 /// The failed finding of a motion that could not be compared.

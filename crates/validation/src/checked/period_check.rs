@@ -1,4 +1,4 @@
-//! Truth 5 of a motion under loads that all have a potential: its period by quadrature against the
+//! Check 5 of a motion under conservative loads: its period by quadrature against the
 //! integrator's events.
 
 use crate::cases::reference::Reference;
@@ -6,26 +6,27 @@ use crate::checked::free_motion_setup::FreeMotionSetup;
 use crate::checked::multibody::with_drive_loads;
 use dwell_dynamics::{DynamicsError, Method, MotionClass, Options, Orbit};
 use dwell_findings::{Check, Finding};
-use dwell_scene::{EventTrigger, MotionDuration, NamedEvent, Scene};
+use dwell_kinetostatics::{Load, Magnitude};
+use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, NamedEvent, Scene};
 use dwell_study::StudyError;
 use dwell_study::free_motion::compute::FreeMotionProblem;
 use std::f64::consts::TAU;
 
 /// Tolerances of the integrator, from the coarsest to the finest; the finest has a tolerance of its own.
 const TOLERANCES: [f64; 4] = [1e-7, 1e-9, 1e-11, 1e-13];
-/// The most that the period may err by, in tolerances of a step.
+/// The largest error of the period, in tolerances of a step.
 const ERROR_FACTOR: f64 = 300.0;
-/// Below this nothing but rounding is left, and no slope.
+/// Below this the error is rounding, without a slope.
 const ROUNDING_FLOOR: f64 = 1e-12;
-/// The least slope of log error over log tolerance.
+/// The smallest slope of log error over log tolerance.
 const MIN_SLOPE: f64 = 0.6;
-/// What is followed beyond the event.
+/// Duration of the integration over that of the event.
 const DURATION_RATIO: f64 = 1.02;
 
 /// The findings, or in a few words why there is no period.
 pub(crate) type PeriodFindings = Result<Vec<Finding>, &'static str>;
 
-/// Checks the period of a case; a scene without `[motion]` moves freely from a state that the workbench sets.
+/// Checks the period of a case; a scene without `[motion]` is set free.
 ///
 /// # Errors
 /// As [`check_period`].
@@ -48,10 +49,10 @@ fn check_period(scene: &Scene) -> Result<PeriodFindings, StudyError> {
         return Ok(Err("no motion"));
     };
     if spec.laws.iter().any(Option::is_some) {
-        return Ok(Err("led in time"));
+        return Ok(Err("prescribed"));
     }
     if spec.laws.len() != 1 {
-        return Ok(Err("several freedoms"));
+        return Ok(Err("several degrees of freedom"));
     }
     let loaded_scene = with_drive_loads(scene)?;
     let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
@@ -59,35 +60,34 @@ fn check_period(scene: &Scene) -> Result<PeriodFindings, StudyError> {
         Ok(orbit) => orbit,
         Err(DynamicsError::NotConservative { .. }) => return Ok(Err(nonconservative_cause(scene))),
         Err(DynamicsError::AtRest) => return Ok(Err("at rest")),
-        Err(DynamicsError::AsymptoticMotion { .. }) => return Ok(Err("creeps")),
-        Err(DynamicsError::NotResolved { .. }) => return Ok(Err("too sharp")),
+        Err(DynamicsError::AsymptoticMotion { .. }) => return Ok(Err("asymptotic")),
+        Err(DynamicsError::NotResolved { .. }) => return Ok(Err("not resolved")),
         Err(DynamicsError::NoFullRevolution { .. }) => return Ok(Err("reaches a limit")),
         Err(DynamicsError::Undecided { .. }) => return Ok(Err("never returns")),
         Err(DynamicsError::Position(_)) => return Ok(Err("change point")),
         Err(_) => return Ok(Err("no period")),
     };
     let coordinate = scene.mechanism.actuators[0].coordinate();
-    // Of a swing the first and the third turning are a period apart.
+    // Of a libration the first and the third reversal are a period apart.
     let (trigger, from, to, length) = match orbit.motion_class {
         MotionClass::Rotation { period, .. } => {
-            let revolutions = (period.abs() / TAU).round().max(1.0);
-            (
-                EventTrigger::Revolution(coordinate),
-                None,
-                revolutions as usize - 1,
-                1.0,
-            )
+            let revolutions = (period.abs() / TAU).round().max(1.0) as usize;
+            let trigger = EventTrigger::Revolution(coordinate);
+            (trigger, None, revolutions - 1, 1.0)
         }
         _ => (EventTrigger::Reversal(coordinate), Some(0), 2, 2.0),
     };
-    let mut timed = scene.clone();
-    let mut timed_spec = spec.clone();
-    timed_spec.duration = MotionDuration::Seconds(DURATION_RATIO * length * orbit.period);
-    timed_spec.events = vec![NamedEvent {
+    let event = NamedEvent {
         name: "period".to_owned(),
         trigger,
         terminal: false,
-    }];
+    };
+    let timed_spec = FreeMotionSpec {
+        duration: MotionDuration::Seconds(DURATION_RATIO * length * orbit.period),
+        events: vec![event],
+        ..spec.clone()
+    };
+    let mut timed = scene.clone();
     timed.motion = Some(timed_spec.clone());
     let problem = FreeMotionProblem::new(&timed, &loaded_scene, &timed_spec)?;
     let mut errors = Vec::new();
@@ -104,11 +104,9 @@ fn check_period(scene: &Scene) -> Result<PeriodFindings, StudyError> {
     Ok(Ok(findings(&orbit, &errors)))
 }
 
-/// What does work on it.
+/// The cause of nonconservative work.
 fn nonconservative_cause(scene: &Scene) -> &'static str {
-    use dwell_kinetostatics::Magnitude;
-    let is_friction =
-        |load: &dwell_kinetostatics::Load| matches!(load.magnitude, Magnitude::Friction(_));
+    let is_friction = |load: &Load| matches!(load.magnitude, Magnitude::Friction(_));
     match () {
         () if !scene.drives.is_empty() => "driven",
         () if scene.loads.iter().any(is_friction) => "friction",
@@ -116,56 +114,41 @@ fn nonconservative_cause(scene: &Scene) -> &'static str {
     }
 }
 
-fn descriptions(orbit: &Orbit) -> (String, String) {
-    let comparison = format!(
-        "T = ∮ √(m / 2(E − V)) dq = {:.12} s with the integrator's {}",
-        orbit.period,
-        match orbit.motion_class {
-            MotionClass::Rotation { .. } => "whole turn",
-            _ => "first and third turning points",
-        }
-    );
-    let domain = format!("one period, {} points of the trapezoid rule", orbit.points);
-    (comparison, domain)
-}
-
-/// The event did not come.
-fn missed_event(orbit: &Orbit, tolerance: f64) -> Finding {
-    let (comparison, domain) = descriptions(orbit);
+/// The finding of the period with an absolute error, s.
+fn period_finding(orbit: &Orbit, error: f64, worst_at: String) -> Finding {
+    let (period, fine) = (orbit.period, TOLERANCES[TOLERANCES.len() - 1]);
+    let event = match orbit.motion_class {
+        MotionClass::Rotation { .. } => "whole revolution",
+        _ => "first and third reversals",
+    };
+    let (numbers, tolerance) = ([error, error / period], ERROR_FACTOR * fine);
     Finding {
-        key: "period-integrated".into(),
-        check: Check::Period,
-        comparison,
-        domain,
-        worst_at: format!("no such event, Tsit45 at a tolerance of {tolerance:.0e}"),
-        integrated: true,
-        ..Finding::default()
-    }
-}
-
-fn findings(orbit: &Orbit, errors: &[f64]) -> Vec<Finding> {
-    let (comparison, domain) = descriptions(orbit);
-    let (first, last) = (errors[0], errors[errors.len() - 1]);
-    let [coarse, fine] = [TOLERANCES[0], TOLERANCES[TOLERANCES.len() - 1]];
-    let relative_difference = last / orbit.period;
-    let mut findings = vec![Finding {
-        key: "period-integrated".into(),
-        check: Check::Period,
-        comparison,
-        domain,
-        absolute_difference: last,
+        comparison: format!(
+            "T = ∮ √(m / 2(E − V)) dq = {period:.12} s with the integrator's {event}"
+        ),
+        domain: format!("one period, {} points of the trapezoid rule", orbit.points),
         unit: "s".into(),
-        relative_difference,
         scale: "the period".into(),
-        worst_at: format!("T = {:.6} s, Tsit45 at {fine:.0e}", orbit.period),
-        tolerance: ERROR_FACTOR * fine,
+        worst_at,
         tolerance_reason: format!(
             "{ERROR_FACTOR} times the tolerance of a step: some tens are reached in a period"
         ),
         integrated: true,
-        pass: relative_difference <= ERROR_FACTOR * fine,
-        ..Finding::default()
-    }];
+        ..Finding::new("period-integrated", Check::Period, numbers, tolerance)
+    }
+}
+
+/// The event did not come.
+fn missed_event(orbit: &Orbit, tolerance: f64) -> Finding {
+    let worst_at = format!("no such event, Tsit45 at a tolerance of {tolerance:.0e}");
+    period_finding(orbit, f64::NAN, worst_at)
+}
+
+fn findings(orbit: &Orbit, errors: &[f64]) -> Vec<Finding> {
+    let (first, last) = (errors[0], errors[errors.len() - 1]);
+    let [coarse, fine] = [TOLERANCES[0], TOLERANCES[TOLERANCES.len() - 1]];
+    let worst_at = format!("T = {:.6} s, Tsit45 at {fine:.0e}", orbit.period);
+    let mut findings = vec![period_finding(orbit, last, worst_at)];
     // A motion that is linear in time has no error that could fall.
     if first / orbit.period > 1e3 * ROUNDING_FLOOR {
         let rounding_floor = ROUNDING_FLOOR * orbit.period;
@@ -175,22 +158,17 @@ fn findings(orbit: &Orbit, errors: &[f64]) -> Vec<Finding> {
         let slope = decades / (coarse / TOLERANCES[until]).log10();
         let shortfall = (MIN_SLOPE - slope).max(0.0);
         findings.push(Finding {
-            key: "period-convergence".into(),
-            check: Check::Period,
             comparison: format!(
                 "the slope of log error of the period over log tolerance, {slope:.1}, with at least {MIN_SLOPE}"
             ),
             domain: format!("Tsit45 at {coarse:.0e} to {:.0e}", TOLERANCES[until]),
-            absolute_difference: shortfall,
             unit: "(missing slope)".into(),
-            relative_difference: shortfall,
             scale: "one".into(),
             worst_at: "the line through both ends".into(),
-            tolerance: 0.0,
             tolerance_reason: "an integrator that obeys its tolerance has a slope near 1".into(),
             integrated: true,
             pass: slope >= MIN_SLOPE,
-            ..Finding::default()
+            ..Finding::new("period-convergence", Check::Period, [shortfall; 2], 0.0)
         });
     }
     findings
@@ -212,8 +190,8 @@ mod tests {
     }
 
     #[test]
-    fn turns_and_swings_are_timed() {
-        for (speed, event) in [(1.0, "third turning"), (12.0, "whole turn")] {
+    fn rotations_and_librations_are_timed() {
+        for (speed, event) in [(1.0, "third reversals"), (12.0, "whole revolution")] {
             let findings = check_period(&pendulum(speed, ""))
                 .expect("a scene")
                 .expect("a period");
@@ -225,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_period_is_told() {
+    fn a_motion_without_a_period_has_the_cause() {
         let with_friction = pendulum(
             1.0,
             "brake = { torque = [\"ground\", \"bar\"], magnitude = \"-0.1*phi.speed\" }",

@@ -36,7 +36,7 @@ pub struct CheckedStates {
     pub motion_text: &'static str,
     /// The frames of all bodies along it, close to each other.
     pub body_poses: Vec<Vec<[f64; 3]>>,
-    /// The requested reactions that the loads do not determine: claimed, but no result.
+    /// The requested reactions that are statically indeterminate: claimed, but not a result.
     pub indeterminate: HashSet<Reaction>,
     /// The checks of the states, then of the reference.
     pub findings: Vec<Finding>,
@@ -61,10 +61,8 @@ pub(crate) fn check(
 ) -> Result<CheckedStates, ValidationError> {
     let mut model = ModelStates::new(scene)?;
     let motions = |model: &ModelStates<'_>, count: usize| {
-        let along = scene
-            .prescribed
-            .as_ref()
-            .map(|p| prescribed_states(p, count));
+        let prescribed = scene.prescribed.as_ref();
+        let along = prescribed.map(|motion| prescribed_states(motion, count));
         let across = match (&along, &scene.sweep) {
             (Some(_), None) => None,
             _ => cosine_sweep(scene, model, reference, count),
@@ -73,17 +71,14 @@ pub(crate) fn check(
     };
     let motion = match (&scene.prescribed, &scene.sweep) {
         (Some(_), _) => "the prescribed motion",
-        (None, Some(_)) => "a swing over the sweep",
-        (None, None) => "a swing over the range",
+        (None, Some(_)) => "a cosine motion over the sweep",
+        (None, None) => "a cosine motion over the range",
     };
     let requests: Vec<Vec<StateRequest>> = motions(&model, STATES_PER_MOTION).collect();
     let drawn = requests.first().map_or(0, Vec::len);
     let (mut states, mut mass_matrices) = (Vec::new(), Vec::new());
-    for request in requests
-        .into_iter()
-        .flatten()
-        .chain(reference.state_requests())
-    {
+    let requests = requests.into_iter().flatten();
+    for request in requests.chain(reference.state_requests()) {
         states.push(model.state(&request)?);
         mass_matrices.push(model.mass_matrix());
     }
@@ -146,12 +141,8 @@ fn cosine_sweep(
 ) -> Option<Vec<StateRequest>> {
     let plan = model.model().plan();
     let (actuator, given, fixed) = match &scene.sweep {
-        Some(sweep) => (
-            sweep.actuator.0,
-            sweep.range,
-            sweep.fixed_coordinates.clone(),
-        ),
-        None if plan.actuators() == 1 => (0, None, scene.assembly.coordinates.clone()),
+        Some(sweep) => (sweep.actuator.0, sweep.range, &sweep.fixed_coordinates),
+        None if plan.actuators() == 1 => (0, None, &scene.assembly.coordinates),
         None => return None,
     };
     let [from, to] = given.unwrap_or_else(|| match plan.range().limits() {

@@ -1,4 +1,4 @@
-//! Closed forms in numbers of two words: the truths of the grid. They share no line with what they judge.
+//! Closed forms in double-double numbers: the references of the grid. They share no line with what they check.
 
 use super::mechanisms::{FourBar, SliderCrank};
 use dwell_geometry::{Vec2, vec2};
@@ -11,18 +11,37 @@ pub(crate) fn dd(value: f64) -> DoubleDouble {
 
 type Point = Vec2<DoubleDouble>;
 
+fn at_rest(point: Point) -> [Point; 3] {
+    [point, Vec2::zero(), Vec2::zero()]
+}
+
 /// A body at unit speed of the coordinate: its motion, and what it adds to m and ½m′.
 #[derive(Debug, Clone, Copy)]
 struct UnitSpeedBody {
     /// A point of it, where that is, its velocity and its acceleration at zero q̈.
     origin_motion: [Point; 3],
-    /// Direction of its x axis, spin and spin's rate.
+    /// Direction of its x axis, angular velocity and acceleration.
     axis: Point,
     angular_rates: [DoubleDouble; 2],
     mass: Mass,
 }
 
 impl UnitSpeedBody {
+    fn new(origin_motion: [Point; 3], axis: Point, rates: [DoubleDouble; 2], mass: Mass) -> Self {
+        Self {
+            origin_motion,
+            axis,
+            angular_rates: rates,
+            mass,
+        }
+    }
+
+    /// A crank on a fixed pivot, at the coordinate.
+    fn crank(pivot: Point, q: DoubleDouble, mass: Mass) -> Self {
+        let (sin, cos) = q.sin_cos();
+        Self::new(at_rest(pivot), vec2(cos, sin), [dd(1.0), dd(0.0)], mass)
+    }
+
     /// Place, velocity and acceleration of a point by its distances along the axis and across it.
     fn point_motion(&self, local: Point) -> [Point; 3] {
         let offset = self.axis * local.x + self.axis.perp() * local.y;
@@ -89,13 +108,8 @@ pub(crate) fn four_bar(
 ) -> FourBarCoefficients {
     let [a, d] = mechanism.base.map(Vec2::cast::<DoubleDouble>);
     let [crank, coupler, rocker] = mechanism.lengths.map(dd);
-    let (sin, cos) = q.sin_cos();
-    let one = UnitSpeedBody {
-        origin_motion: [a, Vec2::zero(), Vec2::zero()],
-        axis: vec2(cos, sin),
-        angular_rates: [dd(1.0), dd(0.0)],
-        mass: mechanism.masses[0],
-    };
+    let [mass_1, mass_2, mass_3] = mechanism.masses;
+    let one = UnitSpeedBody::crank(a, q, mass_1);
     let [b, vb, ab] = one.point_motion(vec2(crank, dd(0.0)));
     let line = d - b;
     let square = line.dot(line);
@@ -111,18 +125,8 @@ pub(crate) fn four_bar(
     let right = ab - bc * (w2 * w2) + dc * (w3 * w3);
     let [e2, e3] = solve_2x2(-bc.perp(), dc.perp(), right);
     let inverse = |l: DoubleDouble| dd(1.0) / l;
-    let two = UnitSpeedBody {
-        origin_motion: [b, vb, ab],
-        axis: bc * inverse(coupler),
-        angular_rates: [w2, e2],
-        mass: mechanism.masses[1],
-    };
-    let three = UnitSpeedBody {
-        origin_motion: [d, Vec2::zero(), Vec2::zero()],
-        axis: dc * inverse(rocker),
-        angular_rates: [w3, e3],
-        mass: mechanism.masses[2],
-    };
+    let two = UnitSpeedBody::new([b, vb, ab], bc * inverse(coupler), [w2, e2], mass_2);
+    let three = UnitSpeedBody::new(at_rest(d), dc * inverse(rocker), [w3, e3], mass_3);
     let [m1, n1] = one.inertia_terms();
     let [m2, n2] = two.inertia_terms();
     let [m3, n3] = three.inertia_terms();
@@ -147,38 +151,24 @@ pub(crate) fn four_bar(
 /// m and ½m′ of a slider-crank, its rod to the right.
 pub(crate) fn slider_crank(parts: &SliderCrank, q: DoubleDouble) -> [DoubleDouble; 2] {
     let [crank, rod] = parts.lengths.map(dd);
-    let (sin, cos) = q.sin_cos();
-    let one = UnitSpeedBody {
-        origin_motion: [Vec2::zero(); 3],
-        axis: vec2(cos, sin),
-        angular_rates: [dd(1.0), dd(0.0)],
-        mass: parts.masses[0],
-    };
+    let one = UnitSpeedBody::crank(Vec2::zero(), q, parts.masses[0]);
     let [b, vb, ab] = one.point_motion(vec2(crank, dd(0.0)));
     let rise = dd(parts.height) - b.y;
     let run = ((rod + rise) * (rod - rise)).sqrt();
     // The end of the rod keeps its height: v_y + run ω = 0, a_y + run α − rise ω² = 0.
     let w = -vb.y / run;
     let e = (rise * w * w - ab.y) / run;
-    let inverse = dd(1.0) / rod;
-    let two = UnitSpeedBody {
-        origin_motion: [b, vb, ab],
-        axis: vec2(run * inverse, rise * inverse),
-        angular_rates: [w, e],
-        mass: parts.masses[1],
-    };
+    let axis = vec2(run, rise) * (dd(1.0) / rod);
+    let two = UnitSpeedBody::new([b, vb, ab], axis, [w, e], parts.masses[1]);
     let end = two.point_motion(vec2(rod, dd(0.0)));
-    let three = UnitSpeedBody {
-        origin_motion: end.map(|p| vec2(p.x, dd(0.0))),
-        axis: Vec2::IDENTITY.cast(),
-        angular_rates: [dd(0.0); 2],
-        mass: parts.masses[2],
-    };
+    let end = end.map(|p| vec2(p.x, dd(0.0)));
+    let axis = Vec2::IDENTITY.cast();
+    let three = UnitSpeedBody::new(end, axis, [dd(0.0); 2], parts.masses[2]);
     let sums = [one, two, three].map(|body| body.inertia_terms());
     [0, 1].map(|k| sums[0][k] + sums[1][k] + sums[2][k])
 }
 
-/// m and ½m′ of a parallelogram whose crank and rocker are 1 m long: the coupler does not turn.
+/// m and ½m′ of a parallelogram whose crank and rocker are 1 m long: the coupler does not rotate.
 pub(crate) fn parallelogram(mechanism: &FourBar) -> [DoubleDouble; 2] {
     let [one, two, three] = mechanism.masses;
     let mut m = dd(two.mass);
@@ -189,7 +179,7 @@ pub(crate) fn parallelogram(mechanism: &FourBar) -> [DoubleDouble; 2] {
     [m, dd(0.0)]
 }
 
-/// ∮ √m dq over a turn of a four-bar's crank, by the trapezoid rule: spectral.
+/// ∮ √m dq over a revolution of a four-bar's crank, by the trapezoid rule: spectral.
 pub(crate) fn root_inertia_integral(
     mechanism: &FourBar,
     branch_sign: f64,
@@ -198,9 +188,8 @@ pub(crate) fn root_inertia_integral(
     let step = DoubleDouble::PI * dd(2.0) / dd(points as f64);
     let mut sum = dd(0.0);
     for k in 0..points {
-        sum += four_bar(mechanism, branch_sign, step * dd(k as f64))
-            .m
-            .sqrt();
+        let q = step * dd(k as f64);
+        sum += four_bar(mechanism, branch_sign, q).m.sqrt();
     }
     sum * step
 }

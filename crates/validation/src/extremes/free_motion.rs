@@ -3,14 +3,12 @@
 use super::closed_forms::{dd, four_bar, root_inertia_integral};
 use super::mechanisms::CRANK_ROCKER;
 use super::run_pair::{free_motion, kinetic_energy, wrapped_free_motion};
-use super::series::{
-    CellResult, EstimatedValue, ParameterSeries, Requirement, decades, repeat_error,
-};
-use dwell_dynamics::{DynamicsError, Method, Options, ReducedState};
+use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
+use dwell_dynamics::{Method, Options, ReducedState};
 use dwell_kinetostatics::ExactModel;
 use dwell_numerics::{DoubleDouble, Scalar};
 use std::f64::consts::TAU;
-use std::sync::{Arc, LazyLock};
+use std::sync::LazyLock;
 
 /// The crank where the motions start, rad.
 const START_ANGLE: f64 = 1.125;
@@ -18,13 +16,13 @@ const START_ANGLE: f64 = 1.125;
 const QUADRATURE_POINTS: usize = 256;
 /// Tolerances that a step errs by in energy at most.
 const ENERGY_ERROR_PER_STEP: f64 = 4.0;
-/// Steps of a turn at a tolerance of one.
+/// Steps of a revolution at a tolerance of one.
 const STEPS_PER_REVOLUTION: f64 = 8.0;
 
-/// Turns after which the angle is wrapped: its rounding is then that of a hundred turns.
+/// Revolutions after which the angle is wrapped: its rounding is then that of a hundred revolutions.
 const MAX_UNWRAPPED_REVOLUTIONS: f64 = 100.0;
 
-/// What is reported of a motion at its end.
+/// The results at the end of a motion.
 const QUANTITIES: [&str; 2] = ["angle", "energy"];
 
 /// m at the start, and the period at 1 rad/s there, of the crank-rocker's free motion: E_c is constant.
@@ -58,8 +56,8 @@ fn order(method: Method) -> f64 {
     }
 }
 
-/// A turn takes 8 tol^(−1/(p + 1)) steps, each of which errs by some tolerances in energy, always the same
-/// way; the phase follows the energy's half, summed over the turns.
+/// A revolution takes 8 tol^(−1/(p + 1)) steps, each of which errs by some tolerances in energy, always with the same
+/// sign; the phase error is half of that, summed over the revolutions.
 fn required(method: Method, tolerance: f64, revolutions: f64, quantity: usize) -> Requirement {
     let steps = STEPS_PER_REVOLUTION * tolerance.powf(-1.0 / (order(method) + 1.0));
     let energy = ENERGY_ERROR_PER_STEP * steps * (tolerance + f64::EPSILON) * revolutions;
@@ -67,13 +65,13 @@ fn required(method: Method, tolerance: f64, revolutions: f64, quantity: usize) -
     Requirement::from_error(if quantity == 0 { phase } else { energy }, revolutions)
 }
 
-/// So many turns at a speed of the start, to the same position again.
+/// Some revolutions from an initial speed, to the same position again.
 fn solve_revolutions(
     model: &ExactModel,
     speed: f64,
     revolutions: f64,
     options: &Options,
-) -> Result<Vec<CellResult>, DynamicsError> {
+) -> RunResult {
     let [m, period] = *REFERENCE_REVOLUTION;
     let parts = (revolutions / MAX_UNWRAPPED_REVOLUTIONS).max(1.0);
     let advance = DoubleDouble::from_revolutions(revolutions / parts);
@@ -84,39 +82,31 @@ fn solve_revolutions(
         q: START_ANGLE,
         q_dot: speed,
     };
-    let (runs, angle) = if parts > 1.0 {
-        let parts = (parts as usize, duration);
-        (
-            wrapped_free_motion(model, start, parts, advance, options)?,
-            dd(START_ANGLE),
-        )
+    let mut angle = dd(START_ANGLE);
+    let runs = if parts > 1.0 {
+        wrapped_free_motion(model, start, (parts as usize, duration), advance, options)?
     } else {
-        (
-            free_motion(model, start, duration, options)?,
-            dd(START_ANGLE) + advance,
-        )
+        angle += advance;
+        free_motion(model, start, duration, options)?
     };
-    // The plain end is not quite the whole of the turns.
-    let remainder = (dd(duration) - exact_duration) * dd(speed) * dd(parts);
-    let angle = angle + remainder;
+    // The double-precision end is not quite the end of the revolutions.
+    let angle = angle + (dd(duration) - exact_duration) * dd(speed) * dd(parts);
     // A last place of the angle is lost in each part, and of the time.
     let rounding = 2.0 * f64::EPSILON * (advance.value() + angle.value()) * parts.sqrt();
-    let (q, q_error) = runs.final_value(|y| y[0], rounding);
+    let end_angle = runs.final_value(|y| y[0], rounding);
     let energy = dd(0.5) * m * dd(speed) * dd(speed);
     let rounding = 4.0 * f64::EPSILON * energy.value();
-    let (e, e_error) = runs.final_value(|y| kinetic_energy(model, y), rounding);
-    Ok(vec![
-        Ok(EstimatedValue::new(q, angle, q_error).with_scale(TAU)),
-        Ok(EstimatedValue::new(e, energy, e_error)),
-    ])
+    let end_energy = runs.final_value(|y| kinetic_energy(model, y), rounding);
+    let angle = scaled_cell(end_angle, angle, TAU);
+    Ok(vec![angle, cell(end_energy, energy)])
 }
 
-/// A row of motions of the crank-rocker: speed, turns and options by value.
+/// A row of motions of the crank-rocker: speed, revolutions and options by value.
 fn base_series(
     values: Vec<f64>,
     motion: impl Fn(f64) -> (f64, f64, Options) + Send + Sync + Clone + 'static,
 ) -> ParameterSeries {
-    let model = Arc::new(CRANK_ROCKER.build().exact_model(&[]));
+    let model = CRANK_ROCKER.build().exact_model(&[]);
     let motion_of = motion.clone();
     ParameterSeries {
         figure: FIGURE,
@@ -133,12 +123,8 @@ fn base_series(
         }),
         run: Box::new(move |at| {
             let (speed, revolutions, options) = motion(at);
-            let evaluate = match &*model {
-                Ok(model) => solve_revolutions(model, speed, revolutions, &options)
-                    .map_err(|e| e.to_string()),
-                Err(error) => Err(error.clone()),
-            };
-            evaluate.unwrap_or_else(|error| repeat_error(&error, QUANTITIES.len()))
+            let model = model.as_ref().map_err(String::as_str)?;
+            solve_revolutions(model, speed, revolutions, &options)
         }),
     }
 }
@@ -148,9 +134,9 @@ fn speeds() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "speed".into(),
-        description: "Free motion of a four-bar over one turn: its speed".into(),
+        description: "Free motion of a four-bar over one revolution: its speed".into(),
         parameter: ("speed at the start", "rad/s"),
-        reason: "without loads a speed only scales time: one turn at 1e-10, whatever the speed; a turn's steps, \
+        reason: "without loads a speed only scales time: one revolution at 1e-10, whatever the speed; its steps, \
               4 tolerances each",
         ..base_series(decades(-9, 9), move |speed| (speed, 1.0, options))
     }
@@ -161,9 +147,9 @@ fn tolerances(method: Method) -> ParameterSeries {
     ParameterSeries {
         figure: TOLERANCES_FIGURE,
         key: format!("tolerance-{}", name.to_lowercase()),
-        description: format!("Free motion of a four-bar over one turn by {name}: tolerance"),
+        description: format!("Free motion of a four-bar over one revolution by {name}: tolerance"),
         parameter: ("tolerance", ""),
-        reason: "a turn takes 8 tol^(−1/(p + 1)) steps of the order p that step control sees, each errs by 4 tolerances \
+        reason: "a revolution takes 8 tol^(−1/(p + 1)) steps of the order p that step control sees, each errs by 4 tolerances \
               and a rounding at most",
         ..base_series(decades(-2, -14), move |tolerance| {
             (1.0, 1.0, Options::new(method, tolerance))

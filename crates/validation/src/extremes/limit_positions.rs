@@ -1,12 +1,10 @@
 //! Distances: to a limit position, to a flat parallelogram, to a dead point.
 
 use super::closed_forms::{self, arc_cosine, dd};
-use super::mechanisms::{FourBar, SliderCrank};
-use super::series::{
-    CellResult, EstimatedValue, ParameterSeries, Requirement, decades, repeat_error,
-};
-use dwell_geometry::{Reaction, Vec2, vec2};
-use dwell_kinetostatics::{ExactModel, Mass};
+use super::mechanisms::{FourBar, SliderCrank, mass};
+use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
+use dwell_geometry::{Vec2, vec2};
+use dwell_kinetostatics::ExactModel;
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
 
@@ -35,26 +33,14 @@ const SHORT_ROD: SliderCrank = SliderCrank {
     lengths: [1.5, 1.0],
     height: 0.125,
     masses: [
-        Mass {
-            mass: 2.0,
-            center: vec2(0.25, 0.125),
-            inertia: 0.5,
-        },
-        Mass {
-            mass: 1.5,
-            center: vec2(0.5, 0.0625),
-            inertia: 0.25,
-        },
-        Mass {
-            mass: 1.0,
-            center: Vec2::ZERO,
-            inertia: 0.0,
-        },
+        mass(2.0, [0.25, 0.125], 0.5),
+        mass(1.5, [0.5, 0.0625], 0.25),
+        mass(1.0, [0.0, 0.0], 0.0),
     ],
     assembly: [0.125, 0.0],
 };
 
-/// Page of these rows, and its title.
+/// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("limits", "Near limit positions");
 
 pub(super) fn series() -> Vec<ParameterSeries> {
@@ -70,40 +56,26 @@ pub(super) fn compare_four_bar(
     model: &ExactModel,
     branch_sign: f64,
     q: f64,
-) -> Vec<CellResult> {
-    let (computed, error) = match estimate::coefficients_with_errors(model.model(), q) {
-        Ok(both) => both,
-        Err(error) => return repeat_error(&error, QUANTITIES.len()),
-    };
+) -> RunResult {
+    let (computed, error) = estimate::coefficients_with_errors(model.model(), q)?;
     let reference = closed_forms::four_bar(four_bar, branch_sign, dd(q));
+    let (a, b) = (reference.a, reference.b);
     let size = |v: Vec2<DoubleDouble>| v.dot(v).sqrt().value();
-    vec![
-        Ok(EstimatedValue::new(computed.m, reference.m, error.m)),
-        Ok(EstimatedValue::new(
-            computed.half_dm,
-            reference.half_dm,
-            error.half_dm,
-        )),
-        Ok(
-            EstimatedValue::new(computed.a[0], reference.a.x, error.a[0])
-                .with_scale(size(reference.a)),
-        ),
-        Ok(
-            EstimatedValue::new(computed.b[0], reference.b.x, error.b[0])
-                .with_scale(size(reference.b)),
-        ),
-    ]
+    Ok(vec![
+        cell((computed.m, error.m), reference.m),
+        cell((computed.half_dm, error.half_dm), reference.half_dm),
+        scaled_cell((computed.a[0], error.a[0]), a.x, size(a)),
+        scaled_cell((computed.b[0], error.b[0]), b.x, size(b)),
+    ])
 }
 
 fn four_bar() -> ParameterSeries {
     let [a, b, c] = ROCKER.lengths.map(dd);
     let d = dd(ROCKER.base[1].x);
-    let stretched_length = b + c;
-    let limit =
-        arc_cosine((a * a + d * d - stretched_length * stretched_length) / (dd(2.0) * a * d));
+    let stretched = b + c;
+    let limit = arc_cosine((a * a + d * d - stretched * stretched) / (dd(2.0) * a * d));
     let test = ROCKER.build();
-    let reactions: Vec<Reaction> = test.reactions("C");
-    let model = test.exact_model(&reactions);
+    let model = test.exact_model(&test.reactions("C"));
     ParameterSeries {
         figure: FIGURE,
         key: "limit-four-bar".into(),
@@ -111,16 +83,16 @@ fn four_bar() -> ParameterSeries {
         parameter: ("distance δ", "rad"),
         values: decades(-1, -15),
         quantities: &QUANTITIES,
-        reference: "circle and circle in 32 digits, at the same plain number φ",
+        reference: "circle and circle in 32 digits, at the same double-precision number φ",
         reason: "the coordinate and the lengths are known to their rounding: m and a grow as 1/δ and err as φ eps/δ, \
               ½m′ and b as 1/δ² and err twice as much; 16 roundings",
         requirement: Box::new(move |at, quantity| {
             let factor = if quantity % 2 == 1 { 2.0 } else { 1.0 };
             Requirement::from_rounding(ALLOWED_ROUNDINGS, factor * limit.value() / at)
         }),
-        run: Box::new(move |at| match &model {
-            Ok(model) => compare_four_bar(&ROCKER, model, 1.0, (limit - dd(at)).value()),
-            Err(error) => repeat_error(&error, QUANTITIES.len()),
+        run: Box::new(move |at| {
+            let model = model.as_ref().map_err(String::as_str)?;
+            compare_four_bar(&ROCKER, model, 1.0, (limit - dd(at)).value())
         }),
     }
 }
@@ -138,29 +110,19 @@ fn slider_crank() -> ParameterSeries {
         parameter: ("distance δ", "rad"),
         values: decades(-1, -15),
         quantities: &QUANTITIES[..2],
-        reference: "right-angled triangle in 32 digits, at the same plain number φ",
+        reference: "right-angled triangle in 32 digits, at the same double-precision number φ",
         reason: "as of the four-bar: φ eps/δ for m, twice that for ½m′; 16 roundings",
         requirement: Box::new(move |at, quantity| {
             let factor = [1.0, 2.0][quantity];
             Requirement::from_rounding(ALLOWED_ROUNDINGS, factor * limit.value() / at)
         }),
         run: Box::new(move |at| {
-            let evaluate = |model: &ExactModel| {
-                let q = (limit - dd(at)).value();
-                let (computed, error) = estimate::coefficients_with_errors(model.model(), q)
-                    .map_err(|e| e.to_string())?;
-                let [m, half_dm] = closed_forms::slider_crank(&SHORT_ROD, dd(q));
-                Ok(vec![
-                    Ok(EstimatedValue::new(computed.m, m, error.m)),
-                    Ok(EstimatedValue::new(
-                        computed.half_dm,
-                        half_dm,
-                        error.half_dm,
-                    )),
-                ])
-            };
-            let evaluate = model.as_ref().map_err(Clone::clone).and_then(evaluate);
-            evaluate.unwrap_or_else(|e: String| repeat_error(&e, 2))
+            let model = model.as_ref().map_err(String::as_str)?;
+            let q = (limit - dd(at)).value();
+            let (computed, error) = estimate::coefficients_with_errors(model.model(), q)?;
+            let [m, half_dm] = closed_forms::slider_crank(&SHORT_ROD, dd(q));
+            let m = cell((computed.m, error.m), m);
+            Ok(vec![m, cell((computed.half_dm, error.half_dm), half_dm)])
         }),
     }
 }
@@ -182,20 +144,13 @@ fn parallelogram() -> ParameterSeries {
             Requirement::from_rounding(ALLOWED_ROUNDINGS, at.powi(-2 - quantity as i32))
         }),
         run: Box::new(move |at| {
-            let evaluate = |model: &ExactModel| {
-                let (computed, error) = estimate::coefficients_with_errors(model.model(), at)
-                    .map_err(|e| e.to_string())?;
-                let [m, half_dm] = closed_forms::parallelogram(&PARALLELOGRAM);
-                Ok(vec![
-                    Ok(EstimatedValue::new(computed.m, m, error.m)),
-                    Ok(
-                        EstimatedValue::new(computed.half_dm, half_dm, error.half_dm)
-                            .with_scale(m.value()),
-                    ),
-                ])
-            };
-            let evaluate = model.as_ref().map_err(Clone::clone).and_then(evaluate);
-            evaluate.unwrap_or_else(|e: String| repeat_error(&e, 2))
+            let model = model.as_ref().map_err(String::as_str)?;
+            let (computed, error) = estimate::coefficients_with_errors(model.model(), at)?;
+            let [m, half_dm] = closed_forms::parallelogram(&PARALLELOGRAM);
+            Ok(vec![
+                cell((computed.m, error.m), m),
+                scaled_cell((computed.half_dm, error.half_dm), half_dm, m.value()),
+            ])
         }),
     }
 }
@@ -221,23 +176,15 @@ mod tests {
                 .expect("a pose");
             let reference = closed_forms::four_bar(&ROCKER, 1.0, q);
             let tolerance = 1e-28 / distance;
-            let relative_error = |a: DoubleDouble, b: DoubleDouble| ((a - b) / b).value().abs();
-            assert!(
-                relative_error(computed.m, reference.m) < tolerance,
-                "{distance:e}"
-            );
-            assert!(
-                relative_error(computed.half_dm, reference.half_dm) < tolerance,
-                "{distance:e}"
-            );
-            assert!(
-                relative_error(computed.a[0], reference.a.x) < tolerance,
-                "{distance:e}"
-            );
-            assert!(
-                relative_error(computed.b[0], reference.b.x) < tolerance,
-                "{distance:e}"
-            );
+            for (value, exact) in [
+                (computed.m, reference.m),
+                (computed.half_dm, reference.half_dm),
+                (computed.a[0], reference.a.x),
+                (computed.b[0], reference.b.x),
+            ] {
+                let error = ((value - exact) / exact).value().abs();
+                assert!(error < tolerance, "{distance:e}");
+            }
         }
     }
 }

@@ -6,7 +6,16 @@ use dwell_geometry::{
 };
 use dwell_kinetostatics::{ExactModel, Mass, Model, ModelError};
 
-/// A mechanism with its masses and where it is put together.
+/// Mass in kg, centre of mass in m, moment of inertia in kg m².
+pub(crate) const fn mass(mass: f64, [x, y]: [f64; 2], inertia: f64) -> Mass {
+    Mass {
+        mass,
+        center: vec2(x, y),
+        inertia,
+    }
+}
+
+/// A mechanism with its masses and its assembly.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct TestMechanism {
     pub(crate) mechanism: Mechanism,
@@ -52,7 +61,7 @@ impl TestMechanism {
         self.joint(name, bodies, points, JointKind::Prismatic { axes });
     }
 
-    /// Drives it, from where it is put together.
+    /// Adds its actuator, with the coordinate at assembly.
     fn actuate(&mut self, bodies: [usize; 2], kind: ActuatorKind, start: f64) {
         self.mechanism.actuators.push(Actuator {
             name: "q".into(),
@@ -91,7 +100,7 @@ pub(crate) struct FourBar {
     pub(crate) lengths: [f64; 3],
     /// Of the same.
     pub(crate) masses: [Mass; 3],
-    /// Coordinate and rough angle of the coupler where it is put together, rad.
+    /// Coordinate and approximate angle of the coupler at assembly, rad.
     pub(crate) assembly: [f64; 2],
 }
 
@@ -128,21 +137,9 @@ pub(crate) const CRANK_ROCKER: FourBar = FourBar {
     base: [Vec2::ZERO, vec2(4.0, 0.0)],
     lengths: [1.0, 3.5, 2.5],
     masses: [
-        Mass {
-            mass: 2.0,
-            center: vec2(0.25, 0.125),
-            inertia: 0.5,
-        },
-        Mass {
-            mass: 1.5,
-            center: vec2(1.75, 0.25),
-            inertia: 1.25,
-        },
-        Mass {
-            mass: 1.0,
-            center: vec2(1.25, -0.125),
-            inertia: 0.75,
-        },
+        mass(2.0, [0.25, 0.125], 0.5),
+        mass(1.5, [1.75, 0.25], 1.25),
+        mass(1.0, [1.25, -0.125], 0.75),
     ],
     assembly: [0.0, 0.7],
 };
@@ -156,7 +153,7 @@ pub(crate) struct SliderCrank {
     pub(crate) height: f64,
     /// Of crank, rod and slider.
     pub(crate) masses: [Mass; 3],
-    /// Coordinate and rough angle of the rod where it is put together.
+    /// Coordinate and approximate angle of the rod at assembly.
     pub(crate) assembly: [f64; 2],
 }
 
@@ -184,15 +181,8 @@ impl SliderCrank {
 
 /// A crank of 1 m in a slot across a slide: the slide's travel is cos q.
 pub(crate) fn scotch_yoke(crank: f64, slide: f64) -> TestMechanism {
-    let crank_mass = Mass {
-        inertia: crank,
-        ..Mass::default()
-    };
-    let slide_mass = Mass {
-        mass: slide,
-        ..Mass::default()
-    };
-    let mut test = TestMechanism::new(&[("crank", crank_mass), ("yoke", slide_mass)]);
+    let (crank, slide) = (mass(0.0, [0.0; 2], crank), mass(slide, [0.0; 2], 0.0));
+    let mut test = TestMechanism::new(&[("crank", crank), ("yoke", slide)]);
     test.revolute("A", [0, 1], [Vec2::ZERO; 2]);
     let slot = JointKind::Slot {
         axis: vec2(0.0, 1.0),
@@ -204,18 +194,14 @@ pub(crate) fn scotch_yoke(crank: f64, slide: f64) -> TestMechanism {
 }
 
 /// A body that slides along x.
-pub(crate) fn slider(mass: f64) -> TestMechanism {
-    let body_mass = Mass {
-        mass,
-        ..Mass::default()
-    };
-    let mut test = TestMechanism::new(&[("slider", body_mass)]);
+pub(crate) fn slider(kilograms: f64) -> TestMechanism {
+    let mut test = TestMechanism::new(&[("slider", mass(kilograms, [0.0; 2], 0.0))]);
     test.prismatic("guide", [0, 1], [Vec2::ZERO; 2]);
     test.actuate([0, 1], ActuatorKind::Travel(JointId(0)), 0.0);
     test
 }
 
-/// A body that turns about a fixed point.
+/// A body that rotates about a fixed point.
 pub(crate) fn rotor(mass: Mass) -> TestMechanism {
     let mut test = TestMechanism::new(&[("rotor", mass)]);
     test.revolute("A", [0, 1], [Vec2::ZERO; 2]);

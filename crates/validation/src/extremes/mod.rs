@@ -1,5 +1,5 @@
 //! The extremes: rows of parameters driven as far as they go, each with the digits that it must keep stated
-//! beforehand, held against closed forms in 32 digits. Every result carries the estimate of its error, and the
+//! beforehand, compared with closed forms in 32 digits. Every result carries the estimate of its error, and the
 //! estimates are checked too.
 
 mod check;
@@ -33,7 +33,7 @@ pub fn study(slow: bool) -> Result<Outcome, StudyError> {
     outcome(&evaluate(all_series(slow)), name)
 }
 
-/// The rows of the grid; `long` for those that take minutes.
+/// The rows of the grid; with `slow` those that take minutes too.
 pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
     let mut series = limit_positions::series();
     series.extend(scale::series());
@@ -45,24 +45,12 @@ pub fn all_series(slow: bool) -> Vec<ParameterSeries> {
 
 /// Computes all cells.
 pub fn evaluate(series: Vec<ParameterSeries>) -> Vec<SeriesResult> {
-    let jobs: Vec<(usize, f64)> = series
-        .iter()
-        .enumerate()
-        .flat_map(|(k, row)| row.values.iter().map(move |&at| (k, at)))
-        .collect();
-    let cells: Vec<(usize, Vec<ResultCell>)> = jobs
-        .into_par_iter()
-        .map(|(k, at)| (k, series[k].evaluate(at)))
-        .collect();
-    let mut results: Vec<SeriesResult> = series
-        .into_iter()
-        .map(|row| SeriesResult {
-            series: row,
-            cells: Vec::new(),
-        })
-        .collect();
-    for (k, more) in cells {
-        results[k].cells.extend(more);
-    }
-    results
+    let row = |series: ParameterSeries| {
+        let cells = series.values.par_iter().flat_map(|&at| series.evaluate(at));
+        SeriesResult {
+            cells: cells.collect(),
+            series,
+        }
+    };
+    series.into_par_iter().map(row).collect()
 }

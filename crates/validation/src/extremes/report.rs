@@ -1,7 +1,8 @@
-//! Pictures, tables and words of the grid.
+//! Figures, tables and the document of the grid.
 
 use super::check::check;
 use super::series::{MAX_ESTIMATE_RATIO, ResultCell, SeriesResult};
+use crate::report_parts::{draw_figures, figure_blocks, pass_or_fail, table};
 use dwell_findings::{Finding, all_pass};
 use dwell_report::TableExport as _;
 use dwell_report::{
@@ -10,7 +11,6 @@ use dwell_report::{
 };
 use dwell_study::Outcome;
 use dwell_study::StudyError;
-use rayon::prelude::*;
 
 /// Most digits that a chart shows.
 const MAX_DIGITS: f64 = 17.0;
@@ -19,18 +19,15 @@ const TYPED_ERROR_HEIGHT: f64 = 0.4;
 /// The ratios that a chart shows.
 const RATIO_RANGE: [f64; 2] = [0.1, 1e5];
 
-/// Everything that is written of the grid: `MAGIC.md`, `MAGIC.txt` and the folder `MAGIC/`.
+/// The report of the grid: `NAME.md`, `NAME.txt` and the folder `NAME/`.
 ///
 /// # Errors
 /// [`StudyError`] where a picture cannot be drawn.
 pub fn outcome(results: &[SeriesResult], name: &str) -> Result<Outcome, StudyError> {
     let findings = check(results);
     let figures = figures(results);
-    let pictures: Vec<Vec<u8>> = figures.par_iter().map(png).collect::<Result<_, _>>()?;
     let mut files = Files::new();
-    for (figure, picture) in figures.iter().zip(pictures) {
-        files.add(format!("{name}/{}.png", figure.name), picture);
-    }
+    draw_figures(&mut files, name, &figures, png)?;
     for result in results {
         let file = format!("{name}/{}.csv", result.series.key);
         files.add(file, csv_table(result).csv()?);
@@ -50,7 +47,7 @@ pub fn outcome(results: &[SeriesResult], name: &str) -> Result<Outcome, StudyErr
     })
 }
 
-/// A page for each family of rows: digits on the left, estimates on the right.
+/// A figure for each family of rows: digits on the left, estimates on the right.
 fn figures(results: &[SeriesResult]) -> Vec<Figure> {
     let mut figures: Vec<Figure> = Vec::new();
     for result in results {
@@ -63,14 +60,14 @@ fn figures(results: &[SeriesResult]) -> Vec<Figure> {
                 caption: format!(
                     "Left: decimal digits kept; dashed: the floor stated beforehand; at the foot: typed errors, allowed \
                      where the condition is above 1e8. Right: the estimated error over the true one, which must not be \
-                     below 1 and in 95 % of all cells not above {MAX_ESTIMATE_RATIO}. What the results are held against:"
+                     below 1 and in 95 % of all cells not above {MAX_ESTIMATE_RATIO}. The references of the results:"
                 ),
                 columns: 2,
                 ..Figure::default()
             });
         }
         if let Some(figure) = figures.last_mut() {
-            // Rows of one truth need it but once.
+            // Rows of one reference need it but once.
             if !figure.caption.contains(series.reference) {
                 figure.caption += &format!("\n{}: {}.", series.description, series.reference);
             }
@@ -95,7 +92,7 @@ fn parameter_axis(result: &SeriesResult) -> Axis {
     let (label, unit) = result.series.parameter;
     let values = result.series.values.iter().copied();
     let (low, high) = (values.clone().reduce(f64::min), values.reduce(f64::max));
-    // A little room beside the outermost points, the same on the left and on the right.
+    // A margin at the outermost points, the same on the left and on the right.
     let (low, high) = (low.unwrap_or(1.0), high.unwrap_or(1.0));
     let margin = (high / low).powf(0.03);
     Axis::log(label, unit).with_range(low / margin, high * margin)
@@ -107,19 +104,14 @@ fn digits_chart(result: &SeriesResult) -> Chart {
     let mut required_lines: Vec<(Vec<[f64; 2]>, Paint)> = Vec::new();
     for (k, quantity) in parameter_series.quantities.iter().enumerate() {
         let paint = Paint::Palette(k);
-        let achieved = points(result, k, ResultCell::digits);
-        series.push(
-            Series::line(*quantity, achieved)
-                .stroke(Stroke::LineAndPoints)
-                .color(paint),
-        );
+        let achieved = Series::line(*quantity, points(result, k, ResultCell::digits));
+        series.push(achieved.stroke(Stroke::LineAndPoints).color(paint));
         // A line each where they differ, else one for all.
-        let required = points(result, k, |c| {
-            Some(c.requirement.min_digits.min(MAX_DIGITS))
-        });
+        let digits = |c: &ResultCell| Some(c.requirement.min_digits.min(MAX_DIGITS));
+        let required = points(result, k, digits);
         match required_lines
             .iter_mut()
-            .find(|(known_line, _)| *known_line == required)
+            .find(|(line, _)| *line == required)
         {
             Some((_, paint)) => *paint = Paint::Grey,
             None => required_lines.push((required, paint)),
@@ -129,12 +121,9 @@ fn digits_chart(result: &SeriesResult) -> Chart {
         let dashed = Series::line("", required).stroke(Stroke::Dashed);
         series.push(dashed.color(paint));
     }
-    let typed_errors: Vec<[f64; 2]> = result
-        .cells
-        .iter()
-        .filter(|c| c.result.is_err())
-        .map(|c| [c.parameter, TYPED_ERROR_HEIGHT])
-        .collect();
+    let failed = result.cells.iter().filter(|c| c.result.is_err());
+    let typed_errors = failed.map(|c| [c.parameter, TYPED_ERROR_HEIGHT]);
+    let typed_errors: Vec<[f64; 2]> = typed_errors.collect();
     if !typed_errors.is_empty() {
         let marked = Series::line("typed error", typed_errors).stroke(Stroke::Points);
         series.push(marked.color(Paint::Ink));
@@ -149,14 +138,12 @@ fn digits_chart(result: &SeriesResult) -> Chart {
 }
 
 fn ratio_chart(result: &SeriesResult) -> Chart {
-    let parameter_series = &result.series;
-    let named = parameter_series.quantities.iter().enumerate();
+    let [low, high] = RATIO_RANGE;
+    let named = result.series.quantities.iter().enumerate();
     let series = named.map(|(k, quantity)| {
-        let clamped =
-            |c: &ResultCell| Some(c.estimate_ratio()?.clamp(RATIO_RANGE[0], RATIO_RANGE[1]));
-        Series::line(*quantity, points(result, k, clamped))
-            .stroke(Stroke::Points)
-            .color(Paint::Palette(k))
+        let clamped = |c: &ResultCell| Some(c.estimate_ratio()?.clamp(low, high));
+        let line = Series::line(*quantity, points(result, k, clamped));
+        line.stroke(Stroke::Points).color(Paint::Palette(k))
     });
     let line = |at: f64| Mark::Horizontal {
         at,
@@ -164,7 +151,7 @@ fn ratio_chart(result: &SeriesResult) -> Chart {
     };
     Chart {
         x: parameter_axis(result),
-        y: Axis::log("estimate / true error", "").with_range(RATIO_RANGE[0], RATIO_RANGE[1]),
+        y: Axis::log("estimate / true error", "").with_range(low, high),
         series: series.collect(),
         marks: vec![line(1.0), line(MAX_ESTIMATE_RATIO)],
         ..Chart::default()
@@ -176,12 +163,10 @@ fn csv_table(result: &SeriesResult) -> Table {
     let series = &result.series;
     let mut columns = vec![Column::new(series.parameter.0, series.parameter.1)];
     for quantity in series.quantities {
-        let kinds = ["", ", truth", ", true error", ", estimate", ", floor"];
-        let units = ["", "", "", "", "digits"];
-        let columns_of_quantity = kinds.iter().zip(units);
-        columns.extend(
-            columns_of_quantity.map(|(kind, unit)| Column::new(format!("{quantity}{kind}"), unit)),
-        );
+        for kind in ["", ", reference", ", true error", ", estimate", ", floor"] {
+            let unit = if kind == ", floor" { "digits" } else { "" };
+            columns.push(Column::new(format!("{quantity}{kind}"), unit));
+        }
     }
     let at = |&value: &f64| {
         let mut cells = vec![value];
@@ -200,7 +185,7 @@ fn csv_table(result: &SeriesResult) -> Table {
     }
 }
 
-/// What every machine reproduces: what was stated, and the verdicts.
+/// What every machine reproduces: the requirements, and which findings pass.
 fn snapshot(results: &[SeriesResult], findings: &[Finding]) -> String {
     let mut text = "Extremes\n\n".to_owned();
     for result in results {
@@ -224,11 +209,6 @@ fn document(
     figures: &[Figure],
     findings: &[Finding],
 ) -> Document {
-    let verdict = if all_pass(findings) {
-        "pass"
-    } else {
-        "**FAIL**"
-    };
     let header = [
         "Row",
         "Floor, digits",
@@ -239,18 +219,12 @@ fn document(
     ];
     let mut blocks = vec![
         Block::Text(format!(
-            "{verdict}. Parameters are driven to their extremes, and the results are compared with closed forms in 32 digits. Each row states beforehand how many digits it must keep; below that only a typed error is accepted, and only where the condition number is above 1e8. Each result carries an estimate of its error: from the same evaluation in double-double numbers, from a second run at a tenth of the tolerance, or from the change of a period with its initial state."
+            "{}. Parameters are driven to their extremes, and the results are compared with closed forms in 32 digits. Each row states beforehand how many digits it must keep; below that only a typed error is accepted, and only where the condition number is above 1e8. Each result carries an estimate of its error: from the same evaluation in double-double numbers, from a second run at a tenth of the tolerance, or from the change of a period with its initial state.",
+            pass_or_fail(all_pass(findings))
         )),
-        Block::Table {
-            header: header.map(str::to_owned).to_vec(),
-            rows: results.iter().map(summary_row).collect(),
-        },
+        table(&header, results.iter().map(summary_row)),
     ];
-    blocks.extend(figures.iter().map(|figure| Block::Figure {
-        file: format!("{name}/{}.png", figure.name),
-        alt: figure.title.clone(),
-        caption: figure.title.clone(),
-    }));
+    blocks.extend(figure_blocks(name, figures, false));
     blocks.push(Block::Heading("Findings".to_owned()));
     blocks.push(Block::Findings(findings.to_vec()));
     Document {
@@ -264,10 +238,8 @@ fn summary_row(result: &SeriesResult) -> Vec<String> {
     let cells = &result.cells;
     let span = |of: &dyn Fn(&ResultCell) -> Option<f64>| {
         let all = || cells.iter().filter_map(of);
-        (
-            all().fold(f64::INFINITY, f64::min),
-            all().fold(f64::NEG_INFINITY, f64::max),
-        )
+        let min = all().fold(f64::INFINITY, f64::min);
+        (min, all().fold(f64::NEG_INFINITY, f64::max))
     };
     let (min_required, max_required) = span(&|c| Some(c.requirement.min_digits));
     let (min_digits, _) = span(&ResultCell::digits);

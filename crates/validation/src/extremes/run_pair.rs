@@ -1,4 +1,4 @@
-//! How the rows of motion are run: twice, for the estimate.
+//! Motions of the grid, each run twice to estimate its error.
 
 use super::mechanisms::TestMechanism;
 use dwell_dynamics::{
@@ -26,6 +26,25 @@ impl RunPair {
         let last = first.last().copied().unwrap_or(f64::NAN);
         (last, estimate::of_motion(&first, &second, rounding))
     }
+
+    /// Runs with some options, and with those that estimate the error.
+    fn of<E>(
+        options: &Options,
+        run: impl Fn(&Options) -> Result<Vec<Vec<f64>>, E>,
+    ) -> Result<Self, E> {
+        Ok(Self {
+            first: run(options)?,
+            second: run(&estimate::comparison_options(options))?,
+        })
+    }
+}
+
+/// The options with samples at the compared times of a motion of some duration, s.
+fn sampled(options: &Options, duration: f64) -> Options {
+    Options {
+        sample_interval: Some(duration / COMPARED_TIMES as f64),
+        ..*options
+    }
 }
 
 /// The states of a complete motion at the compared times.
@@ -44,20 +63,12 @@ pub(super) fn free_motion(
     end: f64,
     options: &Options,
 ) -> Result<RunPair, DynamicsError> {
-    let options = Options {
-        sample_interval: Some((end - start.t) / COMPARED_TIMES as f64),
-        ..*options
-    };
-    let run = |options: &Options| -> Result<Vec<Vec<f64>>, DynamicsError> {
+    RunPair::of(&sampled(options, end - start.t), |options| {
         solve_reduced(model, start, Some(end), options, &[]).and_then(compared_states)
-    };
-    Ok(RunPair {
-        first: run(&options)?,
-        second: run(&estimate::comparison_options(&options))?,
     })
 }
 
-/// A motion without loads in parts of equal duration, s, each of which turns by `way`: the angle is wrapped
+/// A motion without loads in parts of equal duration, s, each of which rotates by `advance`: the angle is wrapped
 /// after each, so that it keeps its digits. Compared are the ends of the parts.
 pub(super) fn wrapped_free_motion(
     model: &ExactModel,
@@ -66,7 +77,7 @@ pub(super) fn wrapped_free_motion(
     advance: DoubleDouble,
     options: &Options,
 ) -> Result<RunPair, DynamicsError> {
-    let run = |options: &Options| -> Result<Vec<Vec<f64>>, DynamicsError> {
+    RunPair::of(options, |options| {
         let mut at = start;
         let mut final_states = Vec::with_capacity(parts);
         for _ in 0..parts {
@@ -78,10 +89,6 @@ pub(super) fn wrapped_free_motion(
             final_states.push(vec![at.q, at.q_dot]);
         }
         Ok(final_states)
-    };
-    Ok(RunPair {
-        first: run(options)?,
-        second: run(&estimate::comparison_options(options))?,
     })
 }
 
@@ -105,19 +112,11 @@ pub(super) fn loaded_motion(
     end: f64,
     options: &Options,
 ) -> Result<RunPair, DynamicsError> {
-    let options = Options {
-        sample_interval: Some(end / COMPARED_TIMES as f64),
-        ..*options
-    };
     let start = OdeState {
         t: 0.0,
         y: machine.initial_state(&[q], &[q_dot]),
     };
-    let run = |options: &Options| -> Result<Vec<Vec<f64>>, DynamicsError> {
+    RunPair::of(&sampled(options, end), |options| {
         solve(machine, machine.model(), &start, end, options, &[]).and_then(compared_states)
-    };
-    Ok(RunPair {
-        first: run(&options)?,
-        second: run(&estimate::comparison_options(&options))?,
     })
 }

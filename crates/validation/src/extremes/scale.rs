@@ -1,9 +1,9 @@
-//! Scales: masses, lengths, and the place where a mechanism stands.
+//! Scales: masses, lengths, and the distance of a mechanism from the origin.
 
 use super::closed_forms::dd;
 use super::limit_positions::{ALLOWED_ROUNDINGS, QUANTITIES, compare_four_bar};
 use super::mechanisms::{CRANK_ROCKER, FourBar};
-use super::series::{EstimatedValue, ParameterSeries, Requirement, decades, repeat_error};
+use super::series::{ParameterSeries, Requirement, cell, decades};
 use dwell_geometry::vec2;
 use dwell_kinetostatics::Coefficients;
 use dwell_study::estimate;
@@ -14,7 +14,7 @@ const CRANK_ANGLE: f64 = 1.125;
 /// enter three times.
 const DYAD_CONDITION: f64 = 8.0;
 
-/// Page of these rows, and its title.
+/// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("scales", "Masses, lengths and places");
 
 pub(super) fn series() -> Vec<ParameterSeries> {
@@ -45,10 +45,8 @@ fn base_series(
         run: Box::new(move |at| {
             let four_bar = make(at);
             let test = four_bar.build();
-            match test.exact_model(&test.reactions("C")) {
-                Ok(model) => compare_four_bar(&four_bar, &model, 1.0, CRANK_ANGLE),
-                Err(error) => repeat_error(&error, QUANTITIES.len()),
-            }
+            let model = test.exact_model(&test.reactions("C"))?;
+            compare_four_bar(&four_bar, &model, 1.0, CRANK_ANGLE)
         }),
     }
 }
@@ -60,15 +58,11 @@ fn mass_ratio() -> ParameterSeries {
         four_bar.masses[1].inertia *= ratio;
         four_bar
     };
+    let what = "Four-bar: the coupler's mass and inertia";
     ParameterSeries {
-        parameter: ("mass of the coupler, in parts of that at first", ""),
+        parameter: ("mass of the coupler over its initial mass", ""),
         reason: "the parameters are sums over the bodies, each of which a well-shaped dyad magnifies by 8; 16 roundings",
-        ..base_series(
-            "mass-ratio",
-            "Four-bar: the coupler's mass and inertia",
-            decades(-12, 12),
-            make,
-        )
+        ..base_series("mass-ratio", what, decades(-12, 12), make)
     }
 }
 
@@ -91,33 +85,23 @@ fn placement() -> ParameterSeries {
     };
     ParameterSeries {
         parameter: ("distance from the origin", "crank lengths"),
-        reason: "attachments on the ground are subtracted before anything is evaluated: as if it stood at the origin; \
+        reason: "attachments on the ground are subtracted before anything is evaluated: as if it were at the origin; \
               a dyad's 8, 16 roundings",
-        reference: "circle and circle in 32 digits, at the same plain coordinates of the ground's points",
-        ..base_series(
-            "placement",
-            "Four-bar: where it stands",
-            decades(0, 9),
-            make,
-        )
+        reference: "circle and circle in 32 digits, at the same double-precision coordinates of the ground's points",
+        ..base_series("placement", "Four-bar: its position", decades(0, 9), make)
     }
 }
 
 /// Lengths scaled by a power of two change the exponents of all numbers and no other bit.
 fn powers_of_two() -> ParameterSeries {
-    fn reduced_at_scale(by: f64) -> Result<Coefficients, String> {
+    type Reduced = Result<Coefficients, Box<dyn std::error::Error>>;
+    fn reduced_at_scale(by: f64) -> Reduced {
         let test = CRANK_ROCKER.scaled(by).build();
         let model = test.exact_model(&test.reactions("C"))?;
-        let got = estimate::coefficients_with_errors(model.model(), CRANK_ANGLE);
-        got.map(|(got, _)| got).map_err(|e| e.to_string())
+        Ok(estimate::coefficients_with_errors(model.model(), CRANK_ANGLE)?.0)
     }
     ParameterSeries {
-        figure: FIGURE,
-        key: "power-of-two".into(),
-        description: "Four-bar: all lengths times a power of two".into(),
         parameter: ("crank's length", "m"),
-        values: (-10..=10).map(|k| 8.0_f64.powi(k)).collect(),
-        quantities: &QUANTITIES,
         reference: "the same bits as at 1 m, with another exponent",
         reason: "a power of two is exact in every sum, product and root: not one last place may differ",
         // Half a last place of a number of 53 bits, which stands for no difference.
@@ -125,26 +109,23 @@ fn powers_of_two() -> ParameterSeries {
             Requirement::from_error(0.5 * f64::EPSILON * (1.0 + 1e-6), 1.0)
         }),
         run: Box::new(move |by| {
-            let both = reduced_at_scale(by).and_then(|got| Ok((got, reduced_at_scale(1.0)?)));
-            let (got, base) = match both {
-                Ok(both) => both,
-                Err(error) => return repeat_error(&error, QUANTITIES.len()),
-            };
+            let (got, base) = (reduced_at_scale(by)?, reduced_at_scale(1.0)?);
             // What may differ is the last place.
             let compared = |got: f64, base: f64, power: i32| {
-                let reference = dd(base * by.powi(power));
-                Ok(EstimatedValue::new(
-                    got,
-                    reference,
-                    f64::EPSILON * got.abs(),
-                ))
+                cell((got, f64::EPSILON * got.abs()), dd(base * by.powi(power)))
             };
-            vec![
+            Ok(vec![
                 compared(got.m, base.m, 2),
                 compared(got.half_dm, base.half_dm, 2),
                 compared(got.a[0], base.a[0], 1),
                 compared(got.b[0], base.b[0], 1),
-            ]
+            ])
         }),
+        ..base_series(
+            "power-of-two",
+            "Four-bar: all lengths times a power of two",
+            (-10..=10).map(|k| 8.0_f64.powi(k)).collect(),
+            |by| CRANK_ROCKER.scaled(by),
+        )
     }
 }

@@ -1,4 +1,4 @@
-//! The grid: rows of extreme parameters, with what each must keep stated beforehand.
+//! The grid: rows of extreme parameters, each with its requirement stated beforehand.
 
 use dwell_numerics::{DoubleDouble, Scalar};
 
@@ -21,17 +21,20 @@ pub struct ParameterSeries {
     pub parameter: (&'static str, &'static str),
     /// Its values, all above zero.
     pub values: Vec<f64>,
-    /// What is reported, in the order of the readings.
+    /// The quantities, in the order of the results.
     pub quantities: &'static [&'static str],
-    /// What the results are held against.
+    /// The reference of the results.
     pub reference: &'static str,
     /// Why the floor is what it is.
     pub reason: &'static str,
-    /// What is stated beforehand, by value and quantity.
+    /// The requirement, stated beforehand, by value and quantity.
     pub requirement: Box<dyn Fn(f64, usize) -> Requirement + Send + Sync>,
     /// The results at a value, one for each quantity.
-    pub run: Box<dyn Fn(f64) -> Vec<CellResult> + Send + Sync>,
+    pub run: Box<dyn Fn(f64) -> RunResult + Send + Sync>,
 }
+
+/// All results at a value of the parameter, or the typed error that stands for all of them.
+pub type RunResult = Result<Vec<CellResult>, Box<dyn std::error::Error>>;
 
 /// What is stated of a cell before it is computed.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,10 +49,8 @@ impl Requirement {
     /// The digits that rounding leaves: `roundings` of ½ ulp in each of the numbers that a result of this
     /// condition depends on.
     pub fn from_rounding(roundings: f64, condition_number: f64) -> Self {
-        Self::from_error(
-            roundings * f64::EPSILON * condition_number,
-            condition_number,
-        )
+        let error = roundings * f64::EPSILON * condition_number;
+        Self::from_error(error, condition_number)
     }
 
     /// The digits that an error leaves, relative to the scale of the result.
@@ -64,12 +65,12 @@ impl Requirement {
 /// A result, or the typed error that stands for it.
 pub type CellResult = Result<EstimatedValue, String>;
 
-/// A result with its truth and the estimate of its error.
+/// A result with its reference and the estimate of its error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EstimatedValue {
-    /// What the workbench reports.
+    /// The reported value.
     pub value: f64,
-    /// What is true.
+    /// The true value.
     pub reference: DoubleDouble,
     /// What digits are counted from.
     pub scale: f64,
@@ -77,32 +78,32 @@ pub struct EstimatedValue {
     pub error_estimate: f64,
 }
 
+/// A result with its estimated error, whose digits are counted from its own size.
+pub(crate) fn cell((value, error_estimate): (f64, f64), reference: DoubleDouble) -> CellResult {
+    Ok(EstimatedValue {
+        value,
+        reference,
+        scale: reference.hi.abs(),
+        error_estimate,
+    })
+}
+
+/// The same with digits counted from another size.
+pub(crate) fn scaled_cell(
+    value_and_error: (f64, f64),
+    reference: DoubleDouble,
+    scale: f64,
+) -> CellResult {
+    let value = cell(value_and_error, reference)?;
+    Ok(EstimatedValue { scale, ..value })
+}
+
 impl EstimatedValue {
-    /// A result whose digits are counted from its own size.
-    pub fn new(value: f64, reference: DoubleDouble, error_estimate: f64) -> Self {
-        Self {
-            value,
-            reference,
-            scale: reference.hi.abs(),
-            error_estimate,
-        }
-    }
-
-    /// The same with digits counted from another size.
-    #[must_use]
-    pub fn with_scale(self, scale: f64) -> Self {
-        Self { scale, ..self }
-    }
-
     /// The true absolute error; where there is none, half a unit in the last place.
     pub fn true_error(&self) -> f64 {
-        let error = (DoubleDouble::from_f64(self.value) - self.reference)
-            .hi
-            .abs();
-        if error == 0.0 {
-            0.5 * ulp(self.value)
-        } else {
-            error
+        match (DoubleDouble::from_f64(self.value) - self.reference).hi {
+            0.0 => 0.5 * ulp(self.value),
+            error => error.abs(),
         }
     }
 }
@@ -120,7 +121,7 @@ pub struct ResultCell {
     pub parameter: f64,
     /// Index of the quantity.
     pub quantity: usize,
-    /// What was stated beforehand.
+    /// Its requirement.
     pub requirement: Requirement,
     /// The value with its errors, or the error that was returned.
     pub result: CellResult,
@@ -129,20 +130,17 @@ pub struct ResultCell {
 impl ResultCell {
     /// Decimal digits kept; none where a typed error stands.
     pub fn digits(&self) -> Option<f64> {
-        let reading = self.result.as_ref().ok()?;
-        let lost = reading.true_error() / reading.scale;
+        let result = self.result.as_ref().ok()?;
+        let lost = result.true_error() / result.scale;
         // What is no number keeps nothing.
-        Some(if lost.is_nan() {
-            0.0
-        } else {
-            (-lost.log10()).clamp(0.0, 17.0)
-        })
+        let kept = (-lost.log10()).clamp(0.0, 17.0);
+        Some(if lost.is_nan() { 0.0 } else { kept })
     }
 
     /// The estimate over the true error.
     pub fn estimate_ratio(&self) -> Option<f64> {
-        let reading = self.result.as_ref().ok()?;
-        let ratio = reading.error_estimate / reading.true_error();
+        let result = self.result.as_ref().ok()?;
+        let ratio = result.error_estimate / result.true_error();
         // Neither an estimate nor an error that is no number says anything.
         Some(if ratio.is_nan() { 0.0 } else { ratio })
     }
@@ -167,28 +165,22 @@ pub struct SeriesResult {
 impl ParameterSeries {
     /// The cells at one value.
     pub fn evaluate(&self, parameter: f64) -> Vec<ResultCell> {
-        let results = (self.run)(parameter).into_iter().enumerate();
-        results
-            .map(|(quantity, results)| ResultCell {
-                parameter,
-                quantity,
-                requirement: (self.requirement)(parameter, quantity),
-                result: results,
-            })
-            .collect()
+        let same = |error: String| vec![Err(error); self.quantities.len()];
+        let results = (self.run)(parameter).unwrap_or_else(|error| same(error.to_string()));
+        let cell = |(quantity, result)| ResultCell {
+            parameter,
+            quantity,
+            requirement: (self.requirement)(parameter, quantity),
+            result,
+        };
+        results.into_iter().enumerate().map(cell).collect()
     }
-}
-
-/// The same words for every quantity of a value.
-pub(crate) fn repeat_error(error: &impl ToString, quantities: usize) -> Vec<CellResult> {
-    vec![Err(error.to_string()); quantities]
 }
 
 /// Powers of ten from one exponent to another.
 pub(crate) fn decades(from: i32, to: i32) -> Vec<f64> {
     let step = if from < to { 1 } else { -1 };
     let count = (to - from).abs();
-    (0..=count)
-        .map(|k| format!("1e{}", from + step * k).parse().unwrap_or(f64::NAN))
-        .collect()
+    let power = |k| format!("1e{}", from + step * k).parse();
+    (0..=count).map(|k| power(k).unwrap_or(f64::NAN)).collect()
 }

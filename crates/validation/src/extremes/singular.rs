@@ -1,21 +1,19 @@
 //! Edges: the separatrix of a pendulum, and a start at a dead point.
 
 use super::closed_forms::{arc_cosine, dd, elliptic_k, exponential};
-use super::mechanisms::{SliderCrank, rotor};
+use super::mechanisms::{SliderCrank, TestMechanism, mass, rotor};
 use super::run_pair::{loaded_motion, machine};
-use super::series::{
-    CellResult, EstimatedValue, ParameterSeries, Requirement, decades, repeat_error,
-};
+use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
 use dwell_dynamics::{
     Atlas, Machine, MachineDescription, Method, OdeState, Options, Orbit, ReducedState,
 };
-use dwell_geometry::{Vec2, vec2};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass};
+use dwell_geometry::Vec2;
+use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
 use std::f64::consts::PI;
 
-/// Page of these rows, and its title.
+/// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("edges", "Separatrix and dead point");
 
 pub(super) fn series() -> Vec<ParameterSeries> {
@@ -29,11 +27,6 @@ pub(super) fn series() -> Vec<ParameterSeries> {
 
 /// 1 kg on a massless bar of 1 m under 1 m/s²: q̈ = −sin q, with q = 0 at the bottom.
 fn pendulum() -> Result<Machine, String> {
-    let mass = Mass {
-        mass: 1.0,
-        center: vec2(1.0, 0.0),
-        inertia: 0.0,
-    };
     let weight = Load {
         name: "weight".into(),
         kind: LoadKind::Gravity {
@@ -41,46 +34,40 @@ fn pendulum() -> Result<Machine, String> {
         },
         magnitude: Magnitude::Constant(1.0),
     };
-    machine(&rotor(mass), &[weight])
+    machine(&rotor(mass(1.0, [1.0, 0.0], 0.0)), &[weight])
 }
 
-/// Periods just below (−1) or above (+1) the energy that brings it to the top.
+/// Periods just below (−1) or above (+1) the energy of rest at the top.
 fn near_separatrix(sign: f64) -> ParameterSeries {
-    let run = move |distance: f64| -> Result<Vec<CellResult>, String> {
+    let run = move |distance: f64| -> RunResult {
         let machine = pendulum()?;
         let q_dot = 2.0 + sign * distance;
         let half = dd(0.5 * q_dot);
         let one = dd(1.0);
-        // k² = (q̇₀/2)² where it swings, its inverse where it turns; k′² by factors.
+        // k² = (q̇₀/2)² of a libration, its inverse of a rotation; k′² by factors.
         let period = if sign < 0.0 {
             dd(4.0) * elliptic_k(((one - half) * (one + half)).sqrt())
         } else {
             let complement = ((half - one) * (half + one)).sqrt() / half;
             dd(2.0) * elliptic_k(complement) / half
         };
-        let start = ReducedState {
-            t: 0.0,
-            q: 0.0,
-            q_dot,
-        };
         let orbit = |stretch: f64| {
-            let q_dot = start.q_dot * stretch;
-            Orbit::loaded(&machine, ReducedState { q_dot, ..start })
+            let (t, q, q_dot) = (0.0, 0.0, q_dot * stretch);
+            Orbit::loaded(&machine, ReducedState { t, q, q_dot })
         };
-        let exact = orbit(1.0).map_err(|e| e.to_string())?;
-        let error = estimate::of_period(&exact, orbit).map_err(|e| e.to_string())?;
-        Ok(vec![Ok(EstimatedValue::new(exact.period, period, error))])
+        let exact = orbit(1.0)?;
+        let error = estimate::of_period(&exact, orbit)?;
+        Ok(vec![cell((exact.period, error), period)])
     };
-    let (key, what) = if sign < 0.0 {
-        (
+    let (key, what) = match sign < 0.0 {
+        true => (
             "libration",
-            "Pendulum that swings: speed short of the separatrix",
-        )
-    } else {
-        (
+            "Pendulum in libration: speed short of the separatrix",
+        ),
+        false => (
             "rotation",
-            "Pendulum that turns over: speed beyond the separatrix",
-        )
+            "Pendulum in rotation: speed beyond the separatrix",
+        ),
     };
     ParameterSeries {
         figure: FIGURE,
@@ -95,33 +82,30 @@ fn near_separatrix(sign: f64) -> ParameterSeries {
             let condition = 1.0 + 2.0 / (at * (32.0 / at).ln());
             Requirement::from_rounding(16.0, condition)
         }),
-        run: Box::new(move |at| run(at).unwrap_or_else(|e| repeat_error(&e, 1))),
+        run: Box::new(run),
     }
 }
 
 /// On the separatrix: q = 4 atan eᵗ − π, from the bottom at 2 rad/s.
 fn separatrix() -> ParameterSeries {
     const TOLERANCE: f64 = 1e-12;
-    let run = |end: f64| -> Result<Vec<CellResult>, String> {
+    let run = |end: f64| -> RunResult {
         let machine = pendulum()?;
         let options = Options::new(Method::Tsit45, TOLERANCE);
-        let runs = loaded_motion(&machine, [0.0, 2.0], end, &options).map_err(|e| e.to_string())?;
+        let runs = loaded_motion(&machine, [0.0, 2.0], end, &options)?;
         let exp_t = exponential(dd(end));
         let angle = dd(4.0) * exp_t.atan2(dd(1.0)) - DoubleDouble::PI;
         // q̇ = 2 / cosh t.
         let speed = dd(4.0) / (exp_t + dd(1.0) / exp_t);
         let rounding = 2.0 * f64::EPSILON * end.exp();
-        let (q, q_error) = runs.final_value(|y| y[0], rounding);
-        let (v, v_error) = runs.final_value(|y| y[1], rounding);
-        Ok(vec![
-            Ok(EstimatedValue::new(q, angle, q_error).with_scale(PI)),
-            Ok(EstimatedValue::new(v, speed, v_error).with_scale(2.0)),
-        ])
+        let end = |k: usize| runs.final_value(|y| y[k], rounding);
+        let angle = scaled_cell(end(0), angle, PI);
+        Ok(vec![angle, scaled_cell(end(1), speed, 2.0)])
     };
     ParameterSeries {
         figure: FIGURE,
         key: "separatrix".into(),
-        description: "Pendulum with the very energy of the top (1e-12 by Tsit45): time".into(),
+        description: "Pendulum on the separatrix (1e-12 by Tsit45): time".into(),
         parameter: ("time t", "s"),
         values: (0..=9)
             .map(|k| 2.0_f64.powf(0.5 * f64::from(k)))
@@ -133,102 +117,87 @@ fn separatrix() -> ParameterSeries {
         requirement: Box::new(|t, _| {
             Requirement::from_error(2000.0 * TOLERANCE * t.exp(), t.exp())
         }),
-        run: Box::new(move |at| run(at).unwrap_or_else(|e| repeat_error(&e, 2))),
+        run: Box::new(run),
     }
 }
 
 /// Driven at the slider, which hardly moves where crank and rod are in line. All mass is the crank's, so that
-/// this turns evenly.
+/// this rotates uniformly.
 const DEAD_POINT_MECHANISM: SliderCrank = SliderCrank {
     lengths: [1.1, 2.3],
     height: 0.0,
     masses: [
-        Mass {
-            mass: 0.0,
-            center: Vec2::ZERO,
-            inertia: 1.0,
-        },
-        Mass {
-            mass: 0.0,
-            center: Vec2::ZERO,
-            inertia: 0.0,
-        },
-        Mass {
-            mass: 0.0,
-            center: Vec2::ZERO,
-            inertia: 0.0,
-        },
+        mass(0.0, [0.0; 2], 1.0),
+        mass(0.0, [0.0; 2], 0.0),
+        mass(0.0, [0.0; 2], 0.0),
     ],
     assembly: [0.0, 0.0],
 };
 
-fn dead_point() -> ParameterSeries {
-    const TOLERANCE: f64 = 1e-10;
-    let run = |distance: f64| -> Result<Vec<CellResult>, String> {
-        let [crank, rod] = DEAD_POINT_MECHANISM.lengths.map(dd);
-        let travel = (crank + rod - dd(distance)).value();
-        let q = dd(travel);
-        let angle = arc_cosine((q * q + crank * crank - rod * rod) / (dd(2.0) * crank * q));
-        // How far the rod reaches along the guide.
-        let rod_projection = |sin: DoubleDouble| ((rod + crank * sin) * (rod - crank * sin)).sqrt();
-        let slope = |angle: DoubleDouble| {
-            let (sin, cos) = angle.sin_cos();
-            -(crank * sin + crank * crank * sin * cos / rod_projection(sin))
-        };
-        // About 1 rad/s of the crank, away from the dead point.
-        let speed = slope(angle).value();
-        let crank_velocity = dd(speed) / slope(angle);
-        let mut slider_crank = DEAD_POINT_MECHANISM;
-        slider_crank.assembly = [travel, angle.value()];
-        let test = slider_crank.build(true);
-        let description = MachineDescription {
-            mechanism: &test.mechanism,
-            masses: &test.masses,
-            assembly: &test.assembly,
-            loads: &[],
-            drives: &[],
-            reactions: &[],
-        };
-        let end = 2.0;
-        let run = |options: &Options| -> Result<Vec<f64>, String> {
-            let mut atlas = Atlas::new(description).map_err(|e| e.to_string())?;
-            let start = OdeState {
-                t: 0.0,
-                y: vec![travel, speed],
-            };
-            let motion = atlas
-                .solve(&start, end, options, &[])
-                .map_err(|e| e.to_string())?;
-            if let Some(error) = &motion.error {
-                return Err(error.to_string());
-            }
-            let history = atlas
-                .coordinate_history(&motion, atlas.actuator_coordinate())
-                .map_err(|e| e.to_string())?;
-            Ok(history.samples.iter().flatten().map(|s| s[0]).collect())
-        };
-        let options = Options {
-            sample_interval: Some(end / 64.0),
-            ..Options::new(Method::Bdf, TOLERANCE)
-        };
-        let (first, second) = (
-            run(&options)?,
-            run(&estimate::comparison_options(&options))?,
-        );
-        let end_angle = angle + crank_velocity * dd(end);
-        let (sin, cos) = end_angle.sin_cos();
-        let reference = crank * cos + rod_projection(sin);
-        let got = first.last().copied().unwrap_or(f64::NAN);
-        // The crank's speed is as well known as the root of its inertia, and turns it for 2 s.
-        let exact = test.exact_model(&[])?;
-        let (at, error) =
-            estimate::coefficients_with_errors(exact.model(), travel).map_err(|e| e.to_string())?;
-        let rounding = 2.0 * end * error.m / at.m + 4.0 * f64::EPSILON;
-        let error = estimate::of_motion(&first, &second, rounding);
-        Ok(vec![Ok(
-            EstimatedValue::new(got, reference, error).with_scale(1.0)
-        )])
+const DEAD_POINT_TOLERANCE: f64 = 1e-10;
+
+/// The travel after 2 s from a distance to the dead point.
+fn from_dead_point(distance: f64) -> RunResult {
+    let [crank, rod] = DEAD_POINT_MECHANISM.lengths.map(dd);
+    let travel = (crank + rod - dd(distance)).value();
+    let q = dd(travel);
+    let angle = arc_cosine((q * q + crank * crank - rod * rod) / (dd(2.0) * crank * q));
+    // How far the rod reaches along the guide.
+    let rod_projection = |sin: DoubleDouble| ((rod + crank * sin) * (rod - crank * sin)).sqrt();
+    let slope = |angle: DoubleDouble| {
+        let (sin, cos) = angle.sin_cos();
+        -(crank * sin + crank * crank * sin * cos / rod_projection(sin))
     };
+    // About 1 rad/s of the crank, away from the dead point.
+    let speed = slope(angle).value();
+    let crank_velocity = dd(speed) / slope(angle);
+    let mut slider_crank = DEAD_POINT_MECHANISM;
+    slider_crank.assembly = [travel, angle.value()];
+    let test = slider_crank.build(true);
+    let end = 2.0;
+    let run = |options: &Options| travel_history(&test, [travel, speed], end, options);
+    let options = Options {
+        sample_interval: Some(end / 64.0),
+        ..Options::new(Method::Bdf, DEAD_POINT_TOLERANCE)
+    };
+    let first = run(&options)?;
+    let second = run(&estimate::comparison_options(&options))?;
+    let (sin, cos) = (angle + crank_velocity * dd(end)).sin_cos();
+    let reference = crank * cos + rod_projection(sin);
+    let got = first.last().copied().unwrap_or(f64::NAN);
+    // The crank's speed is as well known as the root of its inertia, over 2 s.
+    let exact = test.exact_model(&[])?;
+    let (at, error) = estimate::coefficients_with_errors(exact.model(), travel)?;
+    let rounding = 2.0 * end * error.m / at.m + 4.0 * f64::EPSILON;
+    let error = estimate::of_motion(&first, &second, rounding);
+    Ok(vec![scaled_cell((got, error), reference, 1.0)])
+}
+
+/// The travel of the slider at the samples of a motion from a state.
+fn travel_history(
+    test: &TestMechanism,
+    state: [f64; 2],
+    end: f64,
+    options: &Options,
+) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+    let mut atlas = Atlas::new(MachineDescription {
+        mechanism: &test.mechanism,
+        masses: &test.masses,
+        assembly: &test.assembly,
+        loads: &[],
+        drives: &[],
+        reactions: &[],
+    })?;
+    let (t, y) = (0.0, state.to_vec());
+    let motion = atlas.solve(&OdeState { t, y }, end, options, &[])?;
+    if let Some(error) = motion.error {
+        return Err(error.into());
+    }
+    let history = atlas.coordinate_history(&motion, atlas.actuator_coordinate())?;
+    Ok(history.samples.iter().flatten().map(|s| s[0]).collect())
+}
+
+fn dead_point() -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: "dead-point".into(),
@@ -236,14 +205,14 @@ fn dead_point() -> ParameterSeries {
         parameter: ("distance δ", "m"),
         values: decades(-1, -15),
         quantities: &["travel after 2 s"],
-        reference: "the crank turns evenly: closed form of the travel in 32 digits",
+        reference: "the crank rotates uniformly: closed form of the travel in 32 digits",
         reason: "the travel at the start is known to 3 eps, and the crank's speed there to 3 eps/δ; some hundred steps of \
               4 tolerances (1e-10), magnified by the coordinate's fold, 1/√δ",
         requirement: Box::new(|at, _| {
             let condition = 3.0 / at;
-            let error = 2000.0 * TOLERANCE / at.sqrt() + 16.0 * f64::EPSILON * condition;
+            let error = 2000.0 * DEAD_POINT_TOLERANCE / at.sqrt() + 16.0 * f64::EPSILON * condition;
             Requirement::from_error(error, condition)
         }),
-        run: Box::new(move |at| run(at).unwrap_or_else(|e| repeat_error(&e, 1))),
+        run: Box::new(from_dead_point),
     }
 }

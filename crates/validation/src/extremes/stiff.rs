@@ -1,14 +1,14 @@
 //! Stiffness, damping, and drives with next to no mass.
 
 use super::closed_forms::{dd, elliptic_e, exponential};
-use super::mechanisms::{rotor, scotch_yoke, slider};
+use super::mechanisms::{mass, rotor, scotch_yoke, slider};
 use super::run_pair::{free_motion, kinetic_energy, loaded_motion, machine};
 use super::series::{
-    CellResult, EstimatedValue, ParameterSeries, Requirement, decades, repeat_error,
+    CellResult, ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell,
 };
-use dwell_dynamics::{Method, Options, Orbit, ReducedState};
+use dwell_dynamics::{DynamicsError, Method, Options, Orbit, ReducedState};
 use dwell_geometry::{BodyId, Vec2, vec2};
-use dwell_kinetostatics::{Load, LoadKind, Magnitude, Mass};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use dwell_numerics::{DoubleDouble, Scalar};
 use dwell_study::estimate;
 use std::f64::consts::TAU;
@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 const ERROR_IN_TOLERANCES: f64 = 2000.0;
 const BODIES: [BodyId; 2] = [BodyId(0), BodyId(1)];
 
-/// Page of these rows, and its title.
+/// Figure of these rows, and its title.
 const FIGURE: (&str, &str) = ("stiff", "Stiffness, damping and next to no mass");
 
 pub(super) fn series() -> Vec<ParameterSeries> {
@@ -46,40 +46,41 @@ fn spring(stiffness: f64) -> Load {
     load(kind, stiffness)
 }
 
+/// The period by quadrature with its estimated error; `orbit` is the orbit at a multiple of the initial state.
+fn quadrature(
+    orbit: impl Fn(f64) -> Result<Orbit, DynamicsError>,
+    reference: DoubleDouble,
+) -> CellResult {
+    let exact = orbit(1.0).map_err(|e| e.to_string())?;
+    let error = estimate::of_period(&exact, orbit).map_err(|e| e.to_string())?;
+    cell((exact.period, error), reference)
+}
+
 fn stiffness() -> ParameterSeries {
-    let run = |k: f64| -> Result<Vec<CellResult>, String> {
+    let run = |k: f64| -> RunResult {
         let machine = machine(&slider(1.0), &[spring(k)])?;
         let frequency = dd(k).sqrt();
         let period = DoubleDouble::PI * dd(2.0) / frequency;
         let end = 2.3 * period.value();
-        let runs =
-            loaded_motion(&machine, [1.0, 0.0], end, &options()).map_err(|e| e.to_string())?;
+        let runs = loaded_motion(&machine, [1.0, 0.0], end, &options())?;
         let (sin, cos) = (frequency * dd(end)).sin_cos();
-        let (q, q_error) = runs.final_value(|y| y[0], 16.0 * f64::EPSILON);
+        let travel = runs.final_value(|y| y[0], 16.0 * f64::EPSILON);
         let rounding = 16.0 * f64::EPSILON * frequency.value();
-        let (v, v_error) = runs.final_value(|y| y[1], rounding);
-        let start = ReducedState {
-            t: 0.0,
-            q: 1.0,
-            q_dot: 0.0,
-        };
+        let speed = runs.final_value(|y| y[1], rounding);
         let orbit = |stretch: f64| {
-            let q = start.q * stretch;
-            Orbit::loaded(&machine, ReducedState { q, ..start })
+            let (t, q, q_dot) = (0.0, stretch, 0.0);
+            Orbit::loaded(&machine, ReducedState { t, q, q_dot })
         };
-        let quadrature = orbit(1.0)
-            .and_then(|exact| Ok((exact.period, estimate::of_period(&exact, orbit)?)))
-            .map_err(|e| e.to_string());
         Ok(vec![
-            Ok(EstimatedValue::new(q, cos, q_error).with_scale(1.0)),
-            Ok(EstimatedValue::new(v, -(sin * frequency), v_error).with_scale(frequency.value())),
-            quadrature.map(|(got, error)| EstimatedValue::new(got, period, error)),
+            scaled_cell(travel, cos, 1.0),
+            scaled_cell(speed, -(sin * frequency), frequency.value()),
+            quadrature(orbit, period),
         ])
     };
     ParameterSeries {
         figure: FIGURE,
         key: "stiffness".into(),
-        description: "Slider on a spring over 2.3 swings: stiffness".into(),
+        description: "Slider on a spring over 2.3 oscillations: stiffness".into(),
         parameter: ("stiffness", "N/m"),
         values: decades(0, 12),
         quantities: &["travel", "speed", "period by quadrature"],
@@ -90,19 +91,18 @@ fn stiffness() -> ParameterSeries {
             2 => Requirement::from_rounding(32.0, 1.0),
             _ => Requirement::from_error(ERROR_IN_TOLERANCES * 1e-10, 1.0),
         }),
-        run: Box::new(move |k| run(k).unwrap_or_else(|e| repeat_error(&e, 3))),
+        run: Box::new(run),
     }
 }
 
 fn damping() -> ParameterSeries {
-    let run = |c: f64| -> Result<Vec<CellResult>, String> {
+    let run = |c: f64| -> RunResult {
         let damper = LoadKind::Damper {
             bodies: BODIES,
             points: [vec2(-2.0, 0.0), Vec2::ZERO],
         };
         let machine = machine(&slider(1.0), &[spring(c), load(damper, c)])?;
-        let runs =
-            loaded_motion(&machine, [1.0, 0.0], 1.0, &options()).map_err(|e| e.to_string())?;
+        let runs = loaded_motion(&machine, [1.0, 0.0], 1.0, &options())?;
         // q̈ + c q̇ + c q = 0: the slow root by the product of both.
         let (two, four) = (dd(2.0), dd(4.0));
         let root = (dd(c) * (dd(c) - four)).sqrt();
@@ -111,12 +111,9 @@ fn damping() -> ParameterSeries {
         let (one, other) = (exponential(slow), exponential(fast));
         let travel = (fast * one - slow * other) / (fast - slow);
         let speed = dd(c) * (one - other) / (fast - slow);
-        let (q, q_error) = runs.final_value(|y| y[0], 16.0 * f64::EPSILON);
-        let (v, v_error) = runs.final_value(|y| y[1], 16.0 * f64::EPSILON);
-        Ok(vec![
-            Ok(EstimatedValue::new(q, travel, q_error).with_scale(1.0)),
-            Ok(EstimatedValue::new(v, speed, v_error).with_scale(1.0)),
-        ])
+        let end = |k: usize| runs.final_value(|y| y[k], 16.0 * f64::EPSILON);
+        let travel = scaled_cell(end(0), travel, 1.0);
+        Ok(vec![travel, scaled_cell(end(1), speed, 1.0)])
     };
     ParameterSeries {
         figure: FIGURE,
@@ -130,32 +127,24 @@ fn damping() -> ParameterSeries {
         reference: "two exponentials, of which the fast one is gone after 1/c s",
         reason: "the slow motion is the same for all: some hundred steps of 4 tolerances (1e-10)",
         requirement: Box::new(|_, _| Requirement::from_error(ERROR_IN_TOLERANCES * 1e-10, 1.0)),
-        run: Box::new(move |c| run(c).unwrap_or_else(|e| repeat_error(&e, 2))),
+        run: Box::new(run),
     }
 }
 
 fn small_rotor() -> ParameterSeries {
-    let run = |inertia: f64| -> Result<Vec<CellResult>, String> {
-        let mass = Mass {
-            inertia,
-            ..Mass::default()
-        };
+    let run = |inertia: f64| -> RunResult {
         let loads = [
             load(LoadKind::Torque { bodies: BODIES }, 1.0),
             load(LoadKind::RotationalDamper { bodies: BODIES }, 1.0),
         ];
-        let machine = machine(&rotor(mass), &loads)?;
-        let runs =
-            loaded_motion(&machine, [0.0, 0.0], 1.0, &options()).map_err(|e| e.to_string())?;
+        let machine = machine(&rotor(mass(0.0, [0.0; 2], inertia)), &loads)?;
+        let runs = loaded_motion(&machine, [0.0, 0.0], 1.0, &options())?;
         let decayed = exponential(-(dd(1.0) / dd(inertia)));
         let speed = dd(1.0) - decayed;
         let angle = dd(1.0) - dd(inertia) * speed;
-        let (q, q_error) = runs.final_value(|y| y[0], 4.0 * f64::EPSILON);
-        let (v, v_error) = runs.final_value(|y| y[1], 4.0 * f64::EPSILON);
-        Ok(vec![
-            Ok(EstimatedValue::new(q, angle, q_error).with_scale(1.0)),
-            Ok(EstimatedValue::new(v, speed, v_error).with_scale(1.0)),
-        ])
+        let end = |k: usize| runs.final_value(|y| y[k], 4.0 * f64::EPSILON);
+        let angle = scaled_cell(end(0), angle, 1.0);
+        Ok(vec![angle, scaled_cell(end(1), speed, 1.0)])
     };
     ParameterSeries {
         figure: FIGURE,
@@ -167,7 +156,7 @@ fn small_rotor() -> ParameterSeries {
         reference: "1 − J (1 − e^(−1/J)) rad after 1 s",
         reason: "what is left is the balance of both couples: some hundred steps of 4 tolerances (1e-10)",
         requirement: Box::new(|_, _| Requirement::from_error(ERROR_IN_TOLERANCES * 1e-10, 1.0)),
-        run: Box::new(move |j| run(j).unwrap_or_else(|e| repeat_error(&e, 2))),
+        run: Box::new(run),
     }
 }
 
@@ -175,7 +164,7 @@ fn small_rotor() -> ParameterSeries {
 /// as large as J is small.
 fn light_crank() -> ParameterSeries {
     const FROM: f64 = 1.125;
-    let run = |inertia: f64| -> Result<Vec<CellResult>, String> {
+    let run = |inertia: f64| -> RunResult {
         let model = scotch_yoke(inertia, 1.0).exact_model(&[])?;
         let (sin, _) = dd(FROM).sin_cos();
         let m = dd(inertia) + sin * sin;
@@ -184,38 +173,25 @@ fn light_crank() -> ParameterSeries {
         let complement = (dd(inertia) / one).sqrt();
         let root_inertia_integral = dd(4.0) * one.sqrt() * elliptic_e(dd(1.0) / one, complement);
         let period = root_inertia_integral / m.sqrt();
-        let start = ReducedState {
-            t: 0.0,
-            q: FROM,
-            q_dot: 1.0,
+        let at_speed = |q_dot: f64| {
+            let (t, q) = (0.0, FROM);
+            ReducedState { t, q, q_dot }
         };
-        let motion =
-            free_motion(&model, start, period.value(), &options()).map_err(|e| e.to_string());
-        let final_values = motion.map(|runs| {
-            let angle =
-                dd(FROM) + DoubleDouble::from_revolutions(1.0) + (dd(period.value()) - period);
-            let energy = dd(0.5) * m;
-            let (q, q_error) = runs.final_value(|y| y[0], 4.0 * f64::EPSILON * TAU);
-            let rounding = 4.0 * f64::EPSILON * energy.value();
-            let (e, e_error) = runs.final_value(|y| kinetic_energy(&model, y), rounding);
-            [
-                EstimatedValue::new(q, angle, q_error).with_scale(TAU),
-                EstimatedValue::new(e, energy, e_error),
-            ]
-        });
-        let orbit = |stretch: f64| {
-            let q_dot = start.q_dot * stretch;
-            Orbit::new(&model, ReducedState { q_dot, ..start })
+        let motion = free_motion(&model, at_speed(1.0), period.value(), &options());
+        let [angle, energy] = match motion {
+            Ok(runs) => {
+                let late = dd(period.value()) - period;
+                let angle = dd(FROM) + DoubleDouble::from_revolutions(1.0) + late;
+                let energy = dd(0.5) * m;
+                let end_angle = runs.final_value(|y| y[0], 4.0 * f64::EPSILON * TAU);
+                let rounding = 4.0 * f64::EPSILON * energy.value();
+                let end_energy = runs.final_value(|y| kinetic_energy(&model, y), rounding);
+                [scaled_cell(end_angle, angle, TAU), cell(end_energy, energy)]
+            }
+            Err(error) => [0; 2].map(|_| Err(error.to_string())),
         };
-        let quadrature = orbit(1.0)
-            .and_then(|exact| Ok((exact.period, estimate::of_period(&exact, orbit)?)))
-            .map_err(|e| e.to_string());
-        let final_value = |k: usize| final_values.clone().map(|both| both[k]);
-        Ok(vec![
-            final_value(0),
-            final_value(1),
-            quadrature.map(|(got, error)| EstimatedValue::new(got, period, error)),
-        ])
+        let orbit = |stretch: f64| Orbit::new(&model, at_speed(stretch));
+        Ok(vec![angle, energy, quadrature(orbit, period)])
     };
     ParameterSeries {
         figure: FIGURE,
@@ -226,7 +202,7 @@ fn light_crank() -> ParameterSeries {
         values: decades(0, -15),
         quantities: &["angle", "energy", "period by quadrature"],
         reference: "the complete elliptic integral of the second kind, by the arithmetic-geometric mean",
-        reason: "the time of a turn hardly knows J: the steps of a turn (1e-10), and as many for each tenth of J, for they \
+        reason: "the time of a revolution hardly depends on J: its steps (1e-10), and as many for each tenth of J, for they \
               grow geometrically from each dead point on. There the state passes within J s, so that its time would \
               have to be known to eps J: a condition of 1/J. The quadrature keeps all but 64 roundings",
         requirement: Box::new(|inertia, quantity| match quantity {
@@ -236,6 +212,6 @@ fn light_crank() -> ParameterSeries {
                 Requirement::from_error(decades * ERROR_IN_TOLERANCES * 1e-10, 1.0 / inertia)
             }
         }),
-        run: Box::new(move |j| run(j).unwrap_or_else(|e| repeat_error(&e, 3))),
+        run: Box::new(run),
     }
 }

@@ -1,15 +1,15 @@
-//! All cases and all truths at once.
+//! All cases and all checks at once.
 
 use crate::overview::{CaseResult, CheckCell, check_cells};
 use dwell_findings::Check;
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row};
 
-/// Digits that the colours cover: from a motion that is merely followed to the last place.
+/// Digits that the colours cover: from those of an integrated motion to the last place.
 const COLOR_RANGE: [f64; 2] = [6.0, 16.0];
 
-/// Digits of agreement, case by truth.
+/// Digits of agreement, case by check.
 pub(crate) fn overview(results: &[CaseResult<'_>]) -> Figure {
-    // By truth and reason: the cases.
+    // By check and reason: the cases.
     let mut not_applicable: Vec<((Check, &str), Vec<&str>)> = Vec::new();
     let mut rows = Vec::new();
     for (name, result) in results {
@@ -23,10 +23,10 @@ pub(crate) fn overview(results: &[CaseResult<'_>]) -> Figure {
             CheckCell::Digits(digits) => Some(Cell::new(digits, format!("{digits:.1}"))),
             CheckCell::Failed(_) => Some(Cell::text_only("FAIL").failed()),
             CheckCell::NotApplicable(why) => {
-                let found = not_applicable
+                match not_applicable
                     .iter_mut()
-                    .find(|(of, _)| *of == (check, why));
-                match found {
+                    .find(|(of, _)| *of == (check, why))
+                {
                     Some((_, cases)) => cases.push(&scene.name),
                     None => not_applicable.push(((check, why), vec![&scene.name])),
                 }

@@ -1,18 +1,19 @@
-//! The cases that were validated together: case by truth, as a table and as a picture.
+//! The cases that were validated together: case by check, as a table and as a figure.
 
 mod figure;
 
 use crate::case_report::finding_text::describe_failure;
 use crate::case_report::validation::Validation;
+use crate::report_parts::{pass_or_fail, table};
 use dwell_findings::{Check, Finding, all_pass};
 use dwell_report::{Block, Document, Files, png};
 use dwell_scene::Scene;
 use dwell_study::StudyError;
 
-/// A case and what became of it: its report, or why there is none.
+/// A case and its result: its report, or why there is none.
 pub type CaseResult<'a> = (&'a str, Result<(&'a Scene, &'a Validation), String>);
 
-/// What a case says of one truth.
+/// The result of one check in a case.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum CheckCell {
     /// Digits of agreement, of the worst finding.
@@ -23,7 +24,7 @@ pub(crate) enum CheckCell {
     NotApplicable(&'static str),
 }
 
-/// What a validated case says of every truth.
+/// The results of every check in a validated case.
 pub(crate) fn check_cells(done: &Validation) -> [CheckCell; Check::ALL.len()] {
     Check::ALL.map(|check| {
         let all = || done.outcome.findings.iter();
@@ -33,15 +34,13 @@ pub(crate) fn check_cells(done: &Validation) -> [CheckCell; Check::ALL.len()] {
         }
         // Double precision has no more digits than its last place.
         let worst = of().map(|f| f.relative_difference.max(f64::EPSILON));
-        let worst = worst.reduce(f64::max);
-        let not_applicable = || {
-            done.not_applicable
-                .iter()
-                .find(|(not_applicable, _)| *not_applicable == check)
-        };
-        match worst {
+        let mut reasons = done.not_applicable.iter();
+        match worst.reduce(f64::max) {
             Some(worst) => CheckCell::Digits(-worst.log10()),
-            None => CheckCell::NotApplicable(not_applicable().map_or("nothing", |(_, why)| why)),
+            None => {
+                let reason = reasons.find(|(of, _)| *of == check);
+                CheckCell::NotApplicable(reason.map_or("nothing", |(_, why)| why))
+            }
         }
     })
 }
@@ -64,7 +63,7 @@ pub fn index(results: &[CaseResult<'_>]) -> Result<Files, StudyError> {
             env!("CARGO_PKG_VERSION")
         )),
         table(
-            [&["Case"][..], &heads.each_ref().map(String::as_str)].concat(),
+            &[&["Case"][..], &heads.each_ref().map(String::as_str)].concat(),
             results.iter().map(agreement_row),
         ),
         Block::Text(
@@ -79,16 +78,14 @@ pub fn index(results: &[CaseResult<'_>]) -> Result<Files, StudyError> {
     ];
     blocks.extend(failures(results));
     blocks.push(Block::Heading("Tolerances".to_owned()));
-    blocks.push(table(
-        vec![
-            "Case",
-            "Verdict",
-            "Findings",
-            "Nearest to its tolerance",
-            "Slack tolerances",
-        ],
-        results.iter().map(tolerance_row),
-    ));
+    let header = [
+        "Case",
+        "Result",
+        "Findings",
+        "Nearest to its tolerance",
+        "Loose tolerances",
+    ];
+    blocks.push(table(&header, results.iter().map(tolerance_row)));
     blocks.push(Block::Text(
         "The last column is the largest ratio of a difference to its tolerance. A tolerance is loose if it exceeds 100 times the largest difference plus 50 rounding errors times the condition number of the dense rows there. Integrated results are exempt: convergence orders and multiples of the integrator's tolerance check them."
             .to_owned(),
@@ -101,13 +98,6 @@ pub fn index(results: &[CaseResult<'_>]) -> Result<Files, StudyError> {
     files.add("index.md", document.markdown());
     files.add("index.png", png(&figure::overview(results))?);
     Ok(files)
-}
-
-fn table(header: Vec<&str>, rows: impl Iterator<Item = Vec<String>>) -> Block {
-    Block::Table {
-        header: header.into_iter().map(str::to_owned).collect(),
-        rows: rows.collect(),
-    }
 }
 
 fn link(scene: &Scene) -> String {
@@ -129,7 +119,7 @@ fn agreement_row((name, result): &CaseResult<'_>) -> Vec<String> {
     }
 }
 
-/// Every failure: the equation, the place and the difference.
+/// Every failure: the equation, the location and the difference.
 fn failures(results: &[CaseResult<'_>]) -> Vec<Block> {
     let mut text = String::new();
     for (name, result) in results {
@@ -153,47 +143,38 @@ fn failures(results: &[CaseResult<'_>]) -> Vec<Block> {
     }
 }
 
-/// How near the findings come to their tolerances, and how near these to the findings.
+/// How close the findings are to their tolerances, and which tolerances are loose.
 fn tolerance_row((name, status): &CaseResult<'_>) -> Vec<String> {
     let (scene, done) = match status {
         Ok(validated) => validated,
         Err(reason) => {
-            return vec![
-                format!("`{name}`"),
-                "**not validated**".to_owned(),
-                String::new(),
-                reason.clone(),
-            ];
+            let row = [&format!("`{name}`"), "**not validated**", "", reason];
+            return row.map(str::to_owned).into();
         }
     };
     let findings = &done.outcome.findings;
     let part = |f: &Finding| match f.relative_difference {
         0.0 => 0.0,
-        // What is no number is the worst there is.
+        // What is not a number is the worst there is.
         relative if relative.is_nan() => f64::INFINITY,
         relative => relative / f.tolerance,
     };
     let near = findings.iter().max_by(|a, b| part(a).total_cmp(&part(b)));
     let near = near.map_or(String::new(), |f| format!("{:.2} of {}", part(f), f.key));
     let passed = findings.iter().filter(|f| f.pass).count();
-    let loose: Vec<&str> = findings
-        .iter()
-        .filter(|f| f.is_loose())
-        .map(|f| f.key.as_str())
-        .collect();
-    let status = match all_pass(findings) {
-        true => "pass",
-        false => "**FAIL**",
+    let loose = findings.iter().filter(|f| f.is_loose());
+    let loose: Vec<&str> = loose.map(|f| f.key.as_str()).collect();
+    let loose = if loose.is_empty() {
+        "none".to_owned()
+    } else {
+        loose.join(", ")
     };
     vec![
         link(scene),
-        status.to_owned(),
+        pass_or_fail(all_pass(findings)).to_owned(),
         format!("{passed} of {}", findings.len()),
         near,
-        match loose.is_empty() {
-            true => "none".to_owned(),
-            false => loose.join(", "),
-        },
+        loose,
     ]
 }
 
@@ -229,7 +210,7 @@ mod tests {
     }
 
     #[test]
-    fn a_truth_has_the_digits_of_its_worst_finding_or_says_why_it_has_none() {
+    fn a_check_has_the_digits_of_its_worst_finding_or_the_reason_for_none() {
         let done = validation(vec![
             finding(Check::KineticEnergy, 1e-15, 1e-14),
             finding(Check::KineticEnergy, 1e-13, 1e-12),
@@ -261,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn the_index_tells_failures_slack_and_what_was_not_validated() {
+    fn the_index_shows_failures_loose_tolerances_and_cases_that_were_not_validated() {
         let text = "[bodies.ground]\npoints = { A = [0, 0] }\n[bodies.bar]\npoints = { A = [0, 0] }\n\
                     [joints]\nA = { revolute = [\"ground.A\", \"bar.A\"] }\n[actuators]\nphi = { angle = [\"ground\", \"bar\"] }";
         let scene = Scene::parse("bar.toml", text).unwrap();

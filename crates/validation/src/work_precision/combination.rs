@@ -1,9 +1,9 @@
-//! What is combined, and what came of it: plain data.
+//! Combinations of evaluation, integrator and tolerance, and their results: plain data.
 
 use dwell_dynamics::Method;
 use dwell_study::number_format::digits;
 
-/// In what the equation of motion is evaluated.
+/// How the equation of motion is evaluated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Evaluation {
     /// The mechanism itself, in double precision.
@@ -12,19 +12,19 @@ pub enum Evaluation {
     SinglePrecision,
     /// A table of the reduced model.
     Table {
-        /// What it was asked to keep, as a part of the largest value.
+        /// The required accuracy, as a part of the largest value.
         accuracy: f64,
         /// Cells of m and ½m′.
         cells: usize,
         /// Bytes of m and ½m′.
         bytes: usize,
     },
-    /// Something else, which a caller brought.
+    /// Another evaluation, given by the caller.
     Other(&'static str),
 }
 
 impl Evaluation {
-    /// What figures and tables call it.
+    /// Its name in figures and tables.
     pub fn name(&self) -> String {
         match self {
             Self::Exact => "exact f64".to_owned(),
@@ -34,7 +34,7 @@ impl Evaluation {
         }
     }
 
-    /// The coarsest that its own errors make of any motion, as a rule: beyond it no tolerance helps.
+    /// Its own relative error, as a rule: below it no tolerance improves a motion.
     pub(super) fn relative_error(&self) -> f64 {
         match self {
             Self::Exact | Self::Other(_) => 0.0,
@@ -44,7 +44,7 @@ impl Evaluation {
     }
 }
 
-/// How the equation is followed in time.
+/// How the motion is integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Integrator {
     /// Step by step, with this relative and absolute tolerance.
@@ -54,7 +54,7 @@ pub enum Integrator {
 }
 
 impl Integrator {
-    /// What figures and tables call it, without its tolerance.
+    /// Its name in figures and tables, without its tolerance.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Steps(method, _) => method.name(),
@@ -71,22 +71,20 @@ impl Integrator {
     }
 }
 
-/// A way to compute the motion.
+/// A method of computing the motion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Combination {
-    /// In what the equation is evaluated.
+    /// How the equation is evaluated.
     pub evaluation: Evaluation,
-    /// How it is followed.
+    /// How it is integrated.
     pub integrator: Integrator,
 }
 
 impl Combination {
-    /// What figures and tables call it.
+    /// Its name in figures and tables.
     pub fn name(&self) -> String {
-        let tolerance = match self.integrator.tolerance() {
-            Some(tolerance) => format!(" {tolerance:.0e}"),
-            None => String::new(),
-        };
+        let tolerance = self.integrator.tolerance().map(|t| format!(" {t:.0e}"));
+        let tolerance = tolerance.unwrap_or_default();
         let evaluation = match self.evaluation {
             Evaluation::Exact => String::new(),
             other => format!(", {}", other.name().trim_start_matches("exact ")),
@@ -95,7 +93,7 @@ impl Combination {
     }
 }
 
-/// True errors: the largest over the times that are looked at.
+/// True errors: the largest over the compared times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
     /// Of the free coordinates, rad or m.
@@ -119,7 +117,7 @@ impl Errors {
     }
 }
 
-/// What an error is of.
+/// The quantity of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ErrorQuantity {
     /// The free coordinates.
@@ -146,12 +144,12 @@ pub struct Cost {
     pub evaluations: usize,
     /// Jacobians.
     pub jacobians: usize,
-    /// Evaluations, with each Jacobian as so many as it has numbers beside the values.
+    /// Evaluations, with each Jacobian as the number of its dual-number evaluations.
     pub weighted_evaluations: usize,
     /// Time, in units of one exact evaluation in double precision of the same equation, in the same run:
     /// the least of the repetitions.
     pub time: f64,
-    /// Time of making what is evaluated (a table), in the same unit; zero where nothing is made.
+    /// Time of building a table, in the same unit; zero where none is built.
     pub build_time: f64,
 }
 
@@ -166,49 +164,54 @@ impl Cost {
     }
 }
 
+impl CostMeasure {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Evaluations, Self::Time, Self::TimeWithBuild];
+}
+
 /// The measure of a cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CostMeasure {
-    /// Evaluations with the weighed Jacobians: counted, so every machine finds the same.
+    /// Evaluations with the weighted Jacobians: counted, so the same on every machine.
     Evaluations,
-    /// Time of a run, once everything is made.
+    /// Time of a run, once tables are built.
     Time,
-    /// Time of the first run: with the making of the table.
+    /// Time of the first run, with the building of the table.
     TimeWithBuild,
 }
 
 /// A combination that was run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CombinationResult {
-    /// Which.
+    /// The combination.
     pub combination: Combination,
     /// Its true errors.
     pub errors: Errors,
-    /// What it took.
+    /// Its cost.
     pub cost: Cost,
 }
 
-/// What the errors are measured from.
+/// The reference of the errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReferenceInfo {
-    /// How it was found, in words.
+    /// How it was computed.
     pub method: String,
-    /// How well it is known: a smaller error says no more than that it is below.
+    /// Its own error: a smaller error is only known to be below it.
     pub error: Errors,
 }
 
 /// The whole study of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorkPrecision {
-    /// Everything that was run.
+    /// All results.
     pub points: Vec<CombinationResult>,
-    /// Of what was not run or not finished: what and why.
+    /// What was not run or not finished, and why.
     pub omitted: Vec<String>,
-    /// What the errors are measured from.
+    /// The reference of the errors.
     pub reference: ReferenceInfo,
-    /// What was followed, in words: how long, and what of the scene was changed for it.
+    /// Notes on the motion: its duration, and what of the scene was changed for it.
     pub motion_notes: Vec<String>,
-    /// How long the motion is, s.
+    /// Duration of the motion, s.
     pub duration: f64,
     /// `rad` or `m`, or both where coordinates of both kinds are free.
     pub unit: &'static str,
@@ -221,18 +224,14 @@ pub struct WorkPrecision {
 }
 
 impl WorkPrecision {
-    /// An error of a point, or the floor where that is larger.
+    /// An error of a point, or the error of the reference where that is larger.
     pub fn error_bound(&self, point: &CombinationResult, quantity: ErrorQuantity) -> f64 {
-        let error = point.errors.of(quantity);
-        // A number that is none must stay none.
-        if error < self.reference.error.of(quantity) {
-            self.reference.error.of(quantity)
-        } else {
-            error
-        }
+        let (error, floor) = (point.errors.of(quantity), self.reference.error.of(quantity));
+        // Not a number must stay so.
+        if error < floor { floor } else { error }
     }
 
-    /// Whether an error of a point is below what is known.
+    /// Whether an error of a point is below that of the reference.
     pub fn is_below_reference_error(
         &self,
         point: &CombinationResult,
@@ -241,17 +240,16 @@ impl WorkPrecision {
         point.errors.of(quantity) < self.reference.error.of(quantity)
     }
 
-    /// The Pareto front, as places in `points`, from the cheapest to the most precise: nothing else
-    /// that is stepped in time is at once as cheap and as precise. Quadrature is left out, since it knows the
-    /// whole motion at once and nothing that is followed comes near it: see [`WorkPrecision::quadrature`]. Counted
-    /// evaluations compare integrators alone, so the front over them is that of the exact evaluations: one of
-    /// a table is another thing.
+    /// The Pareto front of the integrators, as indices of `points`, from the cheapest to the most precise: no other
+    /// one is at once as cheap and as precise. Quadrature is left out, since no integrator is competitive with it: see
+    /// [`WorkPrecision::quadrature`]. Counted evaluations compare integrators alone, so the front over them is that of the
+    /// exact evaluations: one of a table is not comparable.
     pub fn pareto_front(&self, quantity: ErrorQuantity, measure: CostMeasure) -> Vec<usize> {
         let stepped = |&k: &usize| {
             let point = &self.points[k];
             let stepped = matches!(point.combination.integrator, Integrator::Steps(..));
-            let by_count = measure == CostMeasure::Evaluations;
-            let alike = !by_count || point.combination.evaluation == Evaluation::Exact;
+            let exact = point.combination.evaluation == Evaluation::Exact;
+            let alike = exact || measure != CostMeasure::Evaluations;
             stepped && alike && point.errors.of(quantity).is_finite()
         };
         let of = |k: usize| {
@@ -273,7 +271,7 @@ impl WorkPrecision {
         order
     }
 
-    /// The cheapest combination that is stepped in time and reaches an accuracy, as a place in `points`.
+    /// The cheapest integrator that reaches an accuracy, as an index of `points`.
     pub fn cheapest(
         &self,
         quantity: ErrorQuantity,
@@ -295,7 +293,7 @@ impl WorkPrecision {
     }
 }
 
-/// How much is tried.
+/// The extent of a study.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Effort {
     /// Tolerances as powers of ten, from the coarsest to the finest.
@@ -309,7 +307,7 @@ pub struct Effort {
 }
 
 impl Effort {
-    /// Everything: a study of its own.
+    /// That of a study of its own.
     pub fn full() -> Self {
         Self {
             tolerance_exponents: (-13..=-3).rev().collect(),
@@ -321,12 +319,11 @@ impl Effort {
 
     /// The finest tolerance.
     pub(super) fn finest_tolerance(&self) -> Option<f64> {
-        self.tolerance_exponents
-            .last()
-            .map(|&power| 10_f64.powi(power))
+        let finest = self.tolerance_exponents.last();
+        finest.map(|&power| 10_f64.powi(power))
     }
 
-    /// What a report has time for.
+    /// That of a part of the reports.
     pub fn brief() -> Self {
         Self {
             tolerance_exponents: vec![-3, -5, -7, -9, -11, -13],
@@ -337,7 +334,7 @@ impl Effort {
     }
 }
 
-/// A part in words; what is no number is said to be none.
+/// A number as text; a dash where it is not a number.
 pub(super) fn digits_or_dash(value: f64, count: usize) -> String {
     if value.is_nan() {
         "–".to_owned()
@@ -346,7 +343,7 @@ pub(super) fn digits_or_dash(value: f64, count: usize) -> String {
     }
 }
 
-/// An error in words: an error below what the reference resolves is given as an upper bound.
+/// An error as text: below the error of the reference as an upper bound.
 pub(super) fn describe_error(error: f64, reference_error: f64) -> String {
     if error < reference_error {
         format!("< {}", digits(reference_error, 2))

@@ -1,4 +1,4 @@
-//! Ways to evaluate the equation of motion and the reactions, of which any can be tried.
+//! Evaluators of the equation of motion and of the reactions.
 
 use super::combination::Evaluation;
 use dwell_dynamics::{
@@ -15,30 +15,32 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Finds the reactions at a state, N or N·m.
 pub type ReactionFn<'e> = Box<dyn FnMut(&OdeState, &mut [f64]) -> Result<(), DynamicsError> + 'e>;
 
-/// A way to evaluate. What is new (another kind of table, another number) is tried by making it one.
+/// An evaluator. Another kind of table or of number is studied by implementing this.
 pub trait Evaluator {
-    /// What it is called.
+    /// Its name and data.
     fn evaluation(&self) -> Evaluation;
 
-    /// The equation of motion with its working memory.
+    /// The equation of motion with its workspace.
     ///
     /// # Errors
     /// [`DynamicsError`] where the start cannot be evaluated.
     fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError>;
 
-    /// The reactions, in its own arithmetic, with the working memory for them.
+    /// The reactions, in its own arithmetic, with their workspace.
     fn reactions(&self) -> ReactionFn<'_>;
 
-    /// The evaluations that one Jacobian is weighed as: a dual number is two.
+    /// The evaluations that one Jacobian counts as: a dual number is two.
     fn jacobian_weight(&self) -> usize;
 
-    /// How long it took to make it, s.
+    /// The time of building it, s.
     fn build_time(&self) -> f64 {
         0.0
     }
 
-    /// The motion by quadrature with the evaluations it took; none where it is not known by its energy.
-    fn orbit(&self, start: ReducedState) -> Option<(Orbit, usize)>;
+    /// The motion by quadrature with its number of evaluations; none where it does not follow from its energy.
+    fn orbit(&self, _start: ReducedState) -> Option<(Orbit, usize)> {
+        None
+    }
 }
 
 /// A reduced model of one freedom without loads.
@@ -46,10 +48,21 @@ pub trait Evaluator {
 pub struct ModelEvaluator<R: ReducedModel> {
     /// The model, with the reactions that are compared.
     pub model: R,
-    /// What it is called.
+    /// Its name and data.
     pub evaluation: Evaluation,
-    /// How long it took to make it, s.
+    /// The time of building it, s.
     pub build_time: f64,
+}
+
+impl<R: ReducedModel> ModelEvaluator<R> {
+    /// A model that is not built for the study.
+    pub fn new(model: R, evaluation: Evaluation) -> Self {
+        Self {
+            model,
+            evaluation,
+            build_time: 0.0,
+        }
+    }
 }
 
 impl<R: ReducedModel> Evaluator for ModelEvaluator<R> {
@@ -134,12 +147,12 @@ impl<R: ReducedModel> ReducedModel for CountingModel<'_, R> {
     }
 }
 
-/// The reduced model in single precision. Its derivative is that of double precision: it helps Newton's
-/// method and is in no result.
+/// The reduced model in single precision. Its derivative is that of double precision: it is used by Newton's
+/// method only.
 #[derive(Debug)]
 pub(super) struct SinglePrecisionModel {
     exact: ExactModel,
-    /// Without reactions, and with nothing else that the inertia does not need.
+    /// Pruned for the inertia: without reactions.
     inertia_model: Model,
 }
 
@@ -196,11 +209,8 @@ impl ReducedModel for SinglePrecisionModel {
         let mut single = model.coefficient_buffer::<f32>();
         model.reduce(q as f32, workspace, &mut single)?;
         (out.m, out.half_dm) = (f64::from(single.m), f64::from(single.half_dm));
-        let lists = [(&mut out.a, &single.a), (&mut out.b, &single.b)];
-        for (out, single) in lists {
-            out.clear();
-            out.extend(single.iter().map(|&v| f64::from(v)));
-        }
+        let doubled = |values: &[f32]| values.iter().map(|&v| f64::from(v)).collect();
+        (out.a, out.b) = (doubled(&single.a), doubled(&single.b));
         Ok(())
     }
 }
@@ -226,12 +236,10 @@ impl Evaluator for MachineEvaluator<'_> {
     fn reactions(&self) -> ReactionFn<'_> {
         let mut workspace = self.output_machine.workspace::<f64>();
         Box::new(move |point, out| {
-            let state = self
-                .output_machine
-                .evaluate(point.t, &point.y, &mut workspace)?;
-            for (out, value) in out.iter_mut().zip(&state.inverse_dynamics().reactions) {
-                *out = *value;
-            }
+            let machine = self.output_machine;
+            let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
+            let reactions = &state.inverse_dynamics().reactions;
+            out.copy_from_slice(&reactions[..out.len()]);
             Ok(())
         })
     }
@@ -247,10 +255,10 @@ impl Evaluator for MachineEvaluator<'_> {
     }
 }
 
-/// The same machine on a table. Reactions are those of the machine at the table's states: a table of it holds none.
+/// The same machine on a table. Reactions are those of the machine at the table's states: its table holds none.
 pub(super) struct TableEvaluator<'m> {
     pub(super) table: TabulatedMachine,
-    /// How long it took to make it, s.
+    /// The time of building it, s.
     pub(super) build_time: f64,
     pub(super) accuracy: f64,
     pub(super) exact: MachineEvaluator<'m>,
@@ -281,10 +289,6 @@ impl Evaluator for TableEvaluator<'_> {
 
     fn build_time(&self) -> f64 {
         self.build_time
-    }
-
-    fn orbit(&self, _: ReducedState) -> Option<(Orbit, usize)> {
-        None
     }
 }
 
@@ -324,13 +328,9 @@ impl Evaluator for SinglePrecisionEvaluator<'_> {
     fn jacobian_weight(&self) -> usize {
         self.0.jacobian_weight()
     }
-
-    fn orbit(&self, _: ReducedState) -> Option<(Orbit, usize)> {
-        None
-    }
 }
 
-/// A machine about to move, evaluated in single precision; its Jacobian is that of double precision.
+/// A machine from a start, evaluated in single precision; its Jacobian is that of double precision.
 struct SinglePrecisionOde<'m> {
     machine: &'m Machine,
     workspace: MachineWorkspace<f32>,
@@ -369,7 +369,7 @@ fn to_f32(y: &[f64], single: &mut [f32]) {
     }
 }
 
-/// What a table is called.
+/// The evaluation by a table.
 pub(super) fn table_evaluation(table: &TabulatedModel, accuracy: f64) -> Evaluation {
     let ([cells, ..], [bytes, _]) = (table.cells(), table.bytes());
     Evaluation::Table {

@@ -1,7 +1,7 @@
-//! The picture: cost over true error, with the front.
+//! The figure: cost over true error, with the Pareto front.
 
 use super::combination::{
-    Combination, CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision, digits_or_dash,
+    CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision, digits_or_dash,
 };
 use dwell_dynamics::Method;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
@@ -9,23 +9,20 @@ use dwell_scene::Scene;
 use dwell_study::number_format::{count, digits};
 use dwell_study::output::scene_caption;
 
-/// Room beside the outermost errors, as a factor.
+/// Margin at the outermost errors, as a factor.
 const AXIS_MARGIN: f64 = 4.0;
-/// An error larger than this is none: the motion is another one.
+/// A larger error is not drawn: the motion is another one.
 const MAX_ERROR: f64 = 10.0;
 /// How far apart in powers of ten the points of a front are whose names are written, and of one among many marks.
 const MIN_LABEL_GAP: f64 = 1.6;
 const MIN_LABEL_GAP_CROWDED: f64 = 3.0;
 
-/// The picture of a study.
+/// The figure of a study.
 pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure {
-    let coordinate = format!("largest error of the free coordinates, {}", found.unit);
-    let energy = "largest energy drift / largest kinetic energy";
-    let reaction = "largest error of a reaction / largest of its unit";
     let tables =
         |p: &super::CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
     let hollow = match found.points.iter().any(tables) {
-        true => "; hollow: tables, once they are made; dashed: making the finest",
+        true => "; hollow: tables, once they are built; dashed: building the finest",
         false => "",
     };
     let reference_error = found.reference.error;
@@ -37,7 +34,7 @@ pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure
             &format!(
                 "Each mark is one combination over t = 0 to {} s. Full marks: the mechanism itself, one tolerance after \
                  the other; where time is measured, crosses: single precision{hollow}. Grey line: the Pareto front, \
-                 with names. Truth: {}; shaded: below what is known ({}, {} and {} of the three errors). An evaluation \
+                 with names. Reference: {}; shaded: below its error ({}, {} and {} of the three errors). An evaluation \
                  is one of the equation of motion; a Jacobian counts as its dual numbers. Time is in units of one \
                  exact evaluation in the same process, the least of {}.",
                 digits(found.duration, 5),
@@ -49,42 +46,19 @@ pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure
             ),
         ),
         columns: 2,
-        panels: vec![
-            panel(
-                found,
-                ErrorQuantity::Coordinate,
-                CostMeasure::Evaluations,
-                &coordinate,
-            ),
-            panel(
-                found,
-                ErrorQuantity::Coordinate,
-                CostMeasure::Time,
-                &coordinate,
-            ),
-            panel(
-                found,
-                ErrorQuantity::Energy,
-                CostMeasure::Evaluations,
-                energy,
-            ),
-            panel(
-                found,
-                ErrorQuantity::Reaction,
-                CostMeasure::Evaluations,
-                reaction,
-            ),
-        ],
+        panels: [
+            (ErrorQuantity::Coordinate, CostMeasure::Evaluations),
+            (ErrorQuantity::Coordinate, CostMeasure::Time),
+            (ErrorQuantity::Energy, CostMeasure::Evaluations),
+            (ErrorQuantity::Reaction, CostMeasure::Evaluations),
+        ]
+        .map(|(quantity, measure)| panel(found, quantity, measure))
+        .into(),
         provenance: "all combinations of evaluation, integrator and tolerance".to_owned(),
     }
 }
 
-fn panel(
-    found: &WorkPrecision,
-    quantity: ErrorQuantity,
-    measure: CostMeasure,
-    label: &str,
-) -> Panel {
+fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -> Panel {
     let at = |k: usize| -> [f64; 2] {
         let point = &found.points[k];
         [found.error_bound(point, quantity), point.cost.of(measure)]
@@ -92,37 +66,7 @@ fn panel(
     let front = found.pareto_front(quantity, measure);
     let line = front.iter().map(|&k| at(k)).collect();
     let mut series = vec![Series::line("", line).color(Paint::Grey)];
-    for (i, method) in Method::ALL.into_iter().enumerate() {
-        let of = |selects: &dyn Fn(Evaluation) -> bool| -> Vec<[f64; 2]> {
-            let selected = |k: &usize| {
-                let Combination {
-                    evaluation,
-                    integrator,
-                } = found.points[*k].combination;
-                matches!(integrator, Integrator::Steps(own, _) if own == method)
-                    && selects(evaluation)
-            };
-            (0..found.points.len()).filter(selected).map(at).collect()
-        };
-        let paint = Paint::Palette(i);
-        let exact = of(&|e| e == Evaluation::Exact);
-        series.push(
-            Series::line(method.name(), exact)
-                .stroke(Stroke::LineAndPoints)
-                .color(paint),
-        );
-        let kinds: [(Stroke, &dyn Fn(Evaluation) -> bool); 2] = [
-            (Stroke::Hollow, &|e| matches!(e, Evaluation::Table { .. })),
-            (Stroke::Crosses, &|e| e == Evaluation::SinglePrecision),
-        ];
-        // Counted, they are what the mechanism itself is.
-        for (stroke, selects) in kinds
-            .into_iter()
-            .filter(|_| measure != CostMeasure::Evaluations)
-        {
-            series.push(Series::line("", of(selects)).stroke(stroke).color(paint));
-        }
-    }
+    series.extend(method_series(found, measure, &at));
     let reference_error = found.reference.error.of(quantity);
     let mut marks = vec![Mark::Band {
         from: reference_error / AXIS_MARGIN.powi(3),
@@ -140,23 +84,27 @@ fn panel(
     if measure == CostMeasure::Time && build_time > 0.0 {
         marks.push(Mark::Horizontal {
             at: build_time,
-            label: "making the finest table".to_owned(),
+            label: "building the finest table".to_owned(),
         });
     }
-    let label_gap = match measure {
-        CostMeasure::Evaluations => MIN_LABEL_GAP,
-        CostMeasure::Time | CostMeasure::TimeWithBuild => MIN_LABEL_GAP_CROWDED,
+    let (label_gap, cost) = match measure {
+        CostMeasure::Evaluations => (MIN_LABEL_GAP, "evaluations"),
+        CostMeasure::Time | CostMeasure::TimeWithBuild => {
+            (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation")
+        }
     };
     marks.extend(named_points(found, &front, label_gap, &at));
-    let title = match (quantity, measure) {
-        (ErrorQuantity::Coordinate, CostMeasure::Evaluations) => "Coordinate, counted",
-        (ErrorQuantity::Coordinate, _) => "Coordinate, timed",
-        (ErrorQuantity::Energy, _) => "Energy",
-        (ErrorQuantity::Reaction, _) => "Worst reaction",
-    };
-    let cost = match measure {
-        CostMeasure::Evaluations => "evaluations",
-        CostMeasure::Time | CostMeasure::TimeWithBuild => "time / one exact evaluation",
+    let coordinate = format!("largest error of the free coordinates, {}", found.unit);
+    let (title, label) = match (quantity, measure) {
+        (ErrorQuantity::Coordinate, CostMeasure::Evaluations) => {
+            ("Coordinate, counted", coordinate.as_str())
+        }
+        (ErrorQuantity::Coordinate, _) => ("Coordinate, timed", coordinate.as_str()),
+        (ErrorQuantity::Energy, _) => ("Energy", "largest energy drift / largest kinetic energy"),
+        (ErrorQuantity::Reaction, _) => (
+            "Worst reaction",
+            "largest error of a reaction / largest of its unit",
+        ),
     };
     Chart {
         title: title.to_owned(),
@@ -167,6 +115,36 @@ fn panel(
         ..Chart::default()
     }
     .into()
+}
+
+/// The runs of every method: those of the mechanism itself and, in time, on tables and in single precision.
+fn method_series(
+    found: &WorkPrecision,
+    measure: CostMeasure,
+    at: &dyn Fn(usize) -> [f64; 2],
+) -> Vec<Series> {
+    let mut series = Vec::new();
+    for (i, method) in Method::ALL.into_iter().enumerate() {
+        let of = |selects: &dyn Fn(Evaluation) -> bool| -> Vec<[f64; 2]> {
+            let selected = |k: &usize| {
+                let of = found.points[*k].combination;
+                let own = matches!(of.integrator, Integrator::Steps(own, _) if own == method);
+                own && selects(of.evaluation)
+            };
+            (0..found.points.len()).filter(selected).map(at).collect()
+        };
+        let paint = Paint::Palette(i);
+        let exact = Series::line(method.name(), of(&|e| e == Evaluation::Exact));
+        series.push(exact.stroke(Stroke::LineAndPoints).color(paint));
+        // Counted, the others equal the mechanism itself.
+        if measure != CostMeasure::Evaluations {
+            let tables = Series::line("", of(&|e| matches!(e, Evaluation::Table { .. })));
+            let single = Series::line("", of(&|e| e == Evaluation::SinglePrecision));
+            series.push(tables.stroke(Stroke::Hollow).color(paint));
+            series.push(single.stroke(Stroke::Crosses).color(paint));
+        }
+    }
+    series
 }
 
 /// The axis of the errors, from below the floor to the largest that is one.

@@ -1,5 +1,5 @@
 //! `dwell work-precision`: what accuracy costs. Every combination of evaluation, integrator and tolerance is run on
-//! the motion of a scene; its true error is held against what it took.
+//! the motion of a scene; its true error is compared with its cost.
 
 mod combination;
 mod evaluator;
@@ -19,9 +19,9 @@ pub use selected_cases::selected_case_reports;
 
 use dwell_dynamics::{DynamicsError, Method, TabulatedMachine, TabulationError};
 use dwell_geometry::Range;
-use dwell_kinetostatics::{ExactModel, ReducedModel, TableDomain, TableError, TabulatedModel};
+use dwell_kinetostatics::{ExactModel, ReducedModel, TableDomain, TabulatedModel};
 use dwell_report::TableExport as _;
-use dwell_scene::Scene;
+use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::output::signed_png;
 use dwell_study::{Outcome, Progress, Step};
@@ -34,14 +34,14 @@ use run::{Run, ToleranceSeries};
 use std::time::Instant;
 use subject::Subject;
 
-/// What a table of a limited range covers beyond where the motion goes, as a part of its way.
+/// What a table of a limited range covers beyond the motion, as a part of the motion's range.
 const TABLE_MARGIN: f64 = 0.05;
-/// A run of so many evaluations tells its time at once.
+/// A run of so many evaluations is timed only once.
 const MAX_REPEATED_EVALUATIONS: usize = 30_000;
-/// Evaluations between two looks at the clock.
+/// Passes in which an evaluation is timed.
 const TIMING_PASSES: usize = 20;
 
-/// The study of a scene, with everything that is tried: `NAME-work-precision.md`, `.csv`, `.npz` and `.png`.
+/// The full study of a scene: `NAME-work-precision.md`, `.csv`, `.npz` and `.png`.
 ///
 /// # Errors
 /// As [`measure`]; [`StudyError::Report`] when the picture cannot be drawn.
@@ -62,12 +62,12 @@ pub fn work_precision(scene: &Scene, progress: Progress<'_>) -> Result<Outcome, 
     Ok(outcome)
 }
 
-/// What each combination costs on the motion of a scene, and its true error: that of `[motion]`, or one that it is
-/// set free for, followed for three periods or turns at most.
+/// What each combination costs on the motion of a scene, and its true error: that of `[motion]`, or a free
+/// motion from the assembly, for three periods or revolutions at most.
 ///
 /// # Errors
-/// [`StudyError::Scene`] when the scene cannot be put together, nothing in it is free or moves, or its motion
-/// cannot be followed by two methods.
+/// [`StudyError::Scene`] when the scene cannot be put together, nothing in it is free or moves, or no two methods
+/// reach the end of its motion.
 pub fn measure(
     scene: &Scene,
     effort: &Effort,
@@ -111,36 +111,19 @@ pub fn measure_with(
         .map_err(|e| no_reference_error(&subject, &e, &series_by_method))?;
     let mut trials: Vec<Trial<'_>> = Vec::new();
     for (k, evaluator) in evaluators.iter().enumerate() {
+        let evaluator = &**evaluator;
         let rerun =
-            |reference: &ToleranceSeries| series(&**evaluator, reference.method, Some(reference));
-        let series_of_evaluator = match k {
+            |reference: &ToleranceSeries| series(evaluator, reference.method, Some(reference));
+        let all = match k {
             0 => series_by_method.clone(),
             _ => series_by_method.iter().map(rerun).collect(),
         };
-        collect_trials(
-            &**evaluator,
-            &subject,
-            series_of_evaluator,
-            &mut trials,
-            &mut omitted,
-        );
+        collect_trials(evaluator, &subject, all, &mut trials, &mut omitted);
     }
-    let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &|| {
-        done("times");
-    });
+    let timed = || done("times");
+    let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &timed);
     let unit_times = unit_times.map_err(|e| subject.explain(&e))?;
-    let mut points = Vec::new();
-    for (evaluator, combination, run) in trials {
-        // What left the range of an evaluator or the mechanism has no error, and no place in the study.
-        match reference.errors(&run.states, &mut evaluator.reactions()) {
-            Ok(errors) => points.push(CombinationResult {
-                combination,
-                errors,
-                cost: cost(evaluator, &run, unit_times.evaluation),
-            }),
-            Err(error) => omitted.push(format!("{}: {error}", combination.name())),
-        }
-    }
+    let points = results(&mut reference, trials, unit_times.evaluation, &mut omitted);
     Ok(WorkPrecision {
         points,
         omitted,
@@ -157,7 +140,28 @@ pub fn measure_with(
     })
 }
 
-/// The runs of one evaluator, with the quadrature where the energy tells the motion.
+/// Errors and costs of all runs. A run that left the range of an evaluator or of the mechanism has no error.
+fn results(
+    reference: &mut ReferenceSolution<'_>,
+    trials: Vec<Trial<'_>>,
+    evaluation_time: f64,
+    omitted: &mut Vec<String>,
+) -> Vec<CombinationResult> {
+    let mut points = Vec::new();
+    for (evaluator, combination, run) in trials {
+        match reference.errors(&run.states, &mut evaluator.reactions()) {
+            Ok(errors) => points.push(CombinationResult {
+                combination,
+                errors,
+                cost: cost(evaluator, &run, evaluation_time),
+            }),
+            Err(error) => omitted.push(format!("{}: {error}", combination.name())),
+        }
+    }
+    points
+}
+
+/// The runs of one evaluator, with the quadrature where the motion follows from the energy.
 fn collect_trials<'e>(
     evaluator: &'e dyn Evaluator,
     subject: &Subject,
@@ -184,99 +188,98 @@ fn collect_trials<'e>(
     }
     match run::quadrature(evaluator, subject) {
         Some(run) => add(Integrator::Quadrature, run),
-        None => omitted.push(format!(
-            "{}, quadrature: not smooth enough, or not known",
-            evaluation.name()
-        )),
+        None => {
+            let name = evaluation.name();
+            omitted.push(format!(
+                "{name}, quadrature: not smooth enough, or not known"
+            ));
+        }
     }
 }
 
-/// All ways to evaluate the motion, the exact one first. A new one is a line here.
+/// All evaluators of the motion, the exact one first. A new one is a line here.
 fn evaluators<'s>(
     subject: &'s Subject,
     effort: &Effort,
     extra: ExtraEvaluators<'_>,
     omitted: &mut Vec<String>,
 ) -> Vec<Box<dyn Evaluator + 's>> {
-    let Some(exact) = &subject.reduced else {
-        let machine = || MachineEvaluator {
-            machine: &subject.machine,
-            output_machine: &subject.output_machine,
-            initial_state: &subject.initial_state,
-        };
-        let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
-            Box::new(machine()),
-            Box::new(SinglePrecisionEvaluator(machine())),
-        ];
-        for &accuracy in &effort.table_accuracies {
-            let started = Instant::now();
-            match TabulatedMachine::new(
-                &subject.machine,
-                accuracy,
-                table_domain(
-                    subject.machine.model().plan().range(),
-                    subject.coordinate_range,
-                ),
-            ) {
-                Ok(table) => all.push(Box::new(TableEvaluator {
-                    build_time: started.elapsed().as_secs_f64(),
-                    table,
-                    accuracy,
-                    exact: machine(),
-                })),
-                Err(error @ TabulationError::Table(_)) => {
-                    omitted.push(format!("table {accuracy:.0e}: {error}"));
-                }
-                Err(error) => {
-                    omitted.push(format!("tables: {error}"));
-                    break;
-                }
-            }
-        }
-        return all;
+    let mut all: Vec<Box<dyn Evaluator + 's>> = match &subject.reduced {
+        Some(exact) => reduced_evaluators(exact, subject, effort, omitted),
+        None => machine_evaluators(subject, effort, omitted),
     };
+    if let Some(exact) = &subject.reduced {
+        all.extend(extra(exact));
+    }
+    all
+}
+
+/// The reduced model itself, in single precision, and tables of it.
+fn reduced_evaluators<'s>(
+    exact: &ExactModel,
+    subject: &Subject,
+    effort: &Effort,
+    omitted: &mut Vec<String>,
+) -> Vec<Box<dyn Evaluator + 's>> {
+    let single = SinglePrecisionModel::new(exact);
     let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
-        Box::new(ModelEvaluator {
-            model: exact.clone(),
-            evaluation: Evaluation::Exact,
-            build_time: 0.0,
-        }),
-        Box::new(ModelEvaluator {
-            model: SinglePrecisionModel::new(exact),
-            evaluation: Evaluation::SinglePrecision,
-            build_time: 0.0,
-        }),
+        Box::new(ModelEvaluator::new(exact.clone(), Evaluation::Exact)),
+        Box::new(ModelEvaluator::new(single, Evaluation::SinglePrecision)),
     ];
+    let domain = table_domain(exact.range(), subject.coordinate_range);
     for &accuracy in &effort.table_accuracies {
-        match build_table(exact, accuracy, subject.coordinate_range) {
-            Ok((model, build_time)) => all.push(Box::new(ModelEvaluator {
+        let started = Instant::now();
+        match TabulatedModel::new(exact, accuracy, domain) {
+            Ok(model) => all.push(Box::new(ModelEvaluator {
+                build_time: started.elapsed().as_secs_f64(),
                 evaluation: table_evaluation(&model, accuracy),
                 model,
-                build_time,
             })),
             Err(error) => omitted.push(format!("table {accuracy:.0e}: {error}")),
         }
     }
-    all.extend(extra(exact));
     all
 }
 
-/// A table that reaches as far as the motion, and the time of making it, s.
-fn build_table(
-    exact: &ExactModel,
-    accuracy: f64,
-    coordinate_range: [f64; 2],
-) -> Result<(TabulatedModel, f64), TableError> {
-    let started = Instant::now();
-    let table = TabulatedModel::new(
-        exact,
-        accuracy,
-        table_domain(exact.range(), coordinate_range),
-    )?;
-    Ok((table, started.elapsed().as_secs_f64()))
+/// The machine itself, in single precision, and on tables.
+fn machine_evaluators<'s>(
+    subject: &'s Subject,
+    effort: &Effort,
+    omitted: &mut Vec<String>,
+) -> Vec<Box<dyn Evaluator + 's>> {
+    let machine = || MachineEvaluator {
+        machine: &subject.machine,
+        output_machine: &subject.output_machine,
+        initial_state: &subject.initial_state,
+    };
+    let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
+        Box::new(machine()),
+        Box::new(SinglePrecisionEvaluator(machine())),
+    ];
+    let range = subject.machine.model().plan().range();
+    let domain = table_domain(range, subject.coordinate_range);
+    for &accuracy in &effort.table_accuracies {
+        let started = Instant::now();
+        match TabulatedMachine::new(&subject.machine, accuracy, domain) {
+            Ok(table) => all.push(Box::new(TableEvaluator {
+                build_time: started.elapsed().as_secs_f64(),
+                table,
+                accuracy,
+                exact: machine(),
+            })),
+            Err(error @ TabulationError::Table(_)) => {
+                omitted.push(format!("table {accuracy:.0e}: {error}"));
+            }
+            Err(error) => {
+                omitted.push(format!("tables: {error}"));
+                break;
+            }
+        }
+    }
+    all
 }
 
-/// As far as a motion goes, and somewhat farther.
+/// The range of a motion with a margin.
 fn table_domain(range: Range, [low, high]: [f64; 2]) -> TableDomain {
     match (range.period(), range.limits()) {
         (Some(_), _) => TableDomain::Full,
@@ -302,7 +305,7 @@ fn cost(evaluator: &dyn Evaluator, run: &Run, evaluation_time: f64) -> Cost {
     }
 }
 
-/// What one evaluation and one Jacobian take, s.
+/// The time of one evaluation and of one Jacobian, s.
 struct UnitTimes {
     evaluation: f64,
     jacobian: f64,
@@ -350,7 +353,7 @@ fn time_runs(
 }
 
 impl UnitTimes {
-    /// Evaluates at every state of the truth: each waits for no other, but has its own place.
+    /// Evaluates at every state of the reference: none depends on another, but each is at another position.
     fn update(
         &mut self,
         subject: &Subject,
@@ -360,44 +363,39 @@ impl UnitTimes {
         let mut system = exact.system()?;
         let n = system.size();
         let (mut out, mut matrix) = (vec![0.0; n], vec![0.0; n * n]);
-        let count = reference.states.len().max(1) as f64;
+        let states = || reference.states.iter().zip(&subject.times);
+        let since =
+            |started: Instant| started.elapsed().as_secs_f64() / states().len().max(1) as f64;
         for _ in 0..TIMING_PASSES {
             let started = Instant::now();
-            for (y, &t) in reference.states.iter().zip(&subject.times) {
+            for (y, &t) in states() {
                 system.rhs(t, y, &mut out)?;
             }
-            let seconds = started.elapsed().as_secs_f64() / count;
-            self.evaluation = self.evaluation.min(seconds.max(f64::MIN_POSITIVE));
+            self.evaluation = since(started).max(f64::MIN_POSITIVE).min(self.evaluation);
             let started = Instant::now();
-            for (y, &t) in reference.states.iter().zip(&subject.times) {
+            for (y, &t) in states() {
                 system.jacobian(t, y, &mut matrix)?;
             }
-            let seconds = started.elapsed().as_secs_f64() / count;
-            self.jacobian = self.jacobian.min(seconds);
+            self.jacobian = self.jacobian.min(since(started));
         }
         Ok(())
     }
 }
 
-/// Why there is no truth: no two methods get to the end.
+/// Why there is no reference: no two methods reach the end.
 fn no_reference_error(
     subject: &Subject,
     error: &DynamicsError,
     all_series: &[ToleranceSeries],
 ) -> StudyError {
     let reasons = all_series.iter().flat_map(|series| series.omitted.first());
-    let labels: Vec<_> = reasons
-        .take(4)
-        .map(|reasons| (dwell_scene::SceneLocation::Duration, reasons.clone()))
-        .collect();
+    let label = |reason: &String| (SceneLocation::Duration, reason.clone());
+    let labels: Vec<_> = reasons.take(4).map(label).collect();
     if labels.is_empty() {
         return subject.explain(error);
     }
-    let help =
-        "a shorter `duration`, or what is less stiff (a friction that fades over a larger speed)";
+    let help = "use a shorter `duration` or a less stiff model (a friction with a larger `regularization-speed`)";
     let message = "no two methods reach the end of this motion, so no error can be determined";
-    let error = subject
-        .scene
-        .error(message.to_owned(), Some(help.to_owned()), &labels);
-    error.into()
+    let (message, help) = (message.to_owned(), Some(help.to_owned()));
+    subject.scene.error(message, help, &labels).into()
 }

@@ -1,25 +1,25 @@
-//! What the errors are measured from, and how well that is known.
+//! The reference of the errors, and its own error.
 //!
-//! Of a conservative motion of one freedom it is the quadrature, which knows no integrator; how well, tells the
-//! same of a start changed by its rounding. Of all others it is the method that changes least from one tolerance
-//! to the next, at its finest, and how well, tells the second best of another method.
+//! Of a conservative motion of one degree of freedom it is the quadrature, which uses no integrator; its error is the
+//! change under a rounding of the start. Of all others it is the method that changes least from one tolerance
+//! to the next, at its finest; its error is the difference from the second best method.
 
 use super::combination::{Effort, Errors};
 use super::evaluator::{Evaluator, ReactionFn};
 use super::run::{ToleranceSeries, orbit_states, solve};
 use super::subject::Subject;
-use dwell_dynamics::{DynamicsError, MachineWorkspace, Orbit};
+use dwell_dynamics::{DynamicsError, MachineWorkspace, OdeState, Orbit};
 
 /// Below this no integrator keeps a tolerance in double precision.
 const MIN_TOLERANCE: f64 = 1e-14;
-/// Steps that a truth may take, in those of any other run.
+/// Steps that a reference may take, in those of any other run.
 const STEP_FACTOR: usize = 3;
 /// Roundings of a start, relative.
 const START_ROUNDING: f64 = 2.0 * f64::EPSILON;
 /// Roundings of a result, relative: of sums of energies and forces, and of a phase that Newton's method finds.
 const RESULT_ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// The truth with what is compared with it.
+/// The reference with its values.
 pub(super) struct ReferenceSolution<'s> {
     subject: &'s Subject,
     workspace: MachineWorkspace<f64>,
@@ -34,17 +34,17 @@ pub(super) struct ReferenceSolution<'s> {
     pub(super) error: Errors,
 }
 
-/// A motion, how it was found, and others that tell how well it is known.
+/// A motion with its method, and others that show its error.
 struct Candidate {
     method: String,
     states: Vec<Vec<f64>>,
     comparisons: Vec<Vec<Vec<f64>>>,
-    /// What these do not tell, rad or m.
+    /// What these do not show, rad or m.
     extra_error: f64,
 }
 
 impl<'s> ReferenceSolution<'s> {
-    /// Finds the truth: `ladders` are the runs of the mechanism itself by each method.
+    /// Finds the reference; `all_series` are the runs of the mechanism itself by each method.
     ///
     /// # Errors
     /// [`DynamicsError`] where there are no two runs to be compared, or a state cannot be evaluated.
@@ -55,20 +55,15 @@ impl<'s> ReferenceSolution<'s> {
         effort: &Effort,
     ) -> Result<Self, DynamicsError> {
         let orbit = subject.orbit.as_ref();
-        let Candidate {
-            method: by,
-            states,
-            comparisons: others,
-            extra_error: unknown,
-        } = match orbit.and_then(|orbit| from_quadrature(subject, orbit)) {
+        let found = match orbit.and_then(|orbit| from_quadrature(subject, orbit)) {
             Some(found) => found,
             None => from_integrators(subject, exact, all_series, effort)?,
         };
         let mut reference = Self {
             subject,
             workspace: subject.machine.workspace(),
-            method: by,
-            states,
+            method: found.method,
+            states: found.states,
             reactions: Vec::new(),
             scales: Vec::new(),
             max_kinetic_energy: 0.0,
@@ -80,12 +75,12 @@ impl<'s> ReferenceSolution<'s> {
             },
         };
         reference.evaluate_reference(exact)?;
-        for other in &others {
+        for other in &found.comparisons {
             let errors = reference.errors(other, &mut exact.reactions())?;
             reference.error.coordinate = reference.error.coordinate.max(errors.coordinate);
             reference.error.reaction = reference.error.reaction.max(errors.reaction);
         }
-        reference.error.coordinate += unknown;
+        reference.error.coordinate += found.extra_error;
         reference.error.reaction += RESULT_ROUNDING;
         if reference.scales.iter().all(|scale| *scale == 0.0) {
             reference.error.reaction = f64::NAN;
@@ -93,7 +88,7 @@ impl<'s> ReferenceSolution<'s> {
         Ok(reference)
     }
 
-    /// Evaluates everything at the states of the truth.
+    /// Evaluates everything at the states of the reference.
     fn evaluate_reference(&mut self, exact: &dyn Evaluator) -> Result<(), DynamicsError> {
         let [kinetic, potential] = self.energies(0.0, &self.subject.initial_state.y)?;
         (self.max_kinetic_energy, self.initial_energy) = (kinetic, kinetic + potential);
@@ -108,7 +103,7 @@ impl<'s> ReferenceSolution<'s> {
             self.max_kinetic_energy = self.max_kinetic_energy.max(kinetic);
             size = size.max(kinetic + potential.abs());
             let mut reactions = vec![0.0; count];
-            let point = dwell_dynamics::OdeState { t, y };
+            let point = OdeState { t, y };
             find(&point, &mut reactions)?;
             self.states[k] = point.y;
             for (max, value) in max_abs.iter_mut().zip(&reactions) {
@@ -152,10 +147,7 @@ impl<'s> ReferenceSolution<'s> {
             let [kinetic, rest] = self.energies(t, y)?;
             let drift = (kinetic + rest - self.initial_energy).abs() / self.max_kinetic_energy;
             errors.energy = nan_max(errors.energy, drift);
-            find(
-                &dwell_dynamics::OdeState { t, y: y.clone() },
-                &mut reactions,
-            )?;
+            find(&OdeState { t, y: y.clone() }, &mut reactions)?;
             let pairs = reactions.iter().zip(&self.reactions[k]).zip(&self.scales);
             for ((value, expected), scale) in pairs.filter(|(_, scale)| **scale > 0.0) {
                 errors.reaction = nan_max(errors.reaction, (value - expected).abs() / scale);
@@ -165,7 +157,7 @@ impl<'s> ReferenceSolution<'s> {
     }
 }
 
-/// The larger one; what is no number stays none.
+/// The larger one; not a number stays so.
 fn nan_max(max: f64, value: f64) -> f64 {
     if value > max || value.is_nan() {
         value
@@ -192,7 +184,7 @@ fn from_quadrature(subject: &Subject, orbit: &Orbit) -> Option<Candidate> {
     for sign in [-1.0, 1.0] {
         let mut perturbed = state;
         perturbed.q_dot *= 1.0 + sign * START_ROUNDING;
-        // At rest it is the place that counts.
+        // At rest it is the coordinate that counts.
         if state.q_dot == 0.0 {
             perturbed.q += sign * START_ROUNDING * (1.0 + state.q.abs());
         }
@@ -229,29 +221,20 @@ fn from_integrators(
         let finer_tolerance = (0.1 * fine).max(MIN_TOLERANCE);
         let max_steps = STEP_FACTOR * effort.max_steps;
         let at = (series.method, finer_tolerance);
-        // What the budget stopped before the last tolerance is not the best.
+        // A series that the number of steps stopped before the last tolerance is not the best.
         let complete =
             effort.finest_tolerance() == Some(*fine) && series.predicted_steps() < max_steps as f64;
-        let finer_run = match complete && finer_tolerance < 0.5 * fine {
-            true => solve(exact, subject, at, max_steps).ok(),
-            false => None,
+        let finer = (complete && finer_tolerance < 0.5 * fine)
+            .then(|| solve(exact, subject, at, max_steps).ok());
+        // A change over two decades is a change over one, and more.
+        let (tolerance, before, states) = match finer.flatten() {
+            Some(finer) => (finer_tolerance, &last.states, finer.states),
+            None => (*fine, &before.states, last.states.clone()),
         };
-        let name = |tolerance: f64| format!("{} at {tolerance:.0e}", series.method.name());
-        let (change, name_text, states) = match finer_run {
-            Some(finer_run) => (
-                difference(subject, &finer_run.states, &last.states),
-                name(finer_tolerance),
-                finer_run.states,
-            ),
-            // A change over two decades is a change over one, and more.
-            None => (
-                difference(subject, &before.states, &last.states),
-                name(*fine),
-                last.states.clone(),
-            ),
-        };
+        let change = difference(subject, before, &states);
         if change.is_finite() {
-            found.push((change, name_text, states));
+            let name = format!("{} at {tolerance:.0e}", series.method.name());
+            found.push((change, name, states));
         }
     }
     found.sort_by(|(a, ..), (b, ..)| a.total_cmp(b));
@@ -264,7 +247,7 @@ fn from_integrators(
     };
     let max_coordinate = states.iter().map(|y| y[0].abs()).fold(0.0, f64::max);
     Ok(Candidate {
-        method: format!("{by}, known as well as it agrees with {check}"),
+        method: format!("{by}; its error is the difference from {check}"),
         states,
         comparisons: vec![other],
         extra_error: RESULT_ROUNDING * max_coordinate,

@@ -1,9 +1,10 @@
-//! The words and tables of a study.
+//! The text and the tables of a study.
 
 use super::combination::{
     CombinationResult, CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
     describe_error, digits_or_dash,
 };
+use crate::report_parts;
 use dwell_dynamics::Method;
 use dwell_report::TableExport as _;
 use dwell_report::{Block, Column, Document, Table};
@@ -45,16 +46,11 @@ pub(super) fn table(found: &WorkPrecision) -> Table {
 pub(super) fn csv(found: &WorkPrecision) -> Result<String, StudyError> {
     let text = numbers(found).csv()?;
     let mut lines = text.lines();
-    let mut csv = format!(
-        "evaluation,integrator,{}\n",
-        lines.next().unwrap_or_default()
-    );
+    let header = lines.next().unwrap_or_default();
+    let mut csv = format!("evaluation,integrator,{header}\n");
     for (line, point) in lines.zip(&found.points) {
-        let combination = point.combination;
-        let [evaluation, integrator] = [
-            combination.evaluation.name(),
-            combination.integrator.name().to_owned(),
-        ];
+        let evaluation = point.combination.evaluation.name();
+        let integrator = point.combination.integrator.name();
         // Writing to a string cannot fail.
         let _ = writeln!(csv, "{evaluation},{integrator},{line}");
     }
@@ -82,38 +78,26 @@ fn numbers(found: &WorkPrecision) -> Table {
         ("energy_below_reference_error", ""),
         ("reaction_below_reference_error", ""),
     ];
-    let row =
-        |point: &CombinationResult| {
-            let [accuracy, cells, bytes] = match point.combination.evaluation {
-                Evaluation::Table {
-                    accuracy,
-                    cells,
-                    bytes,
-                } => [accuracy, cells as f64, bytes as f64],
-                _ => [f64::NAN; 3],
-            };
-            let cost = point.cost;
-            let mut row = vec![
-                point.combination.integrator.tolerance().unwrap_or(f64::NAN),
+    let row = |point: &CombinationResult| {
+        let (cost, tolerance) = (point.cost, point.combination.integrator.tolerance());
+        let mut row = vec![tolerance.unwrap_or(f64::NAN)];
+        row.extend(match point.combination.evaluation {
+            Evaluation::Table {
                 accuracy,
                 cells,
                 bytes,
-            ];
-            let counts = [
-                cost.steps,
-                cost.rejected,
-                cost.evaluations,
-                cost.jacobians,
-                cost.weighted_evaluations,
-            ];
-            row.extend(counts.map(|count| count as f64));
-            row.extend([cost.time, cost.of(CostMeasure::TimeWithBuild)]);
-            row.extend(ErrorQuantity::ALL.map(|quantity| point.errors.of(quantity)));
-            row.extend(ErrorQuantity::ALL.map(|quantity| {
-                f64::from(u8::from(found.is_below_reference_error(point, quantity)))
-            }));
-            row
-        };
+            } => [accuracy, cells as f64, bytes as f64],
+            _ => [f64::NAN; 3],
+        });
+        let solver = [cost.steps, cost.rejected, cost.evaluations];
+        row.extend(solver.map(|count| count as f64));
+        row.extend([cost.jacobians, cost.weighted_evaluations].map(|count| count as f64));
+        row.extend([cost.time, cost.of(CostMeasure::TimeWithBuild)]);
+        row.extend(ErrorQuantity::ALL.map(|quantity| point.errors.of(quantity)));
+        let is_below = |quantity| found.is_below_reference_error(point, quantity);
+        row.extend(ErrorQuantity::ALL.map(|q| f64::from(u8::from(is_below(q)))));
+        row
+    };
     Table {
         columns: columns.map(|(n, u)| Column::new(n, u)).to_vec(),
         rows: found.points.iter().map(row).collect(),
@@ -137,10 +121,8 @@ fn cells(found: &WorkPrecision, result: &CombinationResult) -> Vec<String> {
         digits(result.cost.time, 3),
         digits(result.cost.of(CostMeasure::TimeWithBuild), 3),
     ];
-    cells.extend(
-        ErrorQuantity::ALL
-            .map(|q| describe_error(result.errors.of(q), found.reference.error.of(q))),
-    );
+    let floor = found.reference.error;
+    cells.extend(ErrorQuantity::ALL.map(|q| describe_error(result.errors.of(q), floor.of(q))));
     cells
 }
 
@@ -151,22 +133,16 @@ fn front_table(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeas
         "steps",
         "evaluations",
         "time",
-        "time with making",
+        "time with build",
         coordinate.as_str(),
         "energy drift",
         "worst reaction",
     ];
-    let front = found.pareto_front(quantity, measure);
-    Block::Table {
-        header: header.map(str::to_owned).to_vec(),
-        rows: front
-            .iter()
-            .map(|&k| cells(found, &found.points[k]))
-            .collect(),
-    }
+    let front = found.pareto_front(quantity, measure).into_iter();
+    report_parts::table(&header, front.map(|k| cells(found, &found.points[k])))
 }
 
-/// The cheapest combination in words: what it is, and what it costs.
+/// The cheapest combination with its cost.
 fn cheapest(
     found: &WorkPrecision,
     quantity: ErrorQuantity,
@@ -174,21 +150,15 @@ fn cheapest(
     accuracy: f64,
 ) -> String {
     let Some(k) = found.cheapest(quantity, measure, accuracy) else {
-        let none = match found.reference.error.of(quantity) > accuracy {
-            true => "not known",
-            false => "none",
-        };
-        return none.to_owned();
+        let unknown = found.reference.error.of(quantity) > accuracy;
+        return if unknown { "not known" } else { "none" }.to_owned();
     };
     let point = &found.points[k];
-    format!(
-        "{} ({})",
-        point.combination.name(),
-        digits(point.cost.of(measure), 3)
-    )
+    let cost = digits(point.cost.of(measure), 3);
+    format!("{} ({cost})", point.combination.name())
 }
 
-/// The page of a study.
+/// The document of a study.
 pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Document {
     let mut blocks = vec![
         Block::Text(intro(scene, found)),
@@ -198,54 +168,35 @@ pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Docu
             caption: String::new(),
         },
         Block::Heading("The cheapest for an accuracy".to_owned()),
-        Block::Table {
-            header: [
+        report_parts::table(
+            &[
                 "error of",
                 "at most",
                 "by evaluations",
-                "by time, all made",
-                "by time with making",
-            ]
-            .map(str::to_owned)
-            .to_vec(),
-            rows: ErrorQuantity::ALL
-                .into_iter()
-                .flat_map(|quantity| {
-                    ACCURACIES.map(|accuracy| cheapest_row(found, quantity, accuracy))
-                })
-                .collect(),
-        },
+                "by time, tables built",
+                "by time with build",
+            ],
+            ErrorQuantity::ALL.into_iter().flat_map(|quantity| {
+                ACCURACIES.map(|accuracy| cheapest_row(found, quantity, accuracy))
+            }),
+        ),
         Block::Text(quadrature(found)),
     ];
-    for (heading, quantity, price) in [
-        (
-            "Front: coordinate over evaluations",
-            ErrorQuantity::Coordinate,
-            CostMeasure::Evaluations,
-        ),
-        (
-            "Front: coordinate over time with making",
-            ErrorQuantity::Coordinate,
-            CostMeasure::TimeWithBuild,
-        ),
-        (
-            "Front: coordinate over time, all made",
-            ErrorQuantity::Coordinate,
-            CostMeasure::Time,
-        ),
-        (
-            "Front: energy over evaluations",
-            ErrorQuantity::Energy,
-            CostMeasure::Evaluations,
-        ),
-        (
-            "Front: worst reaction over evaluations",
-            ErrorQuantity::Reaction,
-            CostMeasure::Evaluations,
-        ),
+    for (quantity, measure) in [
+        (ErrorQuantity::Coordinate, CostMeasure::Evaluations),
+        (ErrorQuantity::Coordinate, CostMeasure::TimeWithBuild),
+        (ErrorQuantity::Coordinate, CostMeasure::Time),
+        (ErrorQuantity::Energy, CostMeasure::Evaluations),
+        (ErrorQuantity::Reaction, CostMeasure::Evaluations),
     ] {
-        blocks.push(Block::Heading(heading.to_owned()));
-        blocks.push(front_table(found, quantity, price));
+        let cost = match measure {
+            CostMeasure::Evaluations => "evaluations",
+            CostMeasure::Time => "time, tables built",
+            CostMeasure::TimeWithBuild => "time with build",
+        };
+        let heading = format!("Front: {} over {cost}", quantity_name(quantity));
+        blocks.push(Block::Heading(heading));
+        blocks.push(front_table(found, quantity, measure));
     }
     if !found.omitted.is_empty() {
         blocks.push(Block::Heading("Left out".to_owned()));
@@ -259,23 +210,16 @@ pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Docu
 }
 
 fn cheapest_row(found: &WorkPrecision, quantity: ErrorQuantity, accuracy: f64) -> Vec<String> {
-    let measures = [
-        CostMeasure::Evaluations,
-        CostMeasure::Time,
-        CostMeasure::TimeWithBuild,
-    ];
-    let mut row = vec![
-        quantity_name(quantity).to_owned(),
-        format!("{accuracy:.0e}"),
-    ];
-    row.extend(measures.map(|measure| cheapest(found, quantity, measure, accuracy)));
+    let mut row = vec![quantity_name(quantity).to_owned()];
+    row.push(format!("{accuracy:.0e}"));
+    row.extend(CostMeasure::ALL.map(|measure| cheapest(found, quantity, measure, accuracy)));
     row
 }
 
 fn intro(scene: &Scene, found: &WorkPrecision) -> String {
     let reference_error = found.reference.error;
     let mut text = format!(
-        "{}.\n\nFollowed from t = 0 to {} s; errors are the largest at 50 times spread over it, by dense output.\n",
+        "{}.\n\nThe motion from t = 0 to {} s; errors are the largest at 50 times spread over it, by dense output.\n",
         provenance_line(scene),
         digits(found.duration, 7)
     );
@@ -298,21 +242,27 @@ fn intro(scene: &Scene, found: &WorkPrecision) -> String {
 }
 
 fn quadrature(found: &WorkPrecision) -> String {
+    let error = |point: &CombinationResult, quantity| {
+        describe_error(
+            point.errors.of(quantity),
+            found.reference.error.of(quantity),
+        )
+    };
     match found.quadrature() {
         Some(point) => format!(
             "The motion follows from its energy: quadrature computes all of it with {} evaluations, in the time of {}, with errors of {}, {} and {}. No time-stepping method is competitive, so the Pareto fronts show integrators only.",
             point.cost.weighted_evaluations,
             digits(point.cost.time, 3),
-            describe_error(point.errors.coordinate, found.reference.error.coordinate),
-            describe_error(point.errors.energy, found.reference.error.energy),
-            describe_error(point.errors.reaction, found.reference.error.reaction),
+            error(point, ErrorQuantity::Coordinate),
+            error(point, ErrorQuantity::Energy),
+            error(point, ErrorQuantity::Reaction),
         ),
         None => "Quadrature does not apply: the motion is not conservative, not periodic, or has several degrees of freedom."
             .to_owned(),
     }
 }
 
-/// What the terminal shows.
+/// The summary.
 pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
     let reference_error = found.reference.error;
     let mut text = format!(
@@ -334,29 +284,22 @@ pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
         digits_or_dash(reference_error.reaction, 1)
     );
     for accuracy in ACCURACIES {
-        let measures = [
-            CostMeasure::Evaluations,
-            CostMeasure::Time,
-            CostMeasure::TimeWithBuild,
-        ];
-        let [counted, once_built, with_build] =
-            measures.map(|measure| cheapest(found, ErrorQuantity::Coordinate, measure, accuracy));
-        let _ = write!(
-            text,
-            "  {accuracy:.0e} {}: evaluations {counted}; time {with_build}",
-            found.unit
-        );
-        let build_text = if once_built == with_build {
-            String::new()
-        } else {
-            format!("; once tables are made {once_built}")
+        let [counted, once_built, with_build] = CostMeasure::ALL
+            .map(|measure| cheapest(found, ErrorQuantity::Coordinate, measure, accuracy));
+        let build_text = match once_built == with_build {
+            true => String::new(),
+            false => format!("; once tables are built {once_built}"),
         };
-        let _ = writeln!(text, "{build_text}");
+        let unit = found.unit;
+        let _ = writeln!(
+            text,
+            "  {accuracy:.0e} {unit}: evaluations {counted}; time {with_build}{build_text}"
+        );
     }
     if let Some(point) = found.quadrature() {
         let _ = writeln!(
             text,
-            "  quadrature, which the energy of this motion allows: {} evaluations, in time {}",
+            "  quadrature, since the motion follows from its energy: {} evaluations, in time {}",
             point.cost.weighted_evaluations,
             digits(point.cost.time, 3)
         );
@@ -365,7 +308,8 @@ pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
         let _ = writeln!(text, "  left out: {why}");
     }
     if found.omitted.len() > 8 {
-        let _ = writeln!(text, "  and {} more, in the page", found.omitted.len() - 8);
+        let more = found.omitted.len() - 8;
+        let _ = writeln!(text, "  and {more} more, in the document");
     }
     text
 }

@@ -9,14 +9,14 @@ use dwell_dynamics::{
 };
 use std::time::Instant;
 
-/// What is not the mechanism itself may take so many times the steps that it does: its values are not
-/// smooth below its accuracy, where an integrator finds no end.
+/// Other evaluators than the exact one may take so many times its steps: their values are not
+/// smooth below their accuracy, where an integrator would not end.
 const NON_SMOOTH_STEP_FACTOR: usize = 3;
 const EXTRA_STEPS: usize = 200;
-/// A tolerance so far below what an evaluation keeps gains nothing.
+/// A tolerance so far below the accuracy of an evaluation gains nothing.
 const MIN_TOLERANCE_RATIO: f64 = 1e-2;
 
-/// The states at the subject's times, and what they took.
+/// The states at the subject's times, and their cost.
 #[derive(Debug, Clone)]
 pub(super) struct Run {
     pub(super) states: Vec<Vec<f64>>,
@@ -29,11 +29,11 @@ pub(super) struct Run {
 pub(super) struct ToleranceSeries {
     pub(super) method: Method,
     pub(super) runs: Vec<(f64, Run)>,
-    /// What was left out, and why.
+    /// What was omitted, and why.
     pub(super) omitted: Vec<String>,
 }
 
-/// Follows the motion at one tolerance.
+/// Integrates the motion at one tolerance.
 pub(super) fn solve(
     evaluator: &dyn Evaluator,
     subject: &Subject,
@@ -96,7 +96,7 @@ pub(super) fn orbit_states(orbit: &Orbit, times: &[f64]) -> Vec<Vec<f64>> {
 }
 
 impl ToleranceSeries {
-    /// Runs a method through the tolerances. `exact` is what it took with the mechanism itself.
+    /// Runs a method through the tolerances. `exact` are its runs with the mechanism itself.
     pub(super) fn new(
         evaluator: &dyn Evaluator,
         subject: &Subject,
@@ -112,18 +112,15 @@ impl ToleranceSeries {
         let evaluation = evaluator.evaluation();
         for power in &effort.tolerance_exponents {
             let tolerance = 10_f64.powi(*power);
-            let name = format!(
-                "{}, {} at {tolerance:.0e}",
-                evaluation.name(),
-                method.name()
-            );
+            let (by, method_name) = (evaluation.name(), method.name());
+            let name = format!("{by}, {method_name} at {tolerance:.0e}");
             if tolerance < MIN_TOLERANCE_RATIO * evaluation.relative_error() {
                 break;
             }
             let max_steps = match exact {
                 None => effort.max_steps,
                 Some(exact) => match exact.run_at(tolerance) {
-                    // Why, has been said of the mechanism itself.
+                    // The reason is that of the mechanism itself.
                     None => continue,
                     Some(run) => NON_SMOOTH_STEP_FACTOR * run.statistics.steps + EXTRA_STEPS,
                 },
@@ -160,10 +157,7 @@ impl ToleranceSeries {
     }
 
     fn run_at(&self, tolerance: f64) -> Option<&Run> {
-        let found = self
-            .runs
-            .iter()
-            .find(|(run_tolerance, _)| *run_tolerance == tolerance);
-        found.map(|(_, run)| run)
+        let mut runs = self.runs.iter();
+        Some(&runs.find(|(of_run, _)| *of_run == tolerance)?.1)
     }
 }

@@ -1,4 +1,4 @@
-//! The study as a part of the reports: three telling cases, and a text that every machine reproduces.
+//! The study as a part of the reports: three cases, and a text that every machine reproduces.
 
 use super::combination::{
     CostMeasure, Effort, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
@@ -13,14 +13,14 @@ use dwell_study::{Outcome, no_progress};
 use rayon::prelude::*;
 use std::fmt::Write as _;
 
-/// A short turning motion, one with a dwell, and one under friction that a motor drives.
+/// A short rotation, a motion with a dwell, and one under friction that a motor drives.
 const SELECTED_CASES: [&str; 3] = ["crank-rocker", "single-dwell", "slider-crank-friction"];
 /// The finest tolerance of the text: below it rounding has a say in the steps that are taken.
 const FINEST_PRINTED_TOLERANCE: f64 = 0.9e-9;
 /// Accuracies of the text.
 const ACCURACIES: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
-/// The study of the telling cases among some scenes, with what there is time for: `work-precision/NAME.png` and `.md`,
+/// The brief study of the selected cases among some scenes: `work-precision/NAME.png` and `.md`,
 /// and `work-precision.txt`, which holds counts and errors and no times.
 ///
 /// # Errors
@@ -33,18 +33,13 @@ pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
         let name = &scene.name;
         let mut files = Files::new();
         let figure = figure::figure(scene, &found, name);
-        files.add(
-            format!("work-precision/{name}.png"),
-            signed_png(scene, &figure)?,
-        );
+        let picture = signed_png(scene, &figure)?;
+        files.add(format!("work-precision/{name}.png"), picture);
         let document = report::document(scene, &found, name);
         files.add(format!("work-precision/{name}.md"), document.markdown());
-        // Under dry friction the last bit of a sine decides which steps are rejected: nothing to be reproduced.
-        let text_of_case = match found.quadrature() {
-            Some(_) => snapshot(scene, &found),
-            None => String::new(),
-        };
-        Ok((files, text_of_case))
+        // Under dry friction the last bit of a sine decides which steps are rejected: not reproducible.
+        let text = found.quadrature().map(|_| snapshot(scene, &found));
+        Ok((files, text.unwrap_or_default()))
     };
     let done: Vec<(Files, String)> = selected.par_iter().map(one).collect::<Result<_, _>>()?;
     let mut outcome = Outcome::default();
@@ -58,7 +53,7 @@ pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
     Ok(outcome)
 }
 
-/// Counts to two digits and errors to powers of ten, of what does not hang on rounding.
+/// Counts to two digits and errors to powers of ten, where they do not depend on rounding.
 fn snapshot(scene: &Scene, found: &WorkPrecision) -> String {
     let mut text = format!(
         "\n{}, t = 0 to {} s, against quadrature: evaluations, and errors of coordinate ({}), energy and worst reaction\n",
@@ -70,8 +65,8 @@ fn snapshot(scene: &Scene, found: &WorkPrecision) -> String {
         let Integrator::Steps(method, tolerance) = point.combination.integrator else {
             continue;
         };
-        if point.combination.evaluation != Evaluation::Exact || tolerance < FINEST_PRINTED_TOLERANCE
-        {
+        let exact = point.combination.evaluation == Evaluation::Exact;
+        if !exact || tolerance < FINEST_PRINTED_TOLERANCE {
             continue;
         }
         let errors = ErrorQuantity::ALL.map(|q| nearest_power(point.errors.of(q)));
@@ -87,17 +82,11 @@ fn snapshot(scene: &Scene, found: &WorkPrecision) -> String {
         );
     }
     for accuracy in ACCURACIES {
-        let k = found.cheapest(
-            ErrorQuantity::Coordinate,
-            CostMeasure::Evaluations,
-            accuracy,
-        );
+        let (quantity, measure) = (ErrorQuantity::Coordinate, CostMeasure::Evaluations);
+        let k = found.cheapest(quantity, measure, accuracy);
         let name = k.map_or("none".to_owned(), |k| found.points[k].combination.name());
-        let _ = writeln!(
-            text,
-            "  fewest evaluations for {accuracy:.0e} {}: {name}",
-            found.unit
-        );
+        let unit = found.unit;
+        text += &format!("  fewest evaluations for {accuracy:.0e} {unit}: {name}\n");
     }
     text
 }

@@ -1,4 +1,4 @@
-//! The motion that is studied: that of the scene, or one that the workbench sets, bounded so that a study takes
+//! The motion that is studied: that of the scene, or a free motion from the assembly, bounded so that a study takes
 //! seconds.
 
 use crate::cases::reference::Reference;
@@ -15,18 +15,18 @@ use dwell_study::models::build_machine;
 use dwell_study::number_format::digits;
 use std::f64::consts::TAU;
 
-/// Periods of a motion that repeats itself, and turns or swings of another, at most.
+/// Periods of a periodic motion, and revolutions or oscillations of another, at most.
 const MAX_PERIODS: f64 = 3.0;
 /// What is left of a motion that ends by itself: next to its end everything grows.
 const KEPT_FRACTION: f64 = 0.9;
-/// How the motion is looked at beforehand, and the most steps of that.
+/// Method, tolerance and most steps of the run that bounds the motion.
 const PREVIEW_RUN: (Method, f64, usize) = (Method::Bdf, 1e-6, 20_000);
-/// Times at which states are compared, spread evenly: no whole number to a period, three of which are followed.
+/// Times at which states are compared, spread evenly: no whole number to a period, of which there are three.
 const COMPARED_TIMES: usize = 50;
 
 /// A motion to be studied.
 pub(super) struct Subject {
-    /// The scene, with a motion set by the workbench where it had none.
+    /// The scene, with a free motion where it had none.
     pub(super) scene: Scene,
     /// The same with the loads through which its drives act.
     scene_with_drives: Scene,
@@ -43,9 +43,9 @@ pub(super) struct Subject {
     pub(super) times: Vec<f64>,
     /// The smallest and the largest value of the first free coordinate.
     pub(super) coordinate_range: [f64; 2],
-    /// The motion by its energy, where that tells it.
+    /// The motion by its energy, where it follows from that.
     pub(super) orbit: Option<Orbit>,
-    /// What is to be said of it.
+    /// Notes on it.
     pub(super) notes: Vec<String>,
 }
 
@@ -61,37 +61,32 @@ impl Subject {
             return Err(no_free_coordinate(&scene));
         };
         let scene_with_drives = with_drive_loads(&scene)?;
-        let machine_without_reactions = build_machine(&scene, &motion, &[])?;
-        if machine_without_reactions.free().is_empty() {
+        let machine = build_machine(&scene, &motion, &[])?;
+        if machine.free().is_empty() {
             return Err(no_free_coordinate(&scene));
         }
-        let plan = machine_without_reactions.model().plan();
+        let plan = machine.model().plan();
         let all = scene.mechanism.reactions().into_iter().enumerate();
         let determinate = all.filter(|&(k, _)| plan.is_determinate(k));
         let reactions: Vec<Reaction> = determinate.map(|(_, reaction)| reaction).collect();
         let output_machine = build_machine(&scene, &motion, &reactions)?;
-        let start = OdeState {
+        let (q, q_dot) = (&motion.initial_coordinates, &motion.initial_velocities);
+        let initial_state = OdeState {
             t: 0.0,
-            y: machine_without_reactions
-                .initial_state(&motion.initial_coordinates, &motion.initial_velocities),
+            y: machine.initial_state(q, q_dot),
         };
-        let orbit = orbit(&machine_without_reactions, &motion);
-        let (end, coordinate_range) = bound_duration(
-            &scene,
-            &scene_with_drives,
-            &motion,
-            orbit.as_ref(),
-            &mut notes,
-        )?;
+        let orbit = orbit(&machine, &motion);
+        let scenes = [&scene, &scene_with_drives];
+        let (end, coordinate_range) = bound_duration(scenes, &motion, orbit.as_ref(), &mut notes)?;
         let subject = Self {
-            reduced: reduced(&scene, &machine_without_reactions, &output_machine),
+            reduced: reduced(&scene, &machine, &output_machine),
             times: times(end),
             scene,
             scene_with_drives,
-            machine: machine_without_reactions,
+            machine,
             output_machine,
             reactions,
-            initial_state: start,
+            initial_state,
             coordinate_range,
             orbit,
             notes,
@@ -107,11 +102,9 @@ impl Subject {
 
     /// The start in the only coordinate.
     pub(super) fn reduced_state(&self) -> ReducedState {
-        let [q, q_dot] = [
-            self.initial_state.y[0],
-            self.initial_state.y[self.machine.free().len()],
-        ];
-        ReducedState { t: 0.0, q, q_dot }
+        let y = &self.initial_state.y;
+        let (t, q, q_dot) = (0.0, y[0], y[self.machine.free().len()]);
+        ReducedState { t, q, q_dot }
     }
 
     /// Unit of the free coordinates.
@@ -134,18 +127,18 @@ impl Subject {
         explain_motion(&self.scene_with_drives, self.machine.model().plan(), error)
     }
 
-    /// Refuses what stays at rest: all combinations would be exact.
+    /// Refuses a motion that stays at rest: all combinations would be exact.
     fn require_motion(&self) -> Result<(), StudyError> {
         let mut workspace = self.machine.workspace();
-        let y = &self.initial_state.y;
-        let state = self.machine.evaluate(0.0, y, &mut workspace);
+        let state = self
+            .machine
+            .evaluate(0.0, &self.initial_state.y, &mut workspace);
         let state = state.map_err(|e| self.explain(&e))?;
-        let free = self.machine.free();
         let is_moving = |&i: &usize| state.q_dot()[i] != 0.0 || state.q_ddot()[i] != 0.0;
-        if free.iter().any(is_moving) {
-            return Ok(());
+        match self.machine.free().iter().any(is_moving) {
+            true => Ok(()),
+            false => Err(self.explain(&DynamicsError::AtRest)),
         }
-        Err(self.explain(&DynamicsError::AtRest))
     }
 }
 
@@ -155,7 +148,7 @@ fn times(end: f64) -> Vec<f64> {
     before.chain([end]).collect()
 }
 
-/// The scene with a motion: its own, or one that the workbench sets.
+/// The scene with a motion: its own, or a free motion from the assembly.
 fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, StudyError> {
     if scene.motion.is_some() {
         return Ok(scene.clone());
@@ -164,48 +157,36 @@ fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, Stu
         return Err(no_free_coordinate(scene));
     }
     let free_scene = FreeMotionSetup::new(scene, &Reference::default())?.scene;
-    let motion = free_scene.motion.iter();
-    let initial_values = motion.flat_map(|m| {
-        scene
-            .mechanism
-            .actuators
-            .iter()
-            .zip(&m.initial_velocities)
-            .zip(&m.initial_coordinates)
-    });
-    let texts: Vec<String> = initial_values
-        .filter(|((_, speed), _)| **speed != 0.0)
-        .map(|((actuator, speed), start)| {
-            let unit = if actuator.coordinate().is_angle() {
-                "rad"
-            } else {
-                "m"
-            };
+    let mut texts = Vec::new();
+    if let Some(motion) = &free_scene.motion {
+        let starts = motion.initial_coordinates.iter();
+        let starts = starts.zip(&motion.initial_velocities);
+        let actuators = scene.mechanism.actuators.iter().zip(starts);
+        for (actuator, (start, speed)) in actuators.filter(|(_, (_, speed))| **speed != 0.0) {
+            let unit = actuator.coordinate().unit();
             let [start, speed] = [start, speed].map(|&v| digits(v, 6));
-            format!("{} = {start} {unit} with {speed} {unit}/s", actuator.name)
-        })
-        .collect();
+            let name = &actuator.name;
+            texts.push(format!("{name} = {start} {unit} with {speed} {unit}/s"));
+        }
+    }
+    let starts = texts.join(", ");
     notes.push(format!(
-        "the scene has no [motion]: it is set free at {}",
-        texts.join(", ")
+        "the scene has no [motion]: it is set free at {starts}"
     ));
     Ok(free_scene)
 }
 
-/// Nothing can be followed.
+/// The error of a scene that cannot move.
 fn no_free_coordinate(scene: &Scene) -> StudyError {
     let message = "nothing can move in this scene: no coordinate is free";
     let help = "declare the coordinate that moves, as in `[actuators.phi]`";
-    let labels = [(
-        SceneLocation::Whole,
-        "no free actuator in this file".to_owned(),
-    )];
-    scene
-        .error(message.to_owned(), Some(help.to_owned()), &labels)
-        .into()
+    let label = "no free actuator in this file".to_owned();
+    let (message, help) = (message.to_owned(), Some(help.to_owned()));
+    let error = scene.error(message, help, &[(SceneLocation::Whole, label)]);
+    error.into()
 }
 
-/// The motion by its energy. A machine with a state of more than one freedom has none.
+/// The motion by its energy. A machine with more than one degree of freedom has none.
 fn orbit(machine: &Machine, motion: &FreeMotionSpec) -> Option<Orbit> {
     if machine.state_count() != 2 || motion.laws.len() != 1 {
         return None;
@@ -222,10 +203,9 @@ fn reduced(scene: &Scene, machine: &Machine, output_machine: &Machine) -> Option
         .flatten()
 }
 
-/// How long the motion is followed, and how far its first free coordinate goes.
+/// The duration of the motion, and the range of its first free coordinate.
 fn bound_duration(
-    scene: &Scene,
-    scene_with_drives: &Scene,
+    [scene, scene_with_drives]: [&Scene; 2],
     motion: &FreeMotionSpec,
     orbit: Option<&Orbit>,
     notes: &mut Vec<String>,
@@ -235,16 +215,13 @@ fn bound_duration(
     let mut end = requested;
     if let Some(orbit) = orbit.filter(|orbit| requested > MAX_PERIODS * orbit.period) {
         end = MAX_PERIODS * orbit.period;
-        notes.push(format!(
-            "followed for {MAX_PERIODS} periods, {} of {} s",
-            digits(end, 6),
-            digits(requested, 6)
-        ));
+        let periods = format!("{MAX_PERIODS} periods, ");
+        notes.push(shortened_text(&periods, end, requested, ""));
     }
     let (method, tolerance, max_steps) = PREVIEW_RUN;
     let options = Options {
         max_steps,
-        // A step over a whole swing would not see it.
+        // A step over a whole oscillation would not show it.
         max_step: Some(end / COMPARED_TIMES as f64),
         ..Options::new(method, tolerance)
     };
@@ -253,84 +230,70 @@ fn bound_duration(
     let steps = first.map_or(&[][..], |(_, solution)| solution.steps.as_slice());
     let reached = steps.last().map_or(0.0, |last| last.t);
     if let Some(error) = motion_segments.failure.as_ref().filter(|_| reached == 0.0) {
-        return Err(explain_motion(
-            scene_with_drives,
-            free.machine.model().plan(),
-            error,
-        ));
+        let plan = free.machine.model().plan();
+        return Err(explain_motion(scene_with_drives, plan, error));
     }
     let (shortened, reason) = match orbit {
         Some(_) => (end, ""),
-        None => first_revolutions_or_swings(&free.machine, steps, end),
+        None => first_revolutions(&free.machine, steps, end),
     };
     if shortened < end {
-        notes.push(format!(
-            "followed for {reason}, {} of {} s",
-            digits(shortened, 6),
-            digits(requested, 6)
-        ));
         end = shortened;
+        notes.push(shortened_text(reason, end, requested, ""));
     }
     if reached < end {
         end = shorten_before_end(&motion_segments, reached, requested, notes);
     }
     let coordinate = |p: &OdeState| p.y.first().copied().unwrap_or(0.0);
-    let coordinates = steps.iter().filter(|p| p.t <= end).map(coordinate);
-    let (low, high) = coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), q| {
-        (low.min(q), high.max(q))
-    });
-    Ok((end, [low, high]))
+    let coordinates = || steps.iter().filter(|p| p.t <= end).map(coordinate);
+    let low = coordinates().fold(f64::INFINITY, f64::min);
+    Ok((end, [low, coordinates().fold(f64::NEG_INFINITY, f64::max)]))
+}
+
+/// How much of a motion is integrated, and why.
+fn shortened_text(what: &str, end: f64, requested: f64, reason: &str) -> String {
+    let [end, requested] = [end, requested].map(|t| digits(t, 6));
+    format!("integrated for {what}{end} of {requested} s{reason}")
 }
 
 /// The end of a motion that does not last as long as it should in its own coordinate.
 fn shorten_before_end(
-    motion_segments: &SegmentedMotion,
+    motion: &SegmentedMotion,
     reached: f64,
     requested: f64,
     notes: &mut Vec<String>,
 ) -> f64 {
-    let stops = motion_segments.segments.len() == 1 && motion_segments.failure.is_none();
-    let (fraction, reason) = match &motion_segments.failure {
-        // An event that ends the motion is no place where anything grows.
-        None if stops => (1.0, "where an event ends it".to_owned()),
-        Some(DynamicsError::MaxStepsReached {
-            max_steps: steps, ..
-        }) => (1.0, format!("what {steps} steps of a first look reach")),
-        Some(error) if motion_segments.segments.len() == 1 => {
-            (KEPT_FRACTION, format!("short of where it stops ({error})"))
+    let one_chart = motion.segments.len() == 1;
+    let (fraction, reason) = match &motion.failure {
+        // An event that ends the motion is no position where anything grows.
+        None if one_chart => (1.0, "until an event ends it".to_owned()),
+        Some(DynamicsError::MaxStepsReached { max_steps, .. }) => {
+            (1.0, format!("reached in {max_steps} steps of a first run"))
         }
+        Some(error) if one_chart => (KEPT_FRACTION, format!("short of its end ({error})")),
         _ => (
             KEPT_FRACTION,
             "before its coordinate reaches a dead point or a change point is crossed".to_owned(),
         ),
     };
     let end = fraction * reached;
-    notes.push(format!(
-        "followed for {} of {} s, {reason}",
-        digits(end, 6),
-        digits(requested, 6)
-    ));
+    notes.push(shortened_text("", end, requested, &format!(", {reason}")));
     end
 }
 
-/// When some free coordinate has made its turns or swings, and which it made.
-fn first_revolutions_or_swings(
-    machine: &Machine,
-    steps: &[OdeState],
-    end: f64,
-) -> (f64, &'static str) {
+/// The time at which some free coordinate has made three revolutions or oscillations, and which.
+fn first_revolutions(machine: &Machine, steps: &[OdeState], end: f64) -> (f64, &'static str) {
     let (n, plan) = (machine.free().len(), machine.model().plan());
-    let (revolutions_text, swings_text) = ("three turns", "three swings");
     let mut reversals = vec![0.0; n];
     for (before, now) in steps.iter().zip(steps.iter().skip(1)) {
         for (k, &i) in machine.free().iter().enumerate() {
             let distance = (now.y[k] - steps[0].y[k]).abs();
             reversals[k] += f64::from(u8::from(now.y[n + k] * before.y[n + k] < 0.0));
             if plan.is_angle(i) && distance >= MAX_PERIODS * TAU {
-                return (now.t, revolutions_text);
+                return (now.t, "three revolutions, ");
             }
             if reversals[k] > 2.0 * MAX_PERIODS {
-                return (now.t, swings_text);
+                return (now.t, "three oscillations, ");
             }
         }
     }

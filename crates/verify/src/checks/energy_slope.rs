@@ -6,7 +6,7 @@
 //! ```
 //!
 //! (1) is differenced from dense velocities alone; (2) uses dense accelerations and has no step.
-//! The third way, by a trigonometric interpolant, is in its own file.
+//! The third, by a trigonometric interpolant, is in its own file.
 
 use super::row_step;
 use crate::comparison::FindingSpec;
@@ -14,59 +14,43 @@ use crate::context::CheckContext;
 use crate::differences::{DerivativeOrder, derivatives};
 use dwell_findings::{Check, Finding};
 
+const DIFFERENCES: FindingSpec<'_> = FindingSpec {
+    key: "half-dm-differences",
+    check: Check::EnergySlope,
+    comparison: "half dm/dq with extrapolated central differences of the dense kinetic energy",
+    scale: "the largest half dm/dq",
+    tolerance: 1e-11,
+    tolerance_reason: "rounding of E_c over the shortest step that the extrapolation uses",
+};
+const POWER: FindingSpec<'_> = FindingSpec {
+    key: "half-dm-power",
+    comparison: "half dm/dq with the sum of m v·a + I omega alpha at unit speed, by dense accelerations",
+    tolerance: 1e-13,
+    tolerance_reason: "no step; two dense solutions in a row, and terms larger than their sum",
+    ..DIFFERENCES
+};
+
 /// Both findings.
-pub fn energy_slope(context: &CheckContext<'_>) -> Vec<Finding> {
-    let (dense, row) = (&context.dense, context.dense.actuator_row());
+pub(crate) fn energy_slope(context: &CheckContext<'_>) -> Vec<Finding> {
     let scale = context.scales.half_dm;
-    let [differences, powers] =
-        context.for_each_position_into(|position, [differences, powers]| {
-            let half_dm = context.subject.coefficients(position.q)?.half_dm;
-            let u = position.unit_velocity();
-            let slope = derivatives(
-                DerivativeOrder::First,
-                row_step(context, u),
-                position.energy_rounding(),
-                |h| {
-                    let configuration = dense
-                        .step_row(&position.configuration, row, u, position.q + h)
-                        .ok()?;
-                    Some(vec![dense.kinetic_energy(&configuration, &[(row, 1.0)])])
-                },
-            );
-            let (slope, reference_error) = slope
-                .first()
-                .map_or((f64::NAN, 0.0), |e| (e.value, e.error));
-            let location = || context.location(position.q);
-            let unit = "kg m2/rad";
-            let comparison = |difference: f64, reference_error: f64| {
-                position.comparison(difference, scale, reference_error, unit)
-            };
-            differences.record(&comparison(half_dm - slope, reference_error), location);
-            let by_power = half_dm - position.reference.half_dm;
-            powers.record(
-                &comparison(by_power, position.rounding_bound.half_dm),
-                location,
-            );
-            Ok(())
+    let [differences, power] = context.for_each_position(|position, [differences, power]| {
+        let half_dm = context.subject.coefficients(position.q)?.half_dm;
+        let step = row_step(context, position.unit_velocity());
+        let rounding = position.energy_rounding();
+        let slope = derivatives(DerivativeOrder::First, step, rounding, |h| {
+            Some(vec![context.energy_at(position, h)?])
         });
+        let slope = slope.first().map(|e| (e.value, e.error));
+        let (slope, error) = slope.unwrap_or((f64::NAN, 0.0));
+        let (location, unit) = (|| context.location(position.q), "kg m2/rad");
+        position.record(differences, [half_dm - slope, scale, error], unit, location);
+        let by_power = half_dm - position.reference.half_dm;
+        let bound = position.rounding_bound.half_dm;
+        position.record(power, [by_power, scale, bound], unit, location);
+        Ok(())
+    });
     vec![
-        FindingSpec {
-            key: "half-dm-differences",
-            check: Check::EnergySlope,
-            comparison: "half dm/dq with extrapolated central differences of the dense kinetic energy",
-            scale: "the largest half dm/dq",
-            tolerance: 1e-11,
-            tolerance_reason: "rounding of E_c over the shortest step that the extrapolation uses",
-        }
-.finding(context.domain(), differences),
-        FindingSpec {
-            key: "half-dm-power",
-            check: Check::EnergySlope,
-            comparison: "half dm/dq with the sum of m v·a + I omega alpha at unit speed, by dense accelerations",
-            scale: "the largest half dm/dq",
-            tolerance: 1e-13,
-            tolerance_reason: "no step; two dense solutions in a row, and terms larger than their sum",
-        }
-.finding(context.domain(), powers),
+        DIFFERENCES.finding(context.domain(), differences),
+        POWER.finding(context.domain(), power),
     ]
 }

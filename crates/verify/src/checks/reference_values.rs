@@ -20,14 +20,12 @@ pub struct ComparedValue {
     pub condition_number: f64,
 }
 
-/// Holds values against what they should be. Nothing to compare fails.
+/// Compares values with what they should be. Nothing to compare fails.
 pub fn compare_values(spec: &FindingSpec<'_>, domain: String, values: &[ComparedValue]) -> Finding {
     let mut worst = LargestDifference::default();
     for value in values {
         let comparison = Comparison {
-            difference: value.value - value.expected,
-            scale: value.scale,
-            reference_error: 0.0,
+            numbers: [value.value - value.expected, value.scale, 0.0],
             unit: value.unit,
             condition_number: value.condition_number,
         };

@@ -22,24 +22,47 @@
 //! b_k = Σ m v_G(u₂)·a_G + I ω(u₂) α  at q̇₁ = 1, q̈₁ = 0        (4)
 //! ```
 
-use super::row_step;
+use super::{coefficient_units, row_step};
 use crate::comparison::FindingSpec;
 use crate::context::{CheckContext, CheckedPosition};
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
 use dwell_findings::{Check, Finding};
 
+const A: FindingSpec<'_> = FindingSpec {
+    key: "a-released",
+    check: Check::ReleasedConstraint,
+    comparison: "every a with m12, each constraint released as a second coordinate",
+    scale: "the largest a of the same unit",
+    tolerance: 1e-13,
+    tolerance_reason: "no step; the released speed is a dense solution",
+};
+const B: FindingSpec<'_> = FindingSpec {
+    key: "b-released",
+    comparison: "every b with dm12/dq1 - half dm1/dq2, each constraint really opened and closed again",
+    scale: "the largest b of the same unit",
+    tolerance: 1e-11,
+    tolerance_reason: "rounding of m1 and m12 over the shortest step that the extrapolation uses",
+    ..A
+};
+const POWER: FindingSpec<'_> = FindingSpec {
+    key: "b-virtual-power",
+    comparison: "every b with the power of the inertia forces at the released speed",
+    tolerance: 1e-13,
+    tolerance_reason: "no step; dense speeds and accelerations one after the other",
+    ..B
+};
+
 /// Three findings: a, b by differences, b by virtual power. None where joints share all reactions.
-pub fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
-    if context.dense.determinate[..context.reactions.len()]
-        .iter()
-        .all(|&is_determinate| !is_determinate)
-    {
+pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
+    let count = context.reactions.len();
+    let determinate = context.dense.determinate[..count].iter();
+    let determinate = determinate.filter(|&&is| is).count();
+    if determinate == 0 {
         return Vec::new();
     }
-    let [a, b, power] = context.for_each_position_into(|position, [a, b, power]| {
+    let [a, b, power] = context.for_each_position(|position, [a, b, power]| {
         let subject = context.subject.coefficients(position.q)?;
-        if subject.a.len() != context.reactions.len() || subject.b.len() != context.reactions.len()
-        {
+        if subject.a.len() != count || subject.b.len() != count {
             for worst in [a, b, power] {
                 worst.record_failure("the subject does not answer for every reaction".into());
             }
@@ -49,79 +72,27 @@ pub fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
             // Of a reaction that is not determined there is no single value.
             let Some(b_k) = b_k else { continue };
             let location = || context.reaction_location(position.q, k);
-            let moment = context.reactions[k].component.unit() != "N";
-            let (a_unit, b_unit) = if moment {
-                ("N m per rad/s2", "N m per (rad/s)2")
-            } else {
-                ("N per rad/s2", "N per (rad/s)2")
-            };
-            let comparison = position.comparison(
-                subject.a[k] - position.reference.a[k],
-                context.a_scale(k),
-                position.rounding_bound.a[k],
-                a_unit,
-            );
-            a.record(&comparison, location);
-            let comparison = position.comparison(
-                subject.b[k] - b_k.value,
-                context.b_scale(k),
-                b_k.error,
-                b_unit,
-            );
-            b.record(&comparison, location);
-            let comparison = position.comparison(
-                subject.b[k] - position.reference.b[k],
-                context.b_scale(k),
-                position.rounding_bound.b[k],
-                b_unit,
-            );
-            power.record(&comparison, location);
+            let [a_unit, b_unit] = coefficient_units(context.reactions[k].component.unit() != "N");
+            let (reference, bound) = (&position.reference, &position.rounding_bound);
+            let [a_scale, b_scale] = context.coefficient_scales(k);
+            let numbers = [subject.a[k] - reference.a[k], a_scale, bound.a[k]];
+            position.record(a, numbers, a_unit, location);
+            let numbers = [subject.b[k] - b_k.value, b_scale, b_k.error];
+            position.record(b, numbers, b_unit, location);
+            let numbers = [subject.b[k] - reference.b[k], b_scale, bound.b[k]];
+            position.record(power, numbers, b_unit, location);
         }
         Ok(())
     });
-    let determinate = context.dense.determinate[..context.reactions.len()].iter();
-    let determinate = determinate
-        .filter(|&&is_determinate| is_determinate)
-        .count();
     let mut domain = format!("{determinate} reactions at {}", context.domain());
-    if determinate < context.reactions.len() {
-        let indeterminate = context.reactions.len() - determinate;
+    if determinate < count {
+        let indeterminate = count - determinate;
         domain += &format!("; {indeterminate} that joints share are not determined");
     }
-    let spec = |key, compared, scale, tolerance, why| FindingSpec {
-        key,
-        check: Check::ReleasedConstraint,
-        comparison: compared,
-        scale,
-        tolerance,
-        tolerance_reason: why,
-    };
-    vec![
-        spec(
-            "a-released",
-            "every a with m12, each constraint released as a second coordinate",
-            "the largest a of the same unit",
-            1e-13,
-            "no step; the released speed is a dense solution",
-        )
-        .finding(domain.clone(), a),
-        spec(
-            "b-released",
-            "every b with dm12/dq1 - half dm1/dq2, each constraint really opened and closed again",
-            "the largest b of the same unit",
-            1e-11,
-            "rounding of m1 and m12 over the shortest step that the extrapolation uses",
-        )
-        .finding(domain.clone(), b),
-        spec(
-            "b-virtual-power",
-            "every b with the power of the inertia forces at the released speed",
-            "the largest b of the same unit",
-            1e-13,
-            "no step; dense speeds and accelerations one after the other",
-        )
-        .finding(domain, power),
-    ]
+    let findings = [(A, a), (B, b), (POWER, power)];
+    findings
+        .map(|(spec, worst)| spec.finding(domain.clone(), worst))
+        .into()
 }
 
 /// Eq. (3) for every reaction that is determined.
@@ -130,46 +101,28 @@ fn b_by_differences(
     position: &CheckedPosition,
 ) -> Vec<Option<Extrapolated>> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
-    let u = position.unit_velocity();
-    // All m₁₂ along q₁ at once: the released speeds are columns of one inverse.
-    let along_q1 = derivatives(
-        DerivativeOrder::First,
-        row_step(context, u),
-        position.energy_rounding(),
-        |h| {
-            let configuration = dense
-                .step_row(&position.configuration, row, u, position.q + h)
-                .ok()?;
-            let velocities = dense.unit_velocities(&configuration);
-            let u1 = velocities.last()?;
-            let m12 = |u2: &Vec<f64>| dense.inertia(&configuration, u1, u2);
-            Some(velocities[..row].iter().map(m12).collect())
-        },
-    );
+    let (first, rounding) = (DerivativeOrder::First, position.energy_rounding());
+    let step = row_step(context, position.unit_velocity());
+    // All m₁₂ along q₁ at once: the released velocities are columns of one inverse.
+    let along_q1 = derivatives(first, step, rounding, |h| {
+        let configuration = context.stepped(position, h)?;
+        let velocities = dense.unit_velocities(&configuration);
+        let u1 = velocities.last()?;
+        let m12 = |u2: &Vec<f64>| dense.inertia(&configuration, u1, u2);
+        Some(velocities[..row].iter().map(m12).collect())
+    });
     let along_q2 = |k: usize| {
-        let w = &position.unit_velocities[k];
-        let m1 = derivatives(
-            DerivativeOrder::First,
-            row_step(context, w),
-            position.energy_rounding(),
-            |h| {
-                let opened = dense.step_row(&position.configuration, k, w, h).ok()?;
-                let u1 = dense.unit_velocity(&opened, row);
-                Some(vec![dense.inertia(&opened, &u1, &u1)])
-            },
-        );
-        m1.first().copied()
+        let step = row_step(context, &position.unit_velocities[k]);
+        let m1 = |h: f64| Some(vec![context.opened_m(position, k, h)?]);
+        derivatives(first, step, rounding, m1).first().copied()
     };
-    (0..row)
-        .map(|k| {
-            let estimate = || match (along_q1.get(k), along_q2(k)) {
-                (Some(m12), Some(m1)) => Extrapolated {
-                    value: m12.value - 0.5 * m1.value,
-                    error: m12.error + 0.5 * m1.error,
-                },
-                _ => NO_ESTIMATE,
-            };
-            dense.determinate[k].then(estimate)
-        })
-        .collect()
+    let estimate = |k: usize| match (along_q1.get(k), along_q2(k)) {
+        (Some(m12), Some(m1)) => Extrapolated {
+            value: m12.value - 0.5 * m1.value,
+            error: m12.error + 0.5 * m1.error,
+        },
+        _ => NO_ESTIMATE,
+    };
+    let of = |k: usize| dense.determinate[k].then(|| estimate(k));
+    (0..row).map(of).collect()
 }

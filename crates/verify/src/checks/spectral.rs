@@ -1,4 +1,4 @@
-//! Check 2, third way: the slope of the trigonometric interpolant of m over a full turn.
+//! Check 2, by the slope of the trigonometric interpolant of m over a full revolution.
 //!
 //! With N equidistant nodes qⱼ, N even, and mⱼ = 2 E_c there at unit velocity,
 //!
@@ -8,10 +8,10 @@
 //! ```
 //!
 //! m is periodic and smooth, so the error falls faster than any power of 1/N: no step, and no
-//! local information at all. N is doubled until the slope at the judged positions no longer moves.
+//! local information at all. N is doubled until the slope at the checked positions no longer moves.
 //!
 //! The nodes are followed from one to the next by the dense side itself, which also shows that the
-//! mechanism comes back to where it started after a turn.
+//! mechanism comes back to where it started after a revolution.
 
 use crate::comparison::{FindingSpec, LargestDifference};
 use crate::constraint_closing::ClosedConfiguration;
@@ -29,58 +29,41 @@ const MAX_NODES: usize = 4096;
 /// less than the rounding of m times N, which more nodes only make worse.
 const CONVERGENCE_TOLERANCE: f64 = 1e-13;
 
-/// One finding over a full turn; none over part of one, where m is not periodic.
-pub fn spectral(context: &CheckContext<'_>) -> Vec<Finding> {
+const SPECTRAL: FindingSpec<'_> = FindingSpec {
+    key: "half-dm-spectral",
+    check: Check::EnergySlope,
+    comparison: "half dm/dq with the derivative of the trigonometric interpolant of 2 E_c",
+    scale: "the largest half dm/dq",
+    tolerance: 1e-12,
+    tolerance_reason: "the interpolant multiplies the rounding of m by the order of its last harmonics",
+};
+
+/// One finding over a full revolution; none over part of one, where m is not periodic.
+pub(crate) fn spectral(context: &CheckContext<'_>) -> Vec<Finding> {
     let Some(first) = context.positions.first() else {
         return Vec::new();
     };
     if context.case.range != Range::Full {
         return Vec::new();
     }
-    let mut nodes = 0;
-    let worst = match converged_slopes(context, first) {
-        Ok((slopes, reference_error, count)) => {
-            nodes = count;
-            compare_slopes(context, &slopes, reference_error)
-        }
-        Err(message) => {
-            let mut worst = LargestDifference::default();
-            worst.record_failure(message);
-            worst
-        }
+    let (nodes, worst) = match converged_slopes(context, first) {
+        Ok((slopes, error, count)) => (count, compare_slopes(context, &slopes, error)),
+        Err(message) => (0, LargestDifference::failed(message)),
     };
-    vec![
-        FindingSpec {
-            key: "half-dm-spectral",
-            check: Check::EnergySlope,
-            comparison: "half dm/dq with the derivative of the trigonometric interpolant of 2 E_c",
-            scale: "the largest half dm/dq",
-            tolerance: 1e-12,
-            tolerance_reason: "the interpolant multiplies the rounding of m by the order of its last harmonics",
-        }
-.finding(format!(
-                "{}, interpolated from {nodes} equidistant nodes",
-                context.domain()
-            ), worst),
-    ]
+    let domain = context.domain();
+    let domain = format!("{domain}, interpolated from {nodes} equidistant nodes");
+    vec![SPECTRAL.finding(domain, worst)]
 }
 
-fn compare_slopes(
-    context: &CheckContext<'_>,
-    slopes: &[f64],
-    reference_error: f64,
-) -> LargestDifference {
+fn compare_slopes(context: &CheckContext<'_>, slopes: &[f64], error: f64) -> LargestDifference {
     let mut worst = LargestDifference::default();
     for (position, slope) in context.positions.iter().zip(slopes) {
         match context.subject.coefficients(position.q) {
             Ok(coefficients) => {
-                let comparison = position.comparison(
-                    coefficients.half_dm - slope,
-                    context.scales.half_dm,
-                    reference_error,
-                    "kg m2/rad",
-                );
-                worst.record(&comparison, || context.location(position.q));
+                let difference = coefficients.half_dm - slope;
+                let numbers = [difference, context.scales.half_dm, error];
+                let location = || context.location(position.q);
+                position.record(&mut worst, numbers, "kg m2/rad", location);
             }
             Err(error) => worst.record_error(&error),
         }
@@ -88,22 +71,19 @@ fn compare_slopes(
     worst
 }
 
-/// The slopes at all sites, how much the last doubling moved them, and the number of nodes.
+/// The slopes at all positions, how much the last doubling moved them, and the number of nodes.
 fn converged_slopes(
     context: &CheckContext<'_>,
     first: &CheckedPosition,
 ) -> Result<(Vec<f64>, f64, usize), String> {
     let mut nodes = follow_revolution(context, first, MIN_NODES)
-        .map_err(|e| format!("not to be followed through a full turn: {e}"))?;
+        .map_err(|e| format!("it cannot be followed through a full revolution: {e}"))?;
     let mut slopes = interpolant_slopes(context, first.q, &nodes);
     loop {
         nodes = double_nodes(context, first.q, &nodes).map_err(|e| e.to_string())?;
-        let finer = self::interpolant_slopes(context, first.q, &nodes);
-        let change = slopes
-            .iter()
-            .zip(&finer)
-            .map(|(a, b)| (a - b).abs())
-            .fold(0.0, f64::max);
+        let finer = interpolant_slopes(context, first.q, &nodes);
+        let changes = slopes.iter().zip(&finer).map(|(a, b)| (a - b).abs());
+        let change = changes.fold(0.0, f64::max);
         slopes = finer;
         let rounding = f64::EPSILON * context.scales.m * fraction(nodes.len(), 1);
         let small = (CONVERGENCE_TOLERANCE * context.scales.half_dm).max(rounding);
@@ -113,7 +93,7 @@ fn converged_slopes(
     }
 }
 
-/// Follows one turn from a site; the end must be the start again.
+/// Follows one revolution from a position; the end must be the start again.
 fn follow_revolution(
     context: &CheckContext<'_>,
     first: &CheckedPosition,
@@ -127,20 +107,11 @@ fn follow_revolution(
         nodes.push(here.clone());
     }
     nodes.truncate(count);
-    let mut gap: Vec<_> = here
-        .x
-        .iter()
-        .zip(&first.configuration.x)
-        .map(|(a, b)| a - b)
-        .collect();
-    for angle in gap.iter_mut().skip(2).step_by(3) {
-        *angle -= TAU * (*angle / TAU).round();
-    }
-    let closing_gap = dense.scaled_norm(&gap);
-    if closing_gap.is_nan() || closing_gap > 1e-9 {
+    let gap = dense.distance(&here, &first.configuration);
+    if gap.is_nan() || gap > 1e-9 {
         return Err(DenseError::NotClosed {
             steps: count,
-            last_step: closing_gap,
+            last_step: gap,
         });
     }
     Ok(nodes)
@@ -154,18 +125,15 @@ fn double_nodes(
 ) -> Result<Vec<ClosedConfiguration>, DenseError> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
     let count = 2 * nodes.len();
-    let pairs: Result<Vec<_>, DenseError> = nodes
-        .par_iter()
-        .enumerate()
-        .map(|(j, node)| {
-            let q = start + TAU * fraction(2 * j + 1, count);
-            Ok([node.clone(), dense.follow(node, row, q)?])
-        })
-        .collect();
+    let pair = |(j, node): (usize, &ClosedConfiguration)| {
+        let q = start + TAU * fraction(2 * j + 1, count);
+        Ok([node.clone(), dense.follow(node, row, q)?])
+    };
+    let pairs: Result<Vec<_>, DenseError> = nodes.par_iter().enumerate().map(pair).collect();
     Ok(pairs?.into_iter().flatten().collect())
 }
 
-/// Eq. (2) at all sites.
+/// Eq. (2) at all positions.
 fn interpolant_slopes(
     context: &CheckContext<'_>,
     start: f64,
@@ -173,27 +141,22 @@ fn interpolant_slopes(
 ) -> Vec<f64> {
     let row = context.dense.actuator_row();
     let count = nodes.len();
-    let m: Vec<f64> = nodes
-        .iter()
-        .map(|node| 2.0 * context.dense.kinetic_energy(node, &[(row, 1.0)]))
-        .collect();
+    let m = |node| 2.0 * context.dense.kinetic_energy(node, &[(row, 1.0)]);
+    let m: Vec<f64> = nodes.iter().map(m).collect();
     // A constant has no slope, but would lend its rounding to every harmonic.
-    let mean = m.iter().sum::<f64>() / f64::from(u32::try_from(count).unwrap_or(u32::MAX));
-    let circle: Vec<(f64, f64)> = (0..count)
-        .map(|j| (TAU * fraction(j, count)).sin_cos())
-        .collect();
-    let harmonics: Vec<(f64, f64)> = (0..count / 2)
-        .into_par_iter()
-        .map(|k| {
-            let (mut cos, mut sin) = (0.0, 0.0);
-            for (j, m) in m.iter().enumerate() {
-                let (s, c) = circle[(j * k) % count];
-                cos += (m - mean) * c;
-                sin += (m - mean) * s;
-            }
-            (cos * fraction(2, count), sin * fraction(2, count))
-        })
-        .collect();
+    let mean = m.iter().sum::<f64>() / count as f64;
+    let on_circle = |j| (TAU * fraction(j, count)).sin_cos();
+    let circle: Vec<(f64, f64)> = (0..count).map(on_circle).collect();
+    let harmonic = |k: usize| {
+        let (mut cos, mut sin) = (0.0, 0.0);
+        for (j, m) in m.iter().enumerate() {
+            let (s, c) = circle[(j * k) % count];
+            cos += (m - mean) * c;
+            sin += (m - mean) * s;
+        }
+        (cos * fraction(2, count), sin * fraction(2, count))
+    };
+    let harmonics: Vec<(f64, f64)> = (0..count / 2).into_par_iter().map(harmonic).collect();
     let slope = |q: f64| -> f64 {
         let terms = harmonics.iter().zip(0_u32..).map(|(&(cos, sin), k)| {
             let k = f64::from(k);
@@ -202,15 +165,11 @@ fn interpolant_slopes(
         });
         0.5 * terms.sum::<f64>()
     };
-    context
-        .positions
-        .par_iter()
-        .map(|position| slope(position.q))
-        .collect()
+    let positions = context.positions.par_iter();
+    positions.map(|position| slope(position.q)).collect()
 }
 
 /// j / n of two counts that are small enough to be exact.
 fn fraction(j: usize, n: usize) -> f64 {
-    let exact = |count: usize| f64::from(u32::try_from(count).unwrap_or(u32::MAX));
-    exact(j) / exact(n)
+    j as f64 / n as f64
 }

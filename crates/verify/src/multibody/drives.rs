@@ -1,19 +1,19 @@
-//! What drives do, from the words of their kinds.
+//! The forces of drives, from the definitions of their kinds.
 
 use super::state::MultibodyState;
 use super::{MultibodyError, MultibodySystem};
-use dwell_geometry::{Actuator, Coordinate, Mechanism};
+use dwell_geometry::{Actuator, ActuatorKind, Coordinate, Mechanism};
 use dwell_kinetostatics::{Drive, DriveKind};
 
-/// What a drive does at an instant.
+/// The output of a drive at an instant.
 pub(super) struct DriveOutput {
-    /// On the coordinate, N·m or N.
+    /// The force on the coordinate, N·m or N.
     pub(super) force: f64,
     /// The rate of its current (A/s) or integral (rad/s or m/s), if it has one.
     pub(super) state_rate: f64,
 }
 
-/// What the rotor's inertia is on the coordinate, kg m² or kg.
+/// The rotor's inertia on the coordinate, kg m² or kg.
 pub(super) fn rotor_inertia(kind: &DriveKind) -> f64 {
     match kind {
         DriveKind::Motor(motor) => motor.gear_ratio * motor.gear_ratio * motor.rotor_inertia,
@@ -21,8 +21,8 @@ pub(super) fn rotor_inertia(kind: &DriveKind) -> f64 {
     }
 }
 
-/// The mechanism with one more actuator for each drive: its row tells the drive's coordinate, and what
-/// a unit of its action does to every body.
+/// The mechanism with one more actuator for each drive: its row gives the drive's coordinate, and the
+/// effect of a unit of its force on every body.
 pub(super) fn with_drives(
     mechanism: &Mechanism,
     drives: &[Drive],
@@ -32,13 +32,11 @@ pub(super) fn with_drives(
         let what = "its coordinate is not there";
         let wrong = MultibodyError::Drive { drive: i, what };
         let (bodies, kind) = match drive.coordinate {
-            Coordinate::Angle(bodies) => (bodies, dwell_geometry::ActuatorKind::Angle),
-            Coordinate::Length { bodies, points } => {
-                (bodies, dwell_geometry::ActuatorKind::Length(points))
-            }
+            Coordinate::Angle(bodies) => (bodies, ActuatorKind::Angle),
+            Coordinate::Length { bodies, points } => (bodies, ActuatorKind::Length(points)),
             Coordinate::Travel(joint) => {
                 let of = mechanism.joints.get(joint.0).ok_or(wrong)?;
-                (of.bodies, dwell_geometry::ActuatorKind::Travel(joint))
+                (of.bodies, ActuatorKind::Travel(joint))
             }
         };
         if bodies.iter().any(|b| b.0 >= mechanism.bodies.len()) {
@@ -91,27 +89,24 @@ impl MultibodySystem {
                 force: self.magnitude(force, at)?,
                 state_rate: 0.0,
             }),
-            // u = R i + L di/dt + k (N q̇): the rotor turns N times as fast, its couple arrives N-fold.
+            // u = R i + L di/dt + k (N q̇): the rotor rotates N times as fast, and its torque acts N-fold.
             DriveKind::Motor(motor) => {
                 let net_voltage = self.magnitude(&motor.voltage, at)?
                     - motor.torque_constant * motor.gear_ratio * speed;
                 let algebraic = motor.inductance == 0.0;
-                let current = if algebraic {
-                    net_voltage / motor.resistance
-                } else {
-                    state
+                let (current, state_rate) = match algebraic {
+                    true => (net_voltage / motor.resistance, 0.0),
+                    false => {
+                        let drop = net_voltage - motor.resistance * state;
+                        (state, drop / motor.inductance)
+                    }
                 };
-                let drop = net_voltage - motor.resistance * current;
                 Some(DriveOutput {
                     force: motor.gear_ratio * (motor.torque_constant * current),
-                    state_rate: if algebraic {
-                        0.0
-                    } else {
-                        drop / motor.inductance
-                    },
+                    state_rate,
                 })
             }
-            // It goes on integrating only what brings it back from its limit.
+            // At its limit it integrates only what brings it back.
             DriveKind::SpeedController(regulator) => {
                 let error = self.magnitude(&regulator.reference_speed, at)? - speed;
                 let unlimited =

@@ -2,19 +2,18 @@
 
 use super::drives::rotor_inertia;
 use super::friction::FrictionResponse;
-use super::rows::CentroidalFrames;
 use super::state::MultibodyState;
 use super::{MotionSample, MultibodyError, MultibodySystem};
-use crate::lu::Lu;
+use crate::dense::DenseMechanism;
 use crate::wrenches::BodyWrench;
-use dwell_geometry::vec2;
+use dwell_geometry::{Vec2, vec2};
 use dwell_kinetostatics::Magnitude;
 use faer::Mat;
 
 /// The equations from a start on: gears meshed, rows chosen.
 pub(super) struct MultibodyOde<'a> {
     pub(super) system: &'a MultibodySystem,
-    pub(super) frames: CentroidalFrames,
+    pub(super) frames: DenseMechanism,
     /// The rows that are solved.
     pub(super) active_rows: Vec<usize>,
     /// The rows that must close.
@@ -31,7 +30,7 @@ pub(super) struct MultibodySolution {
     state: MultibodyState,
 }
 
-/// What acts, but for friction, and the inertia that answers.
+/// All forces but those that depend on reactions, and the inertia.
 struct AppliedForces {
     mass: Mat<f64>,
     force: Vec<f64>,
@@ -63,29 +62,31 @@ fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
 impl MultibodyOde<'_> {
     /// Number of states.
     pub(super) fn dimension(&self) -> usize {
-        2 * self.frames.coordinate_count() + self.system.drives.len() + 1
+        2 * self.frames.rows.columns() + self.system.drives.len() + 1
     }
 
     pub(super) fn state(&self, t: f64, y: &[f64]) -> MultibodyState {
-        let n = self.frames.coordinate_count();
-        let [bodies, velocity] = self.frames.to_frames(&y[..n], &y[n..2 * n]);
+        let n = self.frames.rows.columns();
+        let [poses, velocities] = self.frames.to_frames(&y[..n], &y[n..2 * n]);
         MultibodyState {
             t,
-            poses: bodies,
-            velocities: velocity,
+            poses,
+            velocities,
         }
     }
 
-    /// The forces on the coordinates that acts make: forces, and moments about the centres.
+    /// Adds forces on bodies to those on the coordinates: forces, and moments about the centres.
     fn add_wrenches(&self, wrenches: &[BodyWrench], x: &[f64], force: &mut [f64]) {
+        let ground = self.frames.bodies[self.system.mechanism.ground].shift;
         for wrench in wrenches {
-            let Some(c) = self.frames.columns[wrench.body.0] else {
+            let Some(c) = self.frames.bodies[wrench.body.0].column else {
                 continue;
             };
-            let arm = wrench.point - self.frames.ground_origin - vec2(x[c], x[c + 1]);
+            let arm = wrench.point - ground - vec2(x[c], x[c + 1]);
             force[c] += wrench.force.x;
             force[c + 1] += wrench.force.y;
-            let moment = if wrench.force == dwell_geometry::Vec2::ZERO {
+            let is_couple = wrench.force == Vec2::ZERO;
+            let moment = if is_couple {
                 0.0
             } else {
                 arm.cross(wrench.force)
@@ -94,12 +95,12 @@ impl MultibodyOde<'_> {
         }
     }
 
-    /// The masses, and nothing that acts.
+    /// The masses without any force.
     fn assemble_masses(&self) -> AppliedForces {
-        let n = self.frames.coordinate_count();
+        let n = self.frames.rows.columns();
         let mut mass = Mat::zeros(n, n);
-        for (of, column) in self.system.masses.iter().zip(&self.frames.columns) {
-            if let Some(c) = *column {
+        for (of, body) in self.system.masses.iter().zip(&self.frames.bodies) {
+            if let Some(c) = body.column {
                 mass[(c, c)] = of.mass;
                 mass[(c + 1, c + 1)] = of.mass;
                 mass[(c + 2, c + 2)] = of.inertia;
@@ -114,7 +115,7 @@ impl MultibodyOde<'_> {
         }
     }
 
-    /// All loads but frictions; none if a magnitude cannot be told.
+    /// All loads but those that depend on reactions; none if a magnitude cannot be evaluated.
     fn add_loads(
         &self,
         at: &MultibodyState,
@@ -122,7 +123,10 @@ impl MultibodyOde<'_> {
         to: &mut AppliedForces,
     ) -> Option<()> {
         for (i, load) in self.system.loads.iter().enumerate() {
-            if matches!(load.magnitude, Magnitude::Friction(_)) {
+            if matches!(
+                load.magnitude,
+                Magnitude::Friction(_) | Magnitude::Separating(_)
+            ) {
                 continue;
             }
             let magnitude = self.system.magnitude(&load.magnitude, at)?;
@@ -142,20 +146,16 @@ impl MultibodyOde<'_> {
         point: &EvaluationPoint<'_>,
         to: &mut AppliedForces,
     ) -> Option<()> {
-        let n = self.frames.coordinate_count();
+        let n = self.frames.rows.columns();
         for (d, drive) in self.system.drives.iter().enumerate() {
-            let row = self.frames.actuator_row + self.system.modes.len() + d;
+            let row = self.frames.actuator_row() + self.system.modes.len() + d;
             let velocity = self.frames.row_velocity(&point.jacobian, row, point.v);
-            let output = self
-                .system
-                .drive_output(d, velocity, point.drive_states[d], at)?;
+            let state = point.drive_states[d];
+            let output = self.system.drive_output(d, velocity, state, at)?;
             let inertia = rotor_inertia(&drive.kind);
             let jacobian_row = &point.jacobian[row * n..][..n];
-            add_scaled(
-                &mut to.force,
-                output.force - inertia * point.velocity_products[row],
-                jacobian_row,
-            );
+            let force = output.force - inertia * point.velocity_products[row];
+            add_scaled(&mut to.force, force, jacobian_row);
             for (i, a) in jacobian_row.iter().enumerate() {
                 for (j, b) in jacobian_row.iter().enumerate() {
                     to.mass[(i, j)] += inertia * a * b;
@@ -171,7 +171,7 @@ impl MultibodyOde<'_> {
     /// Solves (1) at a state [x, v, states of the drives, work].
     pub(super) fn solve(&self, t: f64, y: &[f64]) -> Result<MultibodySolution, MultibodyError> {
         let frames = &self.frames;
-        let n = frames.coordinate_count();
+        let n = frames.rows.columns();
         let not_finite = MultibodyError::NotFinite { t };
         if y.iter().any(|y| !y.is_finite()) {
             return Err(not_finite);
@@ -188,13 +188,14 @@ impl MultibodyOde<'_> {
             velocity_products,
         };
         let mut applied = self.assemble_masses();
-        self.add_loads(&at, &point, &mut applied)
-            .ok_or(not_finite)?;
-        self.add_drives(&at, &point, &mut applied)
-            .ok_or(not_finite)?;
+        let loads = self.add_loads(&at, &point, &mut applied);
+        loads.ok_or(not_finite)?;
+        let drives = self.add_drives(&at, &point, &mut applied);
+        drives.ok_or(not_finite)?;
         let (a, multipliers) = self.solve_with_friction(&at, &point, &mut applied)?;
         let velocities = &self.prescribed_values(t)[1];
-        for (tau, velocity) in multipliers.iter().zip(velocities).skip(frames.actuator_row) {
+        let rates = multipliers.iter().zip(velocities);
+        for (tau, velocity) in rates.skip(frames.actuator_row()) {
             applied.power += tau * velocity;
         }
         let derivative = [v, &a, &applied.drive_state_rates, &[applied.power]].concat();
@@ -209,7 +210,7 @@ impl MultibodyOde<'_> {
         })
     }
 
-    /// What answers to all that acts, with the frictions.
+    /// Accelerations and multipliers under all forces, with the frictions.
     fn solve_with_friction(
         &self,
         at: &MultibodyState,
@@ -220,13 +221,12 @@ impl MultibodyOde<'_> {
         let frictions = self.system.frictions();
         let mut forces = vec![std::mem::take(&mut applied.force)];
         for (load, _) in &frictions {
-            let mut unit = vec![0.0; self.frames.coordinate_count()];
+            let mut unit = vec![0.0; self.frames.rows.columns()];
             self.add_wrenches(&self.system.wrenches(*load, 1.0, at), point.x, &mut unit);
             forces.push(unit);
         }
-        let mut found = self
-            .solve_augmented(&applied.mass, point, &forces, at.t)?
-            .into_iter();
+        let found = self.solve_augmented(&applied.mass, point, &forces, at.t)?;
+        let mut found = found.into_iter();
         let (mut a, mut multipliers) = found.next().ok_or(not_finite)?;
         let (unit_accelerations, unit_reactions): (Vec<_>, Vec<_>) = found.unzip();
         let response = FrictionResponse {
@@ -243,8 +243,8 @@ impl MultibodyOde<'_> {
         Ok((a, multipliers))
     }
 
-    /// Accelerations and multipliers for several forces, the first with the accelerations that the
-    /// rows want, the others with none.
+    /// Accelerations and multipliers for several forces, the first with the prescribed accelerations of the
+    /// rows, the others with none.
     fn solve_augmented(
         &self,
         mass: &Mat<f64>,
@@ -253,19 +253,12 @@ impl MultibodyOde<'_> {
         t: f64,
     ) -> Result<Vec<AugmentedSolution>, MultibodyError> {
         let frames = &self.frames;
-        let (n, m) = (frames.coordinate_count(), self.active_rows.len());
+        let (n, m) = (frames.rows.columns(), self.active_rows.len());
         let scale = |c| frames.column_scale(c);
         let scaled = |i: usize, j: usize| mass[(i, j)] * scale(i) * scale(j);
         // Kilograms of the size of one, as the rows are.
         let largest = (0..n).map(|i| scaled(i, i)).fold(0.0, f64::max);
         let unit = if largest > 0.0 { largest } else { 1.0 };
-        let mut matrix = Mat::zeros(n + m, n + m);
-        for j in 0..n {
-            for i in 0..n {
-                matrix[(i, j)] = scaled(i, j) / unit;
-            }
-        }
-        self.add_border(&point.jacobian, &mut matrix);
         let mut right = Mat::zeros(n + m, forces.len());
         for (k, force) in forces.iter().enumerate() {
             for (c, force) in force.iter().enumerate() {
@@ -274,11 +267,11 @@ impl MultibodyOde<'_> {
         }
         let prescribed_accelerations = &self.prescribed_values(t)[2];
         for (k, &row) in self.active_rows.iter().enumerate() {
-            right[(n + k, 0)] = (prescribed_accelerations[row] - point.velocity_products[row])
-                * frames.row_scale[row];
+            let acceleration = prescribed_accelerations[row] - point.velocity_products[row];
+            right[(n + k, 0)] = acceleration * frames.row_scale[row];
         }
-        let lu = Lu::new(matrix).map_err(|pivot| MultibodyError::Singular { t, pivot })?;
-        lu.solve(&mut right);
+        let matrix = |i, j| scaled(i, j) / unit;
+        self.solve_bordered(matrix, &point.jacobian, &mut right, t)?;
         let solution = |k: usize| {
             let a = (0..n).map(|c| right[(c, k)] * scale(c)).collect();
             let mut multipliers = vec![0.0; frames.rows.len()];
@@ -290,24 +283,19 @@ impl MultibodyOde<'_> {
         Ok((0..forces.len()).map(solution).collect())
     }
 
-    /// What is told of a state.
+    /// The sample of a state.
     pub(super) fn sample(&self, t: f64, y: &[f64]) -> Result<MotionSample, MultibodyError> {
-        let MultibodySolution {
-            mut multipliers,
-            drive_forces: drives,
-            state: at,
-            ..
-        } = self.solve(t, y)?;
-        let [kinetic, potential] = self.system.energies(&at);
-        let mut tau = multipliers.split_off(self.frames.actuator_row);
+        let mut solution = self.solve(t, y)?;
+        let [kinetic, potential] = self.system.energies(&solution.state);
+        let mut tau = solution.multipliers.split_off(self.frames.actuator_row());
         tau.truncate(self.system.modes.len());
         Ok(MotionSample {
             t,
-            poses: at.poses,
-            velocities: at.velocities,
-            reactions: multipliers,
+            poses: solution.state.poses,
+            velocities: solution.state.velocities,
+            reactions: solution.multipliers,
             tau,
-            drive_forces: drives,
+            drive_forces: solution.drive_forces,
             kinetic,
             potential,
             work: y.last().copied().unwrap_or(0.0),

@@ -34,7 +34,7 @@ pub(super) struct ExtrapolationSolver<'a> {
     y: Vec<f64>,
     /// Length of the next step, s.
     step: f64,
-    /// By state: what its error is relative to.
+    /// By state: the scale of its error.
     error_scale: Vec<f64>,
     steps_left: usize,
     duration: f64,
@@ -59,10 +59,9 @@ impl<'a> ExtrapolationSolver<'a> {
         start: &MotionSample,
         end: Option<f64>,
     ) -> Result<Self, MultibodyError> {
-        let (x, v) = of.frames.to_centroidal(&start.poses, &start.velocities);
-        let mut y = vec![0.0; of.dimension()];
-        y[..x.len()].copy_from_slice(&x);
-        y[x.len()..2 * x.len()].copy_from_slice(&v);
+        let mut y = of.frames.coordinates(&start.poses)?;
+        y.extend(of.frames.velocities(&start.poses, &start.velocities));
+        y.resize(of.dimension(), 0.0);
         of.project(start.t, &mut y)?;
         let duration = end.map_or(1.0, |end| end - start.t);
         let mut solver = Self {
@@ -86,10 +85,10 @@ impl<'a> ExtrapolationSolver<'a> {
     /// Takes a state's rates into the scales; how fast it moves, in sizes or rad, 1/s.
     fn update_scales(&mut self, derivative: &[f64]) -> f64 {
         let frames = &self.ode.frames;
-        let n = frames.coordinate_count();
+        let n = frames.rows.columns();
         let (v, a) = (&derivative[..n], &derivative[n..2 * n]);
-        let speed_scale = frames.scaled_norm(v).max(frames.scaled_norm(a).sqrt());
-        let speed_scale = speed_scale.max(1.0 / self.duration);
+        let [v, a] = [v, a].map(|rates| frames.largest_component(rates));
+        let speed_scale = v.max(a.sqrt()).max(1.0 / self.duration);
         for (i, scale) in self.error_scale.iter_mut().enumerate() {
             let size = if i < n {
                 frames.size * frames.column_scale(i)
@@ -97,11 +96,7 @@ impl<'a> ExtrapolationSolver<'a> {
                 speed_scale * frames.size * frames.column_scale(i - n)
             } else {
                 let largest = self.y[i].abs().max(derivative[i].abs() / speed_scale);
-                if largest > 0.0 {
-                    largest
-                } else {
-                    f64::MIN_POSITIVE
-                }
+                largest.max(f64::MIN_POSITIVE)
             };
             *scale = scale.max(size);
         }
@@ -157,10 +152,8 @@ impl<'a> ExtrapolationSolver<'a> {
             for (j, coarse) in previous_row.iter().enumerate() {
                 let ratio = (k + 1) as f64 / (k - j) as f64;
                 let weight = 1.0 / (ratio * ratio - 1.0);
-                let fine = &row[j];
-                let better = fine.iter().zip(coarse).map(|(f, c)| f + (f - c) * weight);
-                let better = better.collect();
-                row.push(better);
+                let both = row[j].iter().zip(coarse);
+                row.push(both.map(|(f, c)| f + (f - c) * weight).collect());
             }
             if k > 0 {
                 let error = self.error_norm(&row[k], &row[k - 1]);
@@ -201,10 +194,8 @@ impl<'a> ExtrapolationSolver<'a> {
         let h = step / parts as f64;
         let mut before = self.y.clone();
         let euler_step = |from: &[f64], by: f64, derivative: &[f64]| -> Vec<f64> {
-            from.iter()
-                .zip(derivative)
-                .map(|(y, r)| y + by * r)
-                .collect()
+            let both = from.iter().zip(derivative);
+            both.map(|(y, r)| y + by * r).collect()
         };
         let mut now = euler_step(&before, h, derivative);
         for i in 1..parts {

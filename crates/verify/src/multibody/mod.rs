@@ -1,7 +1,7 @@
 //! Check 6: the full multibody equations, not reduced.
 //!
 //! Every body has its centre of mass and its angle, x = [x_G, y_G, θ], whatever joins it to others,
-//! and every joint has its multipliers. A free actuator has no row, and a drive is what it does; the row of a prescribed one is
+//! and every joint has its multipliers. A free actuator has no row, and a drive is its force; the row of a prescribed one is
 //! imposed by its law of time. At each instant
 //!
 //! ```text
@@ -11,12 +11,12 @@
 //! ```
 //!
 //! in dense numbers: M is singular where bodies are massless, the whole matrix is not. λ of a row is
-//! the action of its first body on its second. Friction makes f depend on λ; the response of (1) to
-//! each friction is a column more, and Newton's method finds how much of each there is.
+//! the force or moment of its first body on its second. Friction and the separating forces of teeth make f depend on λ;
+//! the response of (1) to each is a column more, and Newton's method finds how much of each there is.
 //!
 //! ẋ = v, v̇ = ẍ of (1) are integrated by extrapolation, to the order that the step needs; after each
 //! step positions and velocities are moved by the least that closes the rows again. Nothing here
-//! knows a plan, a tree, a reduced coordinate or another integrator of the workbench.
+//! uses a plan, a tree, a reduced coordinate or another integrator of the project.
 
 mod drives;
 mod equations;
@@ -26,13 +26,14 @@ mod motion_check;
 mod rows;
 mod state;
 
+use crate::dense::DenseMechanism;
 use crate::error::DenseError;
 use dwell_dynamics::CoordinateMode;
 use dwell_geometry::Mechanism;
 use dwell_kinetostatics::{Drive, Load, Mass};
 use extrapolation::ExtrapolationSolver;
 pub use motion_check::check_motion;
-use rows::CentroidalFrames;
+use rows::centroidal_frames;
 
 /// Why the multibody equations cannot be written or followed.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -59,7 +60,7 @@ pub enum MultibodyError {
         /// What is wrong.
         what: &'static str,
     },
-    /// The poses, velocities or times to go by are missing, not finite or not in order.
+    /// The poses, velocities or times are missing, not finite or not in order.
     #[error("the initial state or the times are incomplete, not finite or not increasing")]
     InvalidStart,
     /// Positions that do not close.
@@ -90,7 +91,7 @@ pub enum MultibodyError {
         /// Time, s.
         t: f64,
     },
-    /// The accuracy cannot be had.
+    /// The accuracy is out of reach.
     #[error("at t = {t} s the accuracy needs too many or too short steps")]
     AccuracyNotReached {
         /// Time, s.
@@ -110,9 +111,9 @@ pub struct MotionSample {
     pub velocities: Vec<[f64; 3]>,
     /// The reactions in the order of [`Mechanism::reactions`], N or N·m.
     pub reactions: Vec<f64>,
-    /// By actuator: what its prescribed motion takes, N·m or N; zero for a free one.
+    /// By actuator: the force of its prescribed motion, N·m or N; zero for a free one.
     pub tau: Vec<f64>,
-    /// By drive: its action on the coordinate, N·m or N, without what its rotor's inertia takes.
+    /// By drive: its force on the coordinate, N·m or N, without what its rotor's inertia takes.
     pub drive_forces: Vec<f64>,
     /// Kinetic energy, with the rotors', J.
     pub kinetic: f64,
@@ -131,7 +132,8 @@ pub struct MultibodySystem {
     loads: Vec<Load>,
     modes: Vec<CoordinateMode>,
     drives: Vec<Drive>,
-    frames: CentroidalFrames,
+    /// With an actuator more for each drive, and its frames at the centres of mass.
+    frames: DenseMechanism,
 }
 
 impl MultibodySystem {
@@ -147,7 +149,7 @@ impl MultibodySystem {
         modes: &[CoordinateMode],
         drives: &[Drive],
     ) -> Result<Self, MultibodyError> {
-        let frames = CentroidalFrames::new(&drives::with_drives(mechanism, drives)?, masses)?;
+        let frames = centroidal_frames(&drives::with_drives(mechanism, drives)?, masses)?;
         if modes.len() != mechanism.actuators.len() {
             return Err(MultibodyError::CoordinateModes);
         }
@@ -169,7 +171,7 @@ impl MultibodySystem {
     }
 
     /// Follows the motion from the poses and velocities of `start` (nothing else of it is read but
-    /// its time), with the states of the drives at zero, and tells it at its time and at the
+    /// its time), with the states of the drives at zero, and yields it at its time and at the
     /// `times` after it, s. The start is first moved by the least that closes all rows; gears mesh
     /// as they stand there.
     ///

@@ -3,21 +3,17 @@
 use super::{MotionSample, MultibodyError, MultibodySystem};
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::Component;
+use dwell_geometry::{Component, Reaction};
 use std::f64::consts::TAU;
 
-const TOLERANCE: f64 = 1e-8;
-const TOLERANCE_REASON: &str =
-    "two integrations at a relative tolerance of 1e-12 or finer, grown over the run";
-
-/// Judges a claimed motion: the multibody equations start as its first sample says, and are followed
+/// Checks a claimed motion: the multibody equations start in its first sample, and are followed
 /// to the times of all others. Reactions that the rows do not determine are left out.
 ///
-/// The findings are motion-poses, -velocities, -reactions (where any is determined), -actions and -energy, in this
+/// The findings are motion-poses, -velocities, -reactions (where any is determined), -actuator-forces and -energy, in this
 /// order.
 ///
 /// # Errors
-/// [`MultibodyError`] where the truth itself cannot be had.
+/// [`MultibodyError`] where the multibody equations cannot be solved.
 pub fn check_motion(
     system: &MultibodySystem,
     claimed_motion: &[MotionSample],
@@ -28,16 +24,17 @@ pub fn check_motion(
     system.check(claimed_motion, &reference_motion)
 }
 
-/// Values of one kind of all samples, claimed and true.
+/// Claimed samples with those of the multibody equations.
+type Pairs<'a> = [(&'a MotionSample, &'a MotionSample)];
+
+/// Values of one kind of all samples.
 struct ComparedSeries<'a> {
     unit: &'static str,
     /// The scale is no larger and no smaller than these.
     max_scale: f64,
     min_scale: f64,
-    claimed: Vec<f64>,
-    reference: Vec<f64>,
-    /// By value: where it is.
-    locations: Vec<(f64, &'a str)>,
+    /// Claimed and reference value, time and name.
+    values: Vec<([f64; 2], f64, &'a str)>,
 }
 
 impl<'a> ComparedSeries<'a> {
@@ -46,36 +43,24 @@ impl<'a> ComparedSeries<'a> {
             unit,
             max_scale: f64::INFINITY,
             min_scale: 0.0,
-            claimed: vec![],
-            reference: vec![],
-            locations: vec![],
+            values: vec![],
         }
     }
 
     fn record(&mut self, claimed: f64, reference: f64, t: f64, name: &'a str) {
-        self.claimed.push(claimed);
-        self.reference.push(reference);
-        self.locations.push((t, name));
+        self.values.push(([claimed, reference], t, name));
     }
 
     fn largest(&self) -> f64 {
-        self.reference
-            .iter()
-            .fold(0.0_f64, |max, v| max.max(v.abs()))
+        let values = self.values.iter().map(|([_, value], ..)| value.abs());
+        values.fold(0.0, f64::max)
     }
 
     fn compare_into(&self, worst: &mut LargestDifference) {
-        let scale = self.largest();
-        for ((claimed, reference), (t, name)) in self
-            .claimed
-            .iter()
-            .zip(&self.reference)
-            .zip(&self.locations)
-        {
+        let scale = self.largest().max(self.min_scale).min(self.max_scale);
+        for ([claimed, reference], t, name) in &self.values {
             let comparison = Comparison {
-                difference: claimed - reference,
-                scale: scale.max(self.min_scale).min(self.max_scale),
-                reference_error: 0.0,
+                numbers: [claimed - reference, scale, 0.0],
                 unit: self.unit,
                 condition_number: 1.0,
             };
@@ -84,34 +69,52 @@ impl<'a> ComparedSeries<'a> {
     }
 }
 
-fn finding(
-    key: &'static str,
-    compared: &'static str,
-    scale: &'static str,
-    tolerance: f64,
-    count: usize,
-    all_series: &[ComparedSeries<'_>],
-) -> Finding {
+const POSES: FindingSpec<'_> = FindingSpec {
+    key: "motion-poses",
+    check: Check::MultibodyMotion,
+    comparison: "the frames of all bodies with those of the multibody equations",
+    scale: "the largest distance from the initial position, for angles the largest rotation or 1 rad; each at least the other times or over the size",
+    tolerance: 1e-8,
+    tolerance_reason: "two integrations at a relative tolerance of 1e-12 or finer, grown over the run",
+};
+const VELOCITIES: FindingSpec<'_> = FindingSpec {
+    key: "motion-velocities",
+    comparison: "the velocities of all bodies with those of the multibody equations",
+    scale: "the largest of the kind in the run, at least that of the other by the size",
+    ..POSES
+};
+const REACTIONS: FindingSpec<'_> = FindingSpec {
+    key: "motion-reactions",
+    comparison: "the reactions with the multipliers of the multibody equations",
+    scale: "the largest of the unit in the run; of moments at least the largest force at an arm of the size",
+    ..POSES
+};
+const ACTUATOR_FORCES: FindingSpec<'_> = FindingSpec {
+    key: "motion-actuator-forces",
+    comparison: "the forces of prescribed motions and drives and the nonconservative work with those of the multibody equations",
+    scale: "the largest of the unit in the run; of work at least the kinetic energy",
+    ..POSES
+};
+const ENERGY: FindingSpec<'_> = FindingSpec {
+    key: "motion-energy",
+    comparison: "kinetic + potential - work of the claim with its start, and the energies with those of its poses",
+    scale: "the largest energy or work in the run",
+    tolerance: 1e-9,
+    ..POSES
+};
+
+fn finding(spec: &FindingSpec<'_>, pairs: &Pairs<'_>, all: &[ComparedSeries<'_>]) -> Finding {
     let mut worst = LargestDifference::default();
-    all_series
-        .iter()
+    all.iter()
         .for_each(|series| series.compare_into(&mut worst));
-    let check = FindingSpec {
-        key,
-        check: Check::MultibodyMotion,
-        comparison: compared,
-        scale,
-        tolerance,
-        tolerance_reason: TOLERANCE_REASON,
-    };
     Finding {
         integrated: true,
-        ..check.finding(format!("{count} instants of a motion"), worst)
+        ..spec.finding(format!("{} instants of a motion", pairs.len()), worst)
     }
 }
 
 impl MultibodySystem {
-    /// Compares claims by samples of [`MultibodySystem::integrate`] at the same times.
+    /// Compares claims with samples of [`MultibodySystem::integrate`] at the same times.
     ///
     /// # Errors
     /// [`MultibodyError::InvalidStart`] where there are not as many of each, or of what they hold.
@@ -120,21 +123,18 @@ impl MultibodySystem {
         claimed_motion: &[MotionSample],
         reference_motion: &[MotionSample],
     ) -> Result<Vec<Finding>, MultibodyError> {
-        let first = reference_motion
-            .first()
-            .ok_or(MultibodyError::InvalidStart)?;
-        let same_layout = |claim: &MotionSample, sample: &MotionSample| {
-            claim.t == sample.t
-                && claim.poses.len() == sample.poses.len()
-                && claim.velocities.len() == sample.velocities.len()
-                && claim.reactions.len() == sample.reactions.len()
-                && claim.tau.len() == sample.tau.len()
-                && claim.drive_forces.len() == sample.drive_forces.len()
+        let first = reference_motion.first();
+        let first = first.ok_or(MultibodyError::InvalidStart)?;
+        let layout = |s: &MotionSample| {
+            let bodies = [s.poses.len(), s.velocities.len()];
+            (
+                bodies,
+                [s.reactions.len(), s.tau.len(), s.drive_forces.len()],
+            )
         };
         let pairs: Vec<_> = claimed_motion.iter().zip(reference_motion).collect();
-        if claimed_motion.len() != reference_motion.len()
-            || !pairs.iter().all(|(c, s)| same_layout(c, s))
-        {
+        let alike = |(c, s): &(&MotionSample, &MotionSample)| c.t == s.t && layout(c) == layout(s);
+        if claimed_motion.len() != reference_motion.len() || !pairs.iter().all(alike) {
             return Err(MultibodyError::InvalidStart);
         }
         let determinate = self.determinate(&first.poses)?;
@@ -150,23 +150,21 @@ impl MultibodySystem {
         self.mechanism.bodies.get(body).map_or("", |b| &b.name)
     }
 
-    /// The claimed frames. Where no row feels turns, a claim may leave them out.
+    /// The claimed frames. Where no row depends on whole revolutions, a claim may leave them out.
     fn comparable_poses(&self, claim: &MotionSample, sample: &MotionSample) -> Vec<[f64; 3]> {
         let counts_revolutions = self.frames.rows.counts_revolutions();
         let both = claim.poses.iter().zip(&sample.poses);
         both.map(|(&[x, y, angle], other)| {
-            let revolutions = ((angle - other[2]) / TAU).round();
-            let excess_angle = if counts_revolutions {
-                0.0
-            } else {
-                TAU * revolutions
+            let excess = match counts_revolutions {
+                true => 0.0,
+                false => TAU * ((angle - other[2]) / TAU).round(),
             };
-            [x, y, angle - excess_angle]
+            [x, y, angle - excess]
         })
         .collect()
     }
 
-    fn poses(&self, pairs: &[(&MotionSample, &MotionSample)]) -> Finding {
+    fn poses(&self, pairs: &Pairs<'_>) -> Finding {
         let (mut lengths, mut angles) = (ComparedSeries::new("m"), ComparedSeries::new("rad"));
         angles.max_scale = 1.0;
         for (claim, sample) in pairs {
@@ -184,17 +182,10 @@ impl MultibodySystem {
         let size = self.frames.size;
         (lengths.min_scale, angles.min_scale) =
             (angles.largest().min(1.0) * size, lengths.largest() / size);
-        finding(
-            "motion-poses",
-            "the frames of all bodies with those of the multibody equations",
-            "the largest distance from the initial position, for angles the largest rotation or 1 rad; each at least the other times or over the size",
-            TOLERANCE,
-            pairs.len(),
-            &[lengths, angles],
-        )
+        finding(&POSES, pairs, &[lengths, angles])
     }
 
-    fn velocities(&self, pairs: &[(&MotionSample, &MotionSample)]) -> Finding {
+    fn velocities(&self, pairs: &Pairs<'_>) -> Finding {
         let (mut lengths, mut angles) = (ComparedSeries::new("m/s"), ComparedSeries::new("rad/s"));
         for (claim, sample) in pairs {
             for (b, (one, other)) in claim.velocities.iter().zip(&sample.velocities).enumerate() {
@@ -207,25 +198,16 @@ impl MultibodySystem {
         }
         let size = self.frames.size;
         (lengths.min_scale, angles.min_scale) = (angles.largest() * size, lengths.largest() / size);
-        finding(
-            "motion-velocities",
-            "the velocities of all bodies with those of the multibody equations",
-            "the largest of the kind in the run, at least that of the other by the size",
-            TOLERANCE,
-            pairs.len(),
-            &[lengths, angles],
-        )
+        finding(&VELOCITIES, pairs, &[lengths, angles])
     }
 
-    fn reactions(&self, pairs: &[(&MotionSample, &MotionSample)], determinate: &[bool]) -> Finding {
+    fn reactions(&self, pairs: &Pairs<'_>, determinate: &[bool]) -> Finding {
         let reactions = self.mechanism.reactions();
-        let named: Vec<(bool, String)> = reactions
-            .iter()
-            .map(|r| {
-                let moment = r.component == Component::Moment;
-                (moment, self.mechanism.reaction_name(*r))
-            })
-            .collect();
+        let named = |r: &Reaction| {
+            let moment = r.component == Component::Moment;
+            (moment, self.mechanism.reaction_name(*r))
+        };
+        let named: Vec<(bool, String)> = reactions.iter().map(named).collect();
         let (mut forces, mut moments) = (ComparedSeries::new("N"), ComparedSeries::new("N m"));
         for (claim, sample) in pairs {
             let both = claim.reactions.iter().zip(&sample.reactions);
@@ -239,17 +221,10 @@ impl MultibodySystem {
         }
         // Moments that all vanish are small beside what the forces do at an arm of the size.
         moments.min_scale = forces.largest() * self.frames.size;
-        finding(
-            "motion-reactions",
-            "the reactions with the multipliers of the multibody equations",
-            "the largest of the unit in the run; of moments at least the largest force at an arm of the size",
-            TOLERANCE,
-            pairs.len(),
-            &[forces, moments],
-        )
+        finding(&REACTIONS, pairs, &[forces, moments])
     }
 
-    fn actuator_forces(&self, pairs: &[(&MotionSample, &MotionSample)]) -> Finding {
+    fn actuator_forces(&self, pairs: &Pairs<'_>) -> Finding {
         let (mut forces, mut moments) = (ComparedSeries::new("N"), ComparedSeries::new("N m"));
         let mut work = ComparedSeries::new("J");
         let actuators = self.mechanism.actuators.iter();
@@ -269,18 +244,11 @@ impl MultibodySystem {
                 series.record(*one, *other, sample.t, name);
             }
         }
-        finding(
-            "motion-actuator-forces",
-            "what prescribed motions take, drives do and all that has no potential works with the multibody equations",
-            "the largest of the unit in the run; of work at least the kinetic energy",
-            TOLERANCE,
-            pairs.len(),
-            &[forces, moments, work],
-        )
+        finding(&ACTUATOR_FORCES, pairs, &[forces, moments, work])
     }
 
-    /// The claim's own poses and velocities tell its energies; with its work they must balance.
-    fn energy(&self, pairs: &[(&MotionSample, &MotionSample)]) -> Finding {
+    /// The energies of the claim's own poses and velocities; with its work they must balance.
+    fn energy(&self, pairs: &Pairs<'_>) -> Finding {
         let mut series = ComparedSeries::new("J");
         let mut initial = None;
         let mut energy_scale = 0.0_f64;
@@ -301,13 +269,6 @@ impl MultibodySystem {
             }
         }
         series.min_scale = energy_scale;
-        finding(
-            "motion-energy",
-            "kinetic + potential - work of the claim with its start, and the energies with those of its poses",
-            "the largest energy or work in the run",
-            1e-9,
-            pairs.len(),
-            &[series],
-        )
+        finding(&ENERGY, pairs, &[series])
     }
 }

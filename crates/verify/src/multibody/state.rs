@@ -1,10 +1,10 @@
-//! What laws and loads measure on bodies, from their frames and rates alone.
+//! A state of the multibody equations: coordinates, magnitudes of loads, energies.
 
 use super::{MultibodyError, MultibodySystem};
-use crate::body_motion::BodyMotion;
+use crate::body_motion::{BodyMotion, slide_axis};
 use crate::loads::load_wrenches;
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{BodyId, Coordinate, JointKind, Vec2, vec2};
+use dwell_geometry::{BodyId, Coordinate, Vec2, vec2};
 use dwell_kinetostatics::{LoadKind, Magnitude, Signal};
 
 /// Frames of all bodies and their rates at a time.
@@ -23,17 +23,17 @@ impl MultibodyState {
         }
     }
 
-    /// Power of an act.
+    /// Power of a force on a body.
     pub(super) fn power(&self, wrench: &BodyWrench) -> f64 {
-        let ([x, y, _], [vx, vy, omega]) =
-            (self.poses[wrench.body.0], self.velocities[wrench.body.0]);
+        let body = wrench.body.0;
+        let ([x, y, _], [vx, vy, omega]) = (self.poses[body], self.velocities[body]);
         let arm = wrench.point - vec2(x, y);
         wrench.force.dot(vec2(vx, vy) + arm.perp() * omega) + wrench.couple * omega
     }
 }
 
 impl MultibodySystem {
-    /// Value and speed of a coordinate; none if the mechanism does not have it.
+    /// Value and velocity of a coordinate; none if the mechanism does not have it.
     pub(super) fn coordinate(
         &self,
         coordinate: Coordinate,
@@ -44,17 +44,7 @@ impl MultibodySystem {
             Coordinate::Length { bodies, points } => at.motion().length(bodies, points),
             Coordinate::Travel(joint) => {
                 let joint = self.mechanism.joints.get(joint.0)?;
-                let axis = match joint.kind {
-                    JointKind::Prismatic { axes } => axes[0],
-                    JointKind::Slot { axis } => axis,
-                    JointKind::Revolute
-                    | JointKind::Weld { .. }
-                    | JointKind::Gear { .. }
-                    | JointKind::Rack { .. }
-                    | JointKind::Rolling { .. }
-                    | JointKind::Distance { .. }
-                    | JointKind::Coupling(_) => return None,
-                };
+                let axis = slide_axis(joint.kind)?;
                 at.motion().travel(joint.bodies, joint.points, axis)
             }
         }
@@ -68,8 +58,8 @@ impl MultibodySystem {
         }
     }
 
-    /// A magnitude; none if it needs a coordinate or a signal that is not there. Friction, and
-    /// what another is to give, has none of its own.
+    /// A magnitude; none if it needs a coordinate or a signal that is not there. What depends on reactions, and
+    /// external magnitudes, have none of their own.
     pub(super) fn magnitude(&self, magnitude: &Magnitude, at: &MultibodyState) -> Option<f64> {
         match magnitude {
             Magnitude::Constant(value) => Some(*value),
@@ -84,32 +74,26 @@ impl MultibodySystem {
                 let signals = signals.iter().map(|s| self.signal(*s, at));
                 Some(function.value(&signals.collect::<Option<Vec<f64>>>()?))
             }
-            Magnitude::Friction(_) | Magnitude::External(_) => None,
+            Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => None,
         }
     }
 
-    /// What a load does with a magnitude.
+    /// The forces of a load of a given magnitude.
     pub(super) fn wrenches(
         &self,
         load: usize,
         magnitude: f64,
         at: &MultibodyState,
     ) -> Vec<BodyWrench> {
-        let kind = self.loads.get(load).map(|load| &load.kind);
-        let wrenches = kind.and_then(|kind| {
-            load_wrenches(
-                kind,
-                magnitude,
-                self.mechanism.ground,
-                &self.masses,
-                &at.poses,
-                &at.velocities,
-            )
+        let (ground, masses) = (self.mechanism.ground, &self.masses);
+        let wrenches = self.loads.get(load).and_then(|load| {
+            let (poses, velocities) = (&at.poses, &at.velocities);
+            load_wrenches(&load.kind, magnitude, ground, masses, poses, velocities)
         });
         wrenches.unwrap_or_default()
     }
 
-    /// Everything at the origin and at rest: to see what is there at all.
+    /// All bodies at the origin and at rest: to see which bodies and coordinates exist.
     pub(super) fn rest_state(&self) -> MultibodyState {
         let at_rest = vec![[0.0; 3]; self.masses.len()];
         MultibodyState {
@@ -129,7 +113,12 @@ impl MultibodySystem {
                 .ok_or(wrong("it acts on a body that is not there"))?;
             match &load.magnitude {
                 Magnitude::Friction(friction) => self.check_friction(&load.kind, friction),
-                other => self.magnitude(other, &at).is_some(),
+                Magnitude::Separating(teeth) => self.check_teeth(&load.kind, teeth),
+                other @ (Magnitude::Constant(_)
+                | Magnitude::Law(..)
+                | Magnitude::Expression(..)
+                | Magnitude::Function(..)
+                | Magnitude::External(_)) => self.magnitude(other, &at).is_some(),
             }
             .then_some(())
             .ok_or(wrong("its magnitude does not fit the mechanism"))?;
@@ -141,10 +130,8 @@ impl MultibodySystem {
     pub(super) fn energies(&self, at: &MultibodyState) -> [f64; 2] {
         let mut kinetic = 0.0;
         for (b, mass) in self.masses.iter().enumerate() {
-            let v = at
-                .motion()
-                .point_velocity(BodyId(b), mass.center)
-                .unwrap_or(Vec2::ZERO);
+            let v = at.motion().point_velocity(BodyId(b), mass.center);
+            let v = v.unwrap_or(Vec2::ZERO);
             let omega = at.velocities[b][2];
             kinetic += 0.5 * (mass.mass * v.dot(v) + mass.inertia * omega * omega);
         }
@@ -160,6 +147,7 @@ impl MultibodySystem {
         let Magnitude::Constant(size) = load.magnitude else {
             return None;
         };
+        let spring = |stretch: f64| Some(0.5 * size * stretch * stretch);
         match load.kind {
             LoadKind::Gravity { direction } => {
                 let mut sum = 0.0;
@@ -178,17 +166,10 @@ impl MultibodySystem {
             LoadKind::Spring {
                 bodies,
                 points,
-                free_length: free,
-            } => {
-                let stretch = at.motion().length(bodies, points)?[0] - free;
-                Some(0.5 * size * stretch * stretch)
-            }
-            LoadKind::TorsionSpring {
-                bodies,
-                free_angle: free,
-            } => {
-                let stretch = at.motion().angle(bodies)?[0] - free;
-                Some(0.5 * size * stretch * stretch)
+                free_length,
+            } => spring(at.motion().length(bodies, points)?[0] - free_length),
+            LoadKind::TorsionSpring { bodies, free_angle } => {
+                spring(at.motion().angle(bodies)?[0] - free_angle)
             }
             LoadKind::Force {
                 body_fixed: true, ..
@@ -198,7 +179,8 @@ impl MultibodySystem {
             | LoadKind::RotationalDamper { .. }
             | LoadKind::PointToPointForce { .. }
             | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => None,
+            | LoadKind::SlideDamper(_)
+            | LoadKind::SeparatingForce(_) => None,
         }
     }
 }

@@ -4,22 +4,11 @@ use super::dense_state::DenseState;
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
 use dwell_findings::Finding;
 
-/// One comparison.
-struct PendingComparison {
-    difference: f64,
-    /// The reference's own error.
-    reference_error: f64,
-    /// The scale of this one.
-    scale: f64,
-    location: String,
-    condition_number: f64,
-}
-
 /// Comparisons, most of whose scales are only known when all are there.
 pub(super) struct ComparisonSet {
     unit: &'static str,
     scale: f64,
-    comparisons: Vec<PendingComparison>,
+    comparisons: Vec<(Comparison, String)>,
     /// Whether each is checked by its own scale.
     individual_scales: bool,
 }
@@ -42,24 +31,19 @@ impl ComparisonSet {
         }
     }
 
-    /// One comparison: the difference, the reference's own error, what the scale must hold.
-    pub(super) fn add(
-        &mut self,
-        m: &DenseState<'_>,
-        difference: f64,
-        reference_error: f64,
-        scale: f64,
-        location: String,
-    ) {
+    /// One comparison in a state: the difference, what the scale is at least, and the error of the reference. `what`
+    /// names the quantity after the state; empty where there is only one.
+    pub(super) fn add(&mut self, state: &DenseState<'_>, numbers: [f64; 3], what: &str) {
         // A maximum drops what is not a number, but then the difference is not one either.
-        self.scale = self.scale.max(scale);
-        self.comparisons.push(PendingComparison {
-            difference,
-            reference_error,
-            scale,
-            location,
-            condition_number: m.condition_number,
-        });
+        self.scale = self.scale.max(numbers[1]);
+        let comparison = Comparison {
+            numbers,
+            unit: self.unit,
+            condition_number: state.condition_number,
+        };
+        let separator = if what.is_empty() { "" } else { ", " };
+        let location = format!("t = {} s{separator}{what}", state.state.t);
+        self.comparisons.push((comparison, location));
     }
 
     pub(super) fn finding(
@@ -69,19 +53,11 @@ impl ComparisonSet {
         states: usize,
     ) -> Finding {
         let mut worst = LargestDifference::default();
-        for pending in self.comparisons {
-            let comparison = Comparison {
-                difference: pending.difference,
-                scale: if self.individual_scales {
-                    pending.scale
-                } else {
-                    self.scale
-                },
-                reference_error: pending.reference_error,
-                unit: self.unit,
-                condition_number: pending.condition_number,
-            };
-            worst.record(&comparison, || pending.location);
+        for (mut comparison, location) in self.comparisons {
+            if !self.individual_scales {
+                comparison.numbers[1] = self.scale;
+            }
+            worst.record(&comparison, || location);
         }
         for reason in failures {
             worst.record_failure(reason.clone());

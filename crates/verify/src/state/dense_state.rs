@@ -1,16 +1,13 @@
 //! One state closed densely, with all that it is compared with.
 
 use super::{ClaimedState, StateError};
+use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::constraint_closing::ClosedConfiguration;
 use crate::dense::DenseMechanism;
 use crate::differences::Extrapolated;
 use crate::error::DenseError;
 use crate::wrenches::{DenseWrench, NetWrench};
 use dwell_geometry::{Vec2, vec2};
-
-/// The longest step of a difference in time turns no body by more than this (rad), nor moves one
-/// by more than this many sizes, to first order: as for the checks of the reduced model.
-pub(super) const MAX_DIFFERENCE_STEP: f64 = 0.3;
 
 /// A state with its dense solution.
 pub(super) struct DenseState<'a> {
@@ -24,7 +21,7 @@ pub(super) struct DenseState<'a> {
     pub(super) x_ddot: Vec<f64>,
     pub(super) claimed_dot: Vec<f64>,
     pub(super) claimed_ddot: Vec<f64>,
-    /// Dense reactions, followed by the actuators' actions.
+    /// Dense reactions, followed by the actuator forces.
     pub(super) multipliers: Vec<f64>,
     /// How much rounding may have moved the dense numbers.
     pub(super) pose_rounding_bound: f64,
@@ -36,7 +33,7 @@ pub(super) struct DenseState<'a> {
     joint_wrenches: Vec<DenseWrench>,
 }
 
-/// Speeds, accelerations and multipliers at a configuration.
+/// Velocities, accelerations and multipliers at a configuration.
 struct DenseSolution {
     x_dot: Vec<f64>,
     x_ddot: Vec<f64>,
@@ -74,7 +71,7 @@ impl DenseSolution {
     }
 }
 
-/// M ẍ + h − f in dense coordinates: what the joints and actuators have to bring.
+/// M ẍ + h − f in dense coordinates: what the joints and actuators have to exert.
 fn required_forces(
     dense: &DenseMechanism,
     at: &ClosedConfiguration,
@@ -93,11 +90,8 @@ fn required_forces(
         if let Some(c) = body.column {
             let force = dense.center_acceleration(body, at, x_dot, x_ddot) * body.mass.mass;
             let arm = dense.center(body, at) - origin(c);
-            add(
-                c,
-                force,
-                arm.cross(force) + body.mass.inertia * x_ddot[c + 2],
-            );
+            let moment = arm.cross(force) + body.mass.inertia * x_ddot[c + 2];
+            add(c, force, moment);
         }
     }
     for load in loads {
@@ -114,34 +108,20 @@ impl<'a> DenseState<'a> {
         state: &'a ClaimedState,
     ) -> Result<Self, StateError> {
         check_counts(dense, state)?;
-        let claimed_coordinates = dense.coordinates(&state.poses)?;
-        let mut row_values = vec![0.0; dense.rows.len()];
-        row_values[dense.actuator_row()..].copy_from_slice(&state.q);
-        let configuration = dense.close(&claimed_coordinates, &row_values)?;
+        let (configuration, closing_correction) = dense.close_poses(&state.poses, &state.q)?;
         dense.check_redundant_rows(&configuration)?;
-        let correction: Vec<_> = claimed_coordinates
-            .iter()
-            .zip(&configuration.x)
-            .map(|(s, x)| s - x)
-            .collect();
-        let distances = state.poses.iter().map(|p| p[0].hypot(p[1]));
-        let largest = distances.fold(dense.size(), f64::max);
         let loads = shifted_wrenches(dense, state);
-        let unit_velocities = dense.unit_velocities(&configuration);
-        let solution = DenseSolution::new(dense, state, &configuration, &unit_velocities, &loads)?;
-        let (bounds, pose_bound) = dense.rounding_bounds(
-            &configuration,
-            &unit_velocities,
-            &solution.flat(),
-            |perturbed| {
-                let velocities = dense.unit_velocities(perturbed);
-                Ok(DenseSolution::new(dense, state, perturbed, &velocities, &loads)?.flat())
-            },
-        )?;
+        let velocities = dense.unit_velocities(&configuration);
+        let solution = DenseSolution::new(dense, state, &configuration, &velocities, &loads)?;
+        let exact = solution.flat();
+        let bounds = dense.rounding_bounds(&configuration, &velocities, &exact, |perturbed| {
+            let velocities = dense.unit_velocities(perturbed);
+            Ok(DenseSolution::new(dense, state, perturbed, &velocities, &loads)?.flat())
+        });
+        let (bounds, pose_rounding_bound) = bounds?;
         let n = dense.rows.columns();
-        let (claimed_dot, claimed_ddot) = shifted_motion(dense, state);
         Ok(Self {
-            closing_correction: dense.scaled_norm(&correction) * dense.size() / largest,
+            closing_correction,
             joint_wrenches: dense.joint_wrenches(&configuration, &state.reactions, &state.tau),
             dense,
             state,
@@ -150,9 +130,9 @@ impl<'a> DenseState<'a> {
             x_dot: solution.x_dot,
             x_ddot: solution.x_ddot,
             multipliers: solution.multipliers,
-            claimed_dot,
-            claimed_ddot,
-            pose_rounding_bound: pose_bound,
+            claimed_dot: dense.velocities(&state.poses, &state.velocities),
+            claimed_ddot: shifted_accelerations(dense, state),
+            pose_rounding_bound,
             velocity_rounding_bound: bounds[..n].to_vec(),
             acceleration_rounding_bound: bounds[n..2 * n].to_vec(),
             multiplier_rounding_bound: bounds[2 * n..].to_vec(),
@@ -197,21 +177,18 @@ impl<'a> DenseState<'a> {
 
     /// Everything that acts on a body.
     pub(super) fn net_wrench(&self, body: usize) -> NetWrench {
-        let center = self
-            .dense
-            .center(&self.dense.bodies[body], &self.configuration);
+        let body_at = &self.dense.bodies[body];
+        let center = self.dense.center(body_at, &self.configuration);
         let all = self.joint_wrenches.iter().chain(&self.load_wrenches);
         NetWrench::of(all.filter(|a| a.body == body), center)
     }
 
     /// m a_G and I α with the claimed motion.
     pub(super) fn inertia_forces(&self, body: usize) -> [f64; 3] {
-        let of = &self.dense.bodies[body];
+        let (dense, of) = (self.dense, &self.dense.bodies[body]);
         let (u, a) = (&self.claimed_dot, &self.claimed_ddot);
-        let force = self
-            .dense
-            .center_acceleration(of, &self.configuration, u, a)
-            * of.mass.mass;
+        let acceleration = dense.center_acceleration(of, &self.configuration, u, a);
+        let force = acceleration * of.mass.mass;
         let alpha = of.column.map_or(0.0, |c| a[c + 2]);
         [force.x, force.y, of.mass.inertia * alpha]
     }
@@ -219,25 +196,25 @@ impl<'a> DenseState<'a> {
     /// Second derivatives in time of every moving body's centre of mass and angle, from positions
     /// alone. Newton's method starts from the state itself, not where its speeds would lead.
     pub(super) fn second_differences(&self) -> Vec<Extrapolated> {
-        let s = self.state;
         self.dense.second_differences(
             &self.configuration,
             self.time_step(),
             self.pose_rounding_bound.max(f64::EPSILON),
-            |t, q| {
-                for (i, q) in q.iter_mut().enumerate() {
-                    *q = s.q[i] + t * (s.q_dot[i] + 0.5 * t * s.q_ddot[i]);
-                }
-            },
+            |t, q| self.coordinates_at(t, q),
         )
+    }
+
+    /// q + q̇ t + ½ q̈ t² of every actuator.
+    pub(super) fn coordinates_at(&self, t: f64, q: &mut [f64]) {
+        let s = self.state;
+        for (i, q) in q.iter_mut().enumerate() {
+            *q = s.q[i] + t * (s.q_dot[i] + 0.5 * t * s.q_ddot[i]);
+        }
     }
 
     /// t with v t + ½ a t² = the longest step; a second where nothing moves.
     pub(super) fn time_step(&self) -> f64 {
-        let (v, a) = (
-            self.scaled_norm(&self.x_dot),
-            self.scaled_norm(&self.x_ddot),
-        );
+        let [v, a] = [&self.x_dot, &self.x_ddot].map(|x| self.scaled_norm(x));
         let step = 2.0 * MAX_DIFFERENCE_STEP / (v + (v * v + 2.0 * a * MAX_DIFFERENCE_STEP).sqrt());
         if step.is_finite() { step } else { 1.0 }
     }
@@ -259,11 +236,8 @@ impl<'a> DenseState<'a> {
                 let arm = load.point - vec2(at.x[c], at.x[c + 1]);
                 let v = vec2(u[c], u[c + 1]);
                 add(load.force.dot(v), load.force.norm() * v.norm());
-                let angular_power = u[c + 2] * arm.cross(load.force);
-                add(
-                    angular_power,
-                    (u[c + 2] * arm.norm() * load.force.norm()).abs(),
-                );
+                let max = (u[c + 2] * arm.norm() * load.force.norm()).abs();
+                add(u[c + 2] * arm.cross(load.force), max);
                 add(u[c + 2] * load.couple, (u[c + 2] * load.couple).abs());
             }
         }
@@ -286,13 +260,11 @@ impl<'a> DenseState<'a> {
         let on_ground = self.joint_wrenches.iter().filter(|a| a.body == ground);
         let on_bodies = self.load_wrenches.iter().filter(|a| a.body != ground);
         let mut total = NetWrench::of(on_bodies, Vec2::ZERO);
-        // What acts on the ground is the opposite of what the ground does.
-        let by_ground = NetWrench::of(on_ground, Vec2::ZERO);
-        for (total, by_ground) in total.sum.iter_mut().zip(by_ground.sum) {
-            *total -= by_ground;
-        }
-        for (total, by_ground) in total.terms.iter_mut().zip(by_ground.terms) {
-            *total += by_ground;
+        // The ground's action is the opposite of what acts on it.
+        let on_ground = NetWrench::of(on_ground, Vec2::ZERO);
+        for c in 0..3 {
+            total.sum[c] -= on_ground.sum[c];
+            total.terms[c] += on_ground.terms[c];
         }
         let (at, u, a) = (&self.configuration, &self.x_dot, &self.x_ddot);
         for body in &self.dense.bodies {
@@ -321,26 +293,20 @@ fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Result<(), Stat
     let (bodies, actuators) = (dense.bodies.len(), dense.mechanism.actuators.len());
     let counts = [
         ("coordinates", state.q.len(), actuators),
-        ("speeds", state.q_dot.len(), actuators),
-        (
-            "accelerations of coordinates",
-            state.q_ddot.len(),
-            actuators,
-        ),
+        ("actuator velocities", state.q_dot.len(), actuators),
+        ("actuator accelerations", state.q_ddot.len(), actuators),
         ("poses", state.poses.len(), bodies),
         ("velocities", state.velocities.len(), bodies),
         ("accelerations", state.accelerations.len(), bodies),
         ("reactions", state.reactions.len(), dense.actuator_row()),
-        ("actuator actions", state.tau.len(), actuators),
+        ("actuator forces", state.tau.len(), actuators),
     ];
-    for (what, found, expected) in counts {
-        if found != expected {
-            return Err(StateError::Count {
-                what,
-                found,
-                expected,
-            });
-        }
+    if let Some((what, found, expected)) = counts.into_iter().find(|c| c.1 != c.2) {
+        return Err(StateError::Count {
+            what,
+            found,
+            expected,
+        });
     }
     let mut loaded = state.load_wrenches.iter().map(|l| l.body.0);
     match loaded.find(|&b| b >= bodies) {
@@ -366,19 +332,16 @@ fn shifted_wrenches(dense: &DenseMechanism, state: &ClaimedState) -> Vec<DenseWr
     shifted.collect()
 }
 
-/// The claimed velocities and accelerations of the moved frames, in dense order.
-fn shifted_motion(dense: &DenseMechanism, state: &ClaimedState) -> (Vec<f64>, Vec<f64>) {
-    let columns = dense.rows.columns();
-    let (mut x_dot, mut x_ddot) = (vec![0.0; columns], vec![0.0; columns]);
+/// The claimed accelerations of the moved frames, in dense order.
+fn shifted_accelerations(dense: &DenseMechanism, state: &ClaimedState) -> Vec<f64> {
+    let mut x_ddot = vec![0.0; dense.rows.columns()];
     for (b, body) in dense.bodies.iter().enumerate() {
         if let Some(c) = body.column {
             let arm = body.shift.rotate(Vec2::from_angle(state.poses[b][2]));
-            let ([vx, vy, omega], [ax, ay, alpha]) = (state.velocities[b], state.accelerations[b]);
-            let v = vec2(vx, vy) + arm.perp() * omega;
+            let ([.., omega], [ax, ay, alpha]) = (state.velocities[b], state.accelerations[b]);
             let a = vec2(ax, ay) + arm.perp() * alpha - arm * (omega * omega);
-            x_dot[c..c + 3].copy_from_slice(&[v.x, v.y, omega]);
             x_ddot[c..c + 3].copy_from_slice(&[a.x, a.y, alpha]);
         }
     }
-    (x_dot, x_ddot)
+    x_ddot
 }

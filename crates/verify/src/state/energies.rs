@@ -16,13 +16,14 @@
 //! without loads, (3) is τ = m q̈ + ½ m′ q̇² and R = a q̈ + b q̇².
 
 use super::comparison_set::ComparisonSet;
-use super::dense_state::{DenseState, MAX_DIFFERENCE_STEP};
-use super::{ClaimedState, StateChecker, location};
+use super::dense_state::DenseState;
+use super::{ClaimedState, StateChecker};
+use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::FindingSpec;
 use crate::dense::DenseMechanism;
-use crate::differences::{DerivativeOrder, Extrapolated, derivatives};
+use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{Component, Mechanism, vec2};
+use dwell_geometry::{Mechanism, vec2};
 use dwell_kinetostatics::Mass;
 use rayon::prelude::*;
 
@@ -36,16 +37,14 @@ const MASS_MATRIX: FindingSpec<'_> = FindingSpec {
 };
 const KINETIC_ENERGY: FindingSpec<'_> = FindingSpec {
     key: "state-kinetic-energy",
-    check: Check::KineticEnergy,
     comparison: "half q_dot M q_dot with the sum of half m v2 + half I omega2 of the claimed velocities",
     scale: "the largest kinetic energy",
-    tolerance: 1e-13,
-    tolerance_reason: MASS_MATRIX.tolerance_reason,
+    ..MASS_MATRIX
 };
 const LAGRANGE: FindingSpec<'_> = FindingSpec {
     key: "state-lagrange",
     check: Check::EnergySlope,
-    comparison: "actuator actions with d/dt dE/dq_dot - dE/dq - power of the loads at unit speed, by differences of E",
+    comparison: "actuator forces with d/dt dE/dq_dot - dE/dq - power of the loads at unit speed, by differences of E",
     scale: "the largest of them or of the forces they balance, moments over the size",
     tolerance: 2e-11,
     tolerance_reason: "rounding of E over the shortest step that the extrapolation uses",
@@ -54,9 +53,7 @@ const RELEASED: FindingSpec<'_> = FindingSpec {
     key: "state-released",
     check: Check::ReleasedConstraint,
     comparison: "reactions with d/dt dE/dv - dE/dy - power of the loads at unit speed, each constraint opened as a coordinate y",
-    scale: LAGRANGE.scale,
-    tolerance: 2e-11,
-    tolerance_reason: LAGRANGE.tolerance_reason,
+    ..LAGRANGE
 };
 
 /// Checks claimed states by kinetic energy and virtual work alone, as [`check_states`] does by the
@@ -77,106 +74,83 @@ pub fn check_energies(
     match DenseMechanism::with_meshed_gears(mechanism, masses, assembly_poses) {
         Ok(dense) => {
             let checker = StateChecker::new(&dense, mechanism, states);
-            let inertias: Vec<&[f64]> = (states.iter().enumerate())
-                .map(|(k, _)| inertias.get(k).map_or(&[][..], Vec::as_slice))
-                .collect();
-            let mut findings = checker.energies(states, &inertias).to_vec();
+            let mut findings = checker.energies(states, inertias).to_vec();
             findings.extend(checker.lagrange());
             findings
         }
-        Err(error) => vec![super::not_dense(&MASS_MATRIX, error.to_string())],
+        Err(error) => vec![super::not_dense(&MASS_MATRIX, &error)],
     }
 }
 
 impl StateChecker<'_> {
     /// (1) and (2).
-    fn energies(&self, states: &[ClaimedState], claimed: &[&[f64]]) -> [Finding; 2] {
-        let (mut matrix, mut kinetic) = (
-            ComparisonSet::with_individual_scales("kg m2"),
-            ComparisonSet::new("J"),
-        );
+    fn energies(&self, states: &[ClaimedState], claimed: &[Vec<f64>]) -> [Finding; 2] {
+        let mut matrix = ComparisonSet::with_individual_scales("kg m2");
+        let mut kinetic = ComparisonSet::new("J");
         for m in &self.dense_states {
-            let reference_error = states.iter().zip(claimed);
-            let of = reference_error.filter(|(state, _)| std::ptr::eq(*state, m.state));
-            let claimed = of.map(|(_, claimed)| *claimed).next().unwrap_or(&[]);
+            let index = states.iter().position(|state| std::ptr::eq(state, m.state));
+            let claimed = index.and_then(|k| claimed.get(k));
             let n = m.state.q.len();
-            let at = |i: usize, j: usize| claimed.get(i * n + j).copied().unwrap_or(f64::NAN);
+            let at = |i: usize, j: usize| {
+                let value = claimed.and_then(|claimed| claimed.get(i * n + j));
+                value.copied().unwrap_or(f64::NAN)
+            };
             let dense = m.mass_matrix();
             let mut half = 0.0;
             for i in 0..n {
                 for j in 0..n {
                     let scale = (dense[i][i] * dense[j][j]).sqrt();
-                    let name = |k: usize| self.mechanism.actuators[k].name.as_str();
-                    let there = format!("{}, {} {}", location(m), name(i), name(j));
-                    let reference_error = m.relative_rounding_bound() * scale;
-                    matrix.add(m, at(i, j) - dense[i][j], reference_error, scale, there);
+                    let [one, other] = [i, j].map(|k| &self.mechanism.actuators[k].name);
+                    let error = m.relative_rounding_bound() * scale;
+                    let numbers = [at(i, j) - dense[i][j], scale, error];
+                    matrix.add(m, numbers, &format!("{one} {other}"));
                     half += 0.5 * m.state.q_dot[i] * at(i, j) * m.state.q_dot[j];
                 }
             }
             let energy = m.claimed_energy();
-            let reference_error = m.relative_rounding_bound() * energy;
-            kinetic.add(m, half - energy, reference_error, energy, location(m));
+            let error = m.relative_rounding_bound() * energy;
+            kinetic.add(m, [half - energy, energy, error], "");
         }
         [
-            matrix.finding(&MASS_MATRIX, &self.failures, self.state_count),
-            kinetic.finding(&KINETIC_ENERGY, &self.failures, self.state_count),
+            self.finding(&MASS_MATRIX, matrix),
+            self.finding(&KINETIC_ENERGY, kinetic),
         ]
     }
 
     /// (3), of the actuators and of the reactions.
     fn lagrange(&self) -> Vec<Finding> {
-        let size = self.dense.size();
-        let actuator_row = self.dense.actuator_row();
-        let reactions = self.mechanism.reactions();
-        let (mut actuator_forces, mut released) =
-            (ComparisonSet::new("N"), ComparisonSet::new("N"));
-        let forces: Vec<_> = self
-            .dense_states
-            .par_iter()
-            .map(DenseState::lagrange)
-            .collect();
+        let (size, actuator_row) = (self.dense.size(), self.dense.actuator_row());
+        let rows = self.rows();
+        let mut of_actuators = ComparisonSet::new("N");
+        let mut released = ComparisonSet::new("N");
+        let states = self.dense_states.par_iter();
+        let forces: Vec<_> = states.map(DenseState::lagrange).collect();
         for (m, forces) in self.dense_states.iter().zip(forces) {
             let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
-            for (k, (claimed, force)) in claimed.zip(forces).enumerate() {
+            for (k, ((claimed, force), (moment, name))) in
+                claimed.zip(forces).zip(&rows).enumerate()
+            {
                 let Some(force) = force else { continue };
-                let (moment, name) = match reactions.get(k) {
-                    Some(&r) => (
-                        r.component == Component::Moment,
-                        self.mechanism.reaction_name(r),
-                    ),
-                    None => {
-                        let actuator = &self.mechanism.actuators[k - actuator_row];
-                        (actuator.coordinate().is_angle(), actuator.name.clone())
-                    }
-                };
-                let arm = if moment { 1.0 / size } else { 1.0 };
-                let (value, reference_error) = (force.value * arm, force.error * arm);
-                let comparisons = if k < actuator_row {
-                    &mut released
-                } else {
-                    &mut actuator_forces
-                };
-                let scale = largest_force.max(value.abs());
-                let there = format!("{}, {name}", location(m));
-                comparisons.add(m, claimed * arm - value, reference_error, scale, there);
+                let arm = if *moment { 1.0 / size } else { 1.0 };
+                let (value, error) = (force.value * arm, force.error * arm);
+                let numbers = [claimed * arm - value, largest_force.max(value.abs()), error];
+                match k < actuator_row {
+                    true => released.add(m, numbers, name),
+                    false => of_actuators.add(m, numbers, name),
+                }
             }
         }
-        let indeterminate = self.dense.determinate[..actuator_row]
-            .iter()
-            .filter(|&&is_determinate| !is_determinate);
-        let indeterminate = indeterminate.count();
-        let mut findings =
-            vec![actuator_forces.finding(&LAGRANGE, &self.failures, self.state_count)];
+        let determinate = self.dense.determinate[..actuator_row].iter();
+        let indeterminate = determinate.filter(|&&is| !is).count();
+        let mut findings = vec![self.finding(&LAGRANGE, of_actuators)];
         if indeterminate == actuator_row && actuator_row > 0 {
             return findings;
         }
-        let mut released = released.finding(&RELEASED, &self.failures, self.state_count);
-        match indeterminate {
-            0 => {}
-            n => {
-                released.domain += &format!("; {n} reactions that joints share are not determined");
-            }
+        let mut released = self.finding(&RELEASED, released);
+        if indeterminate > 0 {
+            released.domain +=
+                &format!("; {indeterminate} reactions that joints share are not determined");
         }
         findings.push(released);
         findings
@@ -197,9 +171,8 @@ impl DenseState<'_> {
 
     /// Kinetic energy of the claimed velocities, J.
     fn claimed_energy(&self) -> f64 {
-        0.5 * self
-            .dense
-            .inertia(&self.configuration, &self.claimed_dot, &self.claimed_dot)
+        let v = &self.claimed_dot;
+        0.5 * self.dense.inertia(&self.configuration, v, v)
     }
 
     /// (3) for every row; none for those that are not determined.
@@ -210,15 +183,14 @@ impl DenseState<'_> {
         let row = |r: usize| {
             let slope = self.energy_slope(r, &unit_velocities[r]);
             let power = self.load_power(&unit_velocities[r]);
-            let rate = rates.get(r);
+            let rate = rates.get(r).copied().unwrap_or(NO_ESTIMATE);
             Extrapolated {
-                value: rate.map_or(f64::NAN, |rate| rate.value) - slope.value - power,
-                error: rate.map_or(f64::NAN, |rate| rate.error) + slope.error,
+                value: rate.value - slope.value - power,
+                error: rate.error + slope.error,
             }
         };
-        (0..unit_velocities.len())
-            .map(|r| dense.determinate[r].then(|| row(r)))
-            .collect()
+        let rows = 0..unit_velocities.len();
+        rows.map(|r| dense.determinate[r].then(|| row(r))).collect()
     }
 
     /// d/dt ⟨u_r, ẋ⟩ of every row, along the motion.
@@ -228,29 +200,21 @@ impl DenseState<'_> {
         let rounding = self.relative_rounding_bound().max(f64::EPSILON);
         let mut row_values = self.configuration.row_values.clone();
         derivatives(DerivativeOrder::First, self.time_step(), rounding, |t| {
-            for (i, row_values) in row_values[actuator_row..].iter_mut().enumerate() {
-                *row_values = state.q[i] + t * (state.q_dot[i] + 0.5 * t * state.q_ddot[i]);
-            }
-            let initial_guess = &self.configuration.x;
-            let configuration = dense
-                .close_on_branch(&self.configuration, initial_guess, &row_values)
-                .ok()?;
+            self.coordinates_at(t, &mut row_values[actuator_row..]);
+            let from = &self.configuration;
+            let configuration = dense.close_on_branch(from, &from.x, &row_values).ok()?;
             let velocities = dense.unit_velocities(&configuration);
             let mut x_dot = vec![0.0; dense.rows.columns()];
             for (i, u) in velocities[actuator_row..].iter().enumerate() {
                 let rate = state.q_dot[i] + t * state.q_ddot[i];
                 x_dot.iter_mut().zip(u).for_each(|(v, u)| *v += u * rate);
             }
-            Some(
-                velocities
-                    .iter()
-                    .map(|u| dense.inertia(&configuration, u, &x_dot))
-                    .collect(),
-            )
+            let momentum = |u: &Vec<f64>| dense.inertia(&configuration, u, &x_dot);
+            Some(velocities.iter().map(momentum).collect())
         })
     }
 
-    /// ∂E/∂y of a row with the unit velocities `u`, at the speeds of the actuators.
+    /// ∂E/∂y of a row with the unit velocities `u`, at the velocities of the actuators.
     fn energy_slope(&self, row: usize, u: &[f64]) -> Extrapolated {
         let (dense, state) = (self.dense, self.state);
         let none = |value| Extrapolated { value, error: 0.0 };
@@ -260,20 +224,16 @@ impl DenseState<'_> {
         let actuator_row = dense.actuator_row();
         let rates: Vec<_> = (actuator_row..).zip(state.q_dot.iter().copied()).collect();
         let rounding = self.relative_rounding_bound().max(f64::EPSILON);
-        let slopes = derivatives(
-            DerivativeOrder::First,
-            MAX_DIFFERENCE_STEP / dense.scaled_norm(u),
-            rounding,
-            |h| {
-                let value = self.configuration.row_values[row] + h;
-                let opened = dense.step_row(&self.configuration, row, u, value).ok()?;
-                Some(vec![dense.kinetic_energy(&opened, &rates)])
-            },
-        );
+        let step = MAX_DIFFERENCE_STEP / dense.scaled_norm(u);
+        let slopes = derivatives(DerivativeOrder::First, step, rounding, |h| {
+            let value = self.configuration.row_values[row] + h;
+            let opened = dense.step_row(&self.configuration, row, u, value).ok()?;
+            Some(vec![dense.kinetic_energy(&opened, &rates)])
+        });
         slopes.first().copied().unwrap_or(none(f64::NAN))
     }
 
-    /// What the loads do at the speeds `u`, W.
+    /// The power of the loads at the velocities `u`, W.
     fn load_power(&self, u: &[f64]) -> f64 {
         let power = |load: &crate::wrenches::DenseWrench| {
             self.dense.bodies[load.body].column.map_or(0.0, |c| {

@@ -11,7 +11,8 @@ use dwell_geometry::body_states::BodyStates;
 use dwell_numerics::Scalar;
 use std::ops::{Deref, DerefMut};
 
-/// The magnitudes of the loads are known; friction is still zero, and so are external magnitudes until they are set.
+/// The magnitudes of the loads are known; friction and separating forces are still zero, and so are external magnitudes
+/// until they are set.
 #[derive(Debug)]
 pub struct LoadedState<'a, T = f64>(KinematicState<'a, T>);
 
@@ -107,7 +108,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     ) -> Result<EvaluatedState<'a, T>> {
         let mut state = self.inverse_dynamics(q_ddot, result)?;
         state.0.fill_bodies();
-        if !state.model.joint_frictions.is_empty() {
+        if !state.model.dependent_loads.is_empty() {
             let loaded = &mut state.0.workspace.load_workspace;
             let mut responses = std::mem::take(&mut loaded.friction_responses);
             let solved = state.solve_prescribed_friction(&mut responses, &result.reactions);
@@ -171,10 +172,10 @@ impl<T: Scalar> ForceState<'_, T> {
         self.bodies()
     }
 
-    /// Solves for the frictions: `frictionless` are the reactions without friction, and
-    /// `responses[j]` what a unit of friction j adds to each (its
-    /// [response](KinematicState::unit_load_response), with that of the free coordinates' accelerations). The
-    /// frictions become the magnitudes of their loads, and the loads' wrenches are updated.
+    /// Solves for the [loads that depend on reactions](crate::Model::frictions): `frictionless` are the reactions without
+    /// them, and `responses[j]` what a unit of load j adds to each (its
+    /// [response](KinematicState::unit_load_response), with that of the free coordinates' accelerations). They
+    /// become the magnitudes of their loads, and the loads' wrenches are updated.
     ///
     /// # Errors
     /// [`KinetostaticsError::SelfLocking`] where there is no unique solution.
@@ -189,7 +190,7 @@ impl<T: Scalar> ForceState<'_, T> {
             friction_workspace: solution,
             ..
         } = &mut self.0.workspace.load_workspace;
-        let frictions = &self.0.model.joint_frictions;
+        let frictions = &self.0.model.dependent_loads;
         friction::solve(frictions, states, frictionless, responses, solution)?;
         for (friction, force) in frictions.iter().zip(&solution.force) {
             loads.magnitude[friction.load] = *force;
@@ -197,7 +198,7 @@ impl<T: Scalar> ForceState<'_, T> {
         self.0.update_wrenches()
     }
 
-    /// Solves for the frictions of a prescribed motion, from the reactions without them.
+    /// Solves for the frictions and separating forces of a prescribed motion, from the reactions without them.
     fn solve_prescribed_friction(
         &mut self,
         responses: &mut [InverseDynamics<T>],

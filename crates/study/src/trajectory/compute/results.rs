@@ -287,7 +287,8 @@ impl<'a> PositionEvaluator<'a> {
             LoadKind::Gravity { .. }
             | LoadKind::Force { .. }
             | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. } => self.forces.magnitudes[k],
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SeparatingForce(_) => self.forces.magnitudes[k],
             LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
                 let line = self.body_states.separation(bodies, points).direction;
                 let on_second = by_load().find(|wrench| wrench.body == bodies[1]);

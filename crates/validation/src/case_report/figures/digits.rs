@@ -1,36 +1,29 @@
-//! How far the findings of a case agree.
+//! The digits of agreement of the findings of a case.
 
-use dwell_findings::Finding;
+use dwell_findings::{Check, Finding};
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
 use dwell_scene::Scene;
 use dwell_study::number_format::count;
 use dwell_study::output::scene_caption;
 
-/// Digits of a number: what agrees exactly has no more.
+/// Digits of a number: exact agreement has no more.
 const MAX_DIGITS: f64 = 16.0;
 
-/// Difference, tolerance and what is between them, of every finding, by truth.
+/// Difference, tolerance and their ratio of every finding, by check.
 pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
-    let mut groups: Vec<Group> = Vec::new();
-    let mut by_check: Vec<&Finding> = findings.iter().collect();
-    by_check.sort_by_key(|finding| finding.check);
-    for finding in by_check {
-        match groups
-            .iter_mut()
-            .find(|group| group.heading == finding.check.to_string())
-        {
-            Some(group) => group.rows.push(row(finding)),
-            None => groups.push(Group {
-                heading: finding.check.to_string(),
-                rows: vec![row(finding)],
-            }),
-        }
-    }
+    let of_check = |check| findings.iter().filter(move |f| f.check == check);
+    let group = |check: Check| Group {
+        heading: check.to_string(),
+        rows: of_check(check).map(row).collect(),
+    };
+    let groups = Check::ALL.map(group).into_iter();
+    let groups = groups.filter(|group| !group.rows.is_empty()).collect();
     let columns = [
         "relative difference",
         "tolerance",
         "tolerance over difference",
     ];
+    let count = count(findings.len(), "finding");
     Figure {
         name: "digits".to_owned(),
         title: "Digits of agreement".to_owned(),
@@ -48,10 +41,7 @@ pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
             }
             .into(),
         ],
-        provenance: format!(
-            "{}, each with its own check and tolerance",
-            count(findings.len(), "finding")
-        ),
+        provenance: format!("{count}, each with its own check and tolerance"),
     }
 }
 
@@ -61,7 +51,7 @@ fn row(finding: &Finding) -> Row {
             0.0 => "0".to_owned(),
             value => format!("{value:.1e}").replace('-', "−"),
         };
-        // Zero has all the digits there are; what is no number has no colour.
+        // Zero has all digits; what is not a number has no colour.
         Cell {
             value: (!value.is_nan()).then(|| (-value.log10()).min(MAX_DIGITS)),
             ..Cell::text_only(text)
@@ -75,8 +65,9 @@ fn row(finding: &Finding) -> Row {
     };
     let mut difference = part(finding.relative_difference);
     difference.failed = !finding.pass;
+    let tolerance = Some(part(finding.tolerance));
     Row::new(
         finding.key.clone(),
-        vec![Some(difference), Some(part(finding.tolerance)), between],
+        vec![Some(difference), tolerance, between],
     )
 }

@@ -1,4 +1,4 @@
-//! A free motion in time: coordinates, speeds, energies.
+//! A free motion in time: coordinates, velocities, energies.
 
 use crate::checked::multibody::FreeMotionRun;
 use dwell_report::{Axis, Chart, Figure, Panel, Series, Stroke};
@@ -8,22 +8,16 @@ use dwell_study::output::{scene_caption, symbol};
 /// Most points of a curve: there are thousands of steps.
 const MAX_POINTS: usize = 1500;
 
-/// The motion that was held against the multibody equations.
+/// The motion that was compared with the multibody equations.
 pub(crate) fn energies(scene: &Scene, run: &FreeMotionRun) -> Figure {
     let thin = run.steps.len().div_ceil(MAX_POINTS).max(1);
     let mut drawn_steps: Vec<usize> = (0..run.steps.len()).step_by(thin).collect();
     // A motion is shown to its end.
-    drawn_steps.extend(
-        run.steps
-            .len()
-            .checked_sub(1)
-            .filter(|last| Some(last) != drawn_steps.last()),
-    );
+    let last = run.steps.len().checked_sub(1);
+    drawn_steps.extend(last.filter(|last| Some(last) != drawn_steps.last()));
     let curve = |of: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-        drawn_steps
-            .iter()
-            .map(|&k| [run.steps[k].t, of(k)])
-            .collect()
+        let points = drawn_steps.iter().map(|&k| [run.steps[k].t, of(k)]);
+        points.collect()
     };
     let chart = |title: String, y: Axis, series: Vec<Series>| Chart {
         title,
@@ -34,29 +28,21 @@ pub(crate) fn energies(scene: &Scene, run: &FreeMotionRun) -> Figure {
     };
     let mut charts = Vec::new();
     for (a, actuator) in scene.mechanism.actuators.iter().enumerate() {
-        let (name, unit) = match actuator.coordinate().is_angle() {
-            true => (symbol(&actuator.name), "rad"),
-            false => (actuator.name.clone(), "m"),
+        let coordinate = actuator.coordinate();
+        let (name, unit) = match coordinate.is_angle() {
+            true => (symbol(&actuator.name), coordinate.unit()),
+            false => (actuator.name.clone(), coordinate.unit()),
         };
-        for (i, unit) in [unit.to_owned(), format!("{unit}/s")]
-            .into_iter()
-            .enumerate()
-        {
-            let (title, label) = match i {
-                0 => (format!("Coordinate {name}"), name.clone()),
-                _ => (format!("Speed of {name}"), "speed".to_owned()),
-            };
-            let line = Series::line("", curve(&|k| run.coordinates[k][a][i]));
-            charts.push(chart(title, Axis::new(label, unit), vec![line]));
-        }
+        let line = |i: usize| vec![Series::line("", curve(&|k| run.coordinates[k][a][i]))];
+        let title = format!("Coordinate {name}");
+        charts.push(chart(title, Axis::new(name.clone(), unit), line(0)));
+        let axis = Axis::new("velocity", format!("{unit}/s"));
+        charts.push(chart(format!("Velocity of {name}"), axis, line(1)));
     }
-    let initial_potential = run.steps.first().map_or(0.0, |first| first.potential);
+    let initial = run.steps.first().map_or(0.0, |first| first.potential);
     let lines = vec![
         Series::line("kinetic", curve(&|k| run.steps[k].kinetic)),
-        Series::line(
-            "potential",
-            curve(&|k| run.steps[k].potential - initial_potential),
-        ),
+        Series::line("potential", curve(&|k| run.steps[k].potential - initial)),
         // Often the same curve as another.
         Series::line("work", curve(&|k| run.steps[k].work)).stroke(Stroke::Dashed),
     ];

@@ -32,8 +32,8 @@ pub(crate) fn finite_differences(prepared: &PreparedScene<'_>, curves: &[ErrorCu
         title: "Unit runs against differences of the kinetic energy".to_owned(),
         caption: caption(
             prepared,
-            "Differences of the unit-run coefficients from finite differences, over the step. The V is the differences' \
-             own error: truncation on the right, rounding on the left. ½m′ is differenced from E(q); b with the joint \
+            "Differences of the unit-run coefficients from finite differences, over the step. The V is the error of the \
+             differences: truncation on the right, rounding on the left. ½m′ is differenced from E(q); b with the joint \
              really released, ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂.",
         ),
         columns: 1,

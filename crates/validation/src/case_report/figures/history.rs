@@ -1,12 +1,11 @@
-//! Speed and reactions in time: the paper's Figure 4.
+//! Velocity and reactions in time: the paper's Figure 4.
 
 use crate::checked::history::History;
 use dwell_report::{Axis, Chart, Figure, Mark, Panel, Series};
-use dwell_study::PreparedScene;
-use dwell_study::SolverSettings;
 use dwell_study::output::{caption, coordinate_label, symbol};
+use dwell_study::{PreparedScene, SolverSettings};
 
-/// Turns that are drawn; more would only repeat.
+/// Periods that are drawn; more would only repeat.
 const DRAWN_PERIODS: f64 = 2.0;
 /// Most reactions to a panel.
 const MAX_CURVES: usize = 6;
@@ -17,32 +16,15 @@ pub(crate) fn history(
     history: &History,
     accuracy: &SolverSettings,
 ) -> Figure {
-    let drawn = history.period.map_or(f64::INFINITY, |period| {
-        DRAWN_PERIODS * period * (1.0 + 1e-9)
-    });
-    let samples: Vec<usize> = (0..history.run.samples.len())
-        .filter(|&i| history.run.samples[i].t - history.run.samples[0].t <= drawn)
-        .collect();
+    let all = &history.run.samples;
+    let drawn = history.period.map(|t| DRAWN_PERIODS * t * (1.0 + 1e-9));
+    let drawn = drawn.unwrap_or(f64::INFINITY);
+    let samples = (0..all.len()).filter(|&i| all[i].t - all[0].t <= drawn);
+    let samples: Vec<usize> = samples.collect();
     let curve = |of: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-        let at = |&i: &usize| [history.run.samples[i].t, of(i)];
-        samples.iter().map(at).collect()
+        samples.iter().map(|&i| [all[i].t, of(i)]).collect()
     };
-    let marks: Vec<Mark> = history
-        .run
-        .event_occurrences
-        .iter()
-        .map(|revolution| revolution.state.t)
-        .take_while(|t| *t <= drawn)
-        .enumerate()
-        .map(|(k, at)| Mark::Vertical {
-            at,
-            label: if k == 0 {
-                format!("T = {at:.4} s")
-            } else {
-                String::new()
-            },
-        })
-        .collect();
+    let marks = revolution_marks(history, drawn);
     let chart = |title: String, label: String, unit: &str, series: Vec<Series>| {
         Panel::from(Chart {
             title,
@@ -55,68 +37,70 @@ pub(crate) fn history(
     };
     let q = symbol(prepared.coordinate_name());
     let angle = coordinate_label(prepared);
-    let speed = Series::line("", curve(&|i| history.run.samples[i].y[1]));
-    let mut panels = vec![chart(
-        format!("Speed of the {angle}"),
-        format!("d{q}/dt"),
-        "rad/s",
-        vec![speed],
-    )];
-    let reactions = prepared.reaction_units();
+    let velocity = vec![Series::line("", curve(&|i| all[i].y[1]))];
+    let title = format!("Velocity of the {angle}");
+    let mut panels = vec![chart(title, format!("d{q}/dt"), "rad/s", velocity)];
+    let named = prepared.reaction_units();
     for (unit, noun) in [("N", "force"), ("N m", "moment")] {
-        let of_unit: Vec<usize> = (0..reactions.len())
-            .filter(|&k| reactions[k].1 == unit)
-            .collect();
-        let per_panel = of_unit
-            .len()
-            .div_ceil(of_unit.len().div_ceil(MAX_CURVES).max(1))
-            .max(1);
-        for group in of_unit.chunks(per_panel).take(2) {
-            let line = |&k: &usize| {
-                let name = if group.len() > 1 {
-                    reactions[k].0.clone()
-                } else {
-                    String::new()
-                };
-                Series::line(name, curve(&|i| history.rows[i][2 + k]))
-            };
-            let (title, label) = match group {
-                [k] => (
-                    format!("Reaction {}", reactions[*k].0),
-                    reactions[*k].0.clone(),
-                ),
-                [first, .., last] => (
-                    format!(
-                        "Reactions {} to {}",
-                        reactions[*first].0, reactions[*last].0
-                    ),
-                    format!("reaction {noun}"),
-                ),
-                [] => continue,
-            };
-            let unit = if unit == "N" { "N" } else { "N m" };
-            panels.push(chart(title, label, unit, group.iter().map(line).collect()));
+        for (title, label, reactions) in reaction_panels(&named, unit, noun) {
+            let line = |(name, k)| Series::line(name, curve(&|i| history.rows[i][2 + k]));
+            let lines = reactions.into_iter().map(line).collect();
+            panels.push(chart(title, label, unit, lines));
         }
     }
+    let fitted = prepared.scene.calibration.as_ref().map(|c| {
+        format!(
+            " {} is fitted to a period of {} s, so that agreement is by construction.",
+            c.path, c.period
+        )
+    });
+    let fitted = fitted.unwrap_or_default();
+    let text = format!("No torque. Reactions by R = a q̈ + b q̇².{fitted}");
     Figure {
         name: "motion".to_owned(),
         title: "Free motion".to_owned(),
-        caption: caption(
-            prepared,
-            &format!(
-                "No torque. Reactions by R = a q̈ + b q̇².{}",
-                prepared
-                    .scene
-                    .calibration
-                    .as_ref()
-                    .map_or_else(String::new, |c| format!(
-                        " {} is fitted to a period of {} s, so that agreement is by construction.",
-                        c.path, c.period
-                    ))
-            ),
-        ),
+        caption: caption(prepared, &text),
         columns: if panels.len() > 2 { 2 } else { 1 },
         panels,
         provenance: format!("reduced model, {}", accuracy.describe()),
     }
+}
+
+/// Title, label and reactions, by name and index, of at most two panels of a unit. One reaction alone needs no name.
+fn reaction_panels(
+    named: &[(String, &str)],
+    unit: &str,
+    noun: &str,
+) -> Vec<(String, String, Vec<(String, usize)>)> {
+    let all = named.iter().enumerate().filter(|(_, (_, of))| *of == unit);
+    let all: Vec<(String, usize)> = all.map(|(k, (name, _))| (name.clone(), k)).collect();
+    let per_panel = all
+        .len()
+        .div_ceil(all.len().div_ceil(MAX_CURVES).max(1))
+        .max(1);
+    let panel = |group: &[(String, usize)]| match group {
+        [(name, k)] => (
+            format!("Reaction {name}"),
+            name.clone(),
+            vec![(String::new(), *k)],
+        ),
+        _ => {
+            let [first, last] = [0, group.len() - 1].map(|k| &group[k].0);
+            let title = format!("Reactions {first} to {last}");
+            (title, format!("reaction {noun}"), group.to_vec())
+        }
+    };
+    all.chunks(per_panel).take(2).map(panel).collect()
+}
+
+/// The ends of the revolutions up to a time.
+fn revolution_marks(history: &History, until: f64) -> Vec<Mark> {
+    let revolutions = history.run.event_occurrences.iter().map(|o| o.state.t);
+    let drawn = revolutions.take_while(|t| *t <= until).enumerate();
+    let mark = |(k, at): (usize, f64)| {
+        let label = format!("T = {at:.4} s");
+        let label = if k == 0 { label } else { String::new() };
+        Mark::Vertical { at, label }
+    };
+    drawn.map(mark).collect()
 }

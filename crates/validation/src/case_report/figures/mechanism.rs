@@ -4,13 +4,11 @@ use dwell_geometry::{BodyId, Plan, Pose, Range, Vec2, vec2};
 use dwell_kinetostatics::ReducedModel;
 use dwell_report::{Axis, Chart, Drawing, Figure, Mark, Paint, Panel, Pen, Series, Shape};
 use dwell_scene::{PathPoint, Scene};
-use dwell_study::PreparedScene;
-use dwell_study::StudyError;
 use dwell_study::bodies::{BodyPose, point_position};
 use dwell_study::explain::explain_position;
 use dwell_study::number_format::count;
-use dwell_study::output::MechanismDrawing;
-use dwell_study::output::{caption, coordinate_label};
+use dwell_study::output::{MechanismDrawing, caption, coordinate_label};
+use dwell_study::{PreparedScene, StudyError};
 use std::f64::consts::TAU;
 
 /// Positions of the paths.
@@ -18,12 +16,12 @@ const PATH_POSITIONS: usize = 720;
 /// Number of positions in which the mechanism is drawn.
 const DRAWN: usize = 6;
 
-/// Where a body's angle stays within a band of its swing.
+/// The interval in which a body's angle stays within a band of its whole variation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Dwell {
     /// The body.
     pub(crate) body: BodyId,
-    /// From and to, rad of the coordinate; it may pass a whole turn.
+    /// From and to, rad of the coordinate; it may pass a whole revolution.
     pub(crate) from: f64,
     pub(crate) to: f64,
     /// How far its angle moves in it, and over the whole range, rad.
@@ -49,12 +47,10 @@ impl RangePoses {
             plan.positions(&[q], &mut pose)
                 .map_err(|e| explain_position(prepared.scene, plan, &e))?;
             let all = plan.body_frames(mechanism, &pose).into_iter().enumerate();
-            body_poses.push(
-                all.map(|(b, [x, y, _])| {
-                    (vec2(x, y), body_rotation(plan, mechanism.ground, b, &pose))
-                })
-                .collect(),
-            );
+            let pose = |(b, [x, y, _]): (usize, [f64; 3])| {
+                (vec2(x, y), body_rotation(plan, mechanism.ground, b, &pose))
+            };
+            body_poses.push(all.map(pose).collect());
         }
         Ok(Self { q, body_poses })
     }
@@ -72,61 +68,56 @@ fn body_rotation(plan: &Plan, ground: usize, body: usize, pose: &Pose<f64>) -> V
     }
 }
 
-/// The figure, and the dwell that was asked for.
+/// The figure, and the requested dwell.
 ///
 /// # Errors
-/// [`StudyError::Scene`] where the mechanism cannot be placed.
+/// [`StudyError::Scene`] where a position has no solution.
 pub(crate) fn mechanism(
     prepared: &PreparedScene<'_>,
 ) -> Result<(Figure, Option<Dwell>), StudyError> {
     let range_poses = RangePoses::new(prepared)?;
     let scene = prepared.scene;
     let full = prepared.model.range() == Range::Full;
-    let dwell = scene
-        .requests
-        .dwell
-        .as_ref()
-        .map(|d| find_dwell(&range_poses, d.body, d.relative_band, full));
+    let request = scene.requests.dwell.as_ref();
+    let dwell = request.map(|d| find_dwell(&range_poses, d.body, d.relative_band, full));
     let mut shapes = paths(scene, &range_poses);
-    shapes.extend(faded_positions(
-        prepared,
-        &range_poses,
-        full,
-        dwell.as_ref(),
-    ));
-    let mut panels = vec![Panel::from(Drawing {
-        title: String::new(),
-        x: Axis::new("x", "m"),
-        y: Axis::new("y", "m"),
-        shapes,
-    })];
+    let faded = faded_positions(prepared, &range_poses, full, dwell.as_ref());
+    shapes.extend(faded);
+    let mut panels = vec![drawing(shapes)];
     if let Some(dwell) = &dwell {
         panels.push(body_angle_panel(prepared, &range_poses, dwell));
     }
     let first = prepared.model.model().plan().assembly_coordinates()[0].to_degrees();
-    let text = match &dwell {
-        Some(d) => format!(
-            "Drawn in full at {}, lighter further on. The marked dwell: {} stays within {:.2}° of its {:.1}° swing for {:.0}° of the actuator.",
-            degrees(first),
+    let mut text = format!("Drawn in full at {}, lighter further on.", degrees(first));
+    if let Some(d) = &dwell {
+        text += &format!(
+            " The marked dwell: {} stays within {:.2}° of its {:.1}° swing for {:.0}° of the actuator.",
             scene.mechanism.body_name(d.body),
             d.variation.to_degrees(),
             d.swing.to_degrees(),
             (d.to - d.from).to_degrees(),
-        ),
-        None => format!("Drawn in full at {}, lighter further on.", degrees(first)),
-    };
+        );
+    }
+    let positions = count(range_poses.q.len(), "position");
     let figure = Figure {
         name: "mechanism".to_owned(),
         title: scene.title.clone(),
         caption: caption(prepared, &text),
         columns: 1,
         panels,
-        provenance: format!(
-            "the mechanism at {}",
-            count(range_poses.q.len(), "position")
-        ),
+        provenance: format!("the mechanism at {positions}"),
     };
     Ok((figure, dwell))
+}
+
+/// A panel of shapes in the plane.
+pub(super) fn drawing(shapes: Vec<Shape>) -> Panel {
+    Panel::from(Drawing {
+        title: String::new(),
+        x: Axis::new("x", "m"),
+        y: Axis::new("y", "m"),
+        shapes,
+    })
 }
 
 /// A whole number of degrees, with a minus sign.
@@ -146,24 +137,21 @@ fn faded_positions(
     let start = prepared.model.model().plan().assembly_coordinates()[0];
     let last = range_poses.q.len() - 1;
     let nearest = |q: f64| {
-        let span = range_poses.q[last] - range_poses.q[0];
-        let fraction = if full {
-            (q - range_poses.q[0]).rem_euclid(TAU) / span
-        } else {
-            ((q - range_poses.q[0]) / span).clamp(0.0, 1.0)
+        let (from, span) = (range_poses.q[0], range_poses.q[last] - range_poses.q[0]);
+        let fraction = match full {
+            true => (q - from).rem_euclid(TAU) / span,
+            false => ((q - from) / span).clamp(0.0, 1.0),
         };
         (fraction * last as f64).round() as usize
     };
     for k in (0..DRAWN).rev() {
-        let position = if k == 0 {
-            nearest(start)
-        } else if full {
-            nearest(start + TAU * k as f64 / DRAWN as f64)
-        } else {
-            k * last / (DRAWN - 1)
+        let position = match (k, full) {
+            (0, _) => nearest(start),
+            (_, true) => nearest(start + TAU * k as f64 / DRAWN as f64),
+            (_, false) => k * last / (DRAWN - 1),
         };
         if let (0, Some(dwell)) = (k, dwell) {
-            shapes.extend(dwell_paths(prepared, range_poses, dwell));
+            shapes.extend(dwell_paths(prepared.scene, range_poses, dwell));
         }
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.04 * k as f64 };
         drawing.draw(&range_poses.body_poses[position], lightness, &mut shapes);
@@ -171,38 +159,40 @@ fn faded_positions(
     shapes
 }
 
-/// The paths that were asked for.
+/// The requested paths.
 pub(super) fn paths(scene: &Scene, range_poses: &RangePoses) -> Vec<Shape> {
-    let requested = scene.requests.paths.iter();
-    let path = |path: &PathPoint| {
-        let points =
-            (0..range_poses.body_poses.len()).map(|i| range_poses.point(i, path.body.0, path.at));
-        let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
-        Shape::line(points.collect(), pen).named("paths")
-    };
-    requested.map(path).collect()
+    let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
+    let positions: Vec<usize> = (0..range_poses.body_poses.len()).collect();
+    path_shapes(scene, range_poses, &positions, pen, "paths")
 }
 
-/// The part of each path that is passed during the dwell.
-fn dwell_paths(
-    prepared: &PreparedScene<'_>,
-    range_poses: &RangePoses,
-    dwell: &Dwell,
-) -> Vec<Shape> {
-    let requested = prepared.scene.requests.paths.iter();
-    let path = |path: &PathPoint| {
-        // A dwell may pass the end of the turn.
-        let points = [0.0, TAU].into_iter().flat_map(|revolution| {
-            (0..range_poses.q.len())
-                .filter(move |&i| {
-                    (dwell.from..=dwell.to).contains(&(range_poses.q[i] + revolution))
-                })
-                .map(|i| range_poses.point(i, path.body.0, path.at))
-        });
-        let pen = Pen::new(Paint::Ink, 5.0).lightness(0.1);
-        Shape::line(points.collect(), pen).named("paths during the dwell")
+/// The part of each path that is passed during the dwell, which may pass the end of the revolution.
+fn dwell_paths(scene: &Scene, range_poses: &RangePoses, dwell: &Dwell) -> Vec<Shape> {
+    let pen = Pen::new(Paint::Ink, 5.0).lightness(0.1);
+    let all = range_poses.q.iter().enumerate();
+    let within = |offset: f64| {
+        let passed = move |q: f64| (dwell.from..=dwell.to).contains(&(q + offset));
+        let in_dwell = all.clone().filter(move |(_, q)| passed(**q));
+        in_dwell.map(|(i, _)| i)
     };
-    requested.map(path).collect()
+    let positions: Vec<usize> = within(0.0).chain(within(TAU)).collect();
+    let name = "paths during the dwell";
+    path_shapes(scene, range_poses, &positions, pen, name)
+}
+
+fn path_shapes(
+    scene: &Scene,
+    range_poses: &RangePoses,
+    positions: &[usize],
+    pen: Pen,
+    name: &str,
+) -> Vec<Shape> {
+    let path = |path: &PathPoint| {
+        let at = |&i: &usize| range_poses.point(i, path.body.0, path.at);
+        let points = positions.iter().map(at);
+        Shape::line(points.collect(), pen).named(name)
+    };
+    scene.requests.paths.iter().map(path).collect()
 }
 
 /// A body's angle over the range, the dwell marked.
@@ -213,35 +203,23 @@ fn body_angle_panel(
 ) -> Panel {
     let angles = unwrapped_angles(range_poses, dwell.body);
     let points = range_poses.q.iter().zip(&angles);
+    let points = points.map(|(q, a)| [q, a].map(|v| v.to_degrees()));
     let name = prepared.scene.mechanism.body_name(dwell.body);
     let (from, to) = (dwell.from.to_degrees(), dwell.to.to_degrees());
     let label = format!("dwell, {:.0}°", to - from);
-    let marks = if to > 360.0 {
-        vec![
-            Mark::Band {
-                from,
-                to: 360.0,
-                label,
-            },
-            Mark::Band {
-                from: 0.0,
-                to: to - 360.0,
-                label: String::new(),
-            },
-        ]
-    } else {
-        vec![Mark::Band { from, to, label }]
+    let band = |from, to, label| Mark::Band { from, to, label };
+    let marks = match to > 360.0 {
+        true => vec![
+            band(from, 360.0, label),
+            band(0.0, to - 360.0, String::new()),
+        ],
+        false => vec![band(from, to, label)],
     };
     Panel::from(Chart {
         title: format!("Angle of {name}"),
         x: Axis::degrees(coordinate_label(prepared)),
         y: Axis::new(format!("angle of {name}"), "°"),
-        series: vec![Series::line(
-            "",
-            points
-                .map(|(q, a)| [q.to_degrees(), a.to_degrees()])
-                .collect(),
-        )],
+        series: vec![Series::line("", points.collect())],
         marks,
         ..Chart::default()
     })
@@ -251,28 +229,25 @@ fn unwrapped_angles(range_poses: &RangePoses, body: BodyId) -> Vec<f64> {
     let mut angles: Vec<f64> = Vec::with_capacity(range_poses.q.len());
     for poses in &range_poses.body_poses {
         let angle = poses[body.0].1.angle();
-        let revolutions = angles
-            .last()
-            .map_or(0.0, |last| ((last - angle) / TAU).round());
+        let last = angles.last();
+        let revolutions = last.map_or(0.0, |last| ((last - angle) / TAU).round());
         angles.push(angle + revolutions * TAU);
     }
     angles
 }
 
-/// The longest interval in which a body's angle stays within `band` of its swing.
+/// The longest interval in which a body's angle stays within `band` of its whole variation.
 fn find_dwell(range_poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell {
     let mut angles = unwrapped_angles(range_poses, body);
     let extent = |some: &[f64]| {
-        let (low, high) = some
-            .iter()
-            .fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
-        high - low
+        let low = some.iter().copied().fold(f64::MAX, f64::min);
+        some.iter().copied().fold(f64::MIN, f64::max) - low
     };
     let swing = extent(&angles);
     let mut q = range_poses.q.clone();
     let n = q.len();
     if full {
-        // A dwell may pass the end of the turn.
+        // A dwell may pass the end of the revolution.
         let gain = angles[n - 1] - angles[0];
         angles.extend(angles.clone().iter().skip(1).map(|a| a + gain));
         q.extend(range_poses.q.iter().skip(1).map(|q| q + TAU));

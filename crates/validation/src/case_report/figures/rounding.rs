@@ -1,4 +1,4 @@
-//! What rounding does to the kinetostatics of a case.
+//! The effect of rounding on the kinetostatics of a case.
 
 use crate::checked::rounding_check::{RoundingCheck, StateRounding};
 use crate::checked::states::CheckedStates;
@@ -7,7 +7,7 @@ use dwell_scene::Scene;
 use dwell_study::number_format::count;
 use dwell_study::output::scene_caption;
 
-/// An error below this is drawn here.
+/// A smaller error is drawn at this value.
 const MIN_DRAWN_ERROR: f64 = 1e-18;
 
 /// The errors of `f64` and `f32` along the motion that was checked.
@@ -23,12 +23,12 @@ pub(crate) fn rounding(scene: &Scene, checked: &CheckedStates, rounding: &Roundi
     };
     Figure {
         name: "rounding".to_owned(),
-        title: "What rounding does".to_owned(),
+        title: "Effect of rounding".to_owned(),
         caption: scene_caption(
             scene,
             &format!(
-                "The worst error of an action or a reaction in each state along {}, as a part of the largest of its unit: \
-                 the same evaluation in f32 and in f64, held against numbers of 32 digits.",
+                "The largest error of an actuator force or a reaction in each state along {}, as a part of the largest of its unit: \
+                 the same evaluation in f32 and in f64, compared with numbers of 32 digits.",
                 checked.motion_text
             ),
         ),

@@ -1,17 +1,17 @@
 //! A mechanism in the states in which it was checked, and its actuators' forces there.
 
-use super::mechanism::{RangePoses, paths};
+use super::mechanism::{RangePoses, drawing, paths};
 use crate::checked::states::CheckedStates;
 use dwell_geometry::{Vec2, vec2};
-use dwell_report::{Axis, Chart, Drawing, Figure, Panel, Series};
+use dwell_report::{Axis, Chart, Figure, Panel, Series};
 use dwell_scene::Scene;
 use dwell_study::bodies::BodyPose;
 use dwell_study::number_format::count;
-use dwell_study::output::MechanismDrawing;
-use dwell_study::output::{scene_caption, symbol};
+use dwell_study::output::{MechanismDrawing, scene_caption, symbol};
 
 /// Number of positions in which the mechanism is drawn.
 const DRAWN_POSITIONS: usize = 5;
+
 /// The mechanism in several states, with the paths of its points.
 pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
     let body_poses = checked.body_poses.iter().map(|bodies| {
@@ -24,37 +24,25 @@ pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
     };
     let mechanism = MechanismDrawing::new(scene, &range_poses.body_poses);
     let mut shapes = paths(scene, &range_poses);
-    for (k, &position) in distinct_positions(&range_poses.body_poses)
-        .iter()
-        .enumerate()
-        .rev()
-    {
+    let positions = distinct_positions(&range_poses.body_poses);
+    for (k, &position) in positions.iter().enumerate().rev() {
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.05 * k as f64 };
         mechanism.draw(&range_poses.body_poses[position], lightness, &mut shapes);
     }
+    let motion = checked.motion_text;
+    let text = format!("Drawn in full at the beginning of {motion}, lighter further on.");
     Figure {
         name: "mechanism".to_owned(),
         title: scene.title.clone(),
-        caption: scene_caption(
-            scene,
-            &format!(
-                "Drawn in full at the beginning of {}, lighter further on.",
-                checked.motion_text
-            ),
-        ),
+        caption: scene_caption(scene, &text),
         columns: 1,
-        panels: vec![Panel::from(Drawing {
-            title: String::new(),
-            x: Axis::new("x", "m"),
-            y: Axis::new("y", "m"),
-            shapes,
-        })],
+        panels: vec![drawing(shapes)],
         provenance: format!("the mechanism at {}", count(checked.drawn_count, "state")),
     }
 }
 
-/// Positions that differ as much as they can, the first before all, in the order of the motion: at equal distances of
-/// time those of whole turns would all be one.
+/// Positions that differ as much as they can, the first before all, in the order of the motion: at equal time intervals
+/// those after whole revolutions would coincide.
 fn distinct_positions(body_poses: &[Vec<BodyPose>]) -> Vec<usize> {
     let points = || body_poses.iter().flatten().map(|(at, _)| at.norm());
     let size = points().fold(f64::MIN_POSITIVE, f64::max);
@@ -77,33 +65,27 @@ fn distinct_positions(body_poses: &[Vec<BodyPose>]) -> Vec<usize> {
     chosen
 }
 
-/// What the actuators do along those states.
+/// The actuator forces along those states.
 pub(crate) fn actuator_forces(scene: &Scene, checked: &CheckedStates) -> Figure {
     let drawn = &checked.states[..checked.drawn_count];
     let panel = |(k, actuator): (usize, &dwell_geometry::Actuator)| {
-        let (what, unit) = match actuator.coordinate().is_angle() {
-            true => ("couple", "N m"),
-            false => ("force", "N"),
-        };
+        let unit = actuator.coordinate().force_unit();
+        let what = if unit == "N" { "force" } else { "moment" };
+        let points = drawn.iter().map(|state| [state.t, state.tau[k]]);
         Panel::from(Chart {
-            title: format!("Action of {}", symbol(&actuator.name)),
+            title: format!("Actuator {what} of {}", symbol(&actuator.name)),
             x: Axis::new("time", "s"),
             y: Axis::new(what, unit),
-            series: vec![Series::line(
-                "",
-                drawn.iter().map(|state| [state.t, state.tau[k]]).collect(),
-            )],
+            series: vec![Series::line("", points.collect())],
             ..Chart::default()
         })
     };
     let actuators = scene.mechanism.actuators.iter().enumerate();
+    let text = format!("Along {}, under the loads.", checked.motion_text);
     Figure {
         name: "actuator-forces".to_owned(),
-        title: "What the actuators do".to_owned(),
-        caption: scene_caption(
-            scene,
-            &format!("Along {}, under the loads.", checked.motion_text),
-        ),
+        title: "Actuator forces".to_owned(),
+        caption: scene_caption(scene, &text),
         columns: 1,
         panels: actuators.map(panel).collect(),
         provenance: format!("the mechanism at {}", count(checked.drawn_count, "state")),

@@ -1,7 +1,7 @@
-//! What accuracy costs: energy drift in time, and error against work.
+//! The cost of accuracy: energy drift in time, and error against work.
 
 use dwell_dynamics::Method;
-use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
+use dwell_report::{Axis, Chart, Figure, Paint, Panel, Series, Stroke};
 use dwell_study::PreparedScene;
 use dwell_study::output::caption;
 use dwell_verify::{CheckedFreeMotion, ToleranceRun};
@@ -38,7 +38,7 @@ pub(crate) fn drift(prepared: &PreparedScene<'_>, motion: &CheckedFreeMotion) ->
         title: "Energy drift".to_owned(),
         caption: caption(
             prepared,
-            "The energy of the free motion is constant; what is drawn is the integrators' own error at their steps, the \
+            "The energy of the free motion is constant; what is drawn is the error of the integrators at their steps, the \
              largest so far. It is far above the tolerance, which bounds the error of one step.",
         ),
         columns: 1,
@@ -63,7 +63,7 @@ fn envelope(run: &ToleranceRun) -> Vec<[f64; 2]> {
     let mut points = Vec::new();
     for [t, drift] in &run.drift_over_time {
         max_drift = max_drift.max(*drift);
-        // The first hundredth, where the drift comes up from nothing, would only stretch the axis.
+        // The first hundredth, where the drift grows from zero, would only stretch the axis.
         if *t >= 0.01 * end && *t >= end * f64::from(next) / INTERVALS as f64 {
             points.push([*t, max_drift]);
             next = (*t / end * INTERVALS as f64) as u32 + 1;
@@ -72,41 +72,43 @@ fn envelope(run: &ToleranceRun) -> Vec<[f64; 2]> {
     points
 }
 
-/// Error against evaluations and time over the ladder of tolerances.
+/// Error against evaluations and time over all tolerances.
 pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeMotion) -> Figure {
-    let of = |method: Method, x: fn(&ToleranceRun) -> f64, y: fn(&ToleranceRun) -> f64| {
-        let runs = motion
-            .tolerance_runs
-            .iter()
-            .filter(move |r| r.method == method);
-        Series::line(method.name(), runs.map(|r| [x(r), y(r)]).collect())
-            .stroke(Stroke::LineAndPoints)
+    type Value = fn(&ToleranceRun) -> f64;
+    let of = |method: Method, x: Value, y: Value| {
+        let runs = motion.tolerance_runs.iter();
+        let runs = runs.filter(|r| r.method == method).map(|r| [x(r), y(r)]);
+        Series::line(method.name(), runs.collect()).stroke(Stroke::LineAndPoints)
     };
-    let both = |x: fn(&ToleranceRun) -> f64, y: fn(&ToleranceRun) -> f64| {
-        vec![of(Method::Bdf, x, y), of(Method::Tsit45, x, y)]
-    };
-    let tolerances = |y: fn(&ToleranceRun) -> f64| {
-        let mut series = both(|r| r.tolerance, y);
-        series.push(
-            Series::line("error = tolerance", vec![[1e-13, 1e-13], [1e-4, 1e-4]])
-                .stroke(Stroke::Dashed)
-                .color(Paint::Grey),
-        );
-        series
-    };
-    let evaluations: fn(&ToleranceRun) -> f64 =
-        |r| (r.statistics.evaluations + r.statistics.jacobians) as f64;
-    let chart = |title: &str, x: Axis, y: &str, series: Vec<Series>, marks: Vec<Mark>| {
+    let chart = |title: &str, x: (Axis, Value), y: (&str, Value)| {
+        let mut series = vec![of(Method::Bdf, x.1, y.1), of(Method::Tsit45, x.1, y.1)];
+        if x.0.label == "tolerance" {
+            let diagonal = vec![[1e-13, 1e-13], [1e-4, 1e-4]];
+            let equal = Series::line("error = tolerance", diagonal).stroke(Stroke::Dashed);
+            series.push(equal.color(Paint::Grey));
+        }
         Panel::from(Chart {
             title: title.to_owned(),
-            x,
-            y: Axis::log(y, ""),
+            x: x.0,
+            y: Axis::log(y.0, ""),
             series,
-            marks,
             ..Chart::default()
         })
     };
-    let evaluations_axis = || Axis::log("evaluations of the equation of motion", "");
+    let evaluations = || {
+        let count: Value = |r| (r.statistics.evaluations + r.statistics.jacobians) as f64;
+        (
+            Axis::log("evaluations of the equation of motion", ""),
+            count,
+        )
+    };
+    let tolerance = || (Axis::log("tolerance", ""), (|r| r.tolerance) as Value);
+    let milliseconds: Value = |r| r.wall_time * 1e3;
+    let time = (Axis::log("wall time", "ms"), milliseconds);
+    let drift: (&str, Value) = ("largest |E / E₀ − 1|", |r| r.drift);
+    let period: (&str, Value) = ("relative error of the period", |r| r.period_error);
+    let reaction: (&str, Value) = ("largest relative error", |r| r.reaction_error);
+    let of_reaction = ("largest relative error of a reaction", reaction.1);
     Figure {
         name: "work-precision".to_owned(),
         title: "Cost against error".to_owned(),
@@ -118,48 +120,12 @@ pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeM
         ),
         columns: 2,
         panels: vec![
-            chart(
-                "Energy drift",
-                evaluations_axis(),
-                "largest |E / E₀ − 1|",
-                both(evaluations, |r| r.drift),
-                vec![],
-            ),
-            chart(
-                "Period",
-                evaluations_axis(),
-                "relative error of the period",
-                both(evaluations, |r| r.period_error),
-                vec![],
-            ),
-            chart(
-                "Reactions",
-                evaluations_axis(),
-                "largest relative error",
-                both(evaluations, |r| r.reaction_error),
-                vec![],
-            ),
-            chart(
-                "Time",
-                Axis::log("wall time", "ms"),
-                "largest |E / E₀ − 1|",
-                both(|r| r.wall_time * 1e3, |r| r.drift),
-                vec![],
-            ),
-            chart(
-                "What a tolerance is worth",
-                Axis::log("tolerance", ""),
-                "largest |E / E₀ − 1|",
-                tolerances(|r| r.drift),
-                vec![],
-            ),
-            chart(
-                "What a tolerance is worth",
-                Axis::log("tolerance", ""),
-                "largest relative error of a reaction",
-                tolerances(|r| r.reaction_error),
-                vec![],
-            ),
+            chart("Energy drift", evaluations(), drift),
+            chart("Period", evaluations(), period),
+            chart("Reactions", evaluations(), reaction),
+            chart("Time", time, drift),
+            chart("Error over tolerance", tolerance(), drift),
+            chart("Error over tolerance", tolerance(), of_reaction),
         ],
         provenance: tolerances_text(motion),
     }

@@ -1,14 +1,16 @@
 //! Values of named quantities at states of motion, as a reference gives them, and their comparison.
 
-use super::{Reference, list, number, object, parse};
+use super::{Reference, check_keys, list, named_values, number, object, read_each};
 use crate::cases::model_states::{ModelStates, StateRequest};
 use crate::cases::state_quantity::{QuantityKind, StateQuantity};
 use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
 use dwell_study::number_format::count;
-use dwell_verify::{FindingSpec, checks};
+use dwell_verify::FindingSpec;
+use dwell_verify::checks::{ComparedValue, compare_values};
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// Values at states of motion.
 #[derive(Debug, Clone)]
@@ -27,7 +29,7 @@ struct ReferenceState {
     values: Vec<(String, f64)>,
 }
 
-/// What a sample holds; without `q_ddot` it is one of free motion.
+/// The keys of a sample; without `q_ddot` it is one of free motion.
 const STATE_KEYS: [&str; 4] = ["q", "q_dot", "q_ddot", "values"];
 
 /// The samples with values of a file or of a part of it, if there are any.
@@ -40,10 +42,8 @@ pub(super) fn read_states(value: &Value, scene: &Scene) -> Result<Option<Referen
     let tolerance = &value["tolerance"];
     let why = tolerance["reason"].as_str();
     let why = why.ok_or_else(|| wrong("no `reason` is given".to_owned()))?;
-    let rows = samples.iter().enumerate();
-    let rows = rows.map(|(k, s)| read_state(s, scene).map_err(|e| format!("samples[{k}]: {e}")));
     Ok(Some(ReferenceStates {
-        samples: rows.collect::<Result<_, _>>()?,
+        samples: read_each("samples", samples, |s| read_state(s, scene))?,
         source: value["source"].as_str().map(str::to_owned),
         tolerance: number(tolerance, "relative").map_err(wrong)?,
         reason: why.to_owned(),
@@ -51,22 +51,8 @@ pub(super) fn read_states(value: &Value, scene: &Scene) -> Result<Option<Referen
 }
 
 fn read_state(value: &Value, scene: &Scene) -> Result<ReferenceState, String> {
-    let fields = object(value, "it")?;
-    if let Some(key) = fields
-        .keys()
-        .find(|key| !STATE_KEYS.contains(&key.as_str()))
-    {
-        return Err(format!(
-            "unknown key `{key}`; known are {}",
-            STATE_KEYS.join(", ")
-        ));
-    }
-    let named_values = object(&value["values"], "`values`")?;
-    let read = |(name, at): (&String, &Value)| match parse(at) {
-        Some(parsed) => Ok((name.clone(), parsed)),
-        None => Err(format!("`{name}` is not a number: {at}")),
-    };
-    let values: Vec<_> = named_values.iter().map(read).collect::<Result<_, _>>()?;
+    check_keys(object(value, "it")?, &STATE_KEYS)?;
+    let values = named_values(&value["values"])?;
     if values.is_empty() {
         return Err("there is nothing to compare in it".to_owned());
     }
@@ -87,177 +73,114 @@ fn read_state(value: &Value, scene: &Scene) -> Result<ReferenceState, String> {
 
 /// One number for each actuator.
 fn by_actuator(value: &Value, scene: &Scene) -> Result<Vec<f64>, String> {
-    let fields = object(value, "it")?;
+    let mut names = object(value, "it")?.keys();
     let actuators = &scene.mechanism.actuators;
-    if let Some(name) = fields
-        .keys()
-        .find(|k| actuators.iter().all(|a| a.name != **k))
-    {
+    if let Some(name) = names.find(|k| actuators.iter().all(|a| a.name != **k)) {
         return Err(format!("the scene has no actuator `{name}`"));
     }
     actuators.iter().map(|a| number(value, &a.name)).collect()
 }
 
-/// How findings name the quantities that share a scale.
-struct FindingText {
-    kind: QuantityKind,
-    computed: [&'static str; 2],
-    published: [&'static str; 2],
-}
-
-const FINDING_TEXTS: [FindingText; 5] = [
-    FindingText {
-        kind: QuantityKind::Positions,
-        computed: [
-            "reference-positions",
-            "angles and places with those computed elsewhere",
-        ],
-        published: [
-            "published-positions",
-            "angles and places with the published ones",
-        ],
-    },
-    FindingText {
-        kind: QuantityKind::Velocities,
-        computed: [
-            "reference-velocities",
-            "velocities with those computed elsewhere",
-        ],
-        published: ["published-velocities", "velocities with the published ones"],
-    },
-    FindingText {
-        kind: QuantityKind::Accelerations,
-        computed: [
-            "reference-accelerations",
-            "accelerations with those computed elsewhere",
-        ],
-        published: [
-            "published-accelerations",
-            "accelerations with the published ones",
-        ],
-    },
-    FindingText {
-        kind: QuantityKind::Reactions,
-        computed: [
-            "reference-reactions",
-            "reactions with those computed elsewhere",
-        ],
-        published: ["published-reactions", "reactions with the published ones"],
-    },
-    FindingText {
-        kind: QuantityKind::ActuatorForces,
-        computed: [
-            "reference-actuator-forces",
-            "actuator actions with those computed elsewhere",
-        ],
-        published: [
-            "published-actuator-forces",
-            "actuator actions with the published ones",
-        ],
-    },
+/// The quantities of each finding, with the end of its key.
+const KINDS: [(QuantityKind, &str); 5] = [
+    (QuantityKind::Positions, "positions"),
+    (QuantityKind::Velocities, "velocities"),
+    (QuantityKind::Accelerations, "accelerations"),
+    (QuantityKind::Reactions, "reactions"),
+    (QuantityKind::ActuatorForces, "actuator-forces"),
 ];
 
 impl ReferenceStates {
     /// The largest value of a unit in all samples.
     fn scale(&self, scene: &Scene, unit: &str) -> f64 {
         let values = self.samples.iter().flat_map(|state| &state.values);
-        let of_unit = values.filter(|(name, _)| {
-            StateQuantity::find(scene, name).is_some_and(|q| q.unit(scene) == unit)
-        });
+        let quantity = |name: &str| StateQuantity::find(scene, name);
+        let of_unit =
+            values.filter(|(name, _)| quantity(name).is_some_and(|q| q.unit(scene) == unit));
         of_unit.fold(0.0, |m, (_, value)| m.max(value.abs()))
     }
 
-    /// One finding for each kind that is given, after one of the names.
+    /// One finding for each kind that is given.
     fn compare(
         &self,
         scene: &Scene,
         model: &mut ModelStates<'_>,
         published: bool,
     ) -> Result<Vec<Finding>, ValidationError> {
-        let mut read_values = Vec::new();
-        let mut unknown = Vec::new();
-        for (k, row) in self.samples.iter().enumerate() {
-            let state = model.evaluate_at(&row.request)?;
-            let condition = state.condition_number();
-            for (name, expected) in &row.values {
-                let Some(quantity) = StateQuantity::find(scene, name) else {
-                    unknown.push(format!("`{name}`"));
-                    continue;
-                };
-                let unit = quantity.unit(scene);
-                let value = checks::ComparedValue {
-                    location: format!("{name}, sample {}", k + 1),
-                    unit,
-                    value: quantity.value(&state),
-                    expected: *expected,
-                    scale: 0.0,
-                    condition_number: condition,
-                };
-                read_values.push((quantity.kind(), value));
-            }
-        }
-        for unit in ["m", "rad", "m/s", "rad/s", "m/s2", "rad/s2", "N", "N m"] {
-            let scale = self.scale(scene, unit);
-            let of_unit = read_values
-                .iter_mut()
-                .filter(|(_, value)| value.unit == unit);
-            of_unit.for_each(|(_, value)| value.scale = scale);
-        }
+        let (values, unknown) = self.compared_values(scene, model)?;
         let mut over = count(self.samples.len(), "sample");
         if let (true, Some(source)) = (published, &self.source) {
             over += &format!(" of {source}");
         }
+        let (prefix, source) = match published {
+            true => ("published", "the published ones"),
+            false => ("reference", "those computed elsewhere"),
+        };
         let mut findings = Vec::new();
         if !unknown.is_empty() {
-            unknown.sort();
-            unknown.dedup();
-            findings.push(unknown_names(&unknown, &over, published));
+            findings.push(unknown_names(&unknown, &over, prefix));
         }
-        for text in &FINDING_TEXTS {
-            let of_kind = read_values.iter().filter(|(kind, _)| *kind == text.kind);
+        for (kind, key) in KINDS {
+            let of_kind = values.iter().filter(|(of, _)| *of == kind);
             let values: Vec<_> = of_kind.map(|(_, value)| value.clone()).collect();
             if values.is_empty() {
                 continue;
             }
-            let [key, compared] = if published {
-                text.published
-            } else {
-                text.computed
-            };
             let spec = FindingSpec {
-                key,
+                key: &format!("{prefix}-{key}"),
                 check: Check::ReferenceValues,
-                comparison: compared,
+                comparison: &format!("{} with {source}", key.replace('-', " ")),
                 scale: "the largest value of the same unit",
                 tolerance: self.tolerance,
                 tolerance_reason: &self.reason,
             };
-            findings.push(checks::compare_values(&spec, over.clone(), &values));
+            findings.push(compare_values(&spec, over.clone(), &values));
         }
         Ok(findings)
+    }
+
+    /// All values with their kinds, and the names that the scene does not have.
+    fn compared_values(
+        &self,
+        scene: &Scene,
+        model: &mut ModelStates<'_>,
+    ) -> Result<(Vec<(QuantityKind, ComparedValue)>, BTreeSet<String>), ValidationError> {
+        let (mut values, mut unknown) = (Vec::new(), BTreeSet::new());
+        for (k, row) in self.samples.iter().enumerate() {
+            let state = model.evaluate_at(&row.request)?;
+            let condition_number = state.condition_number();
+            for (name, expected) in &row.values {
+                let Some(quantity) = StateQuantity::find(scene, name) else {
+                    unknown.insert(format!("`{name}`"));
+                    continue;
+                };
+                let unit = quantity.unit(scene);
+                let value = ComparedValue {
+                    location: format!("{name}, sample {}", k + 1),
+                    unit,
+                    value: quantity.value(&state),
+                    expected: *expected,
+                    scale: self.scale(scene, unit),
+                    condition_number,
+                };
+                values.push((quantity.kind(), value));
+            }
+        }
+        Ok((values, unknown))
     }
 }
 
 /// Names that the scene does not have.
-fn unknown_names(unknown: &[String], over: &str, published: bool) -> Finding {
-    let key = if published {
-        "published-unknown-names"
-    } else {
-        "reference-unknown-names"
-    };
+fn unknown_names(unknown: &BTreeSet<String>, over: &str, prefix: &str) -> Finding {
+    let key = format!("{prefix}-unknown-names");
+    let (count, names) = (unknown.len() as f64, unknown.iter().cloned());
+    let names = names.collect::<Vec<_>>().join(", ");
     Finding {
-        key: key.to_owned(),
-        check: Check::ReferenceValues,
         comparison: "the names of the reference with the quantities of the scene".to_owned(),
         domain: over.to_owned(),
-        absolute_difference: unknown.len() as f64,
-        unit: String::new(),
-        relative_difference: f64::NAN,
-        scale: "none".to_owned(),
-        worst_at: format!("the scene has no quantity {}", unknown.join(", ")),
-        tolerance: 0.0,
-        tolerance_reason: "what is given and never compared would pass for agreement".to_owned(),
-        ..Finding::default()
+        worst_at: format!("the scene has no quantity {names}"),
+        tolerance_reason: "a value that is never compared would be taken for agreement".to_owned(),
+        ..Finding::new(&key, Check::ReferenceValues, [count, f64::NAN], 0.0)
     }
 }
 
@@ -271,15 +194,13 @@ impl Reference {
 
     /// The largest speed of the first actuator in them, above zero.
     pub(crate) fn max_velocity(&self) -> Option<f64> {
-        let velocities = self
-            .state_requests()
-            .into_iter()
-            .filter_map(|request| request.q_dot.first().copied());
+        let requests = self.state_requests().into_iter();
+        let velocities = requests.filter_map(|request| request.q_dot.first().copied());
         let max_abs = velocities.fold(0.0, |m, v| v.abs().max(m));
         (max_abs > 0.0).then_some(max_abs)
     }
 
-    /// What a scene says at those states, held against the values.
+    /// Compares the results of a scene in those states with the values.
     ///
     /// # Errors
     /// As [`ModelStates::evaluate_at`].
@@ -289,13 +210,11 @@ impl Reference {
         model: &mut ModelStates<'_>,
     ) -> Result<Vec<Finding>, ValidationError> {
         let mut findings = Vec::new();
-        for (table, published) in [
-            (&self.published_states, true),
-            (&self.computed_states, false),
-        ] {
-            if let Some(table) = table {
-                findings.extend(table.compare(scene, model, published)?);
-            }
+        if let Some(table) = &self.published_states {
+            findings.extend(table.compare(scene, model, true)?);
+        }
+        if let Some(table) = &self.computed_states {
+            findings.extend(table.compare(scene, model, false)?);
         }
         Ok(findings)
     }

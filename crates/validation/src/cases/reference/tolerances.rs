@@ -61,16 +61,16 @@ impl Tolerances {
     /// Applies them to findings. A finding without one keeps the tolerance of the code.
     ///
     /// # Errors
-    /// A key that no finding has, in words that name the known ones.
+    /// A key that no finding has, with the known ones.
     pub(crate) fn apply(&self, findings: &mut [Finding]) -> Result<(), String> {
         for (key, tolerance) in &self.by_key {
             if findings.iter().all(|f| f.key != *key) {
                 let mut known: Vec<&str> = findings.iter().map(|f| f.key.as_str()).collect();
                 known.sort_unstable();
                 known.dedup();
+                let known = known.join(", ");
                 return Err(format!(
-                    "tolerances: there is no finding `{key}`; there are {}",
-                    known.join(", ")
+                    "tolerances: there is no finding `{key}`; there are {known}"
                 ));
             }
             for finding in findings.iter_mut().filter(|f| f.key == *key) {
@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn every_finding_of_a_key_is_judged_by_it() {
+    fn every_finding_of_a_key_has_its_tolerance() {
         let read = Tolerances::read(&json!({ "power": 1e-15 })).unwrap();
         let mut all = findings();
         read.apply(&mut all).unwrap();

@@ -1,0 +1,45 @@
+//! Parts that the reports of cases and studies share.
+
+use dwell_report::{Block, Figure, Files, ReportError};
+use rayon::prelude::*;
+
+/// A table of a document.
+pub(crate) fn table(header: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Block {
+    Block::Table {
+        header: header.iter().map(|&cell| cell.to_owned()).collect(),
+        rows: rows.into_iter().collect(),
+    }
+}
+
+/// Draws figures, each as `FOLDER/NAME.png`.
+pub(crate) fn draw_figures(
+    files: &mut Files,
+    folder: &str,
+    figures: &[Figure],
+    draw: impl Fn(&Figure) -> Result<Vec<u8>, ReportError> + Sync,
+) -> Result<(), ReportError> {
+    let pictures: Vec<Vec<u8>> = figures.par_iter().map(&draw).collect::<Result<_, _>>()?;
+    for (figure, picture) in figures.iter().zip(pictures) {
+        files.add(format!("{folder}/{}.png", figure.name), picture);
+    }
+    Ok(())
+}
+
+/// The drawn figures in a document, each with its caption or else its title below it.
+pub(crate) fn figure_blocks(folder: &str, figures: &[Figure], captions: bool) -> Vec<Block> {
+    let block = |figure: &Figure| Block::Figure {
+        file: format!("{folder}/{}.png", figure.name),
+        alt: figure.title.clone(),
+        caption: if captions {
+            figure.caption.clone()
+        } else {
+            figure.title.clone()
+        },
+    };
+    figures.iter().map(block).collect()
+}
+
+/// `pass` or a bold FAIL.
+pub(crate) fn pass_or_fail(pass: bool) -> &'static str {
+    if pass { "pass" } else { "**FAIL**" }
+}

@@ -1,0 +1,277 @@
+//! Checks 4, 7 and 8: the balances of power, of momentum, and of the forces on each body.
+//!
+//! A position is passed in several motions q(t) = q + q̇ t + ½ q̈ t², without loads. In each of them
+//!
+//! ```text
+//! τ q̇ = dE_c/dt                                                              (1)  check 4
+//! Σ F of the ground on the mechanism = d/dt Σ m v_G                          (2)  check 7
+//! Σ M of the ground on the mechanism about O = d/dt Σ (r_G × m v_G + I ω)    (3)
+//! Σ F on a body = m a_G                                                      (4)  check 8
+//! Σ M on a body about G = I α                                                (5)
+//! ```
+//!
+//! with O fixed in the ground. The rates in (1) to (3) are differences in time of the energy and the momentum of dense
+//! velocities. In (2) and (3) every internal reaction cancels, so they check the reactions of the ground and the actuator
+//! together. The accelerations in (4) and (5) are second differences of dense *positions*: no velocity and no
+//! acceleration is computed on this side, so an error in such code cannot occur on both sides. Every reaction of every
+//! joint is checked, in the state it is used in.
+//!
+//! Positions are closed to about 2e-16 of the size; a second difference divides that error by h². With
+//! the steps used here, a few hundredths of a radian and more, 1e-12 of the largest force remains.
+//!
+//! Signs: a reaction is the force or moment of a joint's first body on its second. Where the ground is the
+//! first body, this is the action of the ground; where it is the second, the opposite. The force of a
+//! prismatic joint acts at the second body's point along the first body's normal, with the joint's
+//! moment as a couple.
+
+use super::row_step;
+use crate::comparison::{FindingSpec, LargestDifference};
+use crate::constraint_closing::ClosedConfiguration;
+use crate::context::{CheckContext, CheckedPosition, FORCE_MIN_SHARE};
+use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
+use crate::subject::SubjectError;
+use crate::wrenches::{DenseWrench, NetWrench};
+use dwell_findings::{Check, Finding};
+use dwell_geometry::Vec2;
+use dwell_laws::Polynomial;
+use rayon::prelude::*;
+
+/// The (q̇, q̈) that a position is passed with, rad/s and rad/s²: both signs of each, of like
+/// size, so that no term of a balance is small in all of them.
+const MOTIONS: [[f64; 2]; 3] = [[1.0, 0.7], [-0.8, 0.5], [0.6, -1.2]];
+
+const POWER: FindingSpec<'_> = FindingSpec {
+    key: "power",
+    check: Check::Power,
+    comparison: "tau times q_dot with dE_c/dt, differenced in time along the motion",
+    scale: "the largest power of the same motion",
+    tolerance: 3e-12,
+    tolerance_reason: "rounding of E_c over the shortest time step that the extrapolation uses",
+};
+const MOMENTUM_FORCE: FindingSpec<'_> = FindingSpec {
+    key: "momentum-force",
+    check: Check::Momentum,
+    comparison: "the ground's forces with the rate of the momentum, differenced in time",
+    scale: "the largest sum of absolute forces of the same motion",
+    tolerance: 1e-12,
+    tolerance_reason: "rounding of the momentum over the shortest time step that the extrapolation uses",
+};
+const MOMENTUM_MOMENT: FindingSpec<'_> = FindingSpec {
+    key: "momentum-moment",
+    comparison: "the ground's moments with the rate of the angular momentum, differenced in time",
+    scale: "the largest sum of absolute moments of the same motion",
+    ..MOMENTUM_FORCE
+};
+const NEWTON: FindingSpec<'_> = FindingSpec {
+    key: "newton-force",
+    check: Check::NewtonEuler,
+    comparison: "the forces on each body with m a_G, positions differenced twice in time",
+    scale: "the largest sum of absolute forces on a body in the same motion",
+    tolerance: 2e-11,
+    tolerance_reason: "rounding of the positions over the square of the shortest time step used",
+};
+const EULER: FindingSpec<'_> = FindingSpec {
+    key: "euler-moment",
+    comparison: "the moments on each body about its centre of mass with I alpha, positions differenced twice",
+    scale: "the largest sum of absolute moments on a body in the same motion",
+    ..NEWTON
+};
+/// The findings with the units of their differences: power, then force and moment of the mechanism and of the bodies.
+const FINDINGS: [(FindingSpec<'_>, &str); 5] = [
+    (POWER, "W"),
+    (MOMENTUM_FORCE, "N"),
+    (MOMENTUM_MOMENT, "N m"),
+    (NEWTON, "N"),
+    (EULER, "N m"),
+];
+
+/// One balance in one motion at one position.
+struct Balance {
+    /// Index in [`FINDINGS`].
+    finding: usize,
+    body: Option<usize>,
+    difference: f64,
+    /// The sum of absolute terms.
+    terms: f64,
+    reference_error: f64,
+}
+
+/// The five findings. The scale of a balance is the largest of its kind in the same motion at any position.
+pub(crate) fn balances(context: &CheckContext<'_>) -> Vec<Finding> {
+    let of = |position| MOTIONS.map(|motion| balances_in_motion(context, position, motion));
+    let all: Vec<[Result<Vec<Balance>, SubjectError>; 3]> =
+        context.positions.par_iter().map(of).collect();
+    let mut worst: [LargestDifference; 5] = Default::default();
+    for (i, motion @ [q_dot, q_ddot]) in MOTIONS.into_iter().enumerate() {
+        let mut scales = [0.0_f64; 5];
+        // Where nothing but q̈ does work the terms m q̇ q̈ are the largest there are.
+        scales[0] = 1e-3 * context.scales.m * (q_dot * q_ddot).abs();
+        for balance in all.iter().flat_map(|motions| &motions[i]).flatten() {
+            scales[balance.finding] = scales[balance.finding].max(balance.terms);
+        }
+        for force in [1, 3] {
+            let by_moments = FORCE_MIN_SHARE * scales[force + 1] / context.dense.size();
+            scales[force] = scales[force].max(by_moments);
+        }
+        for (position, motions) in context.positions.iter().zip(&all) {
+            let balances = match &motions[i] {
+                Ok(balances) => balances,
+                Err(error) => {
+                    worst.iter_mut().for_each(|w| w.record_error(error));
+                    continue;
+                }
+            };
+            for b in balances {
+                let numbers = [b.difference, scales[b.finding], b.reference_error];
+                let location = || location(context, position.q, motion, b.body);
+                let ((_, unit), worst) = (FINDINGS[b.finding], &mut worst[b.finding]);
+                position.record(worst, numbers, unit, location);
+            }
+        }
+    }
+    let (domain, count) = (context.domain(), MOTIONS.len());
+    let domain = format!("{domain}, each passed in {count} motions");
+    let finding = |((spec, _), worst): (&(FindingSpec<'_>, _), _)| match spec.check {
+        Check::NewtonEuler => spec.finding(format!("every body at {domain}"), worst),
+        _ => spec.finding(domain.clone(), worst),
+    };
+    FINDINGS.iter().zip(worst).map(finding).collect()
+}
+
+/// `phi = 1.3 rad, 1 rad/s, 0.7 rad/s2, coupler`.
+fn location(
+    context: &CheckContext<'_>,
+    q: f64,
+    [q_dot, q_ddot]: [f64; 2],
+    body: Option<usize>,
+) -> String {
+    let (location, unit) = (context.location(q), context.unit());
+    let body = body.map(|body| format!(", {}", context.case.mechanism.bodies[body].name));
+    let body = body.unwrap_or_default();
+    format!("{location}, {q_dot} {unit}/s, {q_ddot} {unit}/s2{body}")
+}
+
+/// All balances of one motion at one position.
+fn balances_in_motion(
+    context: &CheckContext<'_>,
+    position: &CheckedPosition,
+    [q_dot, q_ddot]: [f64; 2],
+) -> Result<Vec<Balance>, SubjectError> {
+    let dense = &context.dense;
+    let subject = context.subject;
+    let subject = subject.inverse_dynamics(position.q, q_dot, q_ddot)?;
+    let at = &position.configuration;
+    let wrenches = dense.joint_wrenches(at, &subject.reactions, &[subject.tau]);
+    let law = Polynomial::motion(position.q, q_dot, q_ddot);
+    // The time it takes to go one step of q: |q̇| t + ½ |q̈| t² = h.
+    let h = row_step(context, position.unit_velocity());
+    let step = 2.0 * h / (q_dot.abs() + (q_dot * q_dot + 2.0 * q_ddot.abs() * h).sqrt());
+    let rate = |of: &dyn Fn(&ClosedConfiguration, &[f64]) -> Vec<f64>| {
+        derivatives(
+            DerivativeOrder::First,
+            step,
+            position.energy_rounding(),
+            |t| {
+                let (configuration, x_dot) = state_at(context, position, &law, t)?;
+                Some(of(&configuration, &x_dot))
+            },
+        )
+    };
+    let component = |all: &[Extrapolated], c: usize| all.get(c).copied().unwrap_or(NO_ESTIMATE);
+    let energy_rate = rate(&|at, x_dot| vec![0.5 * dense.inertia(at, x_dot, x_dot)]);
+    let energy_rate = component(&energy_rate, 0);
+    let mut balances = vec![Balance {
+        finding: 0,
+        body: None,
+        difference: subject.tau * q_dot - energy_rate.value,
+        terms: energy_rate.value.abs(),
+        reference_error: energy_rate.error,
+    }];
+    let momentum = rate(&|at, x_dot| dense.momentum(at, x_dot).to_vec());
+    let momentum = std::array::from_fn(|c| component(&momentum, c));
+    let (net, errors) = momentum_balance(context, &wrenches, momentum);
+    push(&mut balances, 1, None, net, errors);
+    let rounding = position.pose_rounding();
+    let second = dense.second_differences(at, step, rounding, |t, q| q[0] = law.eval(t)[0]);
+    let moving = (0..dense.bodies.len()).filter(|&b| dense.bodies[b].column.is_some());
+    for (i, body) in moving.enumerate() {
+        let second = [0, 1, 2].map(|c| component(&second, 3 * i + c));
+        let (net, errors) = body_balance(context, position, &wrenches, body, second);
+        push(&mut balances, 3, Some(body), net, errors);
+    }
+    Ok(balances)
+}
+
+/// Adds a balance of forces and moments: findings `first` and the next.
+fn push(
+    to: &mut Vec<Balance>,
+    first: usize,
+    body: Option<usize>,
+    net: NetWrench,
+    errors: [f64; 3],
+) {
+    to.extend([0, 1, 2].map(|c| Balance {
+        finding: first + usize::from(c == 2),
+        body,
+        difference: net.sum[c],
+        terms: net.terms[c],
+        reference_error: errors[c],
+    }));
+}
+
+/// The mechanism at time `t` of a motion through a position, with its velocities.
+fn state_at(
+    context: &CheckContext<'_>,
+    position: &CheckedPosition,
+    law: &Polynomial,
+    t: f64,
+) -> Option<(ClosedConfiguration, Vec<f64>)> {
+    let (dense, row) = (&context.dense, context.dense.actuator_row());
+    let [q, q_dot, ..] = law.eval(t);
+    let (from, direction) = (&position.configuration, position.unit_velocity());
+    let configuration = dense.step_row(from, row, direction, q).ok()?;
+    let unit = dense.unit_velocity(&configuration, row);
+    Some((configuration, unit.iter().map(|u| u * q_dot).collect()))
+}
+
+/// (2) and (3), with the errors of the rates.
+fn momentum_balance(
+    context: &CheckContext<'_>,
+    wrenches: &[DenseWrench],
+    rate: [Extrapolated; 3],
+) -> (NetWrench, [f64; 3]) {
+    let force = rate[0].value.abs().max(rate[1].value.abs());
+    let mut net = NetWrench {
+        sum: [0.0; 3],
+        terms: [force, force, rate[2].value.abs()],
+    };
+    let ground = context.case.mechanism.ground;
+    for wrench in wrenches.iter().filter(|wrench| wrench.body == ground) {
+        net.add(wrench, Vec2::ZERO);
+    }
+    // The ground's action on the mechanism is opposite to what acts on the ground.
+    net.sum = std::array::from_fn(|c| -net.sum[c] - rate[c].value);
+    (net, rate.map(|rate| rate.error))
+}
+
+/// (4) and (5) of a body with the second derivatives of its centre of mass and angle, and their errors.
+fn body_balance(
+    context: &CheckContext<'_>,
+    position: &CheckedPosition,
+    wrenches: &[DenseWrench],
+    body: usize,
+    second: [Extrapolated; 3],
+) -> (NetWrench, [f64; 3]) {
+    let of = &context.dense.bodies[body];
+    let inertias = [of.mass.mass, of.mass.mass, of.mass.inertia];
+    let rate: [f64; 3] = std::array::from_fn(|c| inertias[c] * second[c].value);
+    let mut net = NetWrench {
+        sum: rate.map(|rate| -rate),
+        terms: rate.map(f64::abs),
+    };
+    let center = context.dense.center(of, &position.configuration);
+    for wrench in wrenches.iter().filter(|wrench| wrench.body == body) {
+        net.add(wrench, center);
+    }
+    (net, std::array::from_fn(|c| inertias[c] * second[c].error))
+}
