@@ -1,9 +1,9 @@
 //! Gears and racks with a pressure angle, by hand: a tooth force T has a separating force S = |T| tan α, so that the
 //! teeth act on each other with |T|/cos α, and the bearings carry it.
 
-use crate::scenes::{Case, Memory};
+use crate::scenes::Case;
 use dwell_geometry::{JointId, Vec2, vec2};
-use dwell_kinetostatics::{EvaluatedState, FreeBodyForces, Load, LoadKind, Magnitude, Model};
+use dwell_kinetostatics::{FreeBodyForces, InverseDynamics, Load, LoadKind, Magnitude, Model};
 use dwell_scene::Scene;
 
 /// rad, about 20°.
@@ -29,27 +29,28 @@ fn case(text: &str) -> Case {
     Case::of(&scene, |_| scene.loads.clone())
 }
 
-/// The forces of a case in one state, by name.
-struct Forces<'a> {
+/// A case in a state of motion.
+struct Evaluated<'a> {
     case: &'a Case,
-    state: EvaluatedState<'a>,
+    result: InverseDynamics<f64>,
+    magnitudes: Vec<f64>,
 }
 
-impl Case {
-    /// The forces at t, q, q̇, q̈.
-    fn forces<'a>(
-        &'a self,
-        memory: &'a mut Memory,
-        at: (f64, &[f64], &[f64], &[f64]),
-    ) -> Forces<'a> {
-        let state = self.evaluate(memory, at);
-        Forces { case: self, state }
+/// The case at q, q̇ of its one actuator and t = 0, without acceleration.
+fn at(case: &Case, q: f64, q_dot: f64) -> Evaluated<'_> {
+    let mut memory = case.memory();
+    let state = case.evaluate(&mut memory, (0.0, &[q], &[q_dot], &[0.0]));
+    let magnitudes = state.loads().magnitude.clone();
+    Evaluated {
+        case,
+        result: memory.1,
+        magnitudes,
     }
 }
 
-impl Forces<'_> {
+impl Evaluated<'_> {
     fn reaction(&self, name: &str) -> f64 {
-        self.case.reaction(self.state.inverse_dynamics(), name)
+        self.case.reaction(&self.result, name)
     }
 
     fn pin(&self, name: &str) -> Vec2 {
@@ -60,7 +61,7 @@ impl Forces<'_> {
     fn magnitude(&self, name: &str) -> f64 {
         let mut loads = self.case.model.loads().iter();
         let load = loads.position(|load| load.name == name);
-        self.state.loads().magnitude[load.expect("a load of that name")]
+        self.magnitudes[load.expect("a load of that name")]
     }
 }
 
@@ -105,19 +106,18 @@ fn two_spur_gears_are_pushed_apart_by_both_senses_of_the_torque() {
     for psi in [0.0, 0.9, 2.4, -1.3] {
         for torque in [3.0, -3.0] {
             let case = case(&gears([0.03, 0.02], false, psi, torque, WITH_ANGLE));
-            let mut memory = case.memory();
-            let forces = case.forces(&mut memory, (0.0, &[0.3], &[0.0], &[0.0]));
+            let case = at(&case, 0.3, 0.0);
             let tooth = -torque / 0.02;
             let separating = tooth.abs() * tangent();
-            assert!((forces.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
-            assert!((forces.magnitude("mesh.separating") - separating).abs() < ROUNDING);
+            assert!((case.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
+            assert!((case.magnitude("mesh.separating") - separating).abs() < ROUNDING);
             let u = Vec2::from_angle(psi);
             // Counter-clockwise at the second gear's pitch point is −u turned by +90°.
             let on_second = u.perp() * -tooth + u * separating;
-            close(forces.pin("B"), -on_second);
-            close(forces.pin("A"), on_second);
+            close(case.pin("B"), -on_second);
+            close(case.pin("A"), on_second);
             let size = tooth.abs() / ALPHA.cos();
-            assert!((forces.pin("B").norm() - size).abs() < ROUNDING);
+            assert!((case.pin("B").norm() - size).abs() < ROUNDING);
         }
     }
 }
@@ -129,10 +129,9 @@ fn a_ring_pushes_its_pinion_towards_its_own_centre() {
     for torque in [3.0, -3.0] {
         for (radii, pinion) in [([0.07, 0.02], 1), ([0.02, 0.07], 0)] {
             let case = case(&gears(radii, true, 0.7, torque, WITH_ANGLE));
-            let mut memory = case.memory();
-            let forces = case.forces(&mut memory, (0.0, &[0.3], &[0.0], &[0.0]));
+            let case = at(&case, 0.3, 0.0);
             let tooth = -torque / radii[1];
-            assert!((forces.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
+            assert!((case.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
             // From the ring's centre to the pinion's, and on to the pitch point.
             let u = Vec2::from_angle(0.7) * if pinion == 1 { 1.0 } else { -1.0 };
             // The pitch point lies along u from both centres, so the tangent of both is u turned by +90°.
@@ -140,8 +139,8 @@ fn a_ring_pushes_its_pinion_towards_its_own_centre() {
             let tangential = if pinion == 1 { on_second } else { -on_second };
             let on_pinion = tangential - u * (tooth.abs() * tangent());
             let pins = ["A", "B"];
-            close(forces.pin(pins[pinion]), -on_pinion);
-            close(forces.pin(pins[1 - pinion]), on_pinion);
+            close(case.pin(pins[pinion]), -on_pinion);
+            close(case.pin(pins[1 - pinion]), on_pinion);
         }
     }
 }
@@ -173,15 +172,14 @@ fn a_rack_pushes_its_pinion_off_normal_to_the_pitch_line() {
     for side in [1.0, -1.0] {
         for force in [80.0, -80.0] {
             let case = case(&rack(side, force));
-            let mut memory = case.memory();
-            let forces = case.forces(&mut memory, (0.0, &[0.0], &[0.0], &[0.0]));
+            let case = at(&case, 0.0, 0.0);
             // The teeth hold the rack: T acts on the pinion, −T on the rack.
-            assert!((forces.reaction("mesh.tooth") - force).abs() < ROUNDING);
+            assert!((case.reaction("mesh.tooth") - force).abs() < ROUNDING);
             let separating = force.abs() * tangent() * side;
-            close(forces.pin("C"), vec2(-force, -separating));
+            close(case.pin("C"), vec2(-force, -separating));
             // The rack is pushed the other way, and its guide holds it: there the pinion is at travel 0.1 m.
-            assert!((forces.reaction("guide.normal") - separating).abs() < ROUNDING);
-            let moment = forces.reaction("guide.moment");
+            assert!((case.reaction("guide.normal") - separating).abs() < ROUNDING);
+            let moment = case.reaction("guide.moment");
             assert!((moment - 0.1 * separating).abs() < ROUNDING, "{moment}");
         }
     }
@@ -211,28 +209,20 @@ const PLANETARY: &str = r#"
 /// 2 T, so T = M/(2 · 50 mm). The sun pushes the planet outwards, the ring inwards.
 #[test]
 fn the_pin_of_a_planet_carries_the_difference_of_two_separating_forces() {
-    let case = case(PLANETARY);
+    let planetary = case(PLANETARY);
     for q in [0.4, 1.7, -2.2] {
-        let mut memory = case.memory();
-        let forces = case.forces(&mut memory, (0.0, &[q], &[0.0], &[0.0]));
+        let case = at(&planetary, q, 0.0);
         let tooth = 12.0 / 0.1;
         let [sun, ring] = [ALPHA, 0.44].map(|angle| tooth * angle.tan());
-        let u = Vec2::from_angle(0.3 * q + case.arm_offset());
-        close(
-            forces.pin("C"),
-            u.perp() * (-2.0 * tooth) + u * (ring - sun),
-        );
+        let u = Vec2::from_angle(0.3 * q + ARM_OFFSET);
+        close(case.pin("C"), u.perp() * (-2.0 * tooth) + u * (ring - sun));
         // The ground holds the sun alone.
-        assert!((forces.pin("O").norm() - tooth / ALPHA.cos()).abs() < ROUNDING);
+        assert!((case.pin("O").norm() - tooth / ALPHA.cos()).abs() < ROUNDING);
     }
 }
 
-impl Case {
-    /// The arm turns by 0.3 of the sun: from where it is at assembly, at 0.
-    fn arm_offset(&self) -> f64 {
-        -0.3 * 0.4
-    }
-}
+/// The arm turns by 0.3 of the sun: from where it is at assembly, at 0.
+const ARM_OFFSET: f64 = -0.3 * 0.4;
 
 /// The friction of a pin answers to |T|/cos α: r₂ T = −M + µ r |T|/cos α tanh(ω/ω₀), with T against M.
 #[test]
@@ -240,19 +230,18 @@ fn friction_sees_the_separating_force() {
     let friction = "\n[friction]\nB = { coefficient = 0.15, radius = 0.008 }\n";
     let text = gears([0.03, 0.02], false, 0.9, 3.0, WITH_ANGLE) + friction;
     let case = case(&text);
-    let mut memory = case.memory();
-    let forces = case.forces(&mut memory, (0.0, &[0.3], &[-2.0], &[0.0]));
+    let case = at(&case, 0.3, -2.0);
     // The second gear turns with +3 rad/s, and friction brakes it.
     let lever = 0.15 * 0.008 * (3.0_f64 / 0.01).tanh();
     let cosine = ALPHA.cos();
     let tooth = -3.0 / (0.02 + lever / cosine);
-    assert!((forces.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
-    let couple = forces.magnitude("B.friction");
+    assert!((case.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
+    let couple = case.magnitude("B.friction");
     assert!(
         (couple + lever * tooth.abs() / cosine).abs() < ROUNDING,
         "{couple}"
     );
-    let separating = forces.magnitude("mesh.separating");
+    let separating = case.magnitude("mesh.separating");
     assert!((separating - tooth.abs() * tangent()).abs() < ROUNDING);
 }
 
@@ -272,16 +261,28 @@ fn a_separating_force_does_no_work_and_adds_its_unit_response() {
     let body_forces = FreeBodyForces::new(&with.model).expect("every reaction");
     let separating = with.model.loads().len() - 1;
     assert_eq!(with.model.loads()[separating].name, "mesh.separating");
-    let (mut memory, mut unit) = (with.memory(), with.model.result_buffer());
+    let mut unit = with.model.result_buffer();
     let mut largest_share = 0.0_f64;
+    let (mut memory, mut other) = (with.memory(), with.memory());
     for (t, q, q_dot, q_ddot) in with.states() {
-        let plain = without.result((t, &q, &q_dot, &q_ddot));
-        let forces = with.forces(&mut memory, (t, &q, &q_dot, &q_ddot));
-        let force = forces.magnitude("mesh.separating");
-        assert_eq!(force, forces.reaction("mesh.tooth").abs() * tangent());
-        let state = forces.state;
-        let found = state.inverse_dynamics();
-        let size = found.reactions.iter().fold(1.0_f64, |s, r| s.max(r.abs()));
+        let motion = (t, &q[..], &q_dot[..], &q_ddot[..]);
+        let state = with.evaluate(&mut memory, motion);
+        let (result, plain) = (state.inverse_dynamics(), without.result(motion));
+        let force = state.loads().magnitude[separating];
+        let tooth = with.reaction(result, "mesh.tooth");
+        assert_eq!(force, tooth.abs() * tangent());
+        with.evaluate(&mut other, motion)
+            .into_kinematic_state()
+            .unit_load_response(separating, &mut unit)
+            .expect("gears apart");
+        let reactions = result.reactions.iter();
+        let size = reactions.fold(1.0_f64, |s, r| s.max(r.abs()));
+        assert!((result.tau[0] - plain.tau[0]).abs() < 1e-14 * size);
+        let all = result.reactions.iter().zip(&plain.reactions);
+        for ((found, plain), response) in all.zip(&unit.reactions) {
+            assert!((found - (plain + response * force)).abs() < 1e-13 * size);
+            largest_share = largest_share.max((found - plain).abs() / size);
+        }
         let power = state.power_balance();
         assert!(power.residual().abs() < 1e-13 * power.scale);
         let mut powers = vec![0.0; separating + 1];
@@ -292,15 +293,6 @@ fn a_separating_force_does_no_work_and_adds_its_unit_response() {
         let shaking = body_forces.shaking_force(&state, &wrenches);
         let difference = shaking.from_momentum.force - shaking.from_reactions.force;
         assert!(difference.norm() < 1e-13 * size);
-        let mut state = state.into_kinematic_state();
-        let response = state.unit_load_response(separating, &mut unit);
-        response.expect("gears apart");
-        assert!((found.tau[0] - plain.tau[0]).abs() < 1e-14 * size);
-        let all = found.reactions.iter().zip(&plain.reactions);
-        for ((found, plain), response) in all.zip(&unit.reactions) {
-            assert!((found - (plain + response * force)).abs() < 1e-13 * size);
-            largest_share = largest_share.max((found - plain).abs() / size);
-        }
     }
     assert!(largest_share > 0.1, "{largest_share}");
 }
@@ -313,8 +305,10 @@ fn without_reactions_nothing_changes_at_all() {
     assert!(with_model.reactions().is_empty() && with_model.frictions().len() == 0);
     let tau = |model: &Model, q: &[f64], q_dot: &[f64], q_ddot: &[f64]| {
         let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
-        let state = model.kinetostatics(0.0, q, q_dot, q_ddot, &mut workspace, &mut result);
-        state.expect("a pose").inverse_dynamics().tau[0]
+        model
+            .kinetostatics(0.0, q, q_dot, q_ddot, &mut workspace, &mut result)
+            .expect("a pose");
+        result.tau[0]
     };
     for (_, q, q_dot, q_ddot) in with.states() {
         let [a, b] = [&with_model, &without_model].map(|model| tau(model, &q, &q_dot, &q_ddot));

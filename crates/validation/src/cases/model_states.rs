@@ -52,17 +52,12 @@ impl ReachedPose {
         &'s mut self,
         scene: &Scene,
         model: &'s Model,
-        request: &StateRequest,
+        StateRequest { t, q_dot, .. }: &StateRequest,
         q_ddot: &[f64],
     ) -> Result<EvaluatedState<'s>, StudyError> {
-        let Self {
-            pose: reached,
-            workspace,
-            result,
-        } = self;
-        let state = kinematic_state(model, reached, &request.q_dot, workspace);
-        let loaded = state.apply_loads(request.t);
-        let evaluated = loaded.and_then(|state| state.evaluate(q_ddot, result));
+        let state = kinematic_state(model, &self.pose, q_dot, &mut self.workspace);
+        let loaded = state.apply_loads(*t);
+        let evaluated = loaded.and_then(|state| state.evaluate(q_ddot, &mut self.result));
         evaluated.map_err(|e| explain(scene, model, &e))
     }
 }
@@ -151,14 +146,9 @@ impl<'a> ModelStates<'a> {
     pub(crate) fn state(&mut self, request: &StateRequest) -> Result<ClaimedState, StudyError> {
         let values = self.evaluate_at(request)?;
         let mut bodies = values.body_poses();
-        let StateValues {
-            scene,
-            state,
-            q_ddot,
-            angles,
-        } = values;
-        let states = state.bodies();
-        for (pose, angle) in bodies.iter_mut().zip(angles) {
+        let (scene, state) = (values.scene, &values.state);
+        let (states, result) = (state.bodies(), state.inverse_dynamics());
+        for (pose, angle) in bodies.iter_mut().zip(values.angles) {
             pose[2] = *angle;
         }
         let rates = |b: usize| {
@@ -170,7 +160,7 @@ impl<'a> ModelStates<'a> {
         let (velocities, accelerations): (Vec<_>, Vec<_>) = (0..bodies.len()).map(rates).unzip();
         let loads = scene.loads.iter().zip(&state.loads().magnitude);
         let (ground, masses) = (scene.mechanism.ground, &scene.masses);
-        let InverseDynamics { reactions, tau, .. } = state.inverse_dynamics();
+        let reactions = &result.reactions;
         let loads = loads.filter_map(|(load, &magnitude)| {
             let magnitude = magnitude_by_reactions(load, magnitude, &scene.mechanism, reactions);
             load_wrenches(&load.kind, magnitude, ground, masses, &bodies, &velocities)
@@ -179,12 +169,12 @@ impl<'a> ModelStates<'a> {
             t: request.t,
             q: request.q.clone(),
             q_dot: request.q_dot.clone(),
-            q_ddot,
             load_wrenches: loads.flatten().collect(),
+            q_ddot: values.q_ddot,
             velocities,
             accelerations,
             reactions: reactions.clone(),
-            tau: tau.clone(),
+            tau: result.tau.clone(),
             poses: bodies,
         })
     }
@@ -284,18 +274,17 @@ impl<'a> ModelStates<'a> {
             let label = (actuator, "one of several".to_owned());
             return Err(self.scene.error(message, None, &[label]).into());
         }
-        let mut tau = |q_ddot: f64| {
-            let state = self
-                .reached
-                .evaluate(self.scene, &self.model, request, &[q_ddot])?;
-            Ok::<f64, StudyError>(state.inverse_dynamics().tau[0])
+        let (scene, model, reached) = (self.scene, &self.model, &mut self.reached);
+        let mut tau = |q_ddot: f64| -> Result<f64, StudyError> {
+            let state = reached.evaluate(scene, model, request, &[q_ddot])?;
+            Ok(state.inverse_dynamics().tau[0])
         };
         let at_rest = tau(0.0)?;
         let mut found = -at_rest / (tau(1.0)? - at_rest);
         // Once more from there: the difference above is rounded relative to the loads.
-        let rest = tau(found)?;
+        let remaining = tau(found)?;
         if at_rest != 0.0 {
-            found += rest * found / at_rest;
+            found += remaining * found / at_rest;
         }
         Ok(vec![found])
     }

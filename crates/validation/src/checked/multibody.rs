@@ -154,7 +154,7 @@ impl<'a> StateReader<'a> {
         let state = machine.evaluate(at.t, &at.y, &mut self.workspace)?;
         let (workspace, result) = (&mut self.output_workspace, &mut self.result);
         let outputs = state.outputs(self.output_model, workspace, result)?;
-        let states = outputs.bodies();
+        let (states, result) = (outputs.bodies(), outputs.inverse_dynamics());
         let unwrapped = |angle: f64, last: Option<f64>| match last {
             Some(last) => angle + ((last - angle) / TAU).round() * TAU,
             None => angle,
@@ -186,8 +186,8 @@ impl<'a> StateReader<'a> {
             t: at.t,
             poses,
             velocities,
-            reactions: outputs.inverse_dynamics().reactions.clone(),
-            tau: residual_actuator_forces(machine, outputs.inverse_dynamics()),
+            reactions: result.reactions.clone(),
+            tau: residual_actuator_forces(machine, result),
             drive_forces: state.drive_forces().to_vec(),
             kinetic,
             potential,
