@@ -41,17 +41,6 @@ struct BodyKeys {
     keys: Keys,
 }
 
-impl Mechanism {
-    /// Starts to build a mechanism.
-    ///
-    /// ```
-    /// let m = dwell::Mechanism::builder("Four-bar");
-    /// ```
-    pub fn builder(title: &str) -> MechanismBuilder {
-        MechanismBuilder::new(title)
-    }
-}
-
 impl MechanismBuilder {
     pub(crate) fn new(title: &str) -> Self {
         Self {

@@ -5,7 +5,6 @@ use crate::mechanism::Mechanism;
 use crate::scene::Scene;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction, PointState};
 use dwell_geometry::{BodyId, Vec2};
-use dwell_study::explain::{explain_motion, explain_position};
 
 /// Positions, velocities and accelerations of all bodies, in the ground's frame.
 ///
@@ -266,83 +265,5 @@ impl InverseDynamics {
         let found = found
             .ok_or_else(|| Error::unknown("actuator", "actuators", name, names.iter().copied()));
         Ok(self.result.tau[found?])
-    }
-}
-
-impl Mechanism {
-    /// The positions of all bodies at the coordinates `q`.
-    ///
-    /// # Errors
-    /// [`Error::Count`]; [`Error::Study`] where the mechanism cannot reach them.
-    ///
-    /// ```
-    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
-    /// let at = slider.positions(&[0.5])?;
-    /// let [x, y] = at.position("piston.C")?;
-    /// assert!((y - 0.025).abs() < 1e-12);
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn positions(&self, q: &[f64]) -> Result<Kinematics, Error> {
-        let rest = vec![0.0; q.len()];
-        self.kinematics(q, &rest, &rest)
-    }
-
-    /// Positions, velocities and accelerations of all bodies, from those of the coordinates.
-    ///
-    /// # Errors
-    /// As [`Mechanism::positions`].
-    ///
-    /// ```
-    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
-    /// let at = slider.kinematics(&[0.5], &[100.0], &[0.0])?;
-    /// let [velocity, _] = at.velocity("piston.C")?;
-    /// # assert!(velocity < 0.0);
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn kinematics(
-        &self,
-        q: &[f64],
-        q_dot: &[f64],
-        q_ddot: &[f64],
-    ) -> Result<Kinematics, Error> {
-        self.check_counts([q, q_dot, q_ddot])?;
-        let plan = self.model.plan();
-        let mut workspace = self.model.workspace();
-        let state = self.model.kinematic_state(q, q_dot, &mut workspace);
-        let mut state = state.map_err(|e| explain_position(self.scene.inner(), plan, &e))?;
-        let bodies = state.bodies_at(q_ddot).clone();
-        Ok(Kinematics::new(self.scene.clone(), bodies))
-    }
-
-    /// Inverse dynamics under all loads at time `t` (s): the actuators' forces and all reactions that the motion with
-    /// coordinates `q`, velocities and accelerations needs. At rest it is statics.
-    ///
-    /// # Errors
-    /// As [`Mechanism::positions`]; [`Error::Study`] where a load has no value or friction locks the mechanism.
-    ///
-    /// ```
-    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
-    /// let forces = slider.inverse_dynamics(0.0, &[0.5], &[150.0], &[0.0])?;
-    /// let torque = forces.actuator_force("phi")?; // N·m
-    /// let normal = forces.reaction("guide.normal")?; // N
-    /// # assert!(torque.is_finite() && normal.is_finite());
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn inverse_dynamics(
-        &self,
-        t: f64,
-        q: &[f64],
-        q_dot: &[f64],
-        q_ddot: &[f64],
-    ) -> Result<InverseDynamics, Error> {
-        self.check_counts([q, q_dot, q_ddot])?;
-        let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
-        let state = self
-            .model
-            .kinetostatics(t, q, q_dot, q_ddot, &mut workspace, &mut result);
-        let explain = |e| explain_motion(self.scene.inner(), self.model.plan(), &e);
-        let bodies = state.map_err(|e| explain(e.into()))?.bodies().clone();
-        let kinematics = Kinematics::new(self.scene.clone(), bodies);
-        Ok(InverseDynamics::new(self.clone(), kinematics, result))
     }
 }

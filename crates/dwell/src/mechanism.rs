@@ -1,8 +1,11 @@
-//! An assembled mechanism.
+//! An assembled mechanism, and what can be asked of it at one position.
 
+use crate::builder::MechanismBuilder;
 use crate::error::Error;
+use crate::kinematics::{InverseDynamics, Kinematics};
 use crate::scene::Scene;
 use dwell_kinetostatics::Model;
+use dwell_study::explain::{explain_motion, explain_position};
 use std::sync::Arc;
 
 /// An assembled mechanism: constant, cheap to clone, and shared between threads.
@@ -36,6 +39,15 @@ pub struct Mechanism {
 }
 
 impl Mechanism {
+    /// Starts to build a mechanism.
+    ///
+    /// ```
+    /// let m = dwell::Mechanism::builder("Four-bar");
+    /// ```
+    pub fn builder(title: &str) -> MechanismBuilder {
+        MechanismBuilder::new(title)
+    }
+
     pub(crate) fn new(scene: Scene) -> Result<Self, Error> {
         let model = Arc::new(dwell_study::models::loaded_model(scene.inner())?);
         Ok(Self { scene, model })
@@ -88,7 +100,83 @@ impl Mechanism {
         self.model.plan().range().limits()
     }
 
-    pub(crate) fn check_counts(&self, lists: [&[f64]; 3]) -> Result<(), Error> {
+    /// The positions of all bodies at the coordinates `q`.
+    ///
+    /// # Errors
+    /// [`Error::Count`]; [`Error::Study`] where the mechanism cannot reach them.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// let at = slider.positions(&[0.5])?;
+    /// let [x, y] = at.position("piston.C")?;
+    /// assert!((y - 0.025).abs() < 1e-12);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn positions(&self, q: &[f64]) -> Result<Kinematics, Error> {
+        let rest = vec![0.0; q.len()];
+        self.kinematics(q, &rest, &rest)
+    }
+
+    /// Positions, velocities and accelerations of all bodies, from those of the coordinates.
+    ///
+    /// # Errors
+    /// As [`Mechanism::positions`].
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// let at = slider.kinematics(&[0.5], &[100.0], &[0.0])?;
+    /// let [velocity, _] = at.velocity("piston.C")?;
+    /// # assert!(velocity < 0.0);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn kinematics(
+        &self,
+        q: &[f64],
+        q_dot: &[f64],
+        q_ddot: &[f64],
+    ) -> Result<Kinematics, Error> {
+        self.check_counts([q, q_dot, q_ddot])?;
+        let plan = self.model.plan();
+        let mut workspace = self.model.workspace();
+        let state = self.model.kinematic_state(q, q_dot, &mut workspace);
+        let mut state = state.map_err(|e| explain_position(self.scene.inner(), plan, &e))?;
+        let bodies = state.bodies_at(q_ddot).clone();
+        Ok(Kinematics::new(self.scene.clone(), bodies))
+    }
+
+    /// Inverse dynamics under all loads at time `t` (s): the actuators' forces and all reactions that the motion with
+    /// coordinates `q`, velocities and accelerations needs. At rest it is statics.
+    ///
+    /// # Errors
+    /// As [`Mechanism::positions`]; [`Error::Study`] where a load has no value or friction locks the mechanism.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// let forces = slider.inverse_dynamics(0.0, &[0.5], &[150.0], &[0.0])?;
+    /// let torque = forces.actuator_force("phi")?; // N·m
+    /// let normal = forces.reaction("guide.normal")?; // N
+    /// # assert!(torque.is_finite() && normal.is_finite());
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn inverse_dynamics(
+        &self,
+        t: f64,
+        q: &[f64],
+        q_dot: &[f64],
+        q_ddot: &[f64],
+    ) -> Result<InverseDynamics, Error> {
+        self.check_counts([q, q_dot, q_ddot])?;
+        let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
+        let state = self
+            .model
+            .kinetostatics(t, q, q_dot, q_ddot, &mut workspace, &mut result);
+        let explain = |e| explain_motion(self.scene.inner(), self.model.plan(), &e);
+        let bodies = state.map_err(|e| explain(e.into()))?.bodies().clone();
+        let kinematics = Kinematics::new(self.scene.clone(), bodies);
+        Ok(InverseDynamics::new(self.clone(), kinematics, result))
+    }
+
+    fn check_counts(&self, lists: [&[f64]; 3]) -> Result<(), Error> {
         let actuators = self.model.plan().actuators();
         let names = ["coordinates", "velocities", "accelerations"];
         match lists
@@ -103,21 +191,5 @@ impl Mechanism {
                 actuators,
             }),
         }
-    }
-}
-
-impl Scene {
-    /// Assembles its mechanism.
-    ///
-    /// # Errors
-    /// [`Error::Study`] where the mechanism cannot be assembled, does not move, or a load does not fit it.
-    ///
-    /// ```
-    /// let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
-    /// assert_eq!(slider.actuators(), ["phi"]);
-    /// # Ok::<(), dwell::Error>(())
-    /// ```
-    pub fn assemble(&self) -> Result<Mechanism, Error> {
-        Mechanism::new(self.clone())
     }
 }

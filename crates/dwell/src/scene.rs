@@ -1,6 +1,7 @@
 //! A mechanism as a scene file describes it.
 
 use crate::error::Error;
+use crate::mechanism::Mechanism;
 use dwell_kinetostatics::MagnitudeFunction;
 use std::path::Path;
 use std::sync::Arc;
@@ -93,6 +94,20 @@ impl Scene {
     /// ```
     pub fn with_value(&self, path: &str, value: f64) -> Result<Self, Error> {
         Ok(Self(Arc::new(self.0.with_value(path, value)?)))
+    }
+
+    /// Assembles its mechanism.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the mechanism cannot be assembled, does not move, or a load does not fit it.
+    ///
+    /// ```
+    /// let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.actuators(), ["phi"]);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn assemble(&self) -> Result<Mechanism, Error> {
+        Mechanism::new(self.clone())
     }
 
     pub(crate) fn inner(&self) -> &dwell_scene::Scene {
