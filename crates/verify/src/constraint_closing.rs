@@ -26,7 +26,7 @@ const STALLED_STEP: f64 = 1e-6;
 const MAX_RESIDUAL: f64 = 1e-11;
 /// A step as large as the mechanism is not a correction any more: another branch would be found.
 const MAX_NEWTON_STEP: f64 = 1.5;
-/// How far one step of [`DenseMechanism::follow`] may turn or move a body, in rad or sizes.
+/// How far one step of [`DenseMechanism::follow`] may rotate or move a body, in rad or sizes.
 const MAX_FOLLOW_STEP: f64 = 0.15;
 /// Steps of [`DenseMechanism::follow`] before it gives up: next to a dead point they become ever shorter.
 const MAX_FOLLOW_STEPS: usize = 2000;

@@ -35,7 +35,7 @@ pub struct CheckedPosition {
 /// The largest coefficients of each unit over all positions, by the dense side.
 ///
 /// A coefficient may be zero throughout: the moment of a guide on a slider without inertia is. It
-/// is therefore held against the largest of its unit in the whole mechanism, the actuator's own
+/// is therefore compared with the largest of its unit in the whole mechanism, the actuator's own
 /// coefficients m and ½m′ included, since τ is a moment too. Where a whole unit is zero (every
 /// force of a balanced flywheel) a small part of what the other coefficients would make of it
 /// stands in, so that rounding is not divided by rounding.

@@ -3,7 +3,7 @@
 //! No structure is looked for and nothing is compiled: all coordinates of all bodies, all rows,
 //! one square matrix. Only where the origins are is changed. Each frame, the ground's too, is
 //! moved to the mean of its body's attachments, which the subtraction of nearby numbers does
-//! exactly; otherwise a mechanism that stands a kilometre from the origin would be judged by
+//! exactly; otherwise a mechanism a kilometre from the origin would be checked by
 //! differences of rounded large numbers.
 
 use crate::error::DenseError;

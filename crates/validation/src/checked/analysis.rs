@@ -50,7 +50,7 @@ pub(crate) struct ReducedAnalysis<'a> {
     pub(crate) history: Option<History>,
 }
 
-/// Checks a case in every way that applies to it; `done` is called after each of three steps.
+/// Applies every check that applies to a case; `done` is called after each of three steps.
 ///
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.

@@ -138,7 +138,7 @@ fn parallelogram() -> ParameterSeries {
         quantities: &["m", "½m′"],
         reference: "the coupler keeps its direction: m is constant but for what its centre and the rocker's add, \
                 in closed form",
-        reason: "a length off by eps turns the coupler by eps/δ, its speed by eps/δ² and its acceleration by eps/δ³; \
+        reason: "a length off by eps rotates the coupler by eps/δ, its speed by eps/δ² and its acceleration by eps/δ³; \
               16 roundings. Branches meet at δ = 0",
         requirement: Box::new(|at, quantity| {
             Requirement::from_rounding(ALLOWED_ROUNDINGS, at.powi(-2 - quantity as i32))

@@ -64,7 +64,7 @@ pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
         let subject = context.subject.coefficients(position.q)?;
         if subject.a.len() != count || subject.b.len() != count {
             for worst in [a, b, power] {
-                worst.record_failure("the subject does not answer for every reaction".into());
+                worst.record_failure("the subject does not give every reaction".into());
             }
             return Ok(());
         }

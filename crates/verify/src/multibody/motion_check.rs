@@ -178,7 +178,7 @@ impl MultibodySystem {
                 angles.record(one[2] - from[2], other[2] - from[2], t, name);
             }
         }
-        // Frames that all turn about their origins go nowhere, and those of slides do not turn.
+        // Frames may all rotate about their origins without moving, and those of slides do not rotate.
         let size = self.frames.size;
         (lengths.min_scale, angles.min_scale) =
             (angles.largest().min(1.0) * size, lengths.largest() / size);
