@@ -66,7 +66,7 @@ fn the_reference_is_known_better_than_anything_on_the_front() {
             for k in front {
                 let point = &found.points[k];
                 assert!(
-                    !found.is_below_reference_error(point, quantity),
+                    !found.is_below_reference(point, quantity),
                     "{name}: {quantity:?} of {} is below {:?}",
                     point.combination.name(),
                     found.reference.error
@@ -259,7 +259,7 @@ fn an_evaluation_keeps_what_it_promises() {
 fn quadrature_is_shown_where_the_motion_follows_from_its_energy() {
     let found = run_study("crank-rocker", &effort(&[-9, -11, -13], &[]));
     let point = found.quadrature().expect("a conservative motion");
-    assert!(found.is_below_reference_error(point, ErrorQuantity::Coordinate));
+    assert!(found.is_below_reference(point, ErrorQuantity::Coordinate));
     assert!(
         found
             .points

@@ -3,7 +3,7 @@
 
 use crate::case::Case;
 use crate::comparison::{Comparison, LargestDifference};
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::error::DenseError;
 use crate::subject::{Coefficients, Subject, SubjectError};
@@ -17,7 +17,7 @@ pub struct CheckedPosition {
     /// The coordinate, rad.
     pub q: f64,
     /// The configuration, closed from the subject's pose.
-    pub configuration: ClosedConfiguration,
+    pub configuration: Configuration,
     /// How far closing moved the subject's pose, relative to the largest coordinate in it.
     pub closing_correction: f64,
     /// Unit velocities of every row, the actuator's last.
@@ -150,7 +150,7 @@ impl<'a> CheckContext<'a> {
     }
 
     /// The mechanism at the coordinate `h` beyond a position, on the same branch.
-    pub(crate) fn stepped(&self, at: &CheckedPosition, h: f64) -> Option<ClosedConfiguration> {
+    pub(crate) fn stepped(&self, at: &CheckedPosition, h: f64) -> Option<Configuration> {
         let (dense, u) = (&self.dense, at.unit_velocity());
         let stepped = dense.step_row(&at.configuration, dense.actuator_row(), u, at.q + h);
         stepped.ok()
@@ -262,7 +262,7 @@ impl CheckedPosition {
 /// What rounding does to the coefficients and to the pose.
 fn rounding_bounds(
     dense: &DenseMechanism,
-    configuration: &ClosedConfiguration,
+    configuration: &Configuration,
     reference: &Coefficients,
     unit_velocities: &[Vec<f64>],
 ) -> Result<(Coefficients, f64), DenseError> {

@@ -212,13 +212,10 @@ fn check_axes(mechanism: &Mechanism) -> Result<(), DenseError> {
 }
 
 /// Every point of the mechanism that is given in a body's frame, with the body.
-pub(crate) fn for_each_attachment(
-    mechanism: &mut Mechanism,
-    mut visit: impl FnMut(usize, &mut Vec2),
-) {
+pub(crate) fn for_each_attachment(mechanism: &mut Mechanism, mut f: impl FnMut(usize, &mut Vec2)) {
     let mut pair = |bodies: [BodyId; 2], points: &mut [Vec2; 2]| {
         for (body, point) in bodies.into_iter().zip(points) {
-            visit(body.0, point);
+            f(body.0, point);
         }
     };
     for joint in &mut mechanism.joints {

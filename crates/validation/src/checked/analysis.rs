@@ -13,9 +13,7 @@ use dwell_kinetostatics::ReducedModel;
 use dwell_scene::{MotionDuration, Scene};
 use dwell_study::explain::explain_motion;
 use dwell_study::reduce::compute::ReducedCurves;
-use dwell_study::{
-    CalibrationResult, PreparedScene, SolverSettings, StudyError, find_value, symbolic_findings,
-};
+use dwell_study::{CalibrationResult, PreparedScene, StudyError, find_value, symbolic_findings};
 use dwell_verify::{
     Case, CheckContext, CheckedFreeMotion, CheckedPosition, ErrorCurve, FreeMotionCase, Range,
     check_free_motion, half_dm_curve, reaction_curve, spread,
@@ -225,7 +223,7 @@ fn free_motion_results(
     };
     let plan = prepared.model.model().plan();
     let duration = two_periods(motion.duration);
-    let history = History::new(prepared, start, duration, &SolverSettings::default())?;
+    let history = History::new(prepared, start, duration)?;
     let check = |period: f64| {
         let revolutions = match motion.duration {
             MotionDuration::Periods(n) => n,

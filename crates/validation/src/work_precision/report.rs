@@ -94,7 +94,7 @@ fn numbers(found: &WorkPrecision) -> Table {
         row.extend([cost.jacobians, cost.weighted_evaluations].map(|count| count as f64));
         row.extend([cost.time, cost.of(CostMeasure::TimeWithBuild)]);
         row.extend(ErrorQuantity::ALL.map(|quantity| point.errors.of(quantity)));
-        let is_below = |quantity| found.is_below_reference_error(point, quantity);
+        let is_below = |quantity| found.is_below_reference(point, quantity);
         row.extend(ErrorQuantity::ALL.map(|q| f64::from(u8::from(is_below(q)))));
         row
     };

@@ -185,19 +185,14 @@ impl<'a> ExtrapolationSolver<'a> {
     }
 
     /// The midpoint rule in `parts` parts.
-    fn midpoint(
-        &self,
-        step: f64,
-        parts: usize,
-        derivative: &[f64],
-    ) -> Result<Vec<f64>, MultibodyError> {
+    fn midpoint(&self, step: f64, parts: usize, rates: &[f64]) -> Result<Vec<f64>, MultibodyError> {
         let h = step / parts as f64;
         let mut before = self.y.clone();
         let euler_step = |from: &[f64], by: f64, derivative: &[f64]| -> Vec<f64> {
             let both = from.iter().zip(derivative);
             both.map(|(y, r)| y + by * r).collect()
         };
-        let mut now = euler_step(&before, h, derivative);
+        let mut now = euler_step(&before, h, rates);
         for i in 1..parts {
             let derivative = self.ode.solve(self.t + h * i as f64, &now)?.derivative;
             let next = euler_step(&before, 2.0 * h, &derivative);

@@ -57,12 +57,7 @@ impl MultibodySystem {
     }
 
     /// µ tanh(v/v₀).
-    fn friction_factor(
-        &self,
-        load: usize,
-        friction: &Friction,
-        at: &MultibodyState,
-    ) -> Option<f64> {
+    fn friction_factor(&self, load: usize, of: &Friction, at: &MultibodyState) -> Option<f64> {
         let [_, velocity] = match self.loads.get(load)?.kind {
             LoadKind::SlideForce(guide) => {
                 at.motion().travel(guide.bodies, guide.points, guide.axis)?
@@ -77,7 +72,7 @@ impl MultibodySystem {
             | LoadKind::PointToPointForce { .. }
             | LoadKind::SlideDamper(_) => return None,
         };
-        Some(friction.coefficient * (velocity / friction.regularization_speed).tanh())
+        Some(of.coefficient * (velocity / of.regularization_speed).tanh())
     }
 
     /// g, with its derivative by every row that it depends on.

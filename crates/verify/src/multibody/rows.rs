@@ -126,18 +126,13 @@ impl MultibodyOde<'_> {
     }
 
     /// The least change of the coordinates, a radian counted as a size, that changes the rows by
-    /// `change`.
-    fn min_norm_change(
-        &self,
-        x: &[f64],
-        change: &[f64],
-        t: f64,
-    ) -> Result<Vec<f64>, MultibodyError> {
+    /// `by`.
+    fn min_norm_change(&self, x: &[f64], by: &[f64], t: f64) -> Result<Vec<f64>, MultibodyError> {
         let frames = &self.frames;
         let n = frames.rows.columns();
         let mut right = Mat::zeros(n + self.active_rows.len(), 1);
         for (k, &row) in self.active_rows.iter().enumerate() {
-            right[(n + k, 0)] = change[row] * frames.row_scale[row];
+            right[(n + k, 0)] = by[row] * frames.row_scale[row];
         }
         let unit = |i, j| if i == j { 1.0 } else { 0.0 };
         self.solve_bordered(unit, &frames.jacobian(x), &mut right, t)?;

@@ -2,7 +2,7 @@
 
 use super::{ClaimedState, StateError};
 use crate::checks::MAX_DIFFERENCE_STEP;
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::differences::Extrapolated;
 use crate::error::DenseError;
@@ -13,7 +13,7 @@ use dwell_geometry::{Vec2, vec2};
 pub(super) struct DenseState<'a> {
     pub(super) dense: &'a DenseMechanism,
     pub(super) state: &'a ClaimedState,
-    pub(super) configuration: ClosedConfiguration,
+    pub(super) configuration: Configuration,
     /// How far closing moved the claimed poses, relative to the largest coordinate in them.
     pub(super) closing_correction: f64,
     /// Dense velocities and accelerations of the moved frames, and the claimed ones.
@@ -44,7 +44,7 @@ impl DenseSolution {
     fn new(
         dense: &DenseMechanism,
         state: &ClaimedState,
-        at: &ClosedConfiguration,
+        at: &Configuration,
         unit_velocities: &[Vec<f64>],
         loads: &[DenseWrench],
     ) -> Result<Self, DenseError> {
@@ -74,7 +74,7 @@ impl DenseSolution {
 /// M ẍ + h − f in dense coordinates: what the joints and actuators have to exert.
 fn required_forces(
     dense: &DenseMechanism,
-    at: &ClosedConfiguration,
+    at: &Configuration,
     x_dot: &[f64],
     x_ddot: &[f64],
     loads: &[DenseWrench],

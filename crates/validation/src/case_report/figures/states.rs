@@ -18,16 +18,16 @@ pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
         let body_pose = |&[x, y, angle]: &[f64; 3]| (vec2(x, y), Vec2::from_angle(angle));
         bodies.iter().map(body_pose).collect()
     });
-    let range_poses = RangePoses {
+    let poses = RangePoses {
         q: Vec::new(),
         body_poses: body_poses.collect(),
     };
-    let mechanism = MechanismDrawing::new(scene, &range_poses.body_poses);
-    let mut shapes = paths(scene, &range_poses);
-    let positions = distinct_positions(&range_poses.body_poses);
+    let mechanism = MechanismDrawing::new(scene, &poses.body_poses);
+    let mut shapes = paths(scene, &poses);
+    let positions = distinct_positions(&poses.body_poses);
     for (k, &position) in positions.iter().enumerate().rev() {
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.05 * k as f64 };
-        mechanism.draw(&range_poses.body_poses[position], lightness, &mut shapes);
+        mechanism.draw(&poses.body_poses[position], lightness, &mut shapes);
     }
     let motion = checked.motion_text;
     let text = format!("Drawn in full at the beginning of {motion}, lighter further on.");
