@@ -252,10 +252,8 @@ impl CheckedPosition {
     /// What some bodies have in m.
     pub(crate) fn inertia_share(&self, dense: &DenseMechanism, bodies: &[usize]) -> f64 {
         let (at, u) = (&self.configuration, self.unit_velocity());
-        bodies
-            .iter()
-            .map(|&b| dense.body_inertia(b, at, u, u))
-            .sum()
+        let share = |&b: &usize| dense.body_inertia(b, at, u, u);
+        bodies.iter().map(share).sum()
     }
 }
 

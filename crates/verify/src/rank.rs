@@ -102,15 +102,14 @@ fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank, Dens
     };
     let moves = |c: usize| in_null_space(svd.V(), c..c + 3);
     let movable = |&b: &usize| dense.bodies[b].column.is_some_and(moves);
+    let dependent = |&k: &usize| in_null_space(svd.U(), k..k + 1);
     let bodies = 0..dense.bodies.len();
     Ok(Rank {
         rows,
         columns,
         rank,
         movable_bodies: bodies.filter(movable).map(BodyId).collect(),
-        dependent_rows: (0..rows)
-            .filter(|&k| in_null_space(svd.U(), k..k + 1))
-            .collect(),
+        dependent_rows: (0..rows).filter(dependent).collect(),
         singular_values,
     })
 }

@@ -226,17 +226,18 @@ impl<'a> StateChecker<'a> {
         let size = self.dense.size();
         let (mut first, mut second) = (ComparisonSet::new("m/s"), ComparisonSet::new("m/s2"));
         for m in &self.dense_states {
-            let [speed, acceleration] = [&m.x_dot, &m.x_ddot].map(|x| m.scaled_norm(x) * size);
+            let [speed, acceleration] =
+                [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.scaled_norm(x) * size);
             let acceleration = acceleration.max(speed * speed / size);
             for (body, column) in m.moving_bodies() {
                 let name = &self.dense.mechanism.bodies[body].name;
                 for c in column..column + 3 {
                     let arm = if c == column + 2 { size } else { 1.0 };
-                    let difference = (m.claimed_dot[c] - m.x_dot[c]) * arm;
-                    let numbers = [difference, speed, m.velocity_rounding_bound[c] * arm];
+                    let difference = (m.claimed_dot[c] - m.solution.x_dot[c]) * arm;
+                    let numbers = [difference, speed, m.bounds.x_dot[c] * arm];
                     first.add(m, numbers, name);
-                    let difference = (m.claimed_ddot[c] - m.x_ddot[c]) * arm;
-                    let error = m.acceleration_rounding_bound[c] * arm;
+                    let difference = (m.claimed_ddot[c] - m.solution.x_ddot[c]) * arm;
+                    let error = m.bounds.x_ddot[c] * arm;
                     second.add(m, [difference, acceleration, error], name);
                 }
             }
@@ -260,8 +261,8 @@ impl<'a> StateChecker<'a> {
                     continue;
                 }
                 let arm = if *moment { 1.0 / size } else { 1.0 };
-                let dense = m.multipliers[k] * arm;
-                let error = m.multiplier_rounding_bound[k] * arm;
+                let dense = m.solution.multipliers[k] * arm;
+                let error = m.bounds.multipliers[k] * arm;
                 let scale = largest_force.max(dense.abs());
                 comparisons.add(m, [claimed * arm - dense, scale, error], name);
             }

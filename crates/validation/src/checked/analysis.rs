@@ -5,7 +5,7 @@ use crate::cases::subject::PlanSubject;
 use crate::checked::history::History;
 use crate::checked::multibody::{self, FreeMotionRun};
 use crate::checked::period_check;
-use crate::checked::rounding_check::{self, RoundingCheck};
+use crate::checked::rounding_check::{self, StateRounding};
 use crate::checked::states::{self, CheckedStates};
 use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
@@ -31,7 +31,8 @@ pub(crate) struct CaseAnalysis<'a> {
     /// The checks without findings, and in a few words why.
     pub(crate) not_applicable: Vec<(Check, &'static str)>,
     pub(crate) states: CheckedStates,
-    pub(crate) rounding: RoundingCheck,
+    /// The effect of rounding, by state.
+    pub(crate) rounding: Vec<StateRounding>,
     /// The free motion that was compared with the multibody equations.
     pub(crate) free_motion: Option<FreeMotionRun>,
     /// The reduced model, where it describes the whole case.
@@ -73,7 +74,7 @@ pub(crate) fn analyse<'a>(
         || check_motions(scene, reference, motion.is_some()),
     );
     let (states, ((free_motion, multibody_findings), period)) = (states?, motions?);
-    let rounding = RoundingCheck::new(scene, &states.states)?;
+    let rounding = rounding_check::rounding_errors(scene, &states.states)?;
     let mut findings = in_order(
         prepared.is_some(),
         [

@@ -33,8 +33,8 @@ impl History {
         length: MotionDuration,
     ) -> Result<Self, StudyError> {
         let plan = prepared.model.model().plan();
-        Self::integrate(prepared, start, length)
-            .map_err(|e| explain_motion(prepared.scene, plan, &e))
+        let history = Self::integrate(prepared, start, length);
+        history.map_err(|e| explain_motion(prepared.scene, plan, &e))
     }
 
     fn integrate(

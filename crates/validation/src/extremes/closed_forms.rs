@@ -64,10 +64,8 @@ impl UnitSpeedBody {
         let [_, v, a] = self.center_motion();
         let (mass, inertia) = (dd(self.mass.mass), dd(self.mass.inertia));
         let [w, e] = self.angular_rates;
-        [
-            mass * v.dot(v) + inertia * w * w,
-            mass * v.dot(a) + inertia * w * e,
-        ]
+        let half_dm = mass * v.dot(a) + inertia * w * e;
+        [mass * v.dot(v) + inertia * w * w, half_dm]
     }
 
     /// Rate of the angular momentum about a point that neither velocity nor acceleration of the body
@@ -77,10 +75,8 @@ impl UnitSpeedBody {
         let (mass, inertia) = (dd(self.mass.mass), dd(self.mass.inertia));
         let [w, e] = self.angular_rates;
         let moment_arm = position - about;
-        [
-            mass * moment_arm.cross(v) + inertia * w,
-            mass * moment_arm.cross(a) + inertia * e,
-        ]
+        let moment = |rate, angular| mass * moment_arm.cross(rate) + inertia * angular;
+        [moment(v, w), moment(a, e)]
     }
 }
 

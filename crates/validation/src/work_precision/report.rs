@@ -243,10 +243,8 @@ fn intro(scene: &Scene, found: &WorkPrecision) -> String {
 
 fn quadrature(found: &WorkPrecision) -> String {
     let error = |point: &CombinationResult, quantity| {
-        describe_error(
-            point.errors.of(quantity),
-            found.reference.error.of(quantity),
-        )
+        let floor = found.reference.error.of(quantity);
+        describe_error(point.errors.of(quantity), floor)
     };
     match found.quadrature() {
         Some(point) => format!(

@@ -90,9 +90,8 @@ pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
         domain += &format!("; {indeterminate} that joints share are not determined");
     }
     let findings = [(A, a), (B, b), (POWER, power)];
-    findings
-        .map(|(spec, worst)| spec.finding(domain.clone(), worst))
-        .into()
+    let finding = |(spec, worst): (FindingSpec<'_>, _)| spec.finding(domain.clone(), worst);
+    findings.map(finding).into()
 }
 
 /// Eq. (3) for every reaction that is determined.

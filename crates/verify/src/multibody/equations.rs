@@ -54,9 +54,8 @@ struct EvaluationPoint<'a> {
 type AugmentedSolution = (Vec<f64>, Vec<f64>);
 
 fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
-    to.iter_mut()
-        .zip(more)
-        .for_each(|(to, more)| *to += factor * more);
+    let both = to.iter_mut().zip(more);
+    both.for_each(|(to, more)| *to += factor * more);
 }
 
 impl MultibodyOde<'_> {

@@ -179,9 +179,8 @@ impl<'a> ExtrapolationSolver<'a> {
 
     fn error_norm(&self, one: &[f64], other: &[f64]) -> f64 {
         let errors = one.iter().zip(other).zip(&self.error_scale);
-        errors
-            .map(|((a, b), scale)| (a - b).abs() / (TOLERANCE * scale))
-            .fold(0.0, f64::max)
+        let errors = errors.map(|((a, b), scale)| (a - b).abs() / (TOLERANCE * scale));
+        errors.fold(0.0, f64::max)
     }
 
     /// The midpoint rule in `parts` parts.

@@ -127,10 +127,8 @@ impl MultibodySystem {
         let first = first.ok_or(MultibodyError::InvalidStart)?;
         let layout = |s: &MotionSample| {
             let bodies = [s.poses.len(), s.velocities.len()];
-            (
-                bodies,
-                [s.reactions.len(), s.tau.len(), s.drive_forces.len()],
-            )
+            let forces = [s.reactions.len(), s.tau.len(), s.drive_forces.len()];
+            (bodies, forces)
         };
         let pairs: Vec<_> = claimed_motion.iter().zip(reference_motion).collect();
         let alike = |(c, s): &(&MotionSample, &MotionSample)| c.t == s.t && layout(c) == layout(s);

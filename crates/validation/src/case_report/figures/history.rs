@@ -70,10 +70,8 @@ fn reaction_panels(
 ) -> Vec<(String, String, Vec<(String, usize)>)> {
     let all = named.iter().enumerate().filter(|(_, (_, of))| *of == unit);
     let all: Vec<(String, usize)> = all.map(|(k, (name, _))| (name.clone(), k)).collect();
-    let per_panel = all
-        .len()
-        .div_ceil(all.len().div_ceil(MAX_CURVES).max(1))
-        .max(1);
+    let panels = all.len().div_ceil(MAX_CURVES).max(1);
+    let per_panel = all.len().div_ceil(panels).max(1);
     let panel = |group: &[(String, usize)]| match group {
         [(name, k)] => (
             format!("Reaction {name}"),
