@@ -10,7 +10,7 @@
 //! so that pivots can be compared with each other, whatever the mechanism's size.
 
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use crate::lu::Lu;
 use dwell_geometry::Vec2;
 use faer::Mat;
@@ -50,7 +50,7 @@ impl DenseMechanism {
     }
 
     /// Closes every row at its imposed value, starting from the coordinates `guess`.
-    pub fn close(&self, guess: &[f64], row_values: &[f64]) -> Result<Configuration, DenseError> {
+    pub fn close(&self, guess: &[f64], row_values: &[f64]) -> Result<Configuration> {
         if guess.len() != self.rows.columns() || row_values.len() != self.rows.len() {
             return Err(DenseError::InvalidPoses);
         }
@@ -83,11 +83,7 @@ impl DenseMechanism {
 
     /// Closes the frames `poses` of all bodies at the coordinates `q` of the actuators; and how far that moves them,
     /// relative to the largest coordinate in them.
-    pub(crate) fn close_poses(
-        &self,
-        poses: &[[f64; 3]],
-        q: &[f64],
-    ) -> Result<(Configuration, f64), DenseError> {
+    pub(crate) fn close_at(&self, poses: &[[f64; 3]], q: &[f64]) -> Result<(Configuration, f64)> {
         let coordinates = self.coordinates(poses)?;
         let mut row_values = vec![0.0; self.rows.len()];
         row_values[self.actuator_row()..].copy_from_slice(q);
@@ -119,7 +115,7 @@ impl DenseMechanism {
         from: &Configuration,
         initial_guess: &[f64],
         row_values: &[f64],
-    ) -> Result<Configuration, DenseError> {
+    ) -> Result<Configuration> {
         let configuration = self.close(initial_guess, row_values)?;
         if configuration.lu.positive() == from.lu.positive() {
             Ok(configuration)
@@ -136,7 +132,7 @@ impl DenseMechanism {
         row: usize,
         direction: &[f64],
         value: f64,
-    ) -> Result<Configuration, DenseError> {
+    ) -> Result<Configuration> {
         let increment = value - from.row_values[row];
         let moved = from.x.iter().zip(direction);
         let initial_guess: Vec<_> = moved.map(|(x, u)| x + u * increment).collect();
@@ -152,7 +148,7 @@ impl DenseMechanism {
         from: &Configuration,
         row: usize,
         to: f64,
-    ) -> Result<Configuration, DenseError> {
+    ) -> Result<Configuration> {
         if self.rows.len() == self.rows.columns() {
             return self.follow(from, row, to);
         }
@@ -169,12 +165,7 @@ impl DenseMechanism {
 
     /// Follows the branch continuously until `row` has the value `to`, in steps short enough for
     /// Newton's method not to change branch, halved where it fails.
-    pub fn follow(
-        &self,
-        from: &Configuration,
-        row: usize,
-        to: f64,
-    ) -> Result<Configuration, DenseError> {
+    pub fn follow(&self, from: &Configuration, row: usize, to: f64) -> Result<Configuration> {
         let mut here = from.clone();
         for _ in 0..MAX_FOLLOW_STEPS {
             if here.row_values[row] == to {
@@ -259,7 +250,7 @@ impl DenseMechanism {
     ///
     /// # Errors
     /// [`DenseError::RedundantRowsOpen`] with the largest residual.
-    pub(crate) fn check_redundant_rows(&self, at: &Configuration) -> Result<(), DenseError> {
+    pub(crate) fn check_redundant_rows(&self, at: &Configuration) -> Result<()> {
         let mut residual = vec![0.0; self.rows.len()];
         self.rows.residual(&at.x, &at.row_values, &mut residual);
         let all: Vec<usize> = (0..residual.len()).collect();
@@ -287,7 +278,7 @@ impl DenseMechanism {
         })
     }
 
-    fn factor(&self, x: &[f64]) -> Result<Lu, DenseError> {
+    fn factor(&self, x: &[f64]) -> Result<Lu> {
         Lu::new(self.independent_part(&self.scaled_jacobian(x)))
             .map_err(|pivot| DenseError::Singular { pivot })
     }
@@ -301,11 +292,7 @@ impl DenseMechanism {
 
     /// The multipliers of all rows under which the forces `q` of the coordinates are made up:
     /// Jᵀ λ = q, by factors of the transposed matrix. Those of rows that are not solved are zero.
-    pub(crate) fn multipliers(
-        &self,
-        at: &Configuration,
-        q: &[f64],
-    ) -> Result<Vec<f64>, DenseError> {
+    pub(crate) fn multipliers(&self, at: &Configuration, q: &[f64]) -> Result<Vec<f64>> {
         let rows = self.independent_part(&self.scaled_jacobian(&at.x));
         let lu = Lu::new(rows.transpose().to_owned());
         let lu = lu.map_err(|pivot| DenseError::Singular { pivot })?;

@@ -5,7 +5,7 @@ use crate::case::Case;
 use crate::comparison::{Comparison, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use crate::subject::{Coefficients, Subject, SubjectError};
 use dwell_geometry::{Component, Reaction};
 use rayon::iter::Either;
@@ -82,7 +82,7 @@ const CONSTANT_SHARE_TOLERANCE: f64 = 1e-12;
 impl<'a> CheckContext<'a> {
     /// Closes the mechanism at every position and measures the scales. A position that does not
     /// close is noted, not an error: the others are still checked.
-    pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self, DenseError> {
+    pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self> {
         let actuators = case.mechanism.actuators.len();
         if actuators != 1 {
             return Err(DenseError::Actuators { actuators });
@@ -199,8 +199,8 @@ impl CheckedPosition {
         Self::closed(dense, &poses, q).map_err(|e| e.to_string())
     }
 
-    fn closed(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self, DenseError> {
-        let (configuration, closing_correction) = dense.close_poses(poses, &[q])?;
+    fn closed(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self> {
+        let (configuration, closing_correction) = dense.close_at(poses, &[q])?;
         let unit_velocities = dense.unit_velocities(&configuration);
         let reference = dense.coefficients(&configuration, &unit_velocities);
         let (rounding_bound, pose_rounding_bound) =
@@ -263,7 +263,7 @@ fn rounding_bounds(
     configuration: &Configuration,
     reference: &Coefficients,
     unit_velocities: &[Vec<f64>],
-) -> Result<(Coefficients, f64), DenseError> {
+) -> Result<(Coefficients, f64)> {
     let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
     let exact = flat(reference);
     let (bounds, pose_bound) =

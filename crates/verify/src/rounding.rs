@@ -2,7 +2,7 @@
 
 use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
+use crate::error::Result;
 
 /// How far a row is opened to see what rounding does, in sizes.
 const PROBE_STEP: f64 = 1e-7;
@@ -22,8 +22,8 @@ impl DenseMechanism {
         configuration: &Configuration,
         unit_velocities: &[Vec<f64>],
         exact: &[f64],
-        values: impl Fn(&Configuration) -> Result<Vec<f64>, DenseError>,
-    ) -> Result<(Vec<f64>, f64), DenseError> {
+        values: impl Fn(&Configuration) -> Result<Vec<f64>>,
+    ) -> Result<(Vec<f64>, f64)> {
         let mut bounds = vec![0.0; exact.len()];
         let mut pose_bound = 0.0;
         let factor = EXPECTED_SHARE * f64::EPSILON / PROBE_STEP;

@@ -16,7 +16,7 @@
 use crate::comparison::{FindingSpec, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::context::{CheckContext, CheckedPosition};
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::Range;
 use rayon::prelude::*;
@@ -98,7 +98,7 @@ fn follow_revolution(
     context: &CheckContext<'_>,
     first: &CheckedPosition,
     count: usize,
-) -> Result<Vec<Configuration>, DenseError> {
+) -> Result<Vec<Configuration>> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
     let mut nodes = vec![first.configuration.clone()];
     let mut here = first.configuration.clone();
@@ -122,14 +122,14 @@ fn double_nodes(
     context: &CheckContext<'_>,
     start: f64,
     nodes: &[Configuration],
-) -> Result<Vec<Configuration>, DenseError> {
+) -> Result<Vec<Configuration>> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
     let count = 2 * nodes.len();
     let pair = |(j, node): (usize, &Configuration)| {
         let q = start + TAU * fraction(2 * j + 1, count);
         Ok([node.clone(), dense.follow(node, row, q)?])
     };
-    let pairs: Result<Vec<_>, DenseError> = nodes.par_iter().enumerate().map(pair).collect();
+    let pairs: Result<Vec<_>> = nodes.par_iter().enumerate().map(pair).collect();
     Ok(pairs?.into_iter().flatten().collect())
 }
 

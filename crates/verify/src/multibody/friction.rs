@@ -7,7 +7,7 @@
 
 use super::equations::MultibodyOde;
 use super::state::MultibodyState;
-use super::{MultibodyError, MultibodySystem};
+use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::slide_axis;
 use crate::lu::Lu;
 use dwell_geometry::{Component, JointKind, Reaction};
@@ -113,7 +113,7 @@ impl MultibodyOde<'_> {
         frictions: &[(usize, Friction)],
         response: &FrictionResponse,
         at: &MultibodyState,
-    ) -> Result<Vec<f64>, MultibodyError> {
+    ) -> Result<Vec<f64>> {
         let n = frictions.len();
         if n == 0 {
             return Ok(vec![]);

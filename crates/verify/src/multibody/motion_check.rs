@@ -1,6 +1,6 @@
 //! A claimed motion against the multibody equations.
 
-use super::{MotionSample, MultibodyError, MultibodySystem};
+use super::{MotionSample, MultibodyError, MultibodySystem, Result};
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Component, Reaction};
@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 pub fn check_motion(
     system: &MultibodySystem,
     claimed_motion: &[MotionSample],
-) -> Result<Vec<Finding>, MultibodyError> {
+) -> Result<Vec<Finding>> {
     let first = claimed_motion.first().ok_or(MultibodyError::InvalidStart)?;
     let times: Vec<f64> = claimed_motion.iter().skip(1).map(|claim| claim.t).collect();
     let reference_motion = system.integrate(first, &times)?;
@@ -122,7 +122,7 @@ impl MultibodySystem {
         &self,
         claimed_motion: &[MotionSample],
         reference_motion: &[MotionSample],
-    ) -> Result<Vec<Finding>, MultibodyError> {
+    ) -> Result<Vec<Finding>> {
         let first = reference_motion.first();
         let first = first.ok_or(MultibodyError::InvalidStart)?;
         let layout = |s: &MotionSample| {

@@ -1,6 +1,6 @@
 //! A state of the multibody equations: coordinates, magnitudes of loads, energies.
 
-use super::{MultibodyError, MultibodySystem};
+use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::{BodyMotion, slide_axis};
 use crate::loads::load_wrenches;
 use crate::wrenches::BodyWrench;
@@ -91,7 +91,7 @@ impl MultibodySystem {
     }
 
     /// Every load must find its bodies and coordinates.
-    pub(super) fn check_loads(&self) -> Result<(), MultibodyError> {
+    pub(super) fn check_loads(&self) -> Result<()> {
         let at = self.rest_state();
         for (i, load) in self.loads.iter().enumerate() {
             let wrong = |what| MultibodyError::Load { load: i, what };

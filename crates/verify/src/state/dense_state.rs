@@ -5,7 +5,7 @@ use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::differences::Extrapolated;
-use crate::error::DenseError;
+use crate::error::Result;
 use crate::wrenches::{DenseWrench, NetWrench};
 use dwell_geometry::{Vec2, vec2};
 
@@ -42,7 +42,7 @@ impl DenseSolution {
         at: &Configuration,
         unit_velocities: &[Vec<f64>],
         loads: &[DenseWrench],
-    ) -> Result<Self, DenseError> {
+    ) -> Result<Self> {
         let actuator_row = dense.actuator_row();
         let mut x_dot = vec![0.0; dense.rows.columns()];
         for (u, rate) in unit_velocities[actuator_row..].iter().zip(&state.q_dot) {
@@ -103,7 +103,7 @@ impl<'a> DenseState<'a> {
         state: &'a ClaimedState,
     ) -> Result<Self, StateError> {
         check_counts(dense, state)?;
-        let (configuration, closing_correction) = dense.close_poses(&state.poses, &state.q)?;
+        let (configuration, closing_correction) = dense.close_at(&state.poses, &state.q)?;
         dense.check_redundant_rows(&configuration)?;
         let loads = shifted_wrenches(dense, state);
         let velocities = dense.unit_velocities(&configuration);
