@@ -19,7 +19,7 @@ validate-slow: && size
 size:
     cargo run --release --example size
 
-# Deliberate faults, and which independent truths catch them: reports/mutations.png, .md and .txt
+# Deliberate faults, and which independent checks catch them: reports/mutations.png, .md and .txt
 [group('main')]
 mutations:
     cargo run --release --example mutations
@@ -38,6 +38,12 @@ lint:
     cargo fmt --all --check
     cargo clippy --release --workspace --all-targets -- -D warnings
     python3 tests/house/circles.py
+
+# Licences, sources, duplicates and advisories of the dependencies, by deny.toml. The tool: cargo install cargo-deny --locked
+[group('care')]
+deny:
+    @command -v cargo-deny >/dev/null || { echo "cargo-deny is missing: cargo install cargo-deny --locked"; exit 1; }
+    cargo deny --locked check
 
 # Exact evaluation against hand-written closed forms, one by one and in batches, as ratios of one run
 [group('care')]

@@ -40,6 +40,7 @@ mod refusals;
 mod repeatability;
 mod rounding;
 mod scaling;
+mod separating;
 mod slides;
 mod symbolic;
 mod tables;

@@ -103,8 +103,16 @@ impl CompiledDrive {
             }
         };
         let input = drive.kind.input().clone();
-        if matches!(input, Magnitude::Friction(_) | Magnitude::External(_)) {
-            return Err("friction acts in joints alone, and a drive is not given by another");
+        match input {
+            Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => {
+                return Err(
+                    "friction and separating forces act in joints alone, and a drive is not given by another",
+                );
+            }
+            Magnitude::Constant(_)
+            | Magnitude::Law(..)
+            | Magnitude::Expression(..)
+            | Magnitude::Function(..) => {}
         }
         Ok(Self {
             load,

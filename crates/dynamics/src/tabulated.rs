@@ -130,7 +130,7 @@ impl TabulatedMachine {
         if !machine.fit_windows.is_empty() {
             return Err(TabulationError::ChangePoints);
         }
-        let dry = |load: &Load| matches!(load.magnitude, Magnitude::Friction(_));
+        let dry = |load: &Load| load.friction().is_some();
         if let Some(load) = machine.model().loads().iter().position(dry) {
             return Err(TabulationError::Friction { load });
         }

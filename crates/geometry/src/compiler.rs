@@ -21,6 +21,26 @@ const NEARLY_CLOSED: f64 = 0.01;
 /// backlash by less.
 const MESHING_TOLERANCE: f64 = 2e-3;
 
+/// The error of a mechanism whose best pose leaves a gap, m; `error` is what counting or matching found.
+fn not_closed(found: &Mobility, gap: f64, error: AssemblyError) -> AssemblyError {
+    // More actuators than degrees of freedom are not redundant joints.
+    let over_actuated = (1..found.actuators).contains(&found.degrees_of_freedom());
+    match error {
+        AssemblyError::Structure(StructureError::OverConstrained {
+            joints,
+            redundant_count,
+            ..
+        }) if !over_actuated && !joints.is_empty() && gap < NEARLY_CLOSED * found.size => {
+            AssemblyError::Inconsistent {
+                joints,
+                redundant_count,
+                gap,
+            }
+        }
+        other => other,
+    }
+}
+
 impl Plan {
     /// Compiles a mechanism: finds its structure, assembles it in the assembly mode nearest to the initial guess, and
     /// follows that branch over the range of a single actuator.
@@ -99,24 +119,7 @@ impl Plan {
             AssemblyError::Structure(StructureError::OverConstrained { .. })
         );
         if let Some(gap) = found.gap {
-            // More actuators than degrees of freedom are not redundant joints.
-            if (1..found.actuators).contains(&found.degrees_of_freedom()) {
-                return Err(error);
-            }
-            return Err(match error {
-                AssemblyError::Structure(StructureError::OverConstrained {
-                    joints,
-                    redundant_count,
-                    ..
-                }) if !joints.is_empty() && gap < NEARLY_CLOSED * found.size => {
-                    AssemblyError::Inconsistent {
-                        joints,
-                        redundant_count,
-                        gap,
-                    }
-                }
-                other => other,
-            });
+            return Err(not_closed(found, gap, error));
         }
         if !found.free_bodies.is_empty() {
             return Err(StructureError::UnderActuated {
@@ -209,6 +212,8 @@ impl Plan {
 }
 
 /// Refuses a description that refers to bodies, joints or coordinates that do not exist.
+//
+// Long: one condition after another, and every kind of joint by its name.
 fn check(
     mechanism: &Mechanism,
     configuration: &AssemblyConfiguration,
@@ -216,7 +221,10 @@ fn check(
     let bodies = mechanism.bodies.len();
     let body_pairs = mechanism.joints.iter().map(|j| j.bodies);
     let mut body_pairs = body_pairs.chain(mechanism.actuators.iter().map(|a| a.bodies));
+    let (mut couplings, mut actuators) = (mechanism.couplings.iter(), mechanism.actuators.iter());
     let finite = |angle: &Option<f64>| angle.is_none_or(f64::is_finite);
+    let guesses = configuration.initial_guess.iter();
+    let mut guesses = guesses.chain(&configuration.branch_hints);
     let travels = |joint: JointId| {
         let joint = mechanism.joints.get(joint.0);
         joint.is_some_and(|j| j.kind.travel_axis().is_some())
@@ -229,21 +237,22 @@ fn check(
     };
     let related = |kind: JointKind| match kind {
         JointKind::Coupling(r) => r < mechanism.couplings.len(),
-        _ => true,
+        JointKind::Revolute
+        | JointKind::Prismatic { .. }
+        | JointKind::Slot { .. }
+        | JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Rack { .. }
+        | JointKind::Rolling { .. }
+        | JointKind::Distance { .. } => true,
     };
     let reason = if mechanism.ground >= bodies
         || !body_pairs.all(|e| e.iter().all(|b| b.0 < bodies))
     {
         "it refers to a body that does not exist"
     } else if !mechanism.joints.iter().all(|j| related(j.kind))
-        || !mechanism
-            .couplings
-            .iter()
-            .all(|r| measurable(r.dependent) && measurable(r.independent))
-        || mechanism
-            .actuators
-            .iter()
-            .any(|a| matches!(a.kind, ActuatorKind::Travel(joint) if !travels(joint)))
+        || !couplings.all(|r| measurable(r.dependent) && measurable(r.independent))
+        || actuators.any(|a| matches!(a.kind, ActuatorKind::Travel(joint) if !travels(joint)))
         || (configuration.branch_hints.iter().zip(&mechanism.joints))
             .any(|(hint, joint)| hint.is_some() && joint.kind.branch_hint().is_none())
     {
@@ -254,13 +263,7 @@ fn check(
         "the assembly needs one coordinate per actuator and one entry of the initial guess per body"
     } else if ![0, mechanism.joints.len()].contains(&configuration.branch_hints.len()) {
         "the branch hints must have one entry per joint, or none"
-    } else if !configuration.q.iter().all(|q| q.is_finite())
-        || !configuration
-            .initial_guess
-            .iter()
-            .chain(&configuration.branch_hints)
-            .all(finite)
-    {
+    } else if !configuration.q.iter().all(|q| q.is_finite()) || !guesses.all(finite) {
         "an angle or a length is not a finite number"
     } else {
         return Ok(());

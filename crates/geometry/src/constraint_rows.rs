@@ -130,30 +130,24 @@ impl ConstraintRows {
     /// The rows of `mechanism`, or which of its references is broken. Axes are taken as the unit
     /// vectors they are documented to be.
     pub fn new(mechanism: &Mechanism) -> Result<Self, ConstraintRowsError> {
-        let bodies = mechanism.bodies.len();
-        if mechanism.ground >= bodies {
-            return Err(ConstraintRowsError::NoGround {
-                ground: mechanism.ground,
-                bodies,
-            });
+        let (ground, bodies) = (mechanism.ground, mechanism.bodies.len());
+        if ground >= bodies {
+            return Err(ConstraintRowsError::NoGround { ground, bodies });
         }
         let mut columns = 0;
-        let body_columns: Vec<_> = (0..bodies)
-            .map(|b| {
-                (b != mechanism.ground).then(|| {
-                    columns += 3;
-                    columns - 3
-                })
+        let mut column = |b: usize| {
+            (b != ground).then(|| {
+                columns += 3;
+                columns - 3
             })
-            .collect();
+        };
+        let body_columns: Vec<_> = (0..bodies).map(&mut column).collect();
         let writer = RowWriter {
             mechanism,
             columns: &body_columns,
         };
-        let counts_revolutions = mechanism
-            .joints
-            .iter()
-            .any(|j| joint_counts_revolutions(mechanism, j));
+        let mut joints = mechanism.joints.iter();
+        let counts_revolutions = joints.any(|j| joint_counts_revolutions(mechanism, j));
         for (joint, described) in mechanism.joints.iter().enumerate() {
             if let Some(body) = writer.missing_body(described.bodies) {
                 return Err(ConstraintRowsError::JointBody {

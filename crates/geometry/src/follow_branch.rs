@@ -75,7 +75,7 @@ impl Plan {
     /// Follows the branch for some revolutions from the last pose and collects the poses; returns where the branch ends,
     /// if it does: at a limit position, or at a change point, where two branches meet.
     //
-    // Longer than 60 lines: the step length, the margins and the largest margins change together at each step.
+    // Long: the step length, the margins and the largest margins change together at each step.
     fn follow_direction(
         &self,
         poses: &mut Vec<Pose<f64>>,
@@ -169,15 +169,7 @@ impl Plan {
     /// group is from where its branch ends. None where it has ended.
     fn determinant_margins(&self, at: &Pose<f64>) -> Option<Vec<Dual>> {
         let mut pose: Pose<Dual> = self.pose();
-        for (value, rotation) in pose.rotation.iter_mut().zip(&at.rotation) {
-            *value = rotation.cast();
-        }
-        for (value, &angle) in pose.angle.iter_mut().zip(&at.angle) {
-            *value = Dual::from_f64(angle);
-        }
-        for (value, travel) in pose.slide_travel.iter_mut().zip(&at.slide_travel) {
-            *value = Dual::from_f64(*travel);
-        }
+        pose.start_from(at);
         let q = [Dual::variable(at.q[0])];
         self.positions_from(&q, &mut pose, InitialIterate::CurrentPose)
             .ok()?;
@@ -368,10 +360,8 @@ impl Plan {
             }
         }
         for ((assur, list), gains) in self.groups.iter_mut().zip(all).zip(gains) {
-            assur.stored_poses = crate::plan::stored_poses::StoredPoses {
-                poses: list,
-                gain_per_period: gains,
-            };
+            assur.stored_poses.poses = list;
+            assur.stored_poses.gain_per_period = gains;
         }
     }
 }

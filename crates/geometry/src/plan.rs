@@ -62,7 +62,7 @@ pub struct Plan {
     pub(crate) actuated_slides: Vec<Option<usize>>,
     /// By actuator: whether it drives an angle rather than a length.
     pub(crate) angular: Vec<bool>,
-    /// The largest length in the loops and the tree, m: a step of a driven length is a part of it.
+    /// [`Mechanism::size`](crate::mechanism::Mechanism::size), m: a step of a driven length is a part of it.
     pub(crate) size: f64,
     pub(crate) assembly_coordinates: Vec<f64>,
     pub(crate) range: Range,
@@ -260,12 +260,12 @@ pub(crate) struct FactoredGroup {
 impl FactoredGroup {
     /// Room for its factors: those of a tall matrix keep a factor for each column beside it.
     pub(crate) fn factor_len(&self) -> usize {
-        let head_count = if self.rows > self.columns {
+        let heads = if self.rows > self.columns {
             self.columns
         } else {
             0
         };
-        self.rows * self.columns + head_count
+        self.rows * self.columns + heads
     }
 }
 
@@ -320,6 +320,20 @@ pub struct Pose<T> {
     pub(crate) pivots: Vec<usize>,
     pub(crate) workspace: Vec<T>,
     pub(crate) path_coordinates: Vec<T>,
+}
+
+impl<T: Scalar> Pose<T> {
+    /// Takes the unknowns of another pose, from which Newton's method can start.
+    pub(crate) fn start_from(&mut self, other: &Pose<f64>) {
+        for (value, rotation) in self.rotation.iter_mut().zip(&other.rotation) {
+            *value = rotation.cast();
+        }
+        let angles = self.angle.iter_mut().zip(&other.angle);
+        let travels = self.slide_travel.iter_mut().zip(&other.slide_travel);
+        for (value, &other) in angles.chain(travels) {
+            *value = T::from_f64(other);
+        }
+    }
 }
 
 impl Plan {

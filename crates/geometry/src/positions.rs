@@ -90,36 +90,18 @@ impl Plan {
         let Some(assembly_pose) = &self.assembly_pose else {
             return self.positions_from(q, pose, InitialIterate::CurrentPose);
         };
-        for (value, rotation) in pose.rotation.iter_mut().zip(&assembly_pose.rotation) {
-            *value = rotation.cast();
-        }
-        for (value, &angle) in pose.angle.iter_mut().zip(&assembly_pose.angle) {
-            *value = T::from_f64(angle);
-        }
-        for (value, &travel) in pose
-            .slide_travel
-            .iter_mut()
-            .zip(&assembly_pose.slide_travel)
-        {
-            *value = T::from_f64(travel);
-        }
+        pose.start_from(assembly_pose);
         let mut steps = 1.0_f64;
         for (i, (to, from)) in q.iter().zip(&self.assembly_coordinates).enumerate() {
-            steps = steps.max(
-                ((to.value() - from) / self.continuation_step(i))
-                    .abs()
-                    .ceil(),
-            );
+            let whole = (to.value() - from) / self.continuation_step(i);
+            steps = steps.max(whole.abs().ceil());
         }
         let mut coordinates = std::mem::take(&mut pose.path_coordinates);
         let mut result = Ok(());
         for k in 1..=steps.min(MAX_PATH_STEPS) as usize {
             let fraction = k as f64 / steps;
-            for ((on, &to), &from) in coordinates
-                .iter_mut()
-                .zip(q)
-                .zip(&self.assembly_coordinates)
-            {
+            let ends = q.iter().zip(&self.assembly_coordinates);
+            for (on, (&to, &from)) in coordinates.iter_mut().zip(ends) {
                 *on = if fraction < 1.0 {
                     T::from_f64(from + (to.value() - from) * fraction)
                 } else {
@@ -140,10 +122,8 @@ impl Plan {
     pub(crate) fn continuation_step(&self, actuator: usize) -> f64 {
         if self.angular[actuator] {
             TAU / STEPS_PER_REVOLUTION as f64
-        } else if self.size > 0.0 {
-            self.size * TAU / STEPS_PER_REVOLUTION as f64
         } else {
-            1.0
+            self.size * TAU / STEPS_PER_REVOLUTION as f64
         }
     }
 

@@ -1,17 +1,20 @@
-//! Coulomb friction in joints. The friction of a joint depends on its reaction, and the reaction on the friction:
+//! Loads that depend on the reactions of a joint: Coulomb friction, and the separating force of teeth. The friction of a
+//! joint depends on its reaction, and the reaction on the friction:
 //!
 //! ```text
-//! F_j = −µ_j g_j(R_j) tanh(v_j/v₀_j),    R = R⁰ + C F                         (1)
+//! F_j = −φ_j g_j(R_j),    R = R⁰ + C F                                        (1)
+//! φ = µ tanh(v/v₀) of a friction,    φ = −tan α of a separating force
 //! ```
 //!
-//! with g the force times the radius in a pin, or the sum of the forces on the ends of a guide; R⁰ the
-//! reactions without friction and C what a unit of each friction adds to them. Where coordinates are
+//! with g the force times the radius in a pin, the sum of the forces on the ends of a guide, or the absolute tooth
+//! force; R⁰ the reactions without these loads and C what a unit of each adds to them. A separating force adds nothing
+//! to tooth forces, but to the reactions on which friction depends. Where coordinates are
 //! free, R⁰ and C include the effect of their accelerations. Newton's method solves (1) from F = 0. The
 //! determinant of its Jacobian is 1 without friction; where it is no longer positive the mechanism jams:
 //! the same state has two accelerations, or none.
 
 use crate::error::KinetostaticsError;
-use crate::load::{Friction, FrictionContact, Load, LoadKind};
+use crate::load::{Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle};
 use crate::pass::InverseDynamics;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{Mechanism, Reaction};
@@ -24,16 +27,40 @@ const STEP_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 /// or by less than this part if the change no longer falls: next to a jam, rounding is amplified.
 const STAGNATION_TOLERANCE: f64 = 1e-6;
 
-/// A friction, compiled for a model.
+/// A load that depends on the reactions of a joint, compiled for a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct JointFriction {
+pub(crate) struct DependentLoad {
     /// Index of its load.
     pub(crate) load: usize,
     /// Indices of the reactions it depends on; none for a component that it does not need.
     reactions: [Option<usize>; 2],
-    friction: Friction,
-    /// The coordinate whose speed is that of the surfaces.
-    coordinate: CoordinateFunction,
+    law: ReactionLaw,
+}
+
+/// How a load depends on the reactions of its joint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum ReactionLaw {
+    Friction {
+        friction: Friction,
+        /// The coordinate whose speed is that of the surfaces.
+        coordinate: CoordinateFunction,
+    },
+    /// A separating force, by tan α.
+    Separating { tangent: f64 },
+}
+
+impl ReactionLaw {
+    /// g(R), N·m or N, and its derivatives by both components.
+    fn force<T: Scalar>(self, reaction: [T; 2]) -> (T, [T; 2]) {
+        match self {
+            Self::Friction { friction, .. } => friction.contact.force(reaction),
+            Self::Separating { .. } => {
+                let [tooth, _] = reaction;
+                let sign = T::from_f64(if tooth.value() < 0.0 { -1.0 } else { 1.0 });
+                (tooth * sign, [sign, T::from_f64(0.0)])
+            }
+        }
+    }
 }
 
 impl FrictionContact {
@@ -72,9 +99,9 @@ impl FrictionContact {
 /// Working memory of [`solve`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct FrictionWorkspace<T> {
-    /// By friction: µ tanh(v/v₀).
+    /// By load: φ.
     friction_factor: Vec<T>,
-    /// By friction: F.
+    /// By load: F.
     pub(crate) force: Vec<T>,
     jacobian: Vec<T>,
     step: Vec<T>,
@@ -94,42 +121,60 @@ impl<T: Scalar> FrictionWorkspace<T> {
     }
 }
 
-impl JointFriction {
-    /// The frictions among a model's loads, which depend on reactions that the model computes.
+impl DependentLoad {
+    /// The frictions and separating forces among a model's loads whose reactions the model computes.
     pub(crate) fn compile(
         mechanism: &Mechanism,
         loads: &[Load],
         reactions: &[Reaction],
     ) -> Vec<Self> {
         let compile = |(load, one): (usize, &Load)| {
-            let friction = one.friction()?;
             let mut indices = [None; 2];
-            let required = friction.required_reactions(mechanism);
-            for (index, required) in indices.iter_mut().zip(required) {
+            for (index, required) in indices.iter_mut().zip(required_reactions(mechanism, one)) {
                 *index = reactions.iter().position(|r| *r == required);
             }
-            // The check of the loads leaves no other kinds.
-            let coordinate = match one.kind {
-                LoadKind::SlideForce(guide) => guide.travel(),
-                _ => CoordinateFunction::Angle(mechanism.joints[friction.joint.0].bodies),
+            let law = match one.magnitude {
+                Magnitude::Friction(friction) => ReactionLaw::Friction {
+                    friction,
+                    coordinate: sliding_coordinate(one.kind)?,
+                },
+                // Without its tooth force it is in a model that computes nothing on which it could act.
+                Magnitude::Separating(PressureAngle { angle, .. }) => {
+                    indices[0]?;
+                    ReactionLaw::Separating {
+                        tangent: angle.tan(),
+                    }
+                }
+                Magnitude::Constant(_)
+                | Magnitude::Law(..)
+                | Magnitude::Expression(..)
+                | Magnitude::Function(..)
+                | Magnitude::External(_) => return None,
             };
             Some(Self {
                 load,
                 reactions: indices,
-                friction,
-                coordinate,
+                law,
             })
         };
         loads.iter().enumerate().filter_map(compile).collect()
     }
 
-    /// µ tanh(v/v₀).
+    /// φ.
     fn factor<T: Scalar>(&self, states: &BodyStates<T>) -> T {
-        let [_, velocity, _] = states.coordinate(self.coordinate);
-        let speed = self.friction.regularization_speed;
-        let tanh = (velocity.value() / speed).tanh();
-        let slope = (1.0 - tanh * tanh) / speed;
-        velocity.compose(&[tanh, slope, 0.0, 0.0]) * T::from_f64(self.friction.coefficient)
+        match self.law {
+            ReactionLaw::Friction {
+                friction,
+                coordinate,
+            } => {
+                let [_, velocity, _] = states.coordinate(coordinate);
+                let speed = friction.regularization_speed;
+                let tanh = (velocity.value() / speed).tanh();
+                let slope = (1.0 - tanh * tanh) / speed;
+                velocity.compose(&[tanh, slope, 0.0, 0.0]) * T::from_f64(friction.coefficient)
+            }
+            ReactionLaw::Separating { tangent } => T::from_f64(-tangent),
+        }
     }
 
     fn components<T: Scalar>(&self, reactions: &[T]) -> [T; 2] {
@@ -138,27 +183,59 @@ impl JointFriction {
     }
 }
 
-/// Solves (1): `frictionless` are the reactions without friction, `responses[j]` what a unit of friction j adds to
-/// each. The frictions are then in `workspace.force`.
+/// The coordinate along which the surfaces of a friction slide; none for loads that are no friction.
+fn sliding_coordinate(kind: LoadKind) -> Option<CoordinateFunction> {
+    match kind {
+        LoadKind::SlideForce(guide) => Some(guide.travel()),
+        LoadKind::Torque { bodies } => Some(CoordinateFunction::Angle(bodies)),
+        LoadKind::Gravity { .. }
+        | LoadKind::Force { .. }
+        | LoadKind::Spring { .. }
+        | LoadKind::TorsionSpring { .. }
+        | LoadKind::Damper { .. }
+        | LoadKind::RotationalDamper { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::SlideDamper(_)
+        | LoadKind::SeparatingForce(_) => None,
+    }
+}
+
+/// The reactions on which the magnitude of a load depends.
+pub(crate) fn required_reactions(mechanism: &Mechanism, load: &Load) -> Vec<Reaction> {
+    match load.magnitude {
+        Magnitude::Friction(friction) => friction.required_reactions(mechanism),
+        Magnitude::Separating(teeth) => vec![teeth.tooth_force()],
+        Magnitude::Constant(_)
+        | Magnitude::Law(..)
+        | Magnitude::Expression(..)
+        | Magnitude::Function(..)
+        | Magnitude::External(_) => Vec::new(),
+    }
+}
+
+/// Solves (1): `frictionless` are the reactions without these loads, `responses[j]` what a unit of load j adds to
+/// each. The forces are then in `workspace.force`.
 ///
 /// # Errors
 /// [`KinetostaticsError::SelfLocking`] where there is no unique solution.
 pub(crate) fn solve<T: Scalar>(
-    frictions: &[JointFriction],
+    dependent_loads: &[DependentLoad],
     states: &BodyStates<T>,
     frictionless: &[T],
     responses: &[InverseDynamics<T>],
     workspace: &mut FrictionWorkspace<T>,
 ) -> Result<(), KinetostaticsError> {
-    let load = frictions.first().map_or(0, |friction| friction.load);
+    let load = dependent_loads
+        .first()
+        .map_or(0, |dependent| dependent.load);
     let self_locking = KinetostaticsError::SelfLocking { load };
-    for (joint_friction, factor) in frictions.iter().zip(&mut workspace.friction_factor) {
-        *factor = joint_friction.factor(states);
+    for (dependent, factor) in dependent_loads.iter().zip(&mut workspace.friction_factor) {
+        *factor = dependent.factor(states);
     }
     workspace.force.fill(T::from_f64(0.0));
     let (mut converged, mut last) = (0, f64::INFINITY);
     for _ in 0..MAX_ITERATIONS {
-        let largest = workspace.linearise(frictions, frictionless, responses);
+        let largest = workspace.linearise(dependent_loads, frictionless, responses);
         let factored = lu::factor(&mut workspace.jacobian, &mut workspace.pivots);
         if factored.determinant_sign <= 0.0 || factored.pivot_ratio < f64::EPSILON {
             return Err(self_locking);
@@ -184,27 +261,27 @@ pub(crate) fn solve<T: Scalar>(
 }
 
 impl<T: Scalar> FrictionWorkspace<T> {
-    /// Residual and Jacobian of (1) at the current forces, and the largest |µ g tanh|.
+    /// Residual and Jacobian of (1) at the current forces, and the largest |φ g|.
     fn linearise(
         &mut self,
-        frictions: &[JointFriction],
+        dependent_loads: &[DependentLoad],
         frictionless: &[T],
         responses: &[InverseDynamics<T>],
     ) -> f64 {
-        let n = frictions.len();
+        let n = dependent_loads.len();
         let mut largest = 0.0_f64;
-        for (j, joint_friction) in frictions.iter().enumerate() {
-            let mut reaction = joint_friction.components(frictionless);
+        for (j, dependent) in dependent_loads.iter().enumerate() {
+            let mut reaction = dependent.components(frictionless);
             for (force, response) in self.force.iter().zip(responses) {
-                let [x, y] = joint_friction.components(&response.reactions);
+                let [x, y] = dependent.components(&response.reactions);
                 reaction[0] += x * *force;
                 reaction[1] += y * *force;
             }
-            let (contact_force, [by_x, by_y]) = joint_friction.friction.contact.force(reaction);
+            let (contact_force, [by_x, by_y]) = dependent.law.force(reaction);
             let factor = self.friction_factor[j];
             self.step[j] = -(self.force[j] + factor * contact_force);
             for (k, response) in responses.iter().enumerate() {
-                let [x, y] = joint_friction.components(&response.reactions);
+                let [x, y] = dependent.components(&response.reactions);
                 let diagonal = if j == k { 1.0 } else { 0.0 };
                 self.jacobian[j * n + k] = T::from_f64(diagonal) + factor * (by_x * x + by_y * y);
             }

@@ -50,7 +50,8 @@ pub use drive::{Drive, DriveKind, Motor, SpeedController};
 pub use error::{KinetostaticsError, LoadError, ModelError};
 pub use load::{
     AppliedWrench, CompiledSignal, ForceSource, Friction, FrictionContact, Guide, Load, LoadKind,
-    LoadState, Magnitude, Signal,
+    LoadState, MAX_FUNCTION_SIGNALS, Magnitude, MagnitudeFunction, Mesh, PitchLines, PressureAngle,
+    Signal,
 };
 pub use mass::Mass;
 pub use model::{Model, Workspace};

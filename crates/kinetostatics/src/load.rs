@@ -5,6 +5,8 @@
 mod compiled;
 mod couple_points;
 mod friction;
+mod function;
+mod separating;
 mod signal;
 mod state;
 mod wrench;
@@ -12,6 +14,8 @@ mod wrench;
 pub(crate) use compiled::CompiledLoads;
 pub(crate) use couple_points::find_couple_points;
 pub use friction::{Friction, FrictionContact};
+pub use function::{MAX_FUNCTION_SIGNALS, MagnitudeFunction};
+pub use separating::{Mesh, PitchLines, PressureAngle};
 pub use signal::CompiledSignal;
 pub use state::LoadState;
 pub use wrench::{AppliedWrench, ForceSource};
@@ -96,6 +100,8 @@ pub enum LoadKind {
     SlideForce(Guide),
     /// Viscous friction in a slide: F is its constant, N·s/m; it resists with F × speed of travel.
     SlideDamper(Guide),
+    /// A force F, N, that pushes the teeth of two bodies apart, at the pitch point.
+    SeparatingForce(Mesh),
 }
 
 /// The line along which a prismatic joint or a slot slides.
@@ -156,8 +162,12 @@ pub enum Magnitude {
     Law(Signal, Law),
     /// An expression of several signals, one for each variable it was parsed with, in their order.
     Expression(Expression, Vec<Signal>),
+    /// A function of the program that uses the library, of these signals in their order.
+    Function(MagnitudeFunction, Vec<Signal>),
     /// Coulomb friction, from the joint's own reactions.
     Friction(Friction),
+    /// The separating force of teeth, from the tooth force of their joint.
+    Separating(PressureAngle),
     /// The value that [`Workspace::set_magnitude`](crate::Workspace::set_magnitude) was given last: of a drive,
     /// which is evaluated outside the model from these signals.
     External(Vec<Signal>),
@@ -167,9 +177,11 @@ impl Magnitude {
     /// The signals it depends on.
     pub fn signals(&self) -> &[Signal] {
         match self {
-            Self::Constant(_) | Self::Friction(_) => &[],
+            Self::Constant(_) | Self::Friction(_) | Self::Separating(_) => &[],
             Self::Law(signal, _) => std::slice::from_ref(signal),
-            Self::Expression(_, signals) | Self::External(signals) => signals,
+            Self::Expression(_, signals) | Self::Function(_, signals) | Self::External(signals) => {
+                signals
+            }
         }
     }
 }
@@ -187,13 +199,14 @@ pub enum Signal {
 
 impl Load {
     /// Whether it has a potential energy: gravity, springs and forces of constant direction, where the magnitude is
-    /// constant.
+    /// constant; and the separating force of teeth, which does no work.
     pub fn is_conservative(&self) -> bool {
         let has_potential = match self.kind {
             LoadKind::Force { body_fixed, .. } => !body_fixed,
             LoadKind::Gravity { .. } | LoadKind::Spring { .. } | LoadKind::TorsionSpring { .. } => {
                 true
             }
+            LoadKind::SeparatingForce(_) => return true,
             LoadKind::Torque { .. }
             | LoadKind::Damper { .. }
             | LoadKind::RotationalDamper { .. }
@@ -204,6 +217,23 @@ impl Load {
         has_potential && matches!(self.magnitude, Magnitude::Constant(_))
     }
 
+    /// Whether it can do work in some motion: all but the separating force of teeth.
+    pub fn does_work(&self) -> bool {
+        match self.kind {
+            LoadKind::SeparatingForce(_) => false,
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::Spring { .. }
+            | LoadKind::TorsionSpring { .. }
+            | LoadKind::Damper { .. }
+            | LoadKind::RotationalDamper { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SlideForce(_)
+            | LoadKind::SlideDamper(_) => true,
+        }
+    }
+
     /// The friction that makes its magnitude, if it is one.
     pub fn friction(&self) -> Option<Friction> {
         match self.magnitude {
@@ -211,6 +241,21 @@ impl Load {
             Magnitude::Constant(_)
             | Magnitude::Law(..)
             | Magnitude::Expression(..)
+            | Magnitude::Function(..)
+            | Magnitude::Separating(_)
+            | Magnitude::External(_) => None,
+        }
+    }
+
+    /// The pressure angle that makes its magnitude, if it is the separating force of teeth.
+    pub fn pressure_angle(&self) -> Option<PressureAngle> {
+        match self.magnitude {
+            Magnitude::Separating(teeth) => Some(teeth),
+            Magnitude::Constant(_)
+            | Magnitude::Law(..)
+            | Magnitude::Expression(..)
+            | Magnitude::Function(..)
+            | Magnitude::Friction(_)
             | Magnitude::External(_) => None,
         }
     }
@@ -228,7 +273,8 @@ impl Load {
             | LoadKind::RotationalDamper { .. }
             | LoadKind::PointToPointForce { .. }
             | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => None,
+            | LoadKind::SlideDamper(_)
+            | LoadKind::SeparatingForce(_) => None,
         };
         let signals = self.magnitude.signals().iter();
         let signal_pairs = signals.filter_map(|signal| match *signal {
@@ -253,7 +299,8 @@ impl Load {
             | LoadKind::PointToPointForce { bodies, .. }
             | LoadKind::RotationalDamper { bodies }
             | LoadKind::SlideForce(Guide { bodies, .. })
-            | LoadKind::SlideDamper(Guide { bodies, .. }) => bodies.to_vec(),
+            | LoadKind::SlideDamper(Guide { bodies, .. })
+            | LoadKind::SeparatingForce(Mesh { bodies, .. }) => bodies.to_vec(),
         };
         for signal in self.magnitude.signals() {
             let (Signal::Value(coordinate) | Signal::Velocity(coordinate)) = *signal else {

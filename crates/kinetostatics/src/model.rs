@@ -8,8 +8,8 @@ mod workspace;
 pub use workspace::Workspace;
 
 use crate::error::ModelError;
-use crate::friction::JointFriction;
-use crate::load::{CompiledLoads, Load};
+use crate::friction::{DependentLoad, required_reactions};
+use crate::load::CompiledLoads;
 use crate::mass::Mass;
 use crate::pass::{GivenMotion, InertialBody, InverseDynamics, PassModel, ReactionSources};
 use dwell_geometry::body_states::BodyStates;
@@ -22,14 +22,14 @@ use std::sync::Arc;
 pub struct Model {
     mechanism: Arc<Mechanism>,
     pub(crate) pass_model: PassModel,
-    /// The requested reactions, then the others on which friction depends.
+    /// The requested reactions, then the others on which friction and separating forces depend.
     reactions: Vec<Reaction>,
     /// How many reactions are requested.
     requested: usize,
     /// By body; the ground has none.
     pub(crate) masses: Vec<Mass>,
     pub(crate) loads: CompiledLoads,
-    joint_frictions: Vec<JointFriction>,
+    dependent_loads: Vec<DependentLoad>,
     /// The configuration in which it was assembled.
     assembly: AssemblyConfiguration,
 }
@@ -67,17 +67,20 @@ impl Model {
             requested: 0,
             masses,
             loads: CompiledLoads::default(),
-            joint_frictions: Vec::new(),
+            dependent_loads: Vec::new(),
             assembly: assembly.clone(),
         };
         model.compile_reactions(reactions);
         Ok(model)
     }
 
-    /// Compiles the requested reactions and those on which the friction of the loads depends.
+    /// Compiles the requested reactions and those on which the magnitudes of the loads depend. A separating force
+    /// does no work, so that only reactions depend on it: where none is computed, it stays zero.
     fn compile_reactions(&mut self, requested: &[Reaction]) {
-        let frictions = self.loads().iter().filter_map(Load::friction);
-        let required = frictions.flat_map(|friction| friction.required_reactions(&self.mechanism));
+        let depends_on_reactions =
+            !requested.is_empty() || self.loads().iter().any(|load| load.friction().is_some());
+        let required = self.loads().iter().filter(|_| depends_on_reactions);
+        let required = required.flat_map(|load| required_reactions(&self.mechanism, load));
         let mut reactions = requested.to_vec();
         for reaction in required {
             if !reactions.contains(&reaction) {
@@ -85,7 +88,7 @@ impl Model {
             }
         }
         self.requested = requested.len();
-        self.joint_frictions = JointFriction::compile(&self.mechanism, self.loads(), &reactions);
+        self.dependent_loads = DependentLoad::compile(&self.mechanism, self.loads(), &reactions);
         self.pass_model.reaction_sources =
             ReactionSources::compile(&self.mechanism, &self.pass_model.plan, &reactions);
         self.reactions = reactions;
@@ -148,8 +151,8 @@ impl Model {
         &self.pass_model.plan
     }
 
-    /// The reactions that are computed: the requested ones in their order, then the others on which the friction of
-    /// the loads depends.
+    /// The reactions that are computed: the requested ones in their order, then the others on which the magnitudes of
+    /// the loads depend (friction, separating forces).
     pub fn reactions(&self) -> &[Reaction] {
         &self.reactions
     }

@@ -135,6 +135,23 @@ fn loads_and_balances_allocate_nothing() {
     }
 }
 
+/// Friction in the bearings of gears that push each other apart.
+#[test]
+fn dependent_loads_allocate_nothing() {
+    let friction = "\n[friction]\nA = { coefficient = 0.1, radius = 0.01 }\n";
+    let text = include_str!("loads/separating.toml").to_owned() + friction;
+    let scene = Scene::parse("test.toml", &text).expect("a scene");
+    let model = model(&scene).model().clone();
+    let model = model.with_loads(scene.loads.clone()).expect("they fit");
+    assert_eq!(model.frictions().len(), 2);
+    let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
+    let spent = allocations("contact forces", true, || {
+        let done = model.kinetostatics(0.5, &[0.6], &[2.0], &[-3.0], &mut workspace, &mut result);
+        done.is_ok() && workspace.loads().magnitude.iter().all(|m| *m != 0.0)
+    });
+    assert_eq!(spent, 0);
+}
+
 #[test]
 fn an_allocation_would_be_counted() {
     let scene = case("crank-rocker");

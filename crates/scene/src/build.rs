@@ -5,56 +5,60 @@ mod into_scene;
 use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
 use crate::coordinates::{ParsedActuator, ParsedCoordinates, actuators};
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::diagnostics::{Diagnostics, Span};
 use crate::drives::{DriveReader, ParsedDrive, reject_drives_of_prescribed};
 use crate::error::{SceneError, Source};
 use crate::events::EventReader;
 use crate::former_keys::rename_former_keys;
 use crate::friction::friction;
 use crate::joints::Joints;
-use crate::keys;
-use crate::loads::{LoadReader, ParsedLoad};
+use crate::keys::table;
+use crate::loads::{LoadReader, ParsedLoad, separating_forces};
 use crate::magnitude::Magnitudes;
 use crate::motion::{ParsedMotion, calibration};
 use crate::prescribed::{ParsedPrescribedMotion, ParsedSweep};
 use crate::requests::ParsedRequests;
 use crate::scene::{Calibration, Scene};
 use crate::section_numbers::section_numbers;
-use crate::table_reader::{Entry, TableReader, string};
+use crate::table_reader::TableReader;
 use crate::units::Units;
+use crate::value::Context;
 use crate::wording::shorten;
-use toml::de::{DeTable, DeValue};
+use toml::de::DeValue;
 
 impl Scene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
         let text = source.inner();
         let mut root = crate::read::syntax(source)?;
-        let mut diagnostics = Diagnostics::new(source);
-        rename_former_keys(root.get_mut(), &keys::SCENE, &mut diagnostics);
-        let parsed = ParsedScene::read(text, root.get_ref(), &mut diagnostics);
-        let warnings = diagnostics.warnings();
-        match (parsed, diagnostics.into_error()) {
-            (_, Some(error)) => Err(error),
-            (Some(parsed), None) => {
-                let mut scene = parsed.into_scene(name, Source::clone(source));
-                scene.warnings = warnings;
-                scene.section_numbers = section_numbers(text, root.get_ref());
-                Ok(scene)
-            }
-            // Parts are missing only where something was found wrong.
-            (None, None) => Err(SceneError::without_labels(
-                "the scene is incomplete".to_owned(),
-                None,
-            )),
+        let log = &Diagnostics::new(source);
+        rename_former_keys(root.get_mut(), table("scene"), log);
+        let fields = |units| {
+            let context = Context { units, log };
+            TableReader::new("the scene", (0..0, 0..0), root.get_ref(), context)
+        };
+        let si = Units::default();
+        let units = Units::read(fields(&si).get("units"));
+        let fields = fields(&units);
+        let parsed = ParsedScene::read(text, &fields);
+        if let Some(error) = log.to_error() {
+            return Err(error);
         }
+        // Parts are missing only where something was found wrong.
+        let incomplete = || SceneError::without_labels("the scene is incomplete".to_owned(), None);
+        let mut scene = parsed
+            .ok_or_else(incomplete)?
+            .into_scene(name, Source::clone(source));
+        scene.warnings = log.warnings();
+        scene.section_numbers = section_numbers(text, root.get_ref());
+        Ok(scene)
     }
 }
 
 /// The sections of a file as read.
-struct ParsedScene<'a> {
+struct ParsedScene<'f, 'a> {
+    fields: &'f TableReader<'a>,
     title: Option<&'a str>,
     note: Option<&'a str>,
-    units: Units,
     bodies: Bodies<'a>,
     joints: Joints<'a>,
     actuators: Vec<ParsedActuator<'a>>,
@@ -69,17 +73,6 @@ struct ParsedScene<'a> {
     requests: ParsedRequests,
     motion: Option<ParsedMotion<'a>>,
     calibration: Option<(Calibration, Span)>,
-    sections: SectionSpans,
-}
-
-/// Where the sections begin.
-struct SectionSpans {
-    units: Option<Span>,
-    assembly: Option<Span>,
-    prescribed: Option<Span>,
-    sweep: Option<Span>,
-    requests: Option<Span>,
-    motion: Option<Span>,
 }
 
 /// Longest title, in characters: it heads a page and a picture.
@@ -88,252 +81,172 @@ const MAX_TITLE_LENGTH: usize = 200;
 /// What some editors put before the first character of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-impl<'a> ParsedScene<'a> {
-    fn read(text: &str, root: &'a DeTable<'a>, diagnostics: &mut Diagnostics) -> Option<Self> {
-        let fields = TableReader::new("the scene", 0..0, root);
-        let blank = |c: char| c.is_whitespace() || c == BYTE_ORDER_MARK;
+impl<'f, 'a> ParsedScene<'f, 'a> {
+    fn read(text: &str, fields: &'f TableReader<'a>) -> Option<Self> {
         if fields.entries.is_empty() {
+            let blank = |c: char| c.is_whitespace() || c == BYTE_ORDER_MARK;
             let message = match text.trim_matches(blank).is_empty() {
                 true => "the scene is empty",
                 false => "the scene has nothing but comments",
             };
-            diagnostics.push(
-                Diagnostic::new(message)
-                    .label(0..0, "no bodies, no joints")
-                    .help("a scene has at least [bodies] and [joints]"),
-            );
-            return None;
+            let diagnostic = fields.error(message).label(&(0..0), "no bodies, no joints");
+            return diagnostic
+                .help("a scene has at least [bodies] and [joints]")
+                .reject();
         }
-        fields.reject_unknown_keys(&keys::SCENE, diagnostics);
-        let title = text_of(&fields, "title", diagnostics);
-        if let (Some(text), Some(entry)) = (title, fields.get("title"))
-            && text.chars().count() > MAX_TITLE_LENGTH
-        {
-            diagnostics.push(
-                Diagnostic::new(format!(
-                    "the title is longer than {MAX_TITLE_LENGTH} characters"
-                ))
-                .label(entry.key.clone(), "this text")
-                .help("a title is a line at the head of a page; the rest can go into `note`"),
-            );
-        }
-        let note = text_of(&fields, "note", diagnostics);
-        let units = Units::read(fields.get("units"), diagnostics);
+        fields.reject_unknown_keys(table("scene"));
+        let section = |key| section(fields, key);
+        let log = fields.log();
         // Without bodies every other name would be unknown: one message is enough.
-        let bodies = section(&fields, "bodies", true, diagnostics)?;
-        let count = diagnostics.count();
-        let bodies = Bodies::read(&bodies, &units, diagnostics);
-        let all_bodies_read = diagnostics.count() == count;
-        let mut joints = section(&fields, "joints", true, diagnostics)
-            .map(|f| Joints::read(&f, &bodies, &units, diagnostics))
-            .unwrap_or_default();
-        let actuators = section(&fields, "actuators", false, diagnostics)
-            .map(|f| actuators(&f, &bodies, &joints, diagnostics))
-            .unwrap_or_default();
-        let coordinates = section(&fields, "coordinates", false, diagnostics);
-        let named_coordinates = ParsedCoordinates::read(
-            &actuators,
-            coordinates.as_ref(),
-            &bodies,
-            &joints,
-            diagnostics,
-        );
-        joints.read_couplings(&named_coordinates, &units, diagnostics);
+        let bodies = needed_section(fields, "bodies")?;
+        let count = log.count();
+        let bodies = Bodies::read(&bodies);
+        let all_bodies_read = log.count() == count;
+        let mut joints = Joints::new(log);
+        if let Some(f) = needed_section(fields, "joints") {
+            joints = joints.read(&f, &bodies);
+        }
+        let actuators =
+            section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
+        let coordinates = section("coordinates");
+        let named_coordinates =
+            ParsedCoordinates::read(&actuators, coordinates.as_ref(), &bodies, &joints);
+        joints.read_couplings(&named_coordinates);
         // A joint that could not be read may be the one that holds a body.
         if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
-            report_unjoined_bodies(&bodies, &joints, diagnostics);
+            report_unjoined_bodies(&bodies, &joints);
         }
-        let assembly = section(&fields, "assembly", false, diagnostics);
-        let parsed_assembly = ParsedAssembly::read(
-            assembly.as_ref(),
-            &bodies,
-            &joints,
-            &actuators,
-            &units,
-            diagnostics,
-        );
-        let motion = section(&fields, "motion", false, diagnostics);
-        let can_start_at_rest = ["loads", "drives"]
-            .iter()
-            .any(|key| is_filled(&fields, key));
-        let mut parsed_motion = motion
+        let assembly_section = section("assembly");
+        let assembly =
+            ParsedAssembly::read(assembly_section.as_ref(), &bodies, &joints, &actuators);
+        let motion_section = section("motion");
+        let can_start_at_rest = is_filled(fields, "loads") || is_filled(fields, "drives");
+        let mut motion = motion_section
             .as_ref()
-            .map(|f| ParsedMotion::read(f, &actuators, can_start_at_rest, &units, diagnostics));
-        let section_of = assembly.as_ref().map(|f| &f.span);
-        let assembly_coordinates = assembly_coordinates(
-            &parsed_assembly,
-            parsed_motion.as_ref(),
-            &actuators,
-            section_of,
-            diagnostics,
-        );
-        if let (Some(text), Some(f)) = (&mut parsed_motion, &motion) {
-            text.read_laws(&actuators, &assembly_coordinates, &units, diagnostics);
-            let events = f.get("events");
-            let events =
-                events.and_then(|e| TableReader::open(e, "events of [motion]", diagnostics));
+            .map(|f| ParsedMotion::read(f, &actuators, can_start_at_rest));
+        let initial = motion.as_ref().map_or(&[][..], |m| &m.initial_coordinates);
+        let at = assembly_section.as_ref().map(|f| &f.span);
+        let assembly_coordinates = assembly.coordinates_or(initial, &actuators, at, log);
+        if let (Some(motion), Some(f)) = (&mut motion, &motion_section) {
+            motion.read_laws(&actuators, &assembly_coordinates);
+            let events = f
+                .get("events")
+                .and_then(|e| TableReader::open(e, "events of [motion]"));
+            let (joints, named_coordinates) = (&joints, &named_coordinates);
             let reader = EventReader {
-                named_coordinates: &named_coordinates,
-                joints: &joints,
-                units: &units,
+                named_coordinates,
+                joints,
             };
-            text.events = events.map_or_else(Vec::new, |f| reader.read(&f, diagnostics));
+            motion.events = events.map_or_else(Vec::new, |f| reader.read(&f));
         }
-        let prescribed = section(&fields, "prescribed", false, diagnostics);
-        let parsed_prescribed = prescribed.as_ref().map(|f| {
-            ParsedPrescribedMotion::read(f, &actuators, &assembly_coordinates, &units, diagnostics)
-        });
-        let sweep = section(&fields, "coordinate-sweep", false, diagnostics);
-        let parsed_sweep = sweep
-            .as_ref()
-            .map(|f| ParsedSweep::read(f, &actuators, &assembly_coordinates, &units, diagnostics));
-        let magnitudes = Magnitudes::new(&named_coordinates, &units);
-        let mut loads = section(&fields, "loads", false, diagnostics).map_or_else(Vec::new, |f| {
-            LoadReader::new(&bodies, &joints, &units, &magnitudes).read(&f, diagnostics)
-        });
-        if let Some(f) = section(&fields, "friction", false, diagnostics) {
-            loads.extend(friction(&f, &joints, &units, diagnostics));
-        }
-        let drives = section(&fields, "drives", false, diagnostics).map_or_else(Vec::new, |f| {
-            let reader = DriveReader {
-                named_coordinates: &named_coordinates,
-                units: &units,
-                magnitudes: &magnitudes,
-            };
-            reader.read(&f, diagnostics)
-        });
-        if let Some(motion) = &parsed_motion {
-            reject_drives_of_prescribed(&drives, motion, &actuators, diagnostics);
-        }
-        let requests = section(&fields, "requests", false, diagnostics);
-        let parsed_requests = match &requests {
-            Some(f) => ParsedRequests::read(f, &bodies, &joints, diagnostics),
-            None => ParsedRequests::default(),
+        let prescribed = section("prescribed")
+            .map(|f| ParsedPrescribedMotion::read(&f, &actuators, &assembly_coordinates));
+        let sweep = section("coordinate-sweep")
+            .map(|f| ParsedSweep::read(&f, &actuators, &assembly_coordinates));
+        let magnitudes = &Magnitudes::new(&named_coordinates);
+        let reader = LoadReader {
+            bodies: &bodies,
+            joints: &joints,
+            magnitudes,
         };
-        let calibration = section(&fields, "calibration", false, diagnostics).and_then(|f| {
+        let mut loads = section("loads").map_or_else(Vec::new, |f| reader.read(&f));
+        loads.extend(section("friction").map_or_else(Vec::new, |f| friction(&f, &joints)));
+        loads.extend(separating_forces(&joints));
+        let reader = DriveReader {
+            named_coordinates: &named_coordinates,
+            magnitudes,
+        };
+        let drives = section("drives").map_or_else(Vec::new, |f| reader.read(&f));
+        if let Some(motion) = &motion {
+            reject_drives_of_prescribed(&drives, motion, &actuators);
+        }
+        let requests = section("requests").map(|f| ParsedRequests::read(&f, &bodies, &joints));
+        let calibration = section("calibration").and_then(|f| {
             if fields.get("motion").is_none() {
-                diagnostics.push(
-                    Diagnostic::new("a calibration needs a motion")
-                        .label(f.span.clone(), "no free motion has a period")
-                        .help("add [motion], to whose period the number is fitted"),
-                );
+                f.error("a calibration needs a motion")
+                    .label(&f.span, "no free motion has a period")
+                    .help("add [motion], to whose period the number is fitted")
+                    .report();
             }
-            let (calibration, at) = calibration(&f, diagnostics)?;
-            if all_bodies_read {
-                bodies.check_number(&calibration.path, &at, diagnostics);
-            }
-            Some((calibration, at))
+            calibration(&f, all_bodies_read.then_some(&bodies))
         });
-        let span = |f: &Option<TableReader<'_>>| f.as_ref().map(|f| f.span.clone());
         Some(Self {
-            title,
-            note,
-            sections: SectionSpans {
-                units: fields.get("units").map(|e| e.value.span()),
-                assembly: span(&assembly),
-                prescribed: span(&prescribed),
-                sweep: span(&sweep),
-                requests: span(&requests),
-                motion: span(&motion),
-            },
-            units,
+            fields,
+            title: title(fields),
+            note: text_of(fields, "note"),
             bodies,
             joints,
             actuators,
             named_coordinates,
-            assembly: parsed_assembly,
+            assembly,
             assembly_coordinates,
-            prescribed: parsed_prescribed,
-            sweep: parsed_sweep,
+            prescribed,
+            sweep,
             loads,
             drives,
-            requests: parsed_requests,
-            motion: parsed_motion,
+            requests: requests.unwrap_or_default(),
+            motion,
             calibration,
         })
     }
 }
 
-/// What is said of the k-th actuator.
-fn given_value(values: &[Option<(f64, Span)>], k: usize) -> Option<f64> {
-    values.get(k)?.as_ref().map(|s| s.0)
+/// The table of a section.
+fn section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
+    TableReader::open(fields.get(key)?, format!("[{key}]"))
 }
 
-/// Coordinate of each actuator at assembly: as it says, or where the motion starts, or 0. No two
-/// points are at 0 from each other by default: says which distances are missing.
-fn assembly_coordinates(
-    assembly: &ParsedAssembly,
-    motion: Option<&ParsedMotion<'_>>,
-    actuators: &[ParsedActuator<'_>],
-    section: Option<&Span>,
-    diagnostics: &mut Diagnostics,
-) -> Vec<f64> {
-    let initial = motion.map_or(&[][..], |m| &m.initial_coordinates);
-    let mut coordinates = Vec::with_capacity(actuators.len());
-    for (k, a) in actuators.iter().enumerate() {
-        let coordinate = given_value(&assembly.coordinates, k).or(given_value(initial, k));
-        if a.is_distance() && coordinate.is_none() && !assembly.mentioned.contains(&k) {
-            let name = shorten(a.name);
-            diagnostics.push(
-                Diagnostic::new(format!("the length of `{name}` at the start is not given"))
-                    .label(section.unwrap_or(&a.key).clone(), "no length at assembly")
-                    .help(format!("add it to [assembly], such as `{name} = 0.5`")),
-            );
-        }
-        coordinates.push(coordinate.unwrap_or(0.0));
-    }
-    coordinates
-}
-
-/// The table of a section. Absent it is an error where it is needed, empty as well.
-fn section<'a>(
-    fields: &TableReader<'a>,
-    key: &str,
-    needed: bool,
-    diagnostics: &mut Diagnostics,
-) -> Option<TableReader<'a>> {
-    let missing = |span: Span, label: &str| {
+/// The table of a section that has to be there, and not empty.
+fn needed_section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
+    let missing = |span: &Span, label: String| {
         let help = match key {
             "bodies" => "describe the bodies: `[bodies.crank]` with `points = { A = [0, 0] }`",
             _ => "connect the bodies: `A = { revolute = [\"ground.A\", \"crank.A\"] }`",
         };
-        Diagnostic::new(format!("the scene has no {key}"))
-            .label(span, label)
-            .help(help)
+        let diagnostic = fields.error(format!("the scene has no {key}"));
+        diagnostic.label(span, label).help(help).reject()
     };
-    let Some(entry) = fields.get(key) else {
-        if needed {
-            diagnostics.push(missing(0..0, &format!("there is no [{key}] in this file")));
-        }
-        return None;
-    };
-    let table = TableReader::open(entry, format!("[{key}]"), diagnostics)?;
-    if needed && table.entries.is_empty() {
-        diagnostics.push(missing(entry.key.clone(), "nothing in it"));
-        return None;
+    match fields.get(key) {
+        None => missing(&(0..0), format!("there is no [{key}] in this file")),
+        Some(entry) => match section(fields, key)? {
+            table if table.entries.is_empty() => missing(&entry.key, "nothing in it".to_owned()),
+            table => Some(table),
+        },
     }
-    Some(table)
 }
 
-/// Whether there is something in a section; what is wrong with it is said where it is read.
+/// Whether there is something in a section; what is wrong with it is reported where it is read.
 fn is_filled(fields: &TableReader<'_>, key: &str) -> bool {
-    let value = fields.get(key).map(|e| e.value.get_ref());
+    let value = fields.get(key).map(|e| e.value.get());
     matches!(value, Some(DeValue::Table(table)) if !table.is_empty())
 }
 
+fn title<'a>(fields: &TableReader<'a>) -> Option<&'a str> {
+    let (title, entry) = (text_of(fields, "title")?, fields.get("title")?);
+    if title.chars().count() > MAX_TITLE_LENGTH {
+        entry
+            .error(format!(
+                "the title is longer than {MAX_TITLE_LENGTH} characters"
+            ))
+            .label(&entry.key, "this text")
+            .help("a title is a line at the head of a page; the rest can go into `note`")
+            .report();
+    }
+    Some(title)
+}
+
 /// A text shown to people; blank it is as good as absent.
-fn text_of<'a>(
-    fields: &TableReader<'a>,
-    key: &str,
-    diagnostics: &mut Diagnostics,
-) -> Option<&'a str> {
-    let entry: &Entry<'a> = fields.get(key)?;
-    let text = string(entry.value, format_args!("the {key}"), diagnostics)?.trim();
+fn text_of<'a>(fields: &TableReader<'a>, key: &str) -> Option<&'a str> {
+    let text = fields
+        .get(key)?
+        .value
+        .string(format_args!("the {key}"))?
+        .trim();
     (!text.is_empty()).then_some(text)
 }
 
-/// Says which bodies no joint holds.
-fn report_unjoined_bodies(bodies: &Bodies<'_>, joints: &Joints<'_>, diagnostics: &mut Diagnostics) {
+/// Reports the bodies that no joint holds.
+fn report_unjoined_bodies(bodies: &Bodies<'_>, joints: &Joints<'_>) {
     let mut joined = vec![false; bodies.list.len()];
     for joint in joints.list.iter().filter_map(|j| j.joint.as_ref()) {
         for body in joint.bodies {
@@ -341,11 +254,11 @@ fn report_unjoined_bodies(bodies: &Bodies<'_>, joints: &Joints<'_>, diagnostics:
         }
     }
     for (body, _) in bodies.list.iter().zip(joined).filter(|(_, joined)| !joined) {
-        let name = shorten(body.name);
-        diagnostics.push(
-            Diagnostic::new(format!("body `{name}` is in no joint"))
-                .label(body.key.clone(), "not connected")
-                .help("join it to another body in [joints], or leave it out"),
-        );
+        joints
+            .log
+            .error(format!("body `{}` is in no joint", shorten(body.name)))
+            .label(&body.key, "not connected")
+            .help("join it to another body in [joints], or leave it out")
+            .report();
     }
 }

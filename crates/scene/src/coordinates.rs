@@ -1,16 +1,17 @@
 //! Named coordinates: those of the actuators, and those of `[coordinates]`.
 
 use crate::bodies::{Bodies, TWO_POINTS};
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::diagnostics::{Diagnostics, Span};
 use crate::joints::Joints;
-use crate::keys;
+use crate::keys::table;
 use crate::names::check;
-use crate::table_reader::{Entry, TableReader, Value, coordinate};
+use crate::table_reader::{Entry, TableReader};
 use crate::units::{Unit, Units};
+use crate::value::Value;
 use crate::wording::shorten;
-use dwell_geometry::{Actuator, ActuatorKind, BodyId, Coordinate, JointId};
+use dwell_geometry::{Actuator, ActuatorKind, BodyId, Coordinate, Vec2};
 use std::collections::HashMap;
-use std::fmt::Arguments;
+use std::fmt::Display;
 use toml::de::DeValue;
 
 /// An actuator as read; nothing in it if it was wrong.
@@ -22,12 +23,13 @@ pub(crate) struct ParsedActuator<'a> {
 }
 
 impl ParsedActuator<'_> {
+    fn coordinate(&self) -> Option<Coordinate> {
+        self.actuator.as_ref().map(Actuator::coordinate)
+    }
+
     /// Whether its coordinate is an angle; one that could not be read counts as one.
     pub(crate) fn is_angle(&self) -> bool {
-        match &self.actuator {
-            Some(actuator) => actuator.coordinate().is_angle(),
-            None => true,
-        }
+        self.coordinate().is_none_or(Coordinate::is_angle)
     }
 
     /// Whether it drives the distance of two points, which is never zero.
@@ -37,21 +39,15 @@ impl ParsedActuator<'_> {
     }
 
     /// A value of its coordinate, SI.
-    pub(crate) fn coordinate_value(
-        &self,
-        value: &Value<'_>,
-        units: &Units,
-        what: Arguments<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<f64> {
-        let si = coordinate(value, self.is_angle(), units, what, diagnostics)?;
+    pub(crate) fn coordinate_value(&self, value: Value<'_>, what: impl Display) -> Option<f64> {
+        let si = value.coordinate(self.is_angle(), &what)?;
         if self.is_distance() && si <= 0.0 {
-            diagnostics.push(
-                Diagnostic::new(format!("{what} is a length that is not above zero"))
-                    .label(value.span(), "expected a number above 0")
-                    .help("two points that coincide have no line along which to drive them"),
-            );
-            return None;
+            let message = format!("{what} is a length that is not above zero");
+            let help = "two points that coincide have no line along which to drive them";
+            return value
+                .wrong(message, "expected a number above 0")
+                .help(help)
+                .reject();
         }
         Some(si)
     }
@@ -70,12 +66,13 @@ pub(crate) struct ParsedCoordinate<'a> {
 }
 
 /// All the coordinates that have a name: the actuators', then those of `[coordinates]`.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct ParsedCoordinates<'a> {
     pub(crate) list: Vec<ParsedCoordinate<'a>>,
     /// How many of them are actuators.
     pub(crate) actuators: usize,
     by_name: HashMap<&'a str, usize>,
+    log: &'a Diagnostics,
 }
 
 impl<'a> ParsedCoordinates<'a> {
@@ -83,121 +80,125 @@ impl<'a> ParsedCoordinates<'a> {
         actuators: &[ParsedActuator<'a>],
         fields: Option<&TableReader<'a>>,
         bodies: &Bodies<'_>,
-        joints: &Joints<'_>,
-        diagnostics: &mut Diagnostics,
+        joints: &Joints<'a>,
     ) -> Self {
-        let mut named_coordinates = Self::default();
+        let mut all = Self {
+            list: Vec::new(),
+            actuators: actuators.len(),
+            by_name: HashMap::new(),
+            log: joints.log,
+        };
         for a in actuators {
-            named_coordinates.push(ParsedCoordinate {
-                name: a.name,
-                key: a.key.clone(),
-                coordinate: a.actuator.as_ref().map(Actuator::coordinate),
-            });
+            all.push(a.name, &a.key, a.coordinate());
         }
-        named_coordinates.actuators = actuators.len();
         for entry in fields.iter().flat_map(|f| &f.entries) {
-            check("a coordinate", entry.name, &entry.key, diagnostics);
-            not_time(entry, "a coordinate", diagnostics);
+            check_coordinate_name(entry, "a coordinate");
             if let Some(k) = bodies.position(entry.name) {
-                let other = (&bodies.list[k].key, "body");
-                report_ambiguous_name(entry, other, "coordinate", "a request", diagnostics);
+                let other = (&bodies.list[k].key, "a body");
+                report_ambiguous_name(entry, other, "a coordinate", "a request");
             }
-            if let Some(k) = named_coordinates.by_name.get(entry.name) {
-                let other = (&named_coordinates.list[*k].key, "actuator");
-                report_ambiguous_name(entry, other, "coordinate", "an expression", diagnostics);
+            if let Some(k) = all.by_name.get(entry.name) {
+                let other = (&all.list[*k].key, "an actuator");
+                report_ambiguous_name(entry, other, "a coordinate", "an expression");
             }
-            named_coordinates.push(ParsedCoordinate {
-                name: entry.name,
-                key: entry.key.clone(),
-                coordinate: read_coordinate(entry, bodies, joints, diagnostics),
-            });
+            all.push(
+                entry.name,
+                &entry.key,
+                read_coordinate(entry, bodies, joints),
+            );
         }
-        named_coordinates
+        all
     }
 
-    fn push(&mut self, parsed: ParsedCoordinate<'a>) {
-        self.by_name.insert(parsed.name, self.list.len());
-        self.list.push(parsed);
+    fn push(&mut self, name: &'a str, key: &Span, coordinate: Option<Coordinate>) {
+        self.by_name.insert(name, self.list.len());
+        let key = key.clone();
+        self.list.push(ParsedCoordinate {
+            name,
+            key,
+            coordinate,
+        });
     }
 
     /// The coordinate of that name; one that could not be read has been reported already.
-    pub(crate) fn find(
-        &self,
-        name: &str,
-        at: &Span,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Coordinate> {
+    pub(crate) fn find(&self, name: &str, at: &Span) -> Option<Coordinate> {
         if let Some(&k) = self.by_name.get(name) {
             return self.list[k].coordinate;
         }
-        let help = diagnostics.choices(name, "coordinates", self.names());
-        diagnostics.push(
-            Diagnostic::new(format!("there is no coordinate `{}`", shorten(name)))
-                .label(at.clone(), "neither an actuator nor in [coordinates]")
-                .help(help),
-        );
-        None
+        let names = self.list.iter().map(|m| m.name);
+        let help = self.log.choices(name, "coordinates", names);
+        let diagnostic = self
+            .log
+            .error(format!("there is no coordinate `{}`", shorten(name)));
+        diagnostic
+            .label(at, "neither an actuator nor in [coordinates]")
+            .help(help)
+            .reject()
     }
 
-    pub(crate) fn names(&self) -> impl Iterator<Item = &'a str> + Clone {
-        self.list.iter().map(|m| m.name)
+    /// The coordinate that the value of an entry of `fields` names.
+    pub(crate) fn named_by(
+        &self,
+        entry: &Entry<'_>,
+        fields: &TableReader<'_>,
+    ) -> Option<Coordinate> {
+        let name = entry.value.string(fields.name_of(entry))?;
+        self.find(name, &entry.value.span())
     }
 }
 
-/// Whether two coordinates are the same, or one the other with the bodies the other way round.
+/// Whether two coordinates are the same, or one the other with the bodies in the other order.
 pub(crate) fn is_same(a: Coordinate, b: Coordinate) -> bool {
-    match (a, b) {
-        (Coordinate::Angle([a, b]), Coordinate::Angle(other)) => other == [a, b] || other == [b, a],
-        (
-            Coordinate::Length { bodies, points },
-            Coordinate::Length {
-                bodies: others,
-                points: other_points,
-            },
-        ) => {
-            let [a, b] = bodies;
-            let [p, q] = points;
-            (others, other_points) == (bodies, points) || (others, other_points) == ([b, a], [q, p])
-        }
-        _ => a == b,
-    }
+    let swapped = match b {
+        Coordinate::Angle([first, second]) => Coordinate::Angle([second, first]),
+        Coordinate::Length {
+            bodies: [a, b],
+            points: [p, q],
+        } => Coordinate::Length {
+            bodies: [b, a],
+            points: [q, p],
+        },
+        Coordinate::Travel(_) => b,
+    };
+    a == b || a == swapped
 }
 
-/// `t` is the time in every expression.
-fn not_time(entry: &Entry<'_>, kind: &str, diagnostics: &mut Diagnostics) {
+/// A name as [`check`] allows it; `t` is the time in every expression.
+fn check_coordinate_name(entry: &Entry<'_>, kind: &str) {
+    check(kind, entry);
     if entry.name == "t" {
-        diagnostics.push(
-            Diagnostic::new(format!("`t` cannot be the name of {kind}"))
-                .label(entry.key.clone(), "this name")
-                .help("`t` is the time in expressions: take another name"),
-        );
+        entry
+            .error(format!("`t` cannot be the name of {kind}"))
+            .label(&entry.key, "this name")
+            .help("`t` is the time in expressions: take another name")
+            .report();
     }
 }
 
+/// `other` is where the name stands first, and of what kind it is there.
 fn report_ambiguous_name(
     entry: &Entry<'_>,
     (key, other): (&Span, &str),
     kind: &str,
     context: &str,
-    diagnostics: &mut Diagnostics,
 ) {
-    let article = |word: &str| match word.starts_with('a') {
-        true => format!("an {word}"),
-        false => format!("a {word}"),
+    let the = |kind: &str| {
+        format!(
+            "the {}",
+            kind.trim_start_matches("an ").trim_start_matches("a ")
+        )
     };
-    let name = shorten(entry.name);
-    diagnostics.push(
-        Diagnostic::new(format!(
-            "`{name}` names both {} and {}",
-            article(other),
-            article(kind)
+    entry
+        .error(format!(
+            "`{}` names both {other} and {kind}",
+            shorten(entry.name)
         ))
-        .label(key.clone(), format!("the {other}"))
-        .label(entry.key.clone(), format!("the {kind}"))
+        .label(key, the(other))
+        .label(&entry.key, the(kind))
         .help(format!(
             "rename one: in {context} the name would be ambiguous"
-        )),
-    );
+        ))
+        .report();
 }
 
 /// All the actuators. A body of the same name is an error: both are keys of `[assembly]`.
@@ -205,37 +206,33 @@ pub(crate) fn actuators<'a>(
     fields: &TableReader<'a>,
     bodies: &Bodies<'_>,
     joints: &Joints<'_>,
-    diagnostics: &mut Diagnostics,
 ) -> Vec<ParsedActuator<'a>> {
     let mut list: Vec<ParsedActuator<'a>> = Vec::new();
     for entry in &fields.entries {
-        check("an actuator", entry.name, &entry.key, diagnostics);
-        not_time(entry, "an actuator", diagnostics);
+        check_coordinate_name(entry, "an actuator");
         if let Some(k) = bodies.position(entry.name) {
-            let other = (&bodies.list[k].key, "body");
-            report_ambiguous_name(entry, other, "actuator", "[assembly]", diagnostics);
+            let other = (&bodies.list[k].key, "a body");
+            report_ambiguous_name(entry, other, "an actuator", "[assembly]");
         }
         let parsed = ParsedActuator {
             name: entry.name,
             key: entry.key.clone(),
-            actuator: read_actuator(entry, bodies, joints, diagnostics),
+            actuator: read_actuator(entry, bodies, joints),
         };
-        let coordinate_of = |a: &ParsedActuator<'_>| a.actuator.as_ref().map(Actuator::coordinate);
-        let same =
-            |other: &&ParsedActuator<'_>| match (coordinate_of(other), coordinate_of(&parsed)) {
-                (Some(a), Some(b)) => is_same(a, b),
-                _ => false,
-            };
+        let same = |other: &&ParsedActuator<'_>| {
+            let both = other.coordinate().zip(parsed.coordinate());
+            both.is_some_and(|(a, b)| is_same(a, b))
+        };
         if let Some(other) = list.iter().find(same) {
             let (a, b) = (shorten(other.name), shorten(entry.name));
-            diagnostics.push(
-                Diagnostic::new(format!(
+            fields
+                .error(format!(
                     "actuators `{a}` and `{b}` drive the same coordinate"
                 ))
-                .label(other.key.clone(), "one of them")
-                .label(entry.key.clone(), "and the other")
-                .help("leave one out: each actuator has a coordinate of its own"),
-            );
+                .label(&other.key, "one of them")
+                .label(&entry.key, "and the other")
+                .help("leave one out: each actuator has a coordinate of its own")
+                .report();
         }
         list.push(parsed);
     }
@@ -243,45 +240,31 @@ pub(crate) fn actuators<'a>(
 }
 
 /// What the actuator drives.
-fn read_actuator(
-    entry: &Entry<'_>,
-    bodies: &Bodies<'_>,
-    joints: &Joints<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<Actuator> {
+fn read_actuator(entry: &Entry<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) -> Option<Actuator> {
     let what = format!("actuator `{}`", shorten(entry.name));
-    let fields = TableReader::open(entry, what, diagnostics)?;
-    let what = &fields.what;
-    fields.reject_unknown_keys(&keys::ACTUATOR, diagnostics);
-    let Some(chosen) = fields
-        .one_of(|n| keys::ACTUATOR.contains_key(n), diagnostics)
-        .ok()?
-    else {
-        if fields.has_unknown_keys(&keys::ACTUATOR) {
-            return None;
+    let fields = TableReader::open(entry, what)?;
+    fields.reject_unknown_keys(table("actuator"));
+    let help = "add `angle = [\"ground\", \"crank\"]`: the angle of the second body from the first; or `length` with the name of a sliding joint or with two points";
+    let lacks = ("has no coordinate", "which angle or length?");
+    let chosen = fields.alternative(table("actuator"), lacks, help)?;
+    let (bodies, kind) = match (chosen.name, chosen.value.get()) {
+        ("angle", _) => (
+            angle(chosen, &fields, "drives", bodies)?,
+            ActuatorKind::Angle,
+        ),
+        (_, DeValue::String(name)) => {
+            let joint = joints.sliding(name, &chosen.value.span())?;
+            let bodies = joints.list.get(joint.0)?.joint.as_ref()?.bodies;
+            (bodies, ActuatorKind::Travel(joint))
         }
-        diagnostics.push(
-            Diagnostic::new(format!("{what} has no coordinate"))
-                .label(entry.key.clone(), "which angle or length?")
-                .help("add `angle = [\"ground\", \"crank\"]`: the angle of the second body from the first; or `length` with the name of a sliding joint or with two points"),
-        );
-        return None;
+        _ => {
+            let expected = "a sliding joint, or two points [\"body.point\", \"body.point\"]";
+            let (bodies, points) = length(chosen, &fields, ("drives", expected), bodies)?;
+            (bodies, ActuatorKind::Length(points))
+        }
     };
-    let (bodies, kind) = if chosen.name == "angle" {
-        let bodies = angle(chosen, what, "drives", bodies, diagnostics)?;
-        (bodies, ActuatorKind::Angle)
-    } else if let DeValue::String(name) = chosen.value.get_ref() {
-        let joint = joints.sliding(name, &chosen.value.span(), diagnostics)?;
-        (bodies_of(joint, joints)?, ActuatorKind::Travel(joint))
-    } else {
-        let (bodies, points) = length(chosen, what, "drives", bodies, diagnostics)?;
-        (bodies, ActuatorKind::Length(points))
-    };
-    Some(Actuator {
-        name: entry.name.to_owned(),
-        bodies,
-        kind,
-    })
+    let name = entry.name.to_owned();
+    Some(Actuator { name, bodies, kind })
 }
 
 /// What a coordinate of `[coordinates]` measures.
@@ -289,95 +272,66 @@ fn read_coordinate(
     entry: &Entry<'_>,
     bodies: &Bodies<'_>,
     joints: &Joints<'_>,
-    diagnostics: &mut Diagnostics,
 ) -> Option<Coordinate> {
     let what = format!("coordinate `{}`", shorten(entry.name));
-    let fields = TableReader::open(entry, what, diagnostics)?;
-    let what = &fields.what;
-    fields.reject_unknown_keys(&keys::COORDINATE, diagnostics);
-    let Some(chosen) = fields
-        .one_of(|n| keys::COORDINATE.contains_key(n), diagnostics)
-        .ok()?
-    else {
-        if fields.has_unknown_keys(&keys::COORDINATE) {
-            return None;
-        }
-        diagnostics.push(
-            Diagnostic::new(format!("{what} measures nothing"))
-                .label(entry.key.clone(), "which angle, travel or length?")
-                .help("add `angle = [\"ground\", \"rod\"]`, `travel = \"slide\"`, or `length` with two points"),
-        );
-        return None;
-    };
+    let fields = TableReader::open(entry, what)?;
+    fields.reject_unknown_keys(table("coordinate"));
+    let help =
+        "add `angle = [\"ground\", \"rod\"]`, `travel = \"slide\"`, or `length` with two points";
+    let lacks = ("measures nothing", "which angle, travel or length?");
+    let chosen = fields.alternative(table("coordinate"), lacks, help)?;
     match chosen.name {
-        "angle" => {
-            let bodies = angle(chosen, what, "measures", bodies, diagnostics)?;
-            Some(Coordinate::Angle(bodies))
-        }
+        "angle" => angle(chosen, &fields, "measures", bodies).map(Coordinate::Angle),
         "travel" => {
-            let what = format_args!("travel of {what}");
-            let name = crate::table_reader::string(chosen.value, what, diagnostics)?;
-            let joint = joints.sliding(name, &chosen.value.span(), diagnostics)?;
-            Some(Coordinate::Travel(joint))
+            let name = chosen.value.string(fields.name_of(chosen))?;
+            joints
+                .sliding(name, &chosen.value.span())
+                .map(Coordinate::Travel)
         }
         _ => {
-            let (bodies, points) = length(chosen, what, "measures", bodies, diagnostics)?;
+            let (bodies, points) = length(chosen, &fields, ("measures", TWO_POINTS), bodies)?;
             Some(Coordinate::Length { bodies, points })
         }
     }
 }
 
-fn bodies_of(joint: JointId, joints: &Joints<'_>) -> Option<[BodyId; 2]> {
-    Some(joints.list.get(joint.0)?.joint.as_ref()?.bodies)
-}
-
-/// Two different bodies, of which `what` drives or measures the angle.
+/// Two different bodies, of which `fields` drives or measures the angle.
 fn angle(
     entry: &Entry<'_>,
-    what: &str,
+    fields: &TableReader<'_>,
     verb: &str,
     bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
 ) -> Option<[BodyId; 2]> {
-    let what_angle = format_args!("angle of {what}");
-    let [first, second] = bodies.find_two(entry.value, what_angle, diagnostics)?;
-    if first.0 == second.0 {
-        let name = &bodies.list[first.0.0].name;
-        diagnostics.push(
-            Diagnostic::new(format!("{what} {verb} body `{name}` against itself"))
-                .label(first.1, "this body")
-                .label(second.1, "and the same again")
-                .help("an angle is between two different bodies"),
-        );
-        return None;
+    let [(a, at_a), (b, at_b)] = bodies.find_two(entry.value, fields.name_of(entry))?;
+    if a != b {
+        return Some([a, b]);
     }
-    Some([first.0, second.0])
+    let message = |name: &str| format!("{} {verb} body `{name}` against itself", fields.what);
+    let labels = [(&at_a, "this body"), (&at_b, "and the same again")];
+    bodies.reject_same_body(
+        a,
+        message,
+        labels,
+        "an angle is between two different bodies",
+    )
 }
 
-/// Two points of different bodies, of which `what` drives or measures the distance.
+/// Two points of different bodies, of which `fields` drives or measures the distance.
 fn length(
     entry: &Entry<'_>,
-    what: &str,
-    verb: &str,
+    fields: &TableReader<'_>,
+    (verb, expected): (&str, &str),
     bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<([BodyId; 2], [dwell_geometry::Vec2; 2])> {
-    let expected = match verb {
-        "drives" => "a sliding joint, or two points [\"body.point\", \"body.point\"]",
-        _ => TWO_POINTS,
-    };
-    let what_length = format_args!("length of {what}");
-    let [first, second] =
-        bodies.find_two_points(entry.value, expected, what_length, diagnostics)?;
-    if first.0 == second.0 {
-        let name = &bodies.list[first.0.0].name;
-        diagnostics.push(
-            Diagnostic::new(format!("{what} {verb} a length within body `{name}`"))
-                .label(first.2, "a point of this body")
-                .label(second.2, "and another of the same")
-                .help("a length that can change is between two different bodies"),
-        );
-        return None;
+) -> Option<([BodyId; 2], [Vec2; 2])> {
+    let [a, b] = bodies.find_two_points(entry.value, expected, fields.name_of(entry))?;
+    if a.0 != b.0 {
+        return Some(([a.0, b.0], [bodies.at(&a), bodies.at(&b)]));
     }
-    Some(([first.0, second.0], [bodies.at(&first), bodies.at(&second)]))
+    let message = |name: &str| format!("{} {verb} a length within body `{name}`", fields.what);
+    let labels = [
+        (&a.2, "a point of this body"),
+        (&b.2, "and another of the same"),
+    ];
+    let help = "a length that can change is between two different bodies";
+    bodies.reject_same_body(a.0, message, labels, help)
 }

@@ -1,21 +1,18 @@
 //! The drives of a free motion.
 
 use crate::coordinates::{ParsedActuator, ParsedCoordinates, is_same};
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys::DRIVES;
+use crate::diagnostics::Span;
+use crate::keys;
 use crate::kind::kind;
-use crate::magnitude::{MagnitudeRule, Magnitudes};
+use crate::magnitude::Magnitudes;
 use crate::motion::ParsedMotion;
 use crate::names::check;
-use crate::table_reader::{Entry, SignRule, TableReader, quantity_with_sign, string};
-use crate::units::{Unit, Units};
+use crate::table_reader::{Entry, TableReader};
+use crate::units::{SI, Unit};
+use crate::value::{NumberRule, SignRule};
 use crate::wording::{list, shorten};
 use dwell_geometry::{Actuator, Coordinate};
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude, Motor, SpeedController};
-
-/// The two sets of keys that give a motor: its circuit, or its torque–speed line.
-const CIRCUIT: [&str; 3] = ["voltage", "torque-constant", "resistance"];
-const TORQUE_SPEED_LINE: [&str; 2] = ["stall-torque", "no-load-speed"];
 
 /// A drive as read; nothing in it if it was wrong.
 #[derive(Debug)]
@@ -31,60 +28,46 @@ pub(crate) struct ParsedDrive {
 /// Reads the drives.
 pub(crate) struct DriveReader<'r> {
     pub(crate) named_coordinates: &'r ParsedCoordinates<'r>,
-    pub(crate) units: &'r Units,
-    pub(crate) magnitudes: &'r Magnitudes<'r>,
+    pub(crate) magnitudes: &'r Magnitudes,
 }
 
 impl DriveReader<'_> {
     /// Every drive of the section.
-    pub(crate) fn read(
-        &self,
-        fields: &TableReader<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Vec<ParsedDrive> {
+    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<ParsedDrive> {
         let one = |entry: &Entry<'_>| {
-            check("a drive", entry.name, &entry.key, diagnostics);
-            self.drive(entry, diagnostics)
+            check("a drive", entry);
+            self.drive(entry)
         };
         fields.entries.iter().map(one).collect()
     }
 
-    fn drive(&self, entry: &Entry<'_>, diagnostics: &mut Diagnostics) -> ParsedDrive {
+    fn drive(&self, entry: &Entry<'_>) -> ParsedDrive {
         let mut parsed = ParsedDrive {
             key: entry.key.clone(),
             magnitude: None,
             at: None,
             drive: None,
         };
-        let what = format!("drive `{}`", shorten(entry.name));
-        let Some(fields) = TableReader::open(entry, what, diagnostics) else {
+        let fields = TableReader::open(entry, format!("drive `{}`", shorten(entry.name)));
+        let kind = fields.as_ref().and_then(|fields| kind(fields, "drive"));
+        let (Some(fields), Some((kind, kind_entry))) = (&fields, kind) else {
             return parsed;
         };
-        let Some((kind_name, kind_entry)) =
-            kind(&fields, &entry.key, "drive", &DRIVES, diagnostics)
-        else {
-            return parsed;
-        };
-        let what = format_args!("{kind_name} of {}", fields.what);
-        let coordinate = string(kind_entry.value, what, diagnostics).and_then(|name| {
-            self.named_coordinates
-                .find(name, &kind_entry.value.span(), diagnostics)
-        });
+        let coordinate = self.named_coordinates.named_by(kind_entry, fields);
         parsed.at = Some(kind_entry.value.span());
         let magnitude = ["magnitude", "voltage", "stall-torque", "speed"];
         let magnitude = magnitude.iter().find_map(|key| fields.get(key));
         parsed.magnitude = magnitude.map(|e| e.value.span());
         let table = DriveTable {
-            reader: self,
-            fields: &fields,
-            at: &entry.key,
+            magnitudes: self.magnitudes,
+            fields,
             // Units of what could not be read do not matter: there is an error already.
             is_angle: coordinate.is_none_or(Coordinate::is_angle),
         };
-        let kind = match kind_name {
-            "applied-force" => table.applied_force(diagnostics),
-            "motor" => table.motor(diagnostics),
-            _ => table.speed_controller(diagnostics),
+        let kind = match kind {
+            "applied-force" => table.applied_force(),
+            "motor" => table.motor(),
+            _ => table.speed_controller(),
         };
         parsed.drive = coordinate.zip(kind).map(|(coordinate, kind)| Drive {
             name: entry.name.to_owned(),
@@ -97,40 +80,35 @@ impl DriveReader<'_> {
 
 /// One drive while it is read.
 struct DriveTable<'p> {
-    reader: &'p DriveReader<'p>,
+    magnitudes: &'p Magnitudes,
     fields: &'p TableReader<'p>,
-    /// Its name.
-    at: &'p Span,
     is_angle: bool,
 }
 
 impl DriveTable<'_> {
-    fn applied_force(&self, diagnostics: &mut Diagnostics) -> Option<DriveKind> {
+    fn applied_force(&self) -> Option<DriveKind> {
         let unit = if self.is_angle { "N m" } else { "N" };
         let help = format!("add for instance `magnitude = 2.0`, in {unit}");
-        let magnitude = self.magnitude("magnitude", &Unit::si_unit(), &help, diagnostics);
-        magnitude.map(DriveKind::AppliedForce)
+        self.magnitude("magnitude", &SI, &help)
+            .map(DriveKind::AppliedForce)
     }
 
-    fn motor(&self, diagnostics: &mut Diagnostics) -> Option<DriveKind> {
-        let si = Unit::si_unit();
-        let units = self.reader.units;
-        let why =
-            "below zero the motor turns in the opposite direction; at zero it is not connected";
-        let ratio = self.optional(
-            "gear-ratio",
-            1.0,
-            (&si, SignRule::NotZero, why),
-            diagnostics,
-        );
-        if let Some(entry) = self.fields.get("inertia") {
-            units.require_inertia_unit(&entry.value.span(), diagnostics);
+    fn motor(&self) -> Option<DriveKind> {
+        let (fields, units) = (self.fields, self.fields.units());
+        let ratio = NumberRule {
+            unit: &SI,
+            sign: SignRule::NotZero,
+            why: "below zero the motor turns in the opposite direction; at zero it is not connected",
+        };
+        let ratio = fields.number_or(1.0, "gear-ratio", &ratio);
+        if let Some(entry) = fields.get("inertia") {
+            units.require_inertia_unit(&entry.value.span(), fields.log());
         }
-        let inertia = (&units.inertia, SignRule::NotNegative, "");
-        let inertia = self.optional("inertia", 0.0, inertia, diagnostics);
-        let circuit = match self.is_torque_speed_line(diagnostics)? {
-            true => self.torque_speed_line(diagnostics),
-            false => self.circuit(diagnostics),
+        let inertia = NumberRule::new(&units.inertia, SignRule::NotNegative);
+        let inertia = fields.number_or(0.0, "inertia", &inertia);
+        let circuit = match self.is_torque_speed_line()? {
+            true => self.torque_speed_line(),
+            false => self.circuit(),
         };
         let (voltage, [constant, resistance, inductance]) = circuit?;
         Some(DriveKind::Motor(Motor {
@@ -144,105 +122,90 @@ impl DriveTable<'_> {
     }
 
     /// Whether the motor is given by its torque–speed line, not by its circuit.
-    fn is_torque_speed_line(&self, diagnostics: &mut Diagnostics) -> Option<bool> {
-        let [circuit, line] = [CIRCUIT.as_slice(), &TORQUE_SPEED_LINE];
-        let first = |set: &[&str]| set.iter().find_map(|key| self.fields.get(key));
+    fn is_torque_speed_line(&self) -> Option<bool> {
+        let sets = keys::table("motor").sets();
+        let mut given = sets
+            .iter()
+            .map(|set| set.iter().find_map(|key| self.fields.get(key)));
         let what = &self.fields.what;
-        let both = format!(
-            "a motor is given by {}, or by {}",
-            list(circuit.iter().copied()).unwrap_or_default(),
-            list(line.iter().copied()).unwrap_or_default()
-        );
-        let diagnostic = match (first(circuit), first(line)) {
+        let diagnostic = match (given.next().flatten(), given.next().flatten()) {
             (Some(_), None) => return Some(false),
             (None, Some(_)) => return Some(true),
-            (None, None) => Diagnostic::new(format!(
-                "{what} has neither a circuit nor a torque–speed line"
-            ))
-            .label(self.at.clone(), "its motor is not described"),
+            (None, None) => {
+                let message = format!("{what} has neither a circuit nor a torque–speed line");
+                let diagnostic = self.fields.error(message);
+                diagnostic.label(&self.fields.key, "its motor is not described")
+            }
             (Some(a), Some(b)) => {
-                let (one, other) = (a.name, b.name);
-                Diagnostic::new(format!("{what} has both `{one}` and `{other}`"))
-                    .label(a.key.clone(), "part of the circuit")
-                    .label(b.key.clone(), "part of the torque–speed line")
+                let (one, other) = (a.written(), b.written());
+                self.fields
+                    .error(format!("{what} has both `{one}` and `{other}`"))
+                    .label(&a.key, "part of the circuit")
+                    .label(&b.key, "part of the torque–speed line")
             }
         };
-        diagnostics.push(diagnostic.help(both));
-        None
+        let sets = sets.into_iter().filter_map(|set| list(set.into_iter()));
+        let sets: Vec<_> = sets.collect();
+        diagnostic
+            .help(format!("a motor is given by {}", sets.join(", or by ")))
+            .reject()
     }
 
     /// Voltage; torque constant, resistance and inductance.
-    fn circuit(&self, diagnostics: &mut Diagnostics) -> Option<(Magnitude, [f64; 3])> {
-        let si = Unit::si_unit();
-        let help = "add for instance `voltage = 12`, in V";
-        let voltage = self.magnitude("voltage", &si, help, diagnostics);
+    fn circuit(&self) -> Option<(Magnitude, [f64; 3])> {
+        let positive = NumberRule::new(&SI, SignRule::Positive);
+        let voltage = self.magnitude("voltage", &SI, "add for instance `voltage = 12`, in V");
         let help =
             "add for instance `torque-constant = 0.05`, in N m/A (or V s/rad, the same number)";
-        let constant = self.required(
-            "torque-constant",
-            (&si, SignRule::Positive, ""),
-            help,
-            diagnostics,
-        );
+        let constant = self.fields.number("torque-constant", help, &positive);
         let help = "add for instance `resistance = 1.2`, in ohm";
-        let resistance = self.required(
-            "resistance",
-            (&si, SignRule::Positive, ""),
-            help,
-            diagnostics,
-        );
-        let inductance = (&si, SignRule::NotNegative, "");
-        let inductance = self.optional("inductance", 0.0, inductance, diagnostics);
+        let resistance = self.fields.number("resistance", help, &positive);
+        let inductance = NumberRule::new(&SI, SignRule::NotNegative);
+        let inductance = self.fields.number_or(0.0, "inductance", &inductance);
         Some((voltage?, [constant?, resistance?, inductance?]))
     }
 
     /// The circuit at 1 V whose torque falls along the same line.
-    fn torque_speed_line(&self, diagnostics: &mut Diagnostics) -> Option<(Magnitude, [f64; 3])> {
+    fn torque_speed_line(&self) -> Option<(Magnitude, [f64; 3])> {
+        let (fields, angle) = (self.fields, &self.fields.units().angle);
+        let rule = |unit| NumberRule::new(unit, SignRule::Positive);
         let help =
             "add for instance `stall-torque = 0.5`: the torque of the motor shaft at rest, in N m";
-        let stall_torque = (&Unit::si_unit(), SignRule::Positive, "");
-        let stall_torque = self.required("stall-torque", stall_torque, help, diagnostics);
-        let unit = &self.reader.units.angle;
-        let name = &unit.name;
+        let stall_torque = fields.number("stall-torque", help, &rule(&SI));
+        let unit = &angle.name;
         let help =
-            format!("add `no-load-speed`: the speed of the motor shaft without load, in {name}/s");
-        let no_load_speed = self.required(
-            "no-load-speed",
-            (unit, SignRule::Positive, ""),
-            &help,
-            diagnostics,
-        );
-        if let Some(entry) = self.fields.get("inductance") {
-            let what = &self.fields.what;
-            diagnostics.push(
-                Diagnostic::new(format!("{what} has an inductance and a torque–speed line"))
-                    .label(entry.key.clone(), "the inductance belongs to a circuit")
-                    .help("give the motor by `voltage`, `torque-constant` and `resistance`, or leave the inductance out"),
-            );
-            return None;
+            format!("add `no-load-speed`: the speed of the motor shaft without load, in {unit}/s");
+        let no_load_speed = fields.number("no-load-speed", &help, &rule(angle));
+        if let Some(entry) = fields.get("inductance") {
+            let what = &fields.what;
+            return fields
+                .error(format!("{what} has an inductance and a torque–speed line"))
+                .label(&entry.key, "the inductance belongs to a circuit")
+                .help("give the motor by `voltage`, `torque-constant` and `resistance`, or leave the inductance out")
+                .reject();
         }
         let constant = 1.0 / no_load_speed?;
         let numbers = [constant, constant / stall_torque?, 0.0];
         Some((Magnitude::Constant(1.0), numbers))
     }
 
-    fn speed_controller(&self, diagnostics: &mut Diagnostics) -> Option<DriveKind> {
-        let si = Unit::si_unit();
-        let unit = self.reader.units.coordinate_unit(self.is_angle);
+    fn speed_controller(&self) -> Option<DriveKind> {
+        let fields = self.fields;
+        let unit = fields.units().coordinate_unit(self.is_angle);
         let [damping, force] = match self.is_angle {
             true => ["N m s/rad", "N m"],
             false => ["N s/m", "N"],
         };
         let help = format!("add the reference speed: `speed = 10`, in {}/s", unit.name);
-        let speed = self.magnitude("speed", unit, &help, diagnostics);
-        let why = "a negative gain would drive the speed away from the reference";
-        let gain = (&si, SignRule::NotNegative, why);
+        let speed = self.magnitude("speed", unit, &help);
+        let gain = NumberRule::new(&SI, SignRule::NotNegative);
+        let gain = gain.because("a negative gain would drive the speed away from the reference");
         let help = format!("add for instance `proportional = 2.0`, in {damping}");
-        let proportional = self.required("proportional", gain, &help, diagnostics);
-        let integral = self.optional("integral", 0.0, gain, diagnostics);
+        let proportional = fields.number("proportional", &help, &gain);
+        let integral = fields.number_or(0.0, "integral", &gain);
         let why = format!("it is the largest force or torque, in {force}, in either direction");
-        let limit = (&si, SignRule::Positive, why.as_str());
-        let limit = self.optional("limit", f64::INFINITY, limit, diagnostics);
+        let limit = NumberRule::new(&SI, SignRule::Positive).because(&why);
+        let limit = fields.number_or(f64::INFINITY, "limit", &limit);
         Some(DriveKind::SpeedController(SpeedController {
             reference_speed: speed?,
             proportional_gain: proportional?,
@@ -251,46 +214,10 @@ impl DriveTable<'_> {
         }))
     }
 
-    fn magnitude(
-        &self,
-        key: &str,
-        unit: &Unit,
-        help: &str,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Magnitude> {
-        let entry = self.fields.require(key, self.at, help, diagnostics)?;
-        let rule = MagnitudeRule {
-            unit,
-            sign: SignRule::Any,
-            why: "",
-        };
-        let magnitudes = self.reader.magnitudes;
-        magnitudes.read(entry, &self.fields.what, &rule, diagnostics)
-    }
-
-    fn required(
-        &self,
-        key: &str,
-        as_is: (&Unit, SignRule, &str),
-        help: &str,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<f64> {
-        self.fields.require(key, self.at, help, diagnostics)?;
-        self.optional(key, 0.0, as_is, diagnostics)
-    }
-
-    fn optional(
-        &self,
-        key: &str,
-        default: f64,
-        (unit, sign, why): (&Unit, SignRule, &str),
-        diagnostics: &mut Diagnostics,
-    ) -> Option<f64> {
-        let Some(entry) = self.fields.get(key) else {
-            return Some(default);
-        };
-        let what = format_args!("{key} of {}", self.fields.what);
-        quantity_with_sign(entry.value, unit, sign, what, why, diagnostics)
+    fn magnitude(&self, key: &str, unit: &Unit, help: &str) -> Option<Magnitude> {
+        let entry = self.fields.require(key, help)?;
+        let rule = NumberRule::new(unit, SignRule::Any);
+        self.magnitudes.read(entry, self.fields, &rule)
     }
 }
 
@@ -299,29 +226,22 @@ pub(crate) fn reject_drives_of_prescribed(
     drives: &[ParsedDrive],
     motion: &ParsedMotion<'_>,
     actuators: &[ParsedActuator<'_>],
-    diagnostics: &mut Diagnostics,
 ) {
     for (a, law) in actuators.iter().zip(&motion.prescribed) {
-        let (Some(law), Some(actuator)) = (law, &a.actuator) else {
+        let (Some(law), Some(prescribed)) = (law, a.actuator.as_ref().map(Actuator::coordinate))
+        else {
             continue;
         };
-        let prescribed = Actuator::coordinate(actuator);
         for parsed in drives {
-            let (Some(drive), Some(at)) = (&parsed.drive, &parsed.at) else {
-                continue;
-            };
-            if is_same(drive.coordinate, prescribed) {
+            if let (Some(drive), Some(at)) = (&parsed.drive, &parsed.at)
+                && is_same(drive.coordinate, prescribed)
+            {
                 let (drive, name) = (shorten(&drive.name), shorten(a.name));
-                diagnostics.push(
-                    Diagnostic::new(format!(
-                        "drive `{drive}` acts on `{name}`, which is prescribed"
-                    ))
-                    .label(at.clone(), "driven here")
-                    .label(law.key.clone(), "prescribed here")
-                    .help(
-                        "leave out the drive, which cannot change a prescribed motion, or the motion law",
-                    ),
-                );
+                law.error(format!("drive `{drive}` acts on `{name}`, which is prescribed"))
+                    .label(at, "driven here")
+                    .label(&law.key, "prescribed here")
+                    .help("leave out the drive, which cannot change a prescribed motion, or the motion law")
+                    .report();
             }
         }
     }

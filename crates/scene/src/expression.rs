@@ -1,33 +1,23 @@
 //! Expressions in strings: their errors point at the characters of the file.
 
-use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::table_reader::{Value, string};
+use crate::value::Value;
 use dwell_laws::Expression;
 
 /// The expression of a string, in which the names of `variables` may occur.
-pub(crate) fn expression(
-    value: &Value<'_>,
-    variables: &[&str],
-    what: &str,
-    diagnostics: &mut Diagnostics,
-) -> Option<Expression> {
-    let text = string(value, format_args!("{what}"), diagnostics)?;
+pub(crate) fn expression(value: Value<'_>, variables: &[&str], what: &str) -> Option<Expression> {
+    let text = value.string(what)?;
     let error = match Expression::parse(text, variables) {
         Ok(expression) => return Some(expression),
         Err(error) => error,
     };
-    let at = diagnostics.part_span(&value.span(), text, error.span);
-    let mut diagnostic = Diagnostic::new(format!("{what}: {}", error.message)).label(at, "here");
     // With one variable, a name of the scene is a likelier slip than a misspelt constant.
     let help = match variables {
-        [only] if error.message.starts_with("unknown name") => Some(format!(
-            "the variable here is `{only}`; no other name of the scene is known to it"
-        )),
-        _ => error.help,
+        [only] if error.message.starts_with("unknown name") => {
+            format!("the variable here is `{only}`; no other name of the scene is known to it")
+        }
+        _ => error.help.unwrap_or_default(),
     };
-    if let Some(help) = help {
-        diagnostic = diagnostic.help(help);
-    }
-    diagnostics.push(diagnostic);
-    None
+    let at = value.log().part_span(&value.span(), text, error.span);
+    let diagnostic = value.error(format!("{what}: {}", error.message));
+    diagnostic.label(&at, "here").help(help).reject()
 }

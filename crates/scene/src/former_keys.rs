@@ -1,8 +1,8 @@
 //! Former names of keys. They are still read: before anything else looks at the TOML tree, each is replaced by the key's current
 //! name, and a warning names that. The new entry keeps the span of the old one, so that messages point at what is written.
 
-use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::keys::{KeySchema, TableSchema, ValueShape};
+use crate::diagnostics::Diagnostics;
+use crate::keys::{self, KeySchema, TableSchema, ValueShape, kinds};
 use std::borrow::Cow;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -10,38 +10,40 @@ use toml::de::{DeTable, DeValue};
 /// Replaces the former names among the keys of `table` and of all tables below it. Names of the scene's own stay as they are.
 pub(crate) fn rename_former_keys(
     table: &mut DeTable<'_>,
-    schema: &TableSchema,
-    diagnostics: &mut Diagnostics,
+    schema: &'static TableSchema,
+    log: &Diagnostics,
 ) {
-    for key in schema.keys {
-        rename(table, key, diagnostics);
+    for key in &schema.keys {
+        rename(table, key, log);
     }
     for (name, value) in table.iter_mut() {
         if let Some(key) = schema.key(name.get_ref()) {
-            rename_in_value(value, key.shape, diagnostics);
+            rename_in_value(value, &key.shape, log);
         }
     }
 }
 
 fn rename_in_value(
     value: &mut Spanned<DeValue<'_>>,
-    shape: ValueShape,
-    diagnostics: &mut Diagnostics,
+    shape: &'static ValueShape,
+    log: &Diagnostics,
 ) {
     match (value.get_mut(), shape) {
         (DeValue::Table(table), shape) => {
-            if let ValueShape::Kinds(kinds) = shape {
-                for key in kinds.iter().filter_map(|kind| kind.keys.first()) {
-                    rename(table, key, diagnostics);
+            if let ValueShape::Kinds(things) = shape {
+                for key in kinds(things).iter().filter_map(|kind| kind.keys.first()) {
+                    rename(table, key, log);
                 }
             }
             for schema in schemas_of(table, shape) {
-                rename_former_keys(table, schema, diagnostics);
+                rename_former_keys(table, schema, log);
             }
         }
-        (DeValue::Array(values), ValueShape::Tables(schema)) => {
+        (DeValue::Array(values), ValueShape::Tables(id)) => {
             for value in values.iter_mut() {
-                rename_in_value(value, ValueShape::Table(schema), diagnostics);
+                if let DeValue::Table(inner) = value.get_mut() {
+                    rename_former_keys(inner, keys::table(id), log);
+                }
             }
         }
         _ => {}
@@ -50,36 +52,39 @@ fn rename_in_value(
 
 /// The schemas that describe the keys of `table`, which is a value of this shape. A table of one of several kinds has that of its
 /// kind; current names of the kinds only.
-pub(crate) fn schemas_of(table: &DeTable<'_>, shape: ValueShape) -> Vec<&'static TableSchema> {
+pub(crate) fn schemas_of(
+    table: &DeTable<'_>,
+    shape: &'static ValueShape,
+) -> Vec<&'static TableSchema> {
     match shape {
-        ValueShape::Table(schema) => vec![schema],
-        ValueShape::Kinds(kinds) => {
-            let chosen = kinds.iter().filter(|t| table.contains_key(t.kind_key()));
-            chosen.copied().collect()
+        ValueShape::Table(id) => vec![keys::table(id)],
+        ValueShape::Kinds(things) => {
+            let mut kinds = kinds(things);
+            kinds.retain(|kind| table.contains_key(kind.kind_key()));
+            kinds
         }
         ValueShape::Either(shapes) => {
-            let each = shapes.iter().flat_map(|shape| schemas_of(table, *shape));
+            let each = shapes.iter().flat_map(|shape| schemas_of(table, shape));
             each.collect()
         }
         _ => Vec::new(),
     }
 }
 
-fn rename(table: &mut DeTable<'_>, key: &KeySchema, diagnostics: &mut Diagnostics) {
-    for former in key.former {
-        let Some((written, value)) = table.remove_entry(*former) else {
-            continue;
-        };
-        if let Some((current, _)) = table.get_key_value(key.name) {
-            diagnostics.push(
-                Diagnostic::new(format!("both `{former}` and `{}` are given", key.name))
-                    .label(written.span(), "the former name")
-                    .label(current.span(), "the current name of the same key")
-                    .help(format!("keep `{}` and delete `{former}`", key.name)),
-            );
-            continue;
-        }
-        diagnostics.warn_renamed(former, key.name, written.span());
-        table.insert(Spanned::new(written.span(), Cow::Borrowed(key.name)), value);
+fn rename(table: &mut DeTable<'_>, key: &'static KeySchema, log: &Diagnostics) {
+    let Some(former) = &key.former else { return };
+    let Some((written, value)) = table.remove_entry(former.as_str()) else {
+        return;
+    };
+    let (name, span) = (key.name.as_str(), written.span());
+    if let Some((current, _)) = table.get_key_value(name) {
+        return log
+            .error(format!("both `{former}` and `{name}` are given"))
+            .label(&span, "the former name")
+            .label(&current.span(), "the current name of the same key")
+            .help(format!("keep `{name}` and delete `{former}`"))
+            .report();
     }
+    log.warn_renamed(former, name, span.clone());
+    table.insert(Spanned::new(span, Cow::Borrowed(name)), value);
 }

@@ -1,11 +1,12 @@
 //! Friction in joints: loads that depend on the joints' own reactions and velocities.
 
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::diagnostics::Span;
 use crate::joints::{Joints, kind_name};
-use crate::keys::{PRISMATIC_FRICTION, REVOLUTE_FRICTION};
+use crate::keys::table;
 use crate::loads::ParsedLoad;
-use crate::table_reader::{Entry, SignRule, TableReader, quantity_with_sign};
-use crate::units::{Unit, Units};
+use crate::table_reader::{Entry, TableReader};
+use crate::units::{SI, Unit};
+use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
 use dwell_geometry::{Joint, JointId, JointKind};
 use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude};
@@ -15,34 +16,27 @@ use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude};
 const DEFAULT_REGULARIZATION_SPEED: [f64; 2] = [0.01, 0.001];
 
 /// The friction of every joint of the section: loads, in the order of the file.
-pub(crate) fn friction(
-    fields: &TableReader<'_>,
-    joints: &Joints<'_>,
-    units: &Units,
-    diagnostics: &mut Diagnostics,
-) -> Vec<ParsedLoad> {
+pub(crate) fn friction(fields: &TableReader<'_>, joints: &Joints<'_>) -> Vec<ParsedLoad> {
     let mut loads = Vec::new();
     let mut assigned: Vec<(usize, Span)> = Vec::new();
     for entry in &fields.entries {
-        let Some(range) = joints.find(entry.name, &entry.key, diagnostics) else {
+        let Some(range) = joints.find(entry.name, &entry.key) else {
             continue;
         };
         if let Some((k, other)) = assigned.iter().find(|(k, _)| range.contains(k)) {
             let name = shorten(&joints.list[*k].name);
-            diagnostics.push(
-                Diagnostic::new(format!("joint `{name}` has two friction tables"))
-                    .label(other.clone(), "here")
-                    .label(entry.key.clone(), "and here again")
-                    .help("keep one of them: the name of a pin of several bodies stands for all its joints"),
-            );
+            entry
+                .error(format!("joint `{name}` has two friction tables"))
+                .label(other, "here")
+                .label(&entry.key, "and here again")
+                .help("keep one of them: the name of a pin of several bodies stands for all its joints")
+                .report();
             continue;
         }
         assigned.extend(range.clone().map(|k| (k, entry.key.clone())));
         // The joints of a pin have the same friction: an error is reported once, for the first.
-        let Some(first) = &joints.list[range.start].joint else {
-            continue;
-        };
-        let Some(parsed) = ParsedFriction::read(entry, first.kind, units, diagnostics) else {
+        let first = joints.list[range.start].joint.as_ref();
+        let Some(parsed) = first.and_then(|first| ParsedFriction::read(entry, first.kind)) else {
             continue;
         };
         for k in range {
@@ -69,65 +63,44 @@ struct DryFriction {
 }
 
 impl ParsedFriction {
-    fn read(
-        entry: &Entry<'_>,
-        kind: JointKind,
-        units: &Units,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Self> {
+    fn read(entry: &Entry<'_>, kind: JointKind) -> Option<Self> {
         let name = shorten(entry.name);
-        let fields = TableReader::open(entry, format!("friction of `{name}`"), diagnostics)?;
+        let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
         let is_revolute = match kind {
             JointKind::Revolute => true,
             JointKind::Prismatic { .. } | JointKind::Slot { .. } => false,
             _ => {
-                diagnostics.push(
-                    Diagnostic::new(format!("joint `{name}` cannot have friction"))
-                        .label(
-                            entry.key.clone(),
-                            format!("its kind is {}", kind_name(kind)),
-                        )
-                        .help("revolute joints, prismatic joints and slots can have friction"),
-                );
-                return None;
+                let diagnostic = entry.error(format!("joint `{name}` cannot have friction"));
+                let label = format!("its kind is {}", kind_name(kind));
+                let help = "revolute joints, prismatic joints and slots can have friction";
+                return diagnostic.label(&entry.key, label).help(help).reject();
             }
         };
-        let before = diagnostics.count();
-        check_friction_keys(&fields, kind, diagnostics);
-        let number = |key: &str, unit: &Unit, sign: SignRule, diagnostics: &mut Diagnostics| {
+        let before = fields.log().count();
+        check_friction_keys(&fields, kind);
+        let number = |key: &str, unit: &Unit, sign: SignRule| {
             let entry = fields.get(key)?;
-            let what = format_args!("{key} of {}", fields.what);
-            let si = quantity_with_sign(entry.value, unit, sign, what, "", diagnostics)?;
+            let rule = NumberRule::new(unit, sign);
+            let si = entry
+                .value
+                .quantity_with_sign(&rule, fields.name_of(entry))?;
             Some((si, entry.value.span()))
         };
-        let si = Unit::si_unit();
-        let coefficient = number("coefficient", &si, SignRule::NotNegative, diagnostics);
-        let radius = number("radius", &units.length, SignRule::Positive, diagnostics);
-        let guide = number(
-            "guide-length",
-            &units.length,
-            SignRule::NotNegative,
-            diagnostics,
-        );
-        let regularization_speed = number(
-            "regularization-speed",
-            units.coordinate_unit(is_revolute),
-            SignRule::Positive,
-            diagnostics,
-        );
-        let viscous = number("viscous", &si, SignRule::NotNegative, diagnostics);
+        let units = fields.units();
+        let coefficient = number("coefficient", &SI, SignRule::NotNegative);
+        let radius = number("radius", &units.length, SignRule::Positive);
+        let guide = number("guide-length", &units.length, SignRule::NotNegative);
+        let speed_unit = units.coordinate_unit(is_revolute);
+        let speed = number("regularization-speed", speed_unit, SignRule::Positive);
+        let viscous = number("viscous", &SI, SignRule::NotNegative);
         // A guide in its place is one slip, not two.
-        if is_revolute
-            && fields.get("coefficient").is_some()
-            && fields.get("guide-length").is_none()
-        {
-            let help = format!(
-                "add `radius`, the radius of the pin, in {}",
-                units.length.name
-            );
-            fields.require("radius", &entry.key, &help, diagnostics);
+        let has_guide = fields.get("guide-length").is_some();
+        if is_revolute && fields.get("coefficient").is_some() && !has_guide {
+            let unit = &units.length.name;
+            let help = format!("add `radius`, the radius of the pin, in {unit}");
+            fields.require("radius", &help);
         }
-        if diagnostics.count() != before {
+        if fields.log().count() != before {
             return None;
         }
         let [default_of_revolute, default_of_prismatic] = DEFAULT_REGULARIZATION_SPEED;
@@ -138,15 +111,13 @@ impl ParsedFriction {
             let length = guide.map_or(0.0, |s| s.0);
             (FrictionContact::Guide { length }, default_of_prismatic)
         };
-        Some(Self {
-            dry: coefficient.map(|(coefficient, span)| DryFriction {
-                coefficient,
-                contact,
-                regularization_speed: regularization_speed.map_or(default, |f| f.0),
-                span,
-            }),
-            viscous,
-        })
+        let dry = coefficient.map(|(coefficient, span)| DryFriction {
+            coefficient,
+            contact,
+            regularization_speed: speed.map_or(default, |f| f.0),
+            span,
+        });
+        Some(Self { dry, viscous })
     }
 
     fn loads(
@@ -191,34 +162,32 @@ impl ParsedFriction {
 }
 
 /// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.
-fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, diagnostics: &mut Diagnostics) {
+fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind) {
     let table = match kind {
-        JointKind::Revolute => &REVOLUTE_FRICTION,
-        _ => &PRISMATIC_FRICTION,
+        JointKind::Revolute => table("revolute-friction"),
+        _ => table("prismatic-friction"),
     };
     let is_slot = matches!(kind, JointKind::Slot { .. });
     let dry = fields.get("coefficient");
     // What seems to be missing may be a key that is misspelt.
-    let misspelt = fields.has_unknown_keys(table);
+    let misspelt = fields.unknown_entries(table).next().is_some();
     if dry.is_none() && fields.get("viscous").is_none() && !misspelt {
-        diagnostics.push(
-            Diagnostic::new(format!(
+        return fields
+            .error(format!(
                 "{} has neither `coefficient` nor `viscous`",
                 fields.what
             ))
-            .label(fields.span.clone(), "no friction is given")
-            .help("add a `coefficient` of dry friction, or `viscous`"),
-        );
-        return;
+            .label(&fields.span, "no friction is given")
+            .help("add a `coefficient` of dry friction, or `viscous`")
+            .report();
     }
     for entry in &fields.entries {
-        let (name, what) = (entry.name, &fields.what);
+        let (name, what) = (entry.written(), &fields.what);
         let other = |help| (format!("{what} has no `{name}`"), help);
-        let (message, help) = match name {
-            "radius" if !table.contains_key(name) => {
-                other("`guide-length` is the length of a slide")
-            }
-            "guide-length" if !table.contains_key(name) => other("`radius` is that of a pin"),
+        let known = table.contains_key(entry.name);
+        let (message, help) = match entry.name {
+            "radius" if !known => other("`guide-length` is the length of a slide"),
+            "guide-length" if !known => other("`radius` is that of a pin"),
             "guide-length" if is_slot => {
                 other("the pin of a slot touches it at one point: leave it out")
             }
@@ -226,17 +195,17 @@ fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, diagnostics: &
                 format!("{what} has a `{name}` but no `coefficient`"),
                 "it belongs to dry friction: add `coefficient`, or leave it out",
             ),
-            _ if table.contains_key(name) => continue,
+            _ if known => continue,
             _ => {
-                fields.report_unknown_key(entry, "keys here", table.names(), diagnostics);
+                fields.report_unknown_key(entry, "keys here", table.names());
                 continue;
             }
         };
         let label = format!("its kind is {}", kind_name(kind));
-        diagnostics.push(
-            Diagnostic::new(message)
-                .label(entry.key.clone(), label)
-                .help(help),
-        );
+        fields
+            .error(message)
+            .label(&entry.key, label)
+            .help(help)
+            .report();
     }
 }

@@ -1,79 +1,59 @@
-//! Tables of several kinds, each told by the one key that names it: joints, loads, drives and events.
+//! Tables of several kinds, each identified by the one key that names it: joints, loads, drives and events.
 
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys::{Presence, TableSchema};
+use crate::keys::{TableSchema, kinds};
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::list;
 
-/// The kind of a joint, a load or another, and the key that names it, if there is exactly one. Says which
-/// keys are not of this kind; `thing` is what has a kind, `at` its name.
+/// The kind of a joint, a load or another, and the key that names it, if there is exactly one. Reports
+/// which keys are not of this kind; `thing` is what has a kind.
 pub(crate) fn kind<'f, 'a>(
     fields: &'f TableReader<'a>,
-    at: &Span,
     thing: &str,
-    kinds: &[&'static TableSchema],
-    diagnostics: &mut Diagnostics,
 ) -> Option<(&'static str, &'f Entry<'a>)> {
+    let kinds = kinds(&format!("{thing}s"));
     let named = |n: &str| kinds.iter().find(|t| t.kind_key() == n);
-    let chosen = fields.one_of(|n| named(n).is_some(), diagnostics).ok()?;
+    let chosen = fields.one_of(|n| named(n).is_some()).ok()?;
     let Some(entry) = chosen else {
-        report_missing_kind(fields, at, thing, kinds, diagnostics);
+        report_missing_kind(fields, thing, &kinds);
         return None;
     };
     let table = named(entry.name)?;
-    for other in fields
-        .entries
-        .iter()
-        .filter(|e| !table.contains_key(e.name))
-    {
+    for other in fields.unknown_entries(table) {
         if !kinds.iter().any(|t| t.contains_key(other.name)) {
-            fields.report_unknown_key(other, "keys here", table.names(), diagnostics);
+            fields.report_unknown_key(other, "keys here", table.names());
             continue;
         }
-        diagnostics.push(
-            Diagnostic::new(format!(
-                "{} is of kind `{}` and has no `{}`",
-                fields.what, entry.name, other.name
-            ))
-            .label(other.key.clone(), format!("not for this kind of {thing}"))
-            .help("leave it out"),
-        );
+        let (kind, key) = (entry.written(), other.written());
+        let message = format!("{} is of kind `{kind}` and has no `{key}`", fields.what);
+        let label = format!("not for this kind of {thing}");
+        let diagnostic = other.error(message).label(&other.key, label);
+        diagnostic.help("leave it out").report();
     }
     Some((table.kind_key(), entry))
 }
 
-/// Says that no key names a kind: one of them may have been meant to.
-fn report_missing_kind(
-    fields: &TableReader<'_>,
-    at: &Span,
-    thing: &str,
-    kinds: &[&'static TableSchema],
-    diagnostics: &mut Diagnostics,
-) {
+/// Reports that no key names a kind: one of them may have been meant to.
+fn report_missing_kind(fields: &TableReader<'_>, thing: &str, kinds: &[&'static TableSchema]) {
     let kind_names = kinds.iter().map(|t| t.kind_key());
-    let count = diagnostics.count();
+    let count = fields.log().count();
     for entry in &fields.entries {
         if !kinds.iter().any(|t| t.contains_key(entry.name)) {
             let kind = format!("kinds of a {thing}");
-            fields.report_unknown_key(entry, &kind, kind_names.clone(), diagnostics);
+            fields.report_unknown_key(entry, &kind, kind_names.clone());
         }
     }
     // A misspelt kind is one slip, not two.
-    if diagnostics.count() > count {
+    if fields.log().count() > count {
         return;
     }
-    let keys = kinds.first().map_or(&[][..], |t| t.keys);
-    let needed = keys.iter().filter(|k| k.presence == Presence::Required);
+    let first = kinds.iter().take(1).flat_map(|t| &t.keys);
+    let needed = first.filter(|k| k.presence.is_none());
     let example: Vec<_> = needed
         .map(|k| format!("{} = {}", k.name, k.example))
         .collect();
     let example = example.join(", ");
     let list = list(kind_names).unwrap_or_default();
-    diagnostics.push(
-        Diagnostic::new(format!("{} has no kind", fields.what))
-            .label(at.clone(), "no kind")
-            .help(format!(
-                "write it as `{{ {example} }}`; the kinds are {list}"
-            )),
-    );
+    let help = format!("write it as `{{ {example} }}`; the kinds are {list}");
+    let diagnostic = fields.error(format!("{} has no kind", fields.what));
+    diagnostic.label(&fields.key, "no kind").help(help).report();
 }

@@ -1,10 +1,10 @@
 //! Laws of one variable: expressions, tables, and the motions known by a name.
 
-use crate::diagnostics::{Diagnostic, Diagnostics};
 use crate::expression::expression;
 use crate::keys;
-use crate::table_reader::{Entry, SignRule, TableReader, quantity, quantity_with_sign, rows};
-use crate::units::{Unit, Units};
+use crate::table_reader::{Entry, TableReader};
+use crate::units::Unit;
+use crate::value::{NumberRule, SignRule, Value};
 use dwell_laws::{Law, LawError, Polynomial, Profile, Rise, Shape, Sinusoid, Spline};
 
 /// What a law is a function of, and of which quantity.
@@ -22,204 +22,111 @@ pub(crate) struct LawDomain<'r> {
 }
 
 /// The law of `entry`, whose key says of which kind it is; `owner` is what has the law.
-pub(crate) fn law(
-    entry: &Entry<'_>,
-    owner: &str,
-    domain: &LawDomain<'_>,
-    units: &Units,
-    diagnostics: &mut Diagnostics,
-) -> Option<Law> {
+pub(crate) fn law(entry: &Entry<'_>, owner: &str, domain: &LawDomain<'_>) -> Option<Law> {
     let what = format!("{} of {owner}", entry.name);
     match entry.name {
-        "expression" => {
-            expression(entry.value, &[domain.variable], &what, diagnostics).map(Law::Expression)
-        }
-        "table" => table(entry, &what, domain, diagnostics),
+        "expression" => expression(entry.value, &[domain.variable], &what).map(Law::Expression),
+        "table" => table(entry.value, &what, domain),
         "speed" => {
-            let (_, speed) = quantity(
-                entry.value,
-                domain.y_unit,
-                format_args!("{what}"),
-                diagnostics,
-            )?;
+            let speed = entry.value.quantity(domain.y_unit, what)?;
             Some(Law::Polynomial(Polynomial::motion(
                 domain.start_value,
                 speed,
                 0.0,
             )))
         }
-        "sinusoid" => sinusoid(entry, &what, domain, units, diagnostics),
-        _ => profile(entry, &what, domain, diagnostics),
+        "sinusoid" => sinusoid(entry, &what, domain),
+        _ => profile(entry, &what, domain),
     }
 }
 
-/// What the numbers of a table cannot tell one by one: points too close for a curve.
-pub(crate) fn spline(
-    entry: &Entry<'_>,
-    what: &str,
-    rows: &[[f64; 2]],
-    diagnostics: &mut Diagnostics,
-) -> Option<Spline> {
-    built(Spline::through(rows), entry, what, diagnostics)
+/// The curve through the rows of a table. Points that are too close for a curve are found only here.
+pub(crate) fn spline(value: Value<'_>, what: &str, rows: &[[f64; 2]]) -> Option<Spline> {
+    built(Spline::through(rows), value, what)
 }
 
-fn built<T>(
-    result: Result<T, LawError>,
-    entry: &Entry<'_>,
-    what: &str,
-    diagnostics: &mut Diagnostics,
-) -> Option<T> {
-    result
-        .map_err(|e| {
-            diagnostics.push(
-                Diagnostic::new(format!("{what}: {e}"))
-                    .label(entry.value.span(), "no smooth function"),
-            );
-        })
-        .ok()
+fn built<T>(result: Result<T, LawError>, value: Value<'_>, what: &str) -> Option<T> {
+    match result {
+        Ok(law) => Some(law),
+        Err(e) => value
+            .wrong(format!("{what}: {e}"), "no smooth function")
+            .reject(),
+    }
 }
 
-fn table(
-    entry: &Entry<'_>,
-    what: &str,
-    domain: &LawDomain<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<Law> {
-    let rows = rows(
-        entry.value,
-        [domain.x_unit, domain.y_unit],
-        what,
-        diagnostics,
-    )?;
-    let law = spline(entry, what, &rows, diagnostics)?;
+fn table(value: Value<'_>, what: &str, domain: &LawDomain<'_>) -> Option<Law> {
+    let rows = value.rows([domain.x_unit, domain.y_unit], what)?;
+    let law = spline(value, what, &rows)?;
     if let Some(end) = domain.end_time {
         let [first, last] = law.range();
         if first > 0.0 || last < end {
-            diagnostics.push(
-                Diagnostic::new(format!("{what} does not last as long as the motion"))
-                    .label(entry.value.span(), format!("from {first} s to {last} s"))
-                    .help(format!("its rows have to reach from 0 s to {end} s")),
-            );
-            return None;
+            let message = format!("{what} does not last as long as the motion");
+            let diagnostic = value.wrong(message, &format!("from {first} s to {last} s"));
+            let help = format!("its rows have to reach from 0 s to {end} s");
+            return diagnostic.help(help).reject();
         }
     }
     Some(Law::Spline(law))
 }
 
-fn sinusoid(
-    entry: &Entry<'_>,
-    what: &str,
-    domain: &LawDomain<'_>,
-    units: &Units,
-    diagnostics: &mut Diagnostics,
-) -> Option<Law> {
-    let fields = TableReader::open(entry, what, diagnostics)?;
-    fields.reject_unknown_keys(&keys::SINUSOID, diagnostics);
+fn sinusoid(entry: &Entry<'_>, what: &str, domain: &LawDomain<'_>) -> Option<Law> {
+    let fields = TableReader::open(entry, what)?;
+    fields.reject_unknown_keys(keys::table("sinusoid"));
     let help = "write it as `{ amplitude = 0.3, period = 2.0 }`";
-    let numbers = Numbers {
-        fields: &fields,
-        help,
-    };
-    let amplitude = numbers.required("amplitude", domain.y_unit, SignRule::Any, diagnostics);
-    let period = numbers.required("period", domain.x_unit, SignRule::Positive, diagnostics);
-    let phase = numbers.or_zero("phase", &units.angle, SignRule::Any, diagnostics);
+    let any = |unit| NumberRule::new(unit, SignRule::Any);
+    let amplitude = fields.number("amplitude", help, &any(domain.y_unit));
+    let positive = NumberRule::new(domain.x_unit, SignRule::Positive);
+    let period = fields.number("period", help, &positive);
+    let phase = fields.number_or(0.0, "phase", &any(&fields.units().angle));
     let law = Sinusoid::starting_at(domain.start_value, amplitude?, period?, phase?);
-    built(law, entry, what, diagnostics).map(Law::Sinusoid)
+    built(law, entry.value, what).map(Law::Sinusoid)
 }
 
-fn profile(
-    entry: &Entry<'_>,
-    what: &str,
-    domain: &LawDomain<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<Law> {
-    let fields = TableReader::open(entry, what, diagnostics)?;
-    let is_trapezoidal = entry.name == "trapezoidal";
-    let (table, help) = match is_trapezoidal {
-        true => (
-            &keys::TRAPEZOID,
+fn profile(entry: &Entry<'_>, what: &str, domain: &LawDomain<'_>) -> Option<Law> {
+    let fields = TableReader::open(entry, what)?;
+    let (table, help) = match entry.name {
+        "trapezoidal" => (
+            "trapezoidal",
             "write it as `{ rise = 1.0, duration = 0.5, ramp = 0.1 }`",
         ),
-        false => (
-            &keys::PROFILE,
-            "write it as `{ rise = 1.0, duration = 0.5 }`",
-        ),
+        _ => ("profile", "write it as `{ rise = 1.0, duration = 0.5 }`"),
     };
-    fields.reject_unknown_keys(table, diagnostics);
-    let numbers = Numbers {
-        fields: &fields,
-        help,
-    };
+    fields.reject_unknown_keys(keys::table(table));
     // A motion in time begins at its assembly: it cannot have risen before.
     let delay_sign = match domain.end_time {
         Some(_) => SignRule::NotNegative,
         None => SignRule::Any,
     };
-    let rise = numbers.required("rise", domain.y_unit, SignRule::Any, diagnostics);
-    let duration = numbers.required("duration", domain.x_unit, SignRule::Positive, diagnostics);
-    let delay = numbers.or_zero("delay", domain.x_unit, delay_sign, diagnostics);
+    let positive = NumberRule::new(domain.x_unit, SignRule::Positive);
+    let rise = fields.number("rise", help, &NumberRule::new(domain.y_unit, SignRule::Any));
+    let duration = fields.number("duration", help, &positive);
+    let delay = fields.number_or(0.0, "delay", &NumberRule::new(domain.x_unit, delay_sign));
     let shape = match entry.name {
         "polynomial345" => Some(Shape::Polynomial345),
         "polynomial4567" => Some(Shape::Polynomial4567),
         "cycloidal" => Some(Shape::Cycloidal),
-        _ => {
-            let ramp = numbers.required("ramp", domain.x_unit, SignRule::Positive, diagnostics);
-            ramp.map(|ramp| Shape::Trapezoidal { ramp })
-        }
+        _ => fields
+            .number("ramp", help, &positive)
+            .map(|ramp| Shape::Trapezoidal { ramp }),
     };
     let (rise, duration, delay, shape) = (rise?, duration?, delay?, shape?);
     if let (Shape::Trapezoidal { ramp }, Some(e)) = (shape, fields.get("ramp"))
         && 2.0 * ramp > duration
     {
-        diagnostics.push(
-            Diagnostic::new(format!(
-                "the two ramps of {what} are longer than its duration"
-            ))
-            .label(e.value.span(), "at most half of the duration")
-            .help("the speed rises for one ramp and falls for another"),
-        );
-        return None;
+        let message = format!("the two ramps of {what} are longer than its duration");
+        let help = "the speed rises for one ramp and falls for another";
+        return e
+            .value
+            .wrong(message, "at most half of the duration")
+            .help(help)
+            .reject();
     }
+    let start = domain.start_value;
     let motion = Rise {
-        start: domain.start_value,
+        start,
         rise,
         duration,
         delay,
     };
-    built(Profile::new(shape, motion), entry, what, diagnostics).map(Law::Profile)
-}
-
-/// The numbers of a table, each named as one of it.
-struct Numbers<'n, 'a> {
-    fields: &'n TableReader<'a>,
-    help: &'static str,
-}
-
-impl Numbers<'_, '_> {
-    fn required(
-        &self,
-        key: &str,
-        unit: &Unit,
-        sign: SignRule,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<f64> {
-        let fields = self.fields;
-        let entry = fields.require(key, &fields.span, self.help, diagnostics)?;
-        let what = format_args!("{key} in {}", fields.what);
-        quantity_with_sign(entry.value, unit, sign, what, "", diagnostics)
-    }
-
-    fn or_zero(
-        &self,
-        key: &str,
-        unit: &Unit,
-        sign: SignRule,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<f64> {
-        let Some(entry) = self.fields.get(key) else {
-            return Some(0.0);
-        };
-        let what = format_args!("{key} in {}", self.fields.what);
-        quantity_with_sign(entry.value, unit, sign, what, "", diagnostics)
-    }
+    built(Profile::new(shape, motion), entry.value, what).map(Law::Profile)
 }

@@ -75,6 +75,7 @@ mod joints;
 mod keys;
 mod kind;
 mod law;
+mod load_functions;
 mod loads;
 mod location;
 mod magnitude;
@@ -92,6 +93,7 @@ mod spans;
 mod table_reader;
 mod unit_reader;
 mod units;
+mod value;
 mod wording;
 
 #[cfg(test)]
@@ -105,5 +107,5 @@ pub use scene::{
 };
 pub use schema::schema;
 pub use spans::SceneLocation;
-pub use table_reader::MAX_ANGLE;
+pub use value::MAX_ANGLE;
 pub use wording::choices;

@@ -1,19 +1,16 @@
 //! The loads on the mechanism: where they act, and their magnitudes.
 
 use crate::bodies::{Bodies, TWO_POINTS};
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::joints::Joints;
-use crate::keys::LOADS;
+use crate::diagnostics::Span;
+use crate::joints::{Joints, ParsedJoint};
 use crate::kind::kind;
-use crate::magnitude::{MagnitudeRule, Magnitudes};
+use crate::magnitude::Magnitudes;
 use crate::names::check;
-use crate::table_reader::{
-    Entry, POINT, SignRule, TableReader, angle, pair, quantity, quantity_with_sign, string,
-    unit_vector,
-};
-use crate::units::{Unit, Units};
+use crate::table_reader::{Entry, TableReader};
+use crate::units::SI;
+use crate::value::{NumberRule, POINT, SignRule, Value};
 use crate::wording::shorten;
-use dwell_geometry::{BodyId, Vec2, vec2};
+use dwell_geometry::{BodyId, JointId, Vec2, vec2};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use toml::de::DeValue;
 
@@ -28,350 +25,260 @@ pub(crate) struct ParsedLoad {
 
 /// Reads the loads.
 pub(crate) struct LoadReader<'r> {
-    bodies: &'r Bodies<'r>,
-    joints: &'r Joints<'r>,
-    units: &'r Units,
-    magnitudes: &'r Magnitudes<'r>,
+    pub(crate) bodies: &'r Bodies<'r>,
+    pub(crate) joints: &'r Joints<'r>,
+    pub(crate) magnitudes: &'r Magnitudes,
 }
 
-impl<'r> LoadReader<'r> {
-    pub(crate) fn new(
-        bodies: &'r Bodies<'r>,
-        joints: &'r Joints<'r>,
-        units: &'r Units,
-        magnitudes: &'r Magnitudes<'r>,
-    ) -> Self {
-        Self {
-            bodies,
-            joints,
-            units,
-            magnitudes,
-        }
-    }
-
+impl LoadReader<'_> {
     /// Every load of the section.
-    pub(crate) fn read(
-        &self,
-        fields: &TableReader<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Vec<ParsedLoad> {
+    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<ParsedLoad> {
         let mut gravity: Option<Span> = None;
         let one = |entry: &Entry<'_>| {
-            check("a load", entry.name, &entry.key, diagnostics);
-            let load = self.load(entry, diagnostics);
-            if let Some(Load {
-                kind: LoadKind::Gravity { .. },
-                ..
-            }) = load.load
+            check("a load", entry);
+            let parsed = self.load(entry);
+            let kind = parsed.load.as_ref().map(|load| load.kind);
+            if let Some(LoadKind::Gravity { .. }) = kind
                 && let Some(other) = gravity.replace(entry.key.clone())
             {
-                diagnostics.push(
-                    Diagnostic::new("gravity is given twice")
-                        .label(other, "here")
-                        .label(entry.key.clone(), "and here again")
-                        .help("keep one of them: both would add up"),
-                );
+                entry
+                    .error("gravity is given twice")
+                    .label(&other, "here")
+                    .label(&entry.key, "and here again")
+                    .help("keep one of them: both would add up")
+                    .report();
             }
-            load
+            parsed
         };
         fields.entries.iter().map(one).collect()
     }
 
-    fn load(&self, entry: &Entry<'_>, diagnostics: &mut Diagnostics) -> ParsedLoad {
-        let mut parsed = ParsedLoad {
-            key: entry.key.clone(),
-            magnitude: None,
-            load: None,
+    fn load(&self, entry: &Entry<'_>) -> ParsedLoad {
+        let fields = TableReader::open(entry, format!("load `{}`", shorten(entry.name)));
+        let (magnitude, load) = match fields {
+            Some(fields) => self.kind_and_magnitude(&fields),
+            None => (None, None),
         };
-        let what = format!("load `{}`", shorten(entry.name));
-        let Some(fields) = TableReader::open(entry, what, diagnostics) else {
-            return parsed;
-        };
-        let Some((kind_name, kind_entry)) = kind(&fields, &entry.key, "load", &LOADS, diagnostics)
-        else {
-            return parsed;
-        };
-        let (size, unit, sign) = match kind_name {
-            "gravity" => ("gravity", "m/s2", SignRule::Any),
-            "force" | "point-to-point-force" | "slide-force" => ("magnitude", "N", SignRule::Any),
-            "torque" => ("magnitude", "N m", SignRule::Any),
-            "spring" => ("stiffness", "N/m", SignRule::NotNegative),
-            "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative),
-            "damper" => ("damping", "N s/m", SignRule::NotNegative),
-            _ => ("damping", "N m s/rad", SignRule::NotNegative),
-        };
-        if kind_name == "gravity" {
-            parsed.magnitude = Some(kind_entry.value.span());
-            let read = gravity(kind_entry, &fields, diagnostics);
-            parsed.load = read.map(|(kind, magnitude)| named(entry, kind, magnitude));
-            return parsed;
-        }
-        let kind = self.load_kind(kind_name, kind_entry, entry, &fields, diagnostics);
-        let help = format!("add for instance `{size} = 10`, in {unit}");
-        let magnitude = fields.require(size, &entry.key, &help, diagnostics);
-        parsed.magnitude = magnitude.map(|e| e.value.span());
-        let magnitude = magnitude.and_then(|e| {
-            let why = match size {
-                "stiffness" => "a negative stiffness would push away from the free position",
-                _ => "negative damping would accelerate the motion",
-            };
-            let si = Unit::si_unit();
-            let size = MagnitudeRule {
-                unit: &si,
-                sign,
-                why,
-            };
-            self.magnitudes.read(e, &fields.what, &size, diagnostics)
+        let load = load.map(|(kind, magnitude)| Load {
+            name: entry.name.to_owned(),
+            kind,
+            magnitude,
         });
-        parsed.load = kind
-            .zip(magnitude)
-            .map(|(kind, magnitude)| named(entry, kind, magnitude));
-        parsed
+        ParsedLoad {
+            key: entry.key.clone(),
+            magnitude,
+            load,
+        }
+    }
+
+    /// Where the magnitude is, and the load without its name.
+    fn kind_and_magnitude(
+        &self,
+        fields: &TableReader<'_>,
+    ) -> (Option<Span>, Option<(LoadKind, Magnitude)>) {
+        let Some((kind, entry)) = kind(fields, "load") else {
+            return (None, None);
+        };
+        if kind == "gravity" {
+            return (
+                Some(entry.value.span()),
+                gravity(entry.value, &fields.name_of(entry)),
+            );
+        }
+        let stiffness = "a negative stiffness would push away from the free position";
+        let damping = "negative damping would accelerate the motion";
+        let (size, unit, sign, why) = match kind {
+            "force" | "point-to-point-force" | "slide-force" => {
+                ("magnitude", "N", SignRule::Any, "")
+            }
+            "torque" => ("magnitude", "N m", SignRule::Any, ""),
+            "spring" => ("stiffness", "N/m", SignRule::NotNegative, stiffness),
+            "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative, stiffness),
+            "damper" => ("damping", "N s/m", SignRule::NotNegative, damping),
+            _ => ("damping", "N m s/rad", SignRule::NotNegative, damping),
+        };
+        let kind = self.load_kind(kind, entry, fields);
+        let magnitude = fields.require(size, &format!("add for instance `{size} = 10`, in {unit}"));
+        let span = magnitude.map(|e| e.value.span());
+        let rule = NumberRule {
+            unit: &SI,
+            sign,
+            why,
+        };
+        let magnitude = magnitude.and_then(|e| self.magnitudes.read(e, fields, &rule));
+        (span, kind.zip(magnitude))
     }
 
     fn load_kind(
         &self,
-        kind_name: &str,
-        kind_entry: &Entry<'_>,
+        kind: &str,
         entry: &Entry<'_>,
         fields: &TableReader<'_>,
-        diagnostics: &mut Diagnostics,
     ) -> Option<LoadKind> {
-        match kind_name {
-            "force" => self.force(kind_entry, entry, fields, diagnostics),
+        match kind {
+            "force" => self.force(entry, fields),
             "torque" => {
-                let bodies = self.torque(kind_entry, fields, diagnostics)?;
+                let bodies = self.torque(entry, fields)?;
                 Some(LoadKind::Torque { bodies })
             }
             "spring" => {
-                let both = self.two_points(kind_entry, fields, diagnostics);
-                let unit = &self.units.length;
+                let both = self.two_points(entry, fields);
+                let rule = NumberRule::new(&fields.units().length, SignRule::NotNegative);
                 let help = "add `free-length = 0.1`, its length without force";
-                let free = fields
-                    .require("free-length", &entry.key, help, diagnostics)
-                    .and_then(|e| {
-                        let what = format_args!("the free length of {}", fields.what);
-                        quantity_with_sign(
-                            e.value,
-                            unit,
-                            SignRule::NotNegative,
-                            what,
-                            "",
-                            diagnostics,
-                        )
-                    });
+                let free_length = fields.number("free-length", help, &rule);
                 let (bodies, points) = both?;
                 Some(LoadKind::Spring {
                     bodies,
                     points,
-                    free_length: free?,
+                    free_length: free_length?,
                 })
             }
             "damper" => {
-                let (bodies, points) = self.two_points(kind_entry, fields, diagnostics)?;
+                let (bodies, points) = self.two_points(entry, fields)?;
                 Some(LoadKind::Damper { bodies, points })
             }
             "point-to-point-force" => {
-                let (bodies, points) = self.two_points(kind_entry, fields, diagnostics)?;
+                let (bodies, points) = self.two_points(entry, fields)?;
                 Some(LoadKind::PointToPointForce { bodies, points })
             }
             "slide-force" => {
-                let name = string(
-                    kind_entry.value,
-                    format_args!("slide-force of {}", fields.what),
-                    diagnostics,
-                )?;
-                let joint = self
-                    .joints
-                    .sliding(name, &kind_entry.value.span(), diagnostics)?;
+                let name = entry.value.string(fields.name_of(entry))?;
+                let joint = self.joints.sliding(name, &entry.value.span())?;
                 self.joints.guide(joint).map(LoadKind::SlideForce)
             }
             "torsion-spring" => {
-                let bodies = self.two_bodies(kind_entry, fields, diagnostics);
+                let bodies = self.two_bodies(entry, fields);
                 let help = "add `free-angle = 0.0`, the angle at which its torque is zero";
-                let free = fields
-                    .require("free-angle", &entry.key, help, diagnostics)
-                    .and_then(|e| {
-                        let what = format_args!("the free angle of {}", fields.what);
-                        angle(e.value, &self.units.angle, what, diagnostics)
-                    });
+                let free = fields.require("free-angle", help);
+                let free_angle = free.and_then(|e| e.value.angle(fields.name_of(e)));
                 Some(LoadKind::TorsionSpring {
                     bodies: bodies?,
-                    free_angle: free?,
+                    free_angle: free_angle?,
                 })
             }
             _ => {
-                let bodies = self.two_bodies(kind_entry, fields, diagnostics)?;
+                let bodies = self.two_bodies(entry, fields)?;
                 Some(LoadKind::RotationalDamper { bodies })
             }
         }
     }
 
-    fn force(
-        &self,
-        kind_entry: &Entry<'_>,
-        entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<LoadKind> {
+    fn force(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<LoadKind> {
         let what = &fields.what;
-        let name = string(
-            kind_entry.value,
-            format_args!("force of {what}"),
-            diagnostics,
-        );
-        let at = name.and_then(|name| {
-            let span = kind_entry.value.span();
-            let (body, k) = self.bodies.find_point(name, &span, diagnostics)?;
-            self.require_moving_body(body, &span, what, diagnostics)?;
+        let at = entry.value.string(fields.name_of(entry)).and_then(|name| {
+            let span = entry.value.span();
+            let (body, k) = self.bodies.find_point(name, &span)?;
+            self.require_moving_body(body, entry.value, what)?;
             Some((body, self.bodies.at(&(body, k, span))))
         });
-        let help = "add `direction = [1, 0]`";
-        let direction = fields.require("direction", &entry.key, help, diagnostics);
-        let direction = direction
-            .and_then(|e| unit_vector(e.value, &format!("the direction of {what}"), diagnostics));
+        let direction = fields.require("direction", "add `direction = [1, 0]`");
+        let direction =
+            direction.and_then(|e| e.value.unit_vector(format_args!("the direction of {what}")));
         let body_fixed = match fields.get("frame") {
             None => Some(false),
-            Some(e) => frame(e, what, diagnostics),
+            Some(e) => frame(e.value, what),
         };
         let (body, point) = at?;
+        let (direction, body_fixed) = (direction?, body_fixed?);
         Some(LoadKind::Force {
             body,
             point,
-            direction: direction?,
-            body_fixed: body_fixed?,
+            direction,
+            body_fixed,
         })
     }
 
-    fn torque(
-        &self,
-        kind_entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<[BodyId; 2]> {
-        let DeValue::String(name) = kind_entry.value.get_ref() else {
-            return self.two_bodies(kind_entry, fields, diagnostics);
+    fn torque(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<[BodyId; 2]> {
+        let DeValue::String(name) = entry.value.get() else {
+            return self.two_bodies(entry, fields);
         };
-        let at = kind_entry.value.span();
-        let body = self.bodies.find(name, &at, diagnostics)?;
-        self.require_moving_body(body, &at, &fields.what, diagnostics)?;
+        let body = self.bodies.find(name, &entry.value.span())?;
+        self.require_moving_body(body, entry.value, &fields.what)?;
         Some([BodyId(self.bodies.ground?), body])
     }
 
     /// A load that acts on the ground alone has no effect, so it is taken for a mistake.
-    fn require_moving_body(
-        &self,
-        body: BodyId,
-        at: &Span,
-        what: &str,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<()> {
+    fn require_moving_body(&self, body: BodyId, value: Value<'_>, what: &str) -> Option<()> {
         if self.bodies.ground != Some(body.0) {
             return Some(());
         }
-        diagnostics.push(
-            Diagnostic::new(format!("{what} acts on the ground"))
-                .label(at.clone(), "it does not move")
-                .help("let it act on a moving body, or leave it out"),
-        );
-        None
+        let diagnostic = value.wrong(format!("{what} acts on the ground"), "it does not move");
+        diagnostic
+            .help("let it act on a moving body, or leave it out")
+            .reject()
     }
 
     fn two_points(
         &self,
-        kind_entry: &Entry<'_>,
+        entry: &Entry<'_>,
         fields: &TableReader<'_>,
-        diagnostics: &mut Diagnostics,
     ) -> Option<([BodyId; 2], [Vec2; 2])> {
-        let what = format_args!("{} of {}", kind_entry.name, fields.what);
-        let both = self
-            .bodies
-            .find_two_points(kind_entry.value, TWO_POINTS, what, diagnostics)?;
-        let points = [&both[0], &both[1]].map(|point| self.bodies.at(point));
-        let bodies = self.require_different_bodies(
-            both.map(|(body, _, at)| (body, at)),
-            fields,
-            diagnostics,
-        )?;
+        let what = fields.name_of(entry);
+        let [a, b] = self.bodies.find_two_points(entry.value, TWO_POINTS, what)?;
+        let points = [self.bodies.at(&a), self.bodies.at(&b)];
+        let bodies = self.require_different_bodies([(a.0, a.2), (b.0, b.2)], fields)?;
         Some((bodies, points))
     }
 
-    fn two_bodies(
-        &self,
-        kind_entry: &Entry<'_>,
-        fields: &TableReader<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<[BodyId; 2]> {
-        let what = format_args!("{} of {}", kind_entry.name, fields.what);
-        let both = self.bodies.find_two(kind_entry.value, what, diagnostics)?;
-        self.require_different_bodies(both, fields, diagnostics)
+    fn two_bodies(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<[BodyId; 2]> {
+        let both = self.bodies.find_two(entry.value, fields.name_of(entry))?;
+        self.require_different_bodies(both, fields)
     }
 
     fn require_different_bodies(
         &self,
         [(a, at_a), (b, at_b)]: [(BodyId, Span); 2],
         fields: &TableReader<'_>,
-        diagnostics: &mut Diagnostics,
     ) -> Option<[BodyId; 2]> {
         if a != b {
             return Some([a, b]);
         }
-        let name = &self.bodies.list[a.0].name;
-        diagnostics.push(
-            Diagnostic::new(format!(
-                "{} acts between body `{name}` and itself",
-                fields.what
-            ))
-            .label(at_a, "this body")
-            .label(at_b, "and the same again")
-            .help("a load within one rigid body has no effect"),
-        );
-        None
+        let message = |name: &str| format!("{} acts between body `{name}` and itself", fields.what);
+        let labels = [(&at_a, "this body"), (&at_b, "and the same again")];
+        let help = "a load within one rigid body has no effect";
+        self.bodies.reject_same_body(a, message, labels, help)
     }
 }
 
-fn named(entry: &Entry<'_>, kind: LoadKind, magnitude: Magnitude) -> Load {
-    Load {
-        name: entry.name.to_owned(),
-        kind,
-        magnitude,
-    }
+/// The separating forces of the teeth that have a pressure angle, in the order of the file.
+pub(crate) fn separating_forces(joints: &Joints<'_>) -> Vec<ParsedLoad> {
+    let separating = |(k, parsed): (usize, &ParsedJoint)| {
+        let (angle, at) = parsed.pressure_angle.as_ref()?;
+        let load = Load::separating(parsed.joint.as_ref()?, JointId(k), *angle)?;
+        Some(ParsedLoad {
+            key: parsed.key.clone(),
+            magnitude: Some(at.clone()),
+            load: Some(load),
+        })
+    };
+    joints
+        .list
+        .iter()
+        .enumerate()
+        .filter_map(separating)
+        .collect()
 }
 
 /// An acceleration as a direction and a magnitude.
-fn gravity(
-    kind_entry: &Entry<'_>,
-    fields: &TableReader<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<(LoadKind, Magnitude)> {
-    let what = format!("gravity of {}", fields.what);
-    let direction = unit_vector(kind_entry.value, &what, diagnostics)?;
-    let [x, y] = pair(kind_entry.value, POINT, format_args!("{what}"), diagnostics)?;
-    let si = Unit::si_unit();
-    let mut one = |value| quantity(value, &si, format_args!("{what}"), diagnostics);
-    let (x, y) = (one(x), one(y));
-    let acceleration = vec2(x?.1, y?.1);
+fn gravity(value: Value<'_>, what: &str) -> Option<(LoadKind, Magnitude)> {
+    let direction = value.unit_vector(what)?;
+    let [x, y] = value.pair(POINT, what)?;
+    let [x, y] = [x, y].map(|component| component.quantity(&SI, what));
+    let acceleration = vec2(x?, y?);
     let size = acceleration.x.hypot(acceleration.y);
     Some((LoadKind::Gravity { direction }, Magnitude::Constant(size)))
 }
 
 /// Whether the direction of the force rotates with its body.
-fn frame(entry: &Entry<'_>, what: &str, diagnostics: &mut Diagnostics) -> Option<bool> {
-    let name = string(
-        entry.value,
-        format_args!("the frame of {what}"),
-        diagnostics,
-    )?;
-    match name {
+fn frame(value: Value<'_>, what: &str) -> Option<bool> {
+    match value.string(format_args!("the frame of {what}"))? {
         "ground" => Some(false),
         "body" => Some(true),
-        _ => {
-            diagnostics.push(
-                Diagnostic::new(format!("unknown frame `{}` of {what}", shorten(name)))
-                    .label(entry.value.span(), "unknown frame")
-                    .help("`\"ground\"` keeps the direction constant, `\"body\"` rotates it with the body"),
-            );
-            None
+        name => {
+            let message = format!("unknown frame `{}` of {what}", shorten(name));
+            let help =
+                "`\"ground\"` keeps the direction constant, `\"body\"` rotates it with the body";
+            value.wrong(message, "unknown frame").help(help).reject()
         }
     }
 }

@@ -1,18 +1,18 @@
 //! The free motion, and the calibration of one number to a period.
 
+use crate::bodies::Bodies;
 use crate::coordinates::ParsedActuator;
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys;
-use crate::prescribed::law_of;
+use crate::diagnostics::Span;
+use crate::keys::table;
+use crate::prescribed::{actuator_named, law_of, positive, require_actuators};
 use crate::scene::{Calibration, MotionDuration, NamedEvent};
-use crate::table_reader::{Entry, TableReader, Value, number, quantity, string};
-use crate::units::Units;
+use crate::table_reader::{Entry, TableReader};
+use crate::value::Value;
 use crate::wording::{list, shorten};
 use dwell_laws::Law;
-use std::fmt::Arguments;
-use toml::de::DeValue;
+use std::fmt::Display;
 
-/// `[motion]` as read: what it says of each actuator, in rad and rad/s or m and m/s.
+/// `[motion]` as read: what it gives of each actuator, in rad and rad/s or m and m/s.
 #[derive(Debug)]
 pub(crate) struct ParsedMotion<'a> {
     pub(crate) initial_coordinates: Vec<Option<(f64, Span)>>,
@@ -31,50 +31,40 @@ impl<'a> ParsedMotion<'a> {
         fields: &TableReader<'a>,
         actuators: &[ParsedActuator<'_>],
         can_start_at_rest: bool,
-        units: &Units,
-        diagnostics: &mut Diagnostics,
     ) -> Self {
-        fields.reject_unknown_keys(&keys::MOTION, diagnostics);
+        fields.reject_unknown_keys(table("motion"));
         let mut parsed = Self {
             initial_coordinates: vec![None; actuators.len()],
             initial_velocities: vec![None; actuators.len()],
-            duration: duration(fields, diagnostics),
+            duration: duration(fields),
             prescribed: vec![None; actuators.len()],
             laws: vec![None; actuators.len()],
             events: Vec::new(),
         };
-        if actuators.is_empty() {
-            diagnostics.push(
-                Diagnostic::new("there is a [motion] but no actuator")
-                    .label(fields.span.clone(), "no coordinate can move")
-                    .help("declare an independent coordinate, as in `[actuators.phi]`"),
-            );
+        if require_actuators(fields, actuators).is_none() {
             return parsed;
         }
-        let all_known = parsed.find_prescribed(fields, actuators, diagnostics);
-        let each = |key, diagnostics: &mut Diagnostics| {
-            let entry = fields.get(key);
-            let each = PerActuator {
+        let all_known = parsed.find_prescribed(fields, actuators);
+        let each = |key| {
+            let prescribed = &parsed.prescribed;
+            PerActuator {
                 key,
                 actuators,
-                prescribed: &parsed.prescribed,
-                units,
-            };
-            each.read(entry, diagnostics)
+                prescribed,
+            }
+            .read(fields.get(key))
         };
-        let (initial_coordinates, initial_velocities) = (
-            each("initial-coordinate", diagnostics),
-            each("initial-velocity", diagnostics),
-        );
+        let initial_coordinates = each("initial-coordinate");
+        let initial_velocities = each("initial-velocity");
         if let Some(initial_velocities) = &initial_velocities
             && all_known
             && !can_start_at_rest
             && parsed.prescribed.iter().all(Option::is_none)
         {
-            report_missing_velocities(fields, actuators, initial_velocities, units, diagnostics);
+            report_missing_velocities(fields, actuators, initial_velocities);
         }
         if all_known {
-            parsed.count_free(fields, actuators, diagnostics);
+            parsed.count_free(fields, actuators);
         }
         parsed.initial_coordinates = initial_coordinates.unwrap_or(parsed.initial_coordinates);
         parsed.initial_velocities = initial_velocities.unwrap_or(parsed.initial_velocities);
@@ -86,49 +76,43 @@ impl<'a> ParsedMotion<'a> {
         &mut self,
         fields: &TableReader<'a>,
         actuators: &[ParsedActuator<'_>],
-        diagnostics: &mut Diagnostics,
     ) -> bool {
-        let count = diagnostics.count();
+        let count = fields.log().count();
         let laws = fields.get("prescribed");
-        let laws = laws.and_then(|e| TableReader::open(e, "prescribed of [motion]", diagnostics));
+        let laws = laws.and_then(|e| TableReader::open(e, "prescribed of [motion]"));
         for entry in laws.iter().flat_map(|f| &f.entries) {
-            if let Some(k) = find(entry, actuators, diagnostics) {
+            if let Some(k) = actuator_named(entry, actuators) {
                 self.prescribed[k] = Some(entry.clone());
             }
         }
-        diagnostics.count() == count
+        fields.log().count() == count
     }
 
     /// At least one actuator has to be free, and exactly one where the duration is in periods.
-    fn count_free(
-        &self,
-        fields: &TableReader<'_>,
-        actuators: &[ParsedActuator<'_>],
-        diagnostics: &mut Diagnostics,
-    ) {
-        let free = actuators
-            .iter()
-            .zip(&self.prescribed)
-            .filter(|(_, l)| l.is_none());
-        let free: Vec<_> = free.map(|(a, _)| a.name).collect();
+    fn count_free(&self, fields: &TableReader<'_>, actuators: &[ParsedActuator<'_>]) {
+        let free = actuators.iter().zip(&self.prescribed);
+        let free: Vec<_> = free
+            .filter(|(_, l)| l.is_none())
+            .map(|(a, _)| a.name)
+            .collect();
         let names = list(free.iter().copied());
         if let (None, Some(laws)) = (&names, fields.get("prescribed")) {
-            diagnostics.push(
-                Diagnostic::new("[motion] prescribes every actuator: none is free")
-                    .label(laws.key.clone(), "all of them")
-                    .help("a motion in which all actuators are prescribed belongs in [prescribed]"),
-            );
+            fields
+                .error("[motion] prescribes every actuator: none is free")
+                .label(&laws.key, "all of them")
+                .help("a motion in which all actuators are prescribed belongs in [prescribed]")
+                .report();
         }
         if let (Some(names), Some(periods)) = (names, fields.get("periods"))
             && free.len() > 1
         {
-            diagnostics.push(
-                Diagnostic::new(format!("`periods` with {} free actuators", free.len()))
-                    .label(periods.key.clone(), "ambiguous: several actuators are free")
-                    .help(format!(
-                        "{names} are free: give the duration in s, as in `duration = 5.0`"
-                    )),
-            );
+            fields
+                .error(format!("`periods` with {} free actuators", free.len()))
+                .label(&periods.key, "ambiguous: several actuators are free")
+                .help(format!(
+                    "{names} are free: give the duration in s, as in `duration = 5.0`"
+                ))
+                .report();
         }
     }
 
@@ -137,8 +121,6 @@ impl<'a> ParsedMotion<'a> {
         &mut self,
         actuators: &[ParsedActuator<'_>],
         assembly_coordinates: &[f64],
-        units: &Units,
-        diagnostics: &mut Diagnostics,
     ) {
         let end = match self.duration {
             Some((MotionDuration::Seconds(end), _)) => end,
@@ -147,37 +129,11 @@ impl<'a> ParsedMotion<'a> {
         };
         for (k, actuator) in actuators.iter().enumerate() {
             if let Some(entry) = &self.prescribed[k] {
-                let section = "[motion.prescribed]";
-                self.laws[k] = law_of(
-                    entry,
-                    section,
-                    actuator,
-                    (assembly_coordinates[k], end),
-                    units,
-                    diagnostics,
-                );
+                let range = (assembly_coordinates[k], end);
+                self.laws[k] = law_of(entry, "[motion.prescribed]", actuator, range);
             }
         }
     }
-}
-
-/// The actuator that an entry is named by.
-fn find(
-    entry: &Entry<'_>,
-    actuators: &[ParsedActuator<'_>],
-    diagnostics: &mut Diagnostics,
-) -> Option<usize> {
-    let found = actuators.iter().position(|a| a.name == entry.name);
-    if found.is_none() {
-        let names = actuators.iter().map(|a| a.name);
-        let help = diagnostics.choices(entry.name, "actuators", names);
-        diagnostics.push(
-            Diagnostic::new(format!("there is no actuator `{}`", shorten(entry.name)))
-                .label(entry.key.clone(), "unknown actuator")
-                .help(help),
-        );
-    }
-    found
 }
 
 /// Reports missing initial velocities of a motion without loads, drives and motion laws.
@@ -185,29 +141,27 @@ fn report_missing_velocities(
     fields: &TableReader<'_>,
     actuators: &[ParsedActuator<'_>],
     initial_velocities: &[Option<(f64, Span)>],
-    units: &Units,
-    diagnostics: &mut Diagnostics,
 ) {
-    let missing = actuators
-        .iter()
-        .zip(initial_velocities)
-        .filter(|(_, s)| s.is_none());
-    let missing: Vec<_> = missing.map(|(a, _)| a).collect();
+    let missing = actuators.iter().zip(initial_velocities);
+    let missing: Vec<_> = missing
+        .filter(|(_, s)| s.is_none())
+        .map(|(a, _)| a)
+        .collect();
     let Some(names) = list(missing.iter().map(|a| a.name)) else {
         return;
     };
     let at = fields
         .get("initial-velocity")
         .map_or(&fields.span, |e| &e.key);
-    let unit = &missing[0].unit(units).name;
-    diagnostics.push(
-        Diagnostic::new(format!("the initial velocity of {names} is not given"))
-            .label(at.clone(), "no initial velocity")
-            .help(format!(
-                "in {unit}/s: `initial-velocity = {{ {} = 1.0 }}`; without loads and drives the mechanism would not move",
-                missing[0].name
-            )),
+    let (first, unit) = (missing[0].name, &missing[0].unit(fields.units()).name);
+    let help = format!(
+        "in {unit}/s: `initial-velocity = {{ {first} = 1.0 }}`; without loads and drives the mechanism would not move"
     );
+    let diagnostic = fields.error(format!("the initial velocity of {names} is not given"));
+    diagnostic
+        .label(at, "no initial velocity")
+        .help(help)
+        .report();
 }
 
 /// `initial-coordinate` or `initial-velocity`: one value for each free actuator, or a number for the only one.
@@ -215,62 +169,56 @@ struct PerActuator<'p, 'a> {
     key: &'static str,
     actuators: &'p [ParsedActuator<'p>],
     prescribed: &'p [Option<Entry<'a>>],
-    units: &'p Units,
 }
 
 impl PerActuator<'_, '_> {
-    /// What it says of each actuator; none if it is wrong.
-    fn read(
-        &self,
-        entry: Option<&Entry<'_>>,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Vec<Option<(f64, Span)>>> {
+    /// What it gives of each actuator; none if it is wrong.
+    fn read(&self, entry: Option<&Entry<'_>>) -> Option<Vec<Option<(f64, Span)>>> {
         let mut values = vec![None; self.actuators.len()];
         let Some(entry) = entry else {
             return Some(values);
         };
-        let what = format!("{} of [motion]", self.key);
-        if let DeValue::Integer(_) | DeValue::Float(_) = entry.value.get_ref() {
-            let k = self.only_free(entry, &what, diagnostics)?;
-            let si = self.value(k, entry.value, format_args!("{what}"), diagnostics)?;
+        let key = entry.written();
+        let what = format!("{key} of [motion]");
+        if entry.value.is_number() {
+            let k = self.only_free(entry, &what)?;
+            let si = self.value(k, entry.value, what)?;
             values[k] = Some((si, entry.value.span()));
             return Some(values);
         }
-        let count = diagnostics.count();
-        let fields = TableReader::open(entry, what, diagnostics)?;
+        let count = entry.log().count();
+        let fields = TableReader::open(entry, what)?;
         for value in &fields.entries {
-            let Some(k) = find(value, self.actuators, diagnostics) else {
+            let Some(k) = actuator_named(value, self.actuators) else {
                 continue;
             };
-            let (key, name) = (self.key, shorten(value.name));
+            let name = shorten(value.name);
             if let Some(law) = &self.prescribed[k] {
-                diagnostics.push(
-                    Diagnostic::new(format!(
-                        "`{name}` in [motion] has both a motion law and an {key}"
+                fields
+                    .error(format!(
+                        "`{name}` in [motion] has both a motion law and an {}",
+                        self.key
                     ))
-                    .label(law.key.clone(), "prescribed here")
-                    .label(value.key.clone(), format!("{key} given here"))
-                    .help("keep one of them: the law determines the whole motion of the actuator"),
-                );
+                    .label(&law.key, "prescribed here")
+                    .label(&value.key, format!("{key} given here"))
+                    .help("keep one of them: the law determines the whole motion of the actuator")
+                    .report();
                 continue;
             }
-            let what = format_args!("{key} of `{name}` in [motion]");
-            let si = self.value(k, value.value, what, diagnostics);
+            let si = self.value(
+                k,
+                value.value,
+                format_args!("{key} of `{name}` in [motion]"),
+            );
             values[k] = si.map(|si| (si, value.value.span()));
         }
-        (diagnostics.count() == count).then_some(values)
+        (fields.log().count() == count).then_some(values)
     }
 
     /// The only free actuator.
-    fn only_free(
-        &self,
-        entry: &Entry<'_>,
-        what: &str,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<usize> {
-        let free: Vec<_> = (0..self.prescribed.len())
-            .filter(|&k| self.prescribed[k].is_none())
-            .collect();
+    fn only_free(&self, entry: &Entry<'_>, what: &str) -> Option<usize> {
+        let all = self.prescribed.len();
+        let free: Vec<_> = (0..all).filter(|&k| self.prescribed[k].is_none()).collect();
         // Where none is free, that is reported elsewhere.
         if let [] | [_] = free.as_slice() {
             return free.first().copied();
@@ -278,116 +226,68 @@ impl PerActuator<'_, '_> {
         let each = free
             .iter()
             .map(|&k| format!("{} = 0.0", self.actuators[k].name));
-        let example = each.collect::<Vec<_>>().join(", ");
-        let kind = match free.len() == self.prescribed.len() {
+        let example = shorten(&each.collect::<Vec<_>>().join(", "));
+        let kind = match free.len() == all {
             true => "actuators",
             false => "free actuators",
         };
-        diagnostics.push(
-            Diagnostic::new(format!("{what} is one number for {} {kind}", free.len()))
-                .label(entry.value.span(), "ambiguous")
-                .help(format!(
-                    "write `{} = {{ {} }}`",
-                    self.key,
-                    shorten(&example)
-                )),
-        );
-        None
+        let message = format!("{what} is one number for {} {kind}", free.len());
+        let help = format!("write `{} = {{ {example} }}`", self.key);
+        entry.value.wrong(message, "ambiguous").help(help).reject()
     }
 
-    fn value(
-        &self,
-        k: usize,
-        value: &Value<'_>,
-        what: Arguments<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<f64> {
+    fn value(&self, k: usize, value: Value<'_>, what: impl Display) -> Option<f64> {
         let actuator = &self.actuators[k];
         match self.key {
-            "initial-coordinate" => actuator.coordinate_value(value, self.units, what, diagnostics),
-            _ => quantity(value, actuator.unit(self.units), what, diagnostics).map(|(_, si)| si),
+            "initial-coordinate" => actuator.coordinate_value(value, what),
+            _ => value.quantity(actuator.unit(value.units()), what),
         }
     }
 }
 
-fn duration(
-    fields: &TableReader<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<(MotionDuration, Span)> {
+fn duration(fields: &TableReader<'_>) -> Option<(MotionDuration, Span)> {
     let (periods, duration) = (fields.get("periods"), fields.get("duration"));
     if let (Some(a), Some(b)) = (periods, duration) {
-        diagnostics.push(
-            Diagnostic::new("[motion] has both `periods` and `duration`")
-                .label(a.key.clone(), "duration in periods")
-                .label(b.key.clone(), "duration in seconds")
-                .help("keep one of them"),
-        );
+        fields.reject_both(a, b, ["duration in periods", "duration in seconds"]);
         return None;
     }
     let Some(entry) = periods.or(duration) else {
-        diagnostics.push(
-            Diagnostic::new("[motion] has no duration")
-                .label(fields.span.clone(), "no duration")
-                .help("add `periods = 10`, or `duration = 5.0` in s"),
-        );
-        return None;
+        let diagnostic = fields
+            .error("[motion] has no duration")
+            .label(&fields.span, "no duration");
+        return diagnostic
+            .help("add `periods = 10`, or `duration = 5.0` in s")
+            .reject();
     };
-    let value = positive(entry, "[motion]", diagnostics)?;
+    let value = positive(entry, "[motion]")?;
     let motion_duration = match periods {
         Some(_) => MotionDuration::Periods(value),
         None => MotionDuration::Seconds(value),
     };
-    Some((motion_duration, entry.key.start..entry.value.span().end))
+    Some((motion_duration, entry.span()))
 }
 
-/// A number above zero: a time in s, or a count.
-fn positive(entry: &Entry<'_>, section: &str, diagnostics: &mut Diagnostics) -> Option<f64> {
-    let key = entry.name;
-    let value = number(entry.value, format_args!("{key} in {section}"), diagnostics)?;
-    if value > 0.0 {
-        return Some(value);
-    }
-    diagnostics.push(
-        Diagnostic::new(format!("{key} in {section} is not above zero"))
-            .label(entry.value.span(), "expected a number above 0"),
-    );
-    None
-}
-
-/// `[calibration]`, and where the number it sets is named.
+/// `[calibration]`, and where the number it fits is named; `bodies` where all of them were read.
 pub(crate) fn calibration(
     fields: &TableReader<'_>,
-    diagnostics: &mut Diagnostics,
+    bodies: Option<&Bodies<'_>>,
 ) -> Option<(Calibration, Span)> {
-    fields.reject_unknown_keys(&keys::CALIBRATION, diagnostics);
-    let missing = |key: &str, help: &str| {
-        Diagnostic::new(format!("[calibration] has no `{key}`"))
-            .label(fields.span.clone(), format!("`{key}` is missing"))
-            .help(help)
-    };
-    let path = match fields.get("parameter") {
-        Some(e) => string(
-            e.value,
-            format_args!("parameter in [calibration]"),
-            diagnostics,
-        )
-        .map(|path| (path, e.value.span())),
-        None => {
-            let help = "name the number to be fitted: `parameter = \"crank.inertia\"`";
-            diagnostics.push(missing("parameter", help));
-            None
-        }
-    };
-    let period = match fields.get("period") {
-        Some(e) => positive(e, "[calibration]", diagnostics),
-        None => {
-            let help = "give the period to be met, in s: `period = 5.42`";
-            diagnostics.push(missing("period", help));
-            None
-        }
-    };
+    fields.reject_unknown_keys(table("calibration"));
+    let help = "name the number to be fitted: `parameter = \"crank.inertia\"`";
+    let path = fields.require("parameter", help).and_then(|e| {
+        let path = e
+            .value
+            .string(format_args!("{} in [calibration]", e.written()))?;
+        Some((path.to_owned(), e.value.span()))
+    });
+    let help = "give the period to be reached, in s: `period = 5.42`";
+    let period = fields
+        .require("period", help)
+        .and_then(|e| positive(e, "[calibration]"));
     let (path, at) = path?;
     let period = period?;
-    let path = path.to_owned();
+    if let Some(bodies) = bodies {
+        bodies.check_number(&path, &at);
+    }
     Some((Calibration { path, period }, at))
 }

@@ -1,28 +1,35 @@
 //! Names: which ones are allowed.
 
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::table_reader::Entry;
 use crate::wording::{MAX_NAME_LENGTH, shorten};
 
-/// Says what is wrong with a name of `kind` ("a body"), if anything. A name is quoted in
+/// Reports what is wrong with the name of an entry of `kind` ("a body"), if anything. A name is quoted in
 /// messages, joined with dots, and heads columns of tables, so it has to survive all three.
-pub(crate) fn check(kind: &str, name: &str, key: &Span, diagnostics: &mut Diagnostics) {
+pub(crate) fn check(kind: &str, entry: &Entry<'_>) {
+    let name = entry.name;
     let short_name = shorten(name);
-    let diagnostic = if name.is_empty() {
-        Diagnostic::new(format!("the name of {kind} is empty"))
+    let (message, help) = if name.is_empty() {
+        (format!("the name of {kind} is empty"), "")
     } else if name.contains('.') {
-        Diagnostic::new(format!("the name `{short_name}` of {kind} holds a dot"))
-            .help("a dot joins names, as in `body.point`: take `-` or `_` instead")
+        let help = "a dot joins names, as in `body.point`: take `-` or `_` instead";
+        (
+            format!("the name `{short_name}` of {kind} holds a dot"),
+            help,
+        )
     } else if name.chars().count() > MAX_NAME_LENGTH {
-        Diagnostic::new(format!(
-            "the name of {kind} is longer than {MAX_NAME_LENGTH} characters"
-        ))
+        let message = format!("the name of {kind} is longer than {MAX_NAME_LENGTH} characters");
+        (message, "")
     } else if name.trim() != name || !name.chars().all(allowed) {
-        Diagnostic::new(format!("`{short_name}` cannot be the name of {kind}"))
-            .help("a name is made of letters, digits, `_`, `-`, primes and inner spaces")
+        let help = "a name is made of letters, digits, `_`, `-`, primes and inner spaces";
+        (format!("`{short_name}` cannot be the name of {kind}"), help)
     } else {
         return;
     };
-    diagnostics.push(diagnostic.label(key.clone(), "this name"));
+    entry
+        .error(message)
+        .label(&entry.key, "this name")
+        .help(help)
+        .report();
 }
 
 fn allowed(c: char) -> bool {

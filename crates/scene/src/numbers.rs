@@ -110,7 +110,9 @@ impl Scene {
         }
         text += old.get(from..).unwrap_or_default();
         let source = Arc::new(NamedSource::new(self.source.name(), text));
-        Self::build(self.name.clone(), &source)
+        let mut scene = Self::build(self.name.clone(), &source)?;
+        scene.keep_functions(&self.loads);
+        Ok(scene)
     }
 
     /// Where the number at `path` is written: itself, or the point it belongs to.

@@ -1,90 +1,103 @@
 //! Prescribed motions and coordinate sweeps.
 
 use crate::coordinates::ParsedActuator;
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys;
+use crate::diagnostics::Span;
+use crate::keys::{TableSchema, table};
 use crate::law::{LawDomain, law};
 use crate::scene::{CoordinateSweep, PrescribedMotion};
-use crate::table_reader::{Entry, SignRule, TableReader, Value, array, count, quantity_with_sign};
-use crate::units::{Unit, Units};
+use crate::table_reader::{Entry, TableReader};
+use crate::units::SI;
+use crate::value::{NumberRule, SignRule, Value};
 use crate::wording::{list, shorten};
 use dwell_geometry::ActuatorId;
 use dwell_laws::Law;
-use toml::de::DeValue;
 
-/// Positions or times, where the scene does not say how many.
+/// Positions or times, where the scene does not give their number.
 const DEFAULT_POINTS: usize = 361;
 
 /// `[prescribed]` as read, and where each actuator's law is.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct ParsedPrescribedMotion {
     pub(crate) prescribed: Option<PrescribedMotion>,
     pub(crate) laws: Vec<Option<Span>>,
 }
 
 /// `[coordinate-sweep]` as read, and the span of each actuator's entry.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct ParsedSweep {
     pub(crate) sweep: Option<CoordinateSweep>,
     pub(crate) actuators: Vec<Option<Span>>,
+}
+
+/// Reports a section of motion in a scene without actuators.
+pub(crate) fn require_actuators(
+    fields: &TableReader<'_>,
+    actuators: &[ParsedActuator<'_>],
+) -> Option<()> {
+    if actuators.is_empty() {
+        let diagnostic = fields.error(format!("there is a {} but no actuator", fields.what));
+        let help = "declare an independent coordinate, as in `[actuators.phi]`";
+        return diagnostic
+            .label(&fields.span, "no coordinate can move")
+            .help(help)
+            .reject();
+    }
+    Some(())
+}
+
+/// The actuator that an entry is named by.
+pub(crate) fn actuator_named(entry: &Entry<'_>, actuators: &[ParsedActuator<'_>]) -> Option<usize> {
+    let found = actuators.iter().position(|a| a.name == entry.name);
+    found.or_else(|| {
+        let names = actuators.iter().map(|a| a.name);
+        let help = entry.log().choices(entry.name, "actuators", names);
+        let diagnostic = entry.error(format!("there is no actuator `{}`", shorten(entry.name)));
+        diagnostic
+            .label(&entry.key, "unknown actuator")
+            .help(help)
+            .reject()
+    })
 }
 
 /// The entries of a section that are named by actuators, in the order of these; the section's own
 /// keys are no names.
 fn by_actuator<'f, 'a>(
     fields: &'f TableReader<'a>,
-    table: &keys::TableSchema,
+    table: &'static TableSchema,
     actuators: &[ParsedActuator<'_>],
-    diagnostics: &mut Diagnostics,
 ) -> Option<Vec<Option<&'f Entry<'a>>>> {
     let section = &fields.what;
-    if actuators.is_empty() {
-        diagnostics.push(
-            Diagnostic::new(format!("there is a {section} but no actuator"))
-                .label(fields.span.clone(), "no coordinate can move")
-                .help("declare an independent coordinate, as in `[actuators.phi]`"),
-        );
-        return None;
-    }
+    require_actuators(fields, actuators)?;
     if let Some(a) = actuators.iter().find(|a| table.contains_key(a.name)) {
-        let name = shorten(a.name);
-        diagnostics.push(
-            Diagnostic::new(format!(
-                "actuator `{name}` has the name of a key of {section}"
+        return fields
+            .error(format!(
+                "actuator `{}` has the name of a key of {section}",
+                shorten(a.name)
             ))
-            .label(a.key.clone(), "this name")
+            .label(&a.key, "this name")
             .help(format!(
                 "rename it: in {section} the name would be ambiguous"
-            )),
-        );
-        return None;
+            ))
+            .reject();
     }
     let mut entries = vec![None; actuators.len()];
-    for entry in fields
-        .entries
-        .iter()
-        .filter(|e| !table.contains_key(e.name))
-    {
+    for entry in fields.unknown_entries(table) {
         if let Some(k) = actuators.iter().position(|a| a.name == entry.name) {
             entries[k] = Some(entry);
             continue;
         }
-        let section_keys = table.keys.iter().map(|k| k.name);
-        let names: Vec<&str> = actuators
-            .iter()
-            .map(|a| a.name)
-            .chain(section_keys)
-            .collect();
-        let kind = format!("keys of {section}");
-        let help = diagnostics.choices(entry.name, &kind, names.into_iter());
-        diagnostics.push(
-            Diagnostic::new(format!(
-                "`{}` in {section} is neither an actuator nor a key of it",
-                shorten(entry.name)
+        let names = actuators.iter().map(|a| a.name).chain(table.names());
+        let help = fields
+            .log()
+            .choices(entry.name, &format!("keys of {section}"), names);
+        let name = shorten(entry.name);
+        fields
+            .error(format!(
+                "`{name}` in {section} is neither an actuator nor a key of it"
             ))
-            .label(entry.key.clone(), "unknown name")
-            .help(help),
-        );
+            .label(&entry.key, "unknown name")
+            .help(help)
+            .report();
     }
     Some(entries)
 }
@@ -95,51 +108,42 @@ impl ParsedPrescribedMotion {
         fields: &TableReader<'_>,
         actuators: &[ParsedActuator<'_>],
         start: &[f64],
-        units: &Units,
-        diagnostics: &mut Diagnostics,
     ) -> Self {
         let help = "add `duration = 2.0`: how long the motion lasts, in s";
-        let duration = fields.require("duration", &fields.span, help, diagnostics);
-        let duration = duration.and_then(|e| positive(e, fields, diagnostics));
-        let points = points(fields, diagnostics);
-        let Some(entries) = by_actuator(fields, &keys::PRESCRIBED, actuators, diagnostics) else {
-            return Self {
-                prescribed: None,
-                laws: Vec::new(),
-            };
+        let duration = fields
+            .require("duration", help)
+            .and_then(|e| positive(e, &fields.what));
+        let points = points(fields);
+        let Some(entries) = by_actuator(fields, table("prescribed"), actuators) else {
+            return Self::default();
         };
         let missing = actuators.iter().zip(&entries).filter(|(_, e)| e.is_none());
         let missing: Vec<_> = missing.map(|(a, _)| a.name).collect();
         if let Some(names) = list(missing.iter().copied()) {
-            diagnostics.push(
-                Diagnostic::new(format!("[prescribed] has no law of {names}"))
-                    .label(fields.span.clone(), "no motion law")
-                    .help(format!(
-                        "add for instance `{} = {{ speed = 1.0 }}`; a fixed actuator has speed 0",
-                        missing[0]
-                    )),
-            );
+            fields
+                .error(format!("[prescribed] has no law of {names}"))
+                .label(&fields.span, "no motion law")
+                .help(format!(
+                    "add for instance `{} = {{ speed = 1.0 }}`; a fixed actuator has speed 0",
+                    missing[0]
+                ))
+                .report();
         }
-        let laws: Vec<_> = actuators
-            .iter()
-            .zip(&entries)
-            .zip(start)
-            .map(|((a, e), &start)| {
-                // A wrong duration is reported once, not again for each table.
-                let end = duration.unwrap_or(0.0);
-                law_of((*e)?, "[prescribed]", a, (start, end), units, diagnostics)
-            })
-            .collect();
+        // A wrong duration is reported once, not again for each table.
+        let end = duration.unwrap_or(0.0);
+        let each = actuators.iter().zip(&entries).zip(start);
+        let laws = each.map(|((a, e), &start)| law_of((*e)?, "[prescribed]", a, (start, end)));
+        // All are read before one is missed, so that each error is reported.
+        let laws: Vec<_> = laws.collect();
         let laws: Option<Vec<Law>> = laws.into_iter().collect();
+        let all = duration.zip(points).zip(laws);
+        let motion = |((duration, points), laws)| PrescribedMotion {
+            duration,
+            points,
+            laws,
+        };
         Self {
-            prescribed: duration
-                .zip(points)
-                .zip(laws)
-                .map(|((duration, points), laws)| PrescribedMotion {
-                    duration,
-                    points,
-                    laws,
-                }),
+            prescribed: all.map(motion),
             laws: entries.iter().map(|e| e.map(|e| e.key.clone())).collect(),
         }
     }
@@ -151,62 +155,35 @@ pub(crate) fn law_of(
     section: &str,
     actuator: &ParsedActuator<'_>,
     (start, end): (f64, f64),
-    units: &Units,
-    diagnostics: &mut Diagnostics,
 ) -> Option<Law> {
-    let what = format!("`{}` in {section}", shorten(entry.name));
-    let fields = TableReader::open(entry, what, diagnostics)?;
-    fields.reject_unknown_keys(&keys::LAW, diagnostics);
-    let Some(chosen) = fields
-        .one_of(|n| keys::LAW.contains_key(n), diagnostics)
-        .ok()?
-    else {
-        if fields.has_unknown_keys(&keys::LAW) {
-            return None;
-        }
-        let laws = list(keys::LAW.names()).unwrap_or_default();
-        diagnostics.push(
-            Diagnostic::new(format!("{} has no law", fields.what))
-                .label(entry.value.span(), "no motion law")
-                .help(format!(
-                    "write it as `{{ speed = 1.0 }}`; the laws are {laws}"
-                )),
-        );
-        return None;
-    };
+    let fields = TableReader::open(entry, format!("`{}` in {section}", shorten(entry.name)))?;
+    fields.reject_unknown_keys(table("law"));
+    let laws = list(table("law").names()).unwrap_or_default();
+    let help = format!("write it as `{{ speed = 1.0 }}`; the laws are {laws}");
+    let chosen = fields.alternative(table("law"), ("has no law", "no motion law"), help)?;
     let domain = LawDomain {
         variable: "t",
-        x_unit: &Unit::si_unit(),
-        y_unit: actuator.unit(units),
+        x_unit: &SI,
+        y_unit: actuator.unit(fields.units()),
         start_value: start,
         end_time: Some(end),
     };
-    law(chosen, &fields.what, &domain, units, diagnostics)
+    law(chosen, &fields.what, &domain)
 }
 
-fn positive(
-    entry: &Entry<'_>,
-    fields: &TableReader<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<f64> {
-    let what = format_args!("{} in {}", entry.name, fields.what);
-    let seconds = Unit::si_unit();
-    quantity_with_sign(
-        entry.value,
-        &seconds,
-        SignRule::Positive,
-        what,
-        "",
-        diagnostics,
-    )
+/// A number above zero: a time in s, or a count.
+pub(crate) fn positive(entry: &Entry<'_>, section: &str) -> Option<f64> {
+    let rule = NumberRule::new(&SI, SignRule::Positive);
+    entry
+        .value
+        .quantity_with_sign(&rule, format_args!("{} in {section}", entry.written()))
 }
 
-fn points(fields: &TableReader<'_>, diagnostics: &mut Diagnostics) -> Option<usize> {
-    let Some(entry) = fields.get("points") else {
-        return Some(DEFAULT_POINTS);
-    };
-    let what = format_args!("points in {}", fields.what);
-    count(entry.value, what, diagnostics)
+fn points(fields: &TableReader<'_>) -> Option<usize> {
+    match fields.get("points") {
+        Some(entry) => entry.value.count(format_args!("points in {}", fields.what)),
+        None => Some(DEFAULT_POINTS),
+    }
 }
 
 impl ParsedSweep {
@@ -214,81 +191,60 @@ impl ParsedSweep {
         fields: &TableReader<'_>,
         actuators: &[ParsedActuator<'_>],
         start: &[f64],
-        units: &Units,
-        diagnostics: &mut Diagnostics,
     ) -> Self {
-        let before = diagnostics.count();
-        let points = points(fields, diagnostics);
-        let Some(entries) = by_actuator(fields, &keys::COORDINATE_SWEEP, actuators, diagnostics)
-        else {
-            return Self {
-                sweep: None,
-                actuators: Vec::new(),
-            };
+        let before = fields.log().count();
+        let points = points(fields);
+        let Some(entries) = by_actuator(fields, table("coordinate-sweep"), actuators) else {
+            return Self::default();
         };
         let mut fixed_coordinates = start.to_vec();
         let mut range: Option<(usize, [f64; 2], Span)> = None;
         for (k, entry) in entries.iter().enumerate() {
             let Some(entry) = entry else { continue };
-            match sweep_coordinate(entry, &actuators[k], units, diagnostics) {
+            match sweep_coordinate(entry, &actuators[k]) {
                 Some(SweepCoordinate::Fixed(at)) => fixed_coordinates[k] = at,
                 Some(SweepCoordinate::Swept(ends)) => match &range {
-                    Some((_, _, other)) => diagnostics.push(
-                        Diagnostic::new("[coordinate-sweep] sweeps two actuators")
-                            .label(other.clone(), "swept here")
-                            .label(entry.value.span(), "and swept here")
-                            .help("fix all but one of them with a single number"),
-                    ),
+                    Some((_, _, other)) => fields
+                        .error("[coordinate-sweep] sweeps two actuators")
+                        .label(other, "swept here")
+                        .label(&entry.value.span(), "and swept here")
+                        .help("fix all but one of them with a single number")
+                        .report(),
                     None => range = Some((k, ends, entry.value.span())),
                 },
                 None => {}
             }
         }
-        let free: Vec<_> = (0..actuators.len())
-            .filter(|&k| entries[k].is_none())
-            .collect();
-        let swept = match (&range, free.as_slice()) {
-            (Some((k, ..)), _) => Some(*k),
-            (None, [only]) => Some(*only),
-            (None, _) => None,
+        let mut not_named = (0..actuators.len()).filter(|&k| entries[k].is_none());
+        let swept = match (&range, not_named.next(), not_named.next()) {
+            (Some((k, ..)), ..) => Some(*k),
+            (None, only, None) => only,
+            (None, ..) => None,
         };
-        if swept.is_none() && diagnostics.count() == before {
-            diagnostics.push(
-                Diagnostic::new("[coordinate-sweep] does not name the swept actuator")
-                    .label(fields.span.clone(), "several actuators are possible")
-                    .help(format!(
-                        "give one of them an interval: `{} = [0.0, 1.0]`",
-                        actuators[0].name
-                    )),
-            );
+        if swept.is_none() && fields.log().count() == before {
+            fields
+                .error("[coordinate-sweep] does not name the swept actuator")
+                .label(&fields.span, "several actuators are possible")
+                .help(format!(
+                    "give one of them an interval: `{} = [0.0, 1.0]`",
+                    actuators[0].name
+                ))
+                .report();
         }
-        let speed = match (fields.get("speed"), swept) {
-            (None, _) => Some(1.0),
-            (Some(e), k) => {
-                let unit = units.coordinate_unit(k.is_none_or(|k| actuators[k].is_angle()));
-                let why = "the order of the interval's ends gives the direction";
-                let what = format_args!("speed in [coordinate-sweep]");
-                quantity_with_sign(e.value, unit, SignRule::Positive, what, why, diagnostics)
-            }
-        };
-        let whole = |e: &Entry<'_>| e.key.start..e.value.span().end;
-        let spans = entries.iter().map(|e| e.map(whole)).collect();
-        let (Some(k), Some(points), Some(speed)) = (swept, points, speed) else {
-            return Self {
-                sweep: None,
-                actuators: spans,
-            };
-        };
-        Self {
-            sweep: Some(CoordinateSweep {
-                actuator: ActuatorId(k),
-                range: range.map(|(_, ends, _)| ends),
-                fixed_coordinates,
-                points,
-                speed,
-            }),
-            actuators: spans,
-        }
+        let is_angle = swept.is_none_or(|k| actuators[k].is_angle());
+        let rule = NumberRule::new(fields.units().coordinate_unit(is_angle), SignRule::Positive);
+        let rule = rule.because("the order of the interval's ends gives the direction");
+        let speed = fields.number_or(1.0, "speed", &rule);
+        let all = swept.zip(points).zip(speed);
+        let sweep = all.map(|((k, points), speed)| CoordinateSweep {
+            actuator: ActuatorId(k),
+            range: range.map(|(_, ends, _)| ends),
+            fixed_coordinates,
+            points,
+            speed,
+        });
+        let actuators = entries.iter().map(|e| e.map(Entry::span)).collect();
+        Self { sweep, actuators }
     }
 }
 
@@ -298,39 +254,28 @@ enum SweepCoordinate {
     Swept([f64; 2]),
 }
 
-fn sweep_coordinate(
-    entry: &Entry<'_>,
-    actuator: &ParsedActuator<'_>,
-    units: &Units,
-    diagnostics: &mut Diagnostics,
-) -> Option<SweepCoordinate> {
-    let name = shorten(entry.name);
-    let read = |value: &Value<'_>, diagnostics: &mut Diagnostics| {
-        let what = format_args!("`{name}` in [coordinate-sweep]");
-        actuator.coordinate_value(value, units, what, diagnostics)
-    };
-    if let DeValue::Integer(_) | DeValue::Float(_) = entry.value.get_ref() {
-        return read(entry.value, diagnostics).map(SweepCoordinate::Fixed);
+fn sweep_coordinate(entry: &Entry<'_>, actuator: &ParsedActuator<'_>) -> Option<SweepCoordinate> {
+    let what = format!("`{}` in [coordinate-sweep]", shorten(entry.name));
+    let read = |value: Value<'_>| actuator.coordinate_value(value, &what);
+    let value = entry.value;
+    if value.is_number() {
+        return read(value).map(SweepCoordinate::Fixed);
     }
     let expected = "a number, or an interval [from, to]";
-    let what = format_args!("`{name}` in [coordinate-sweep]");
-    let values = array(entry.value, expected, what, diagnostics)?;
-    let [from, to] = values else {
-        diagnostics.push(
-            Diagnostic::new(format!("{what}: expected {expected}"))
-                .label(entry.value.span(), format!("{} values", values.len())),
-        );
-        return None;
+    let values = value.array(expected, &what)?;
+    let [from, to] = values.as_slice() else {
+        let label = format!("{} values", values.len());
+        return value
+            .wrong(format!("{what}: expected {expected}"), &label)
+            .reject();
     };
-    let (from, to) = (read(from, diagnostics), read(to, diagnostics));
+    let (from, to) = (read(*from), read(*to));
     let (from, to) = (from?, to?);
     if from == to {
-        diagnostics.push(
-            Diagnostic::new(format!("{what} ends where it begins"))
-                .label(entry.value.span(), "nothing to sweep")
-                .help("a single number fixes the actuator there"),
-        );
-        return None;
+        let diagnostic = value.wrong(format!("{what} ends where it begins"), "nothing to sweep");
+        return diagnostic
+            .help("a single number fixes the actuator there")
+            .reject();
     }
     Some(SweepCoordinate::Swept([from, to]))
 }

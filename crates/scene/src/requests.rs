@@ -1,15 +1,15 @@
 //! The requested results.
 
 use crate::bodies::Bodies;
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::diagnostics::Span;
 use crate::joints::Joints;
-use crate::keys;
+use crate::keys::table;
 use crate::scene::{DwellRequest, PathPoint, SectionRequest};
-use crate::table_reader::{Entry, TableReader, Value, array, mismatch, number, string};
+use crate::table_reader::{Entry, TableReader};
+use crate::value::Value;
 use crate::wording::shorten;
-use dwell_geometry::{Component, Coupling, Joint, JointId, Reaction};
+use dwell_geometry::{BodyId, Component, Joint, JointId, Reaction};
 use std::collections::HashSet;
-use toml::de::DeValue;
 
 /// `[requests]` as read, each with where it is asked for. No reactions: all of them.
 #[derive(Debug, Default)]
@@ -22,73 +22,52 @@ pub(crate) struct ParsedRequests {
 }
 
 impl ParsedRequests {
-    pub(crate) fn read(
-        fields: &TableReader<'_>,
-        bodies: &Bodies<'_>,
-        joints: &Joints<'_>,
-        diagnostics: &mut Diagnostics,
-    ) -> Self {
-        fields.reject_unknown_keys(&keys::REQUESTS, diagnostics);
-        let reactions = fields.get("reactions");
-        let paths = fields.get("paths");
-        let dwell = fields.get("dwell");
-        let variables = fields.get("variables");
+    pub(crate) fn read(fields: &TableReader<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) -> Self {
+        fields.reject_unknown_keys(table("requests"));
+        let dwell = |e: &Entry<'_>| Some((dwell_of(e, bodies)?, e.value.span()));
         let sections = fields.get("sections");
         Self {
-            reactions: reactions.map(|e| reactions_of(e, joints, diagnostics)),
-            paths: paths.map_or_else(Vec::new, |e| paths_of(e, bodies, diagnostics)),
-            dwell: dwell.and_then(|e| Some((dwell_of(e, bodies, diagnostics)?, e.value.span()))),
-            variables: variables.map(|e| variables_of(e, diagnostics)),
-            sections: sections.map_or_else(Vec::new, |e| sections_of(e, bodies, diagnostics)),
+            reactions: fields.get("reactions").map(|e| reactions_of(e, joints)),
+            paths: fields
+                .get("paths")
+                .map_or_else(Vec::new, |e| paths_of(e, bodies)),
+            dwell: fields.get("dwell").and_then(dwell),
+            variables: fields.get("variables").map(variables_of),
+            sections: sections.map_or_else(Vec::new, |e| sections_of(e.value, bodies)),
         }
     }
 }
 
 /// The strings of an array, those that are none being reported.
-fn strings<'a>(
-    entry: &Entry<'a>,
-    expected: &str,
-    diagnostics: &mut Diagnostics,
-) -> Vec<(&'a str, Span)> {
+fn strings<'a>(entry: &Entry<'a>, expected: &str) -> Vec<(&'a str, Span)> {
     let what = format!("{} in [requests]", entry.name);
-    let values = array(entry.value, expected, format_args!("{what}"), diagnostics);
-    let values = values.into_iter().flatten();
-    let one = |value| {
-        Some((
-            string(value, format_args!("an entry of {what}"), diagnostics)?,
-            value.span(),
-        ))
+    let values = entry.value.array(expected, &what).into_iter().flatten();
+    let one = |value: Value<'a>| {
+        let text = value.string(format_args!("an entry of {what}"))?;
+        Some((text, value.span()))
     };
     values.filter_map(one).collect()
 }
 
-fn reactions_of(
-    entry: &Entry<'_>,
-    joints: &Joints<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Vec<(Reaction, Span)> {
+fn reactions_of(entry: &Entry<'_>, joints: &Joints<'_>) -> Vec<(Reaction, Span)> {
     let mut requested = HashSet::new();
     let mut reactions = Vec::new();
-    for (text, at) in strings(entry, "an array such as [\"slide.normal\"]", diagnostics) {
-        let (name, component) = match text.split_once('.') {
-            Some((name, component)) => (name, Some(component)),
-            None => (text, None),
-        };
-        let Some(range) = joints.find(name, &at, diagnostics) else {
-            continue;
-        };
-        for k in range {
+    for (text, at) in strings(entry, "an array such as [\"slide.normal\"]") {
+        let (name, component) = joint_and_component(text);
+        for k in joints.find(name, &at).into_iter().flatten() {
             // A joint that could not be read has been reported already.
             let Some(joint) = &joints.list[k].joint else {
                 continue;
             };
-            let found = components(joint, component, &joints.couplings, &at, diagnostics);
+            let found = components(joint, component, joints, &at);
             if found.is_empty() {
                 break;
             }
             for component in found {
-                let joint = JointId(k);
-                let reaction = Reaction { joint, component };
+                let reaction = Reaction {
+                    joint: JointId(k),
+                    component,
+                };
                 // Asked for twice, as `slide` and `slide.normal`, it is still one reaction.
                 if requested.insert(reaction) {
                     reactions.push((reaction, at.clone()));
@@ -99,196 +78,163 @@ fn reactions_of(
     reactions
 }
 
+/// The parts of `joint.component`, of which the second may be absent.
+pub(crate) fn joint_and_component(text: &str) -> (&str, Option<&str>) {
+    match text.split_once('.') {
+        Some((joint, component)) => (joint, Some(component)),
+        None => (text, None),
+    }
+}
+
 /// The named component of the joint's reaction, or all of them.
 pub(crate) fn components(
     joint: &Joint,
     name: Option<&str>,
-    relations: &[Coupling],
+    joints: &Joints<'_>,
     at: &Span,
-    diagnostics: &mut Diagnostics,
 ) -> Vec<Component> {
-    let all = joint.kind.components(relations);
-    let Some(name) = name else {
-        return all.to_vec();
-    };
-    if let Some(component) = all.iter().copied().find(|c| c.name() == name) {
-        return vec![component];
+    let mut all = joint.kind.components(&joints.couplings).to_vec();
+    if let Some(name) = name {
+        let names = all.iter().map(|c| c.name());
+        let help = joints
+            .log
+            .choices(name, "components of its reaction", names);
+        all.retain(|c| c.name() == name);
+        if all.is_empty() {
+            let (joint, name) = (&joint.name, shorten(name));
+            let message = format!("the reaction of joint `{joint}` has no component `{name}`");
+            joints
+                .log
+                .error(message)
+                .label(at, "unknown component")
+                .help(help)
+                .report();
+        }
     }
-    let help = diagnostics.choices(
-        name,
-        "components of its reaction",
-        all.iter().map(|c| c.name()),
-    );
-    let joint = &joint.name;
-    diagnostics.push(
-        Diagnostic::new(format!(
-            "the reaction of joint `{joint}` has no component `{}`",
-            shorten(name)
-        ))
-        .label(at.clone(), "unknown component")
-        .help(help),
-    );
-    Vec::new()
+    all
 }
 
-fn paths_of(
-    entry: &Entry<'_>,
-    bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Vec<(PathPoint, Span)> {
+fn paths_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Vec<(PathPoint, Span)> {
     let mut requested = HashSet::new();
     let mut paths = Vec::new();
-    for (text, at) in strings(entry, "an array such as [\"coupler.P\"]", diagnostics) {
-        let Some((body, k)) = bodies.find_point(text, &at, diagnostics) else {
+    for (text, span) in strings(entry, "an array such as [\"coupler.P\"]") {
+        let Some((body, k)) = bodies.find_point(text, &span) else {
             continue;
         };
         if bodies.ground == Some(body.0) {
-            diagnostics.push(
-                Diagnostic::new(format!("`{}` is a point of the ground", shorten(text)))
-                    .label(at, "it has no path")
-                    .help("ask for a point of a moving body"),
-            );
-            continue;
-        }
-        if requested.insert((body, k)) {
+            entry
+                .error(format!("`{}` is a point of the ground", shorten(text)))
+                .label(&span, "it has no path")
+                .help("ask for a point of a moving body")
+                .report();
+        } else if requested.insert((body, k)) {
             let point = &bodies.list[body.0].points[k];
-            let (name, at_body) = (point.name.to_owned(), point.at);
-            paths.push((
-                PathPoint {
-                    body,
-                    name,
-                    at: at_body,
-                },
-                at,
-            ));
+            let (name, at) = (point.name.to_owned(), point.at);
+            paths.push((PathPoint { body, name, at }, span));
         }
     }
     paths
 }
 
-fn dwell_of(
-    entry: &Entry<'_>,
+/// The moving body that a value names; of the ground, the message says `lacks`.
+fn moving_body(
+    value: Value<'_>,
+    what: &str,
+    lacks: &str,
+    help: &str,
     bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<DwellRequest> {
-    let fields = TableReader::open(entry, "dwell in [requests]", diagnostics)?;
-    fields.reject_unknown_keys(&keys::DWELL, diagnostics);
-    let (Some(body), Some(band)) = (fields.get("body"), fields.get("relative-band")) else {
-        diagnostics.push(
-            Diagnostic::new("dwell in [requests] needs a body and a band")
-                .label(entry.value.span(), "incomplete")
-                .help("write `dwell = { body = \"guide\", relative-band = 0.02 }`"),
-        );
-        return None;
-    };
-    let name = string(body.value, format_args!("the body of dwell"), diagnostics);
-    let id = name.and_then(|name| bodies.find(name, &body.value.span(), diagnostics));
-    if let (Some(name), Some(id)) = (name, id)
-        && bodies.ground == Some(id.0)
-    {
-        diagnostics.push(
-            Diagnostic::new(format!(
-                "`{}` is the ground, which does not move",
-                shorten(name)
-            ))
-            .label(body.value.span(), "not a moving body"),
-        );
-        return None;
+) -> Option<BodyId> {
+    let name = value.string(what)?;
+    let body = bodies.find(name, &value.span())?;
+    if bodies.ground == Some(body.0) {
+        let message = format!("`{}` is the ground, which {lacks}", shorten(name));
+        return value
+            .wrong(message, "not a moving body")
+            .help(help)
+            .reject();
     }
-    let width = number(band.value, format_args!("the band of dwell"), diagnostics)?;
-    if !(width > 0.0 && width < 1.0) {
-        diagnostics.push(
-            Diagnostic::new("the band of a dwell is a fraction of the body's angular range")
-                .label(band.value.span(), "expected a number between 0 and 1"),
-        );
-        return None;
+    Some(body)
+}
+
+fn dwell_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Option<DwellRequest> {
+    let fields = TableReader::open(entry, "dwell in [requests]")?;
+    fields.reject_unknown_keys(table("dwell"));
+    let (Some(body), Some(band)) = (fields.get("body"), fields.get("relative-band")) else {
+        let message = "dwell in [requests] needs a body and a band";
+        let help = "write `dwell = { body = \"guide\", relative-band = 0.02 }`";
+        return entry.value.wrong(message, "incomplete").help(help).reject();
+    };
+    let body = moving_body(body.value, "the body of dwell", "does not move", "", bodies);
+    let relative_band = band.value.number("the band of dwell")?;
+    if !(relative_band > 0.0 && relative_band < 1.0) {
+        let message = "the band of a dwell is a fraction of the body's angular range";
+        return band
+            .value
+            .wrong(message, "expected a number between 0 and 1")
+            .reject();
     }
     Some(DwellRequest {
-        body: id?,
-        relative_band: width,
+        body: body?,
+        relative_band,
     })
 }
 
 /// The names of columns, each once.
-fn variables_of(entry: &Entry<'_>, diagnostics: &mut Diagnostics) -> Vec<(String, Span)> {
+fn variables_of(entry: &Entry<'_>) -> Vec<(String, Span)> {
     let mut requested = HashSet::new();
-    strings(entry, "an array such as [\"crank.angle\"]", diagnostics)
-        .into_iter()
-        .filter(|(name, _)| requested.insert(*name))
-        .map(|(name, at)| (name.to_owned(), at))
-        .collect()
+    let names = strings(entry, "an array such as [\"crank.angle\"]").into_iter();
+    let names = names.filter(|(name, _)| requested.insert(*name));
+    names.map(|(name, at)| (name.to_owned(), at)).collect()
 }
 
 /// The links, each once.
-fn sections_of(
-    entry: &Entry<'_>,
-    bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Vec<(SectionRequest, Span)> {
+fn sections_of(value: Value<'_>, bodies: &Bodies<'_>) -> Vec<(SectionRequest, Span)> {
     let expected = "an array such as [{ body = \"rod\", from = \"B\", to = \"P\" }]";
-    let what = format_args!("sections in [requests]");
-    let values = array(entry.value, expected, what, diagnostics);
+    let values = value.array(expected, "sections in [requests]");
     let mut sections: Vec<(SectionRequest, Span)> = Vec::new();
     for value in values.into_iter().flatten() {
-        let Some(section) = section_of(value, bodies, diagnostics) else {
-            continue;
-        };
-        if sections.iter().all(|(known, _)| *known != section) {
+        if let Some(section) = section_of(value, bodies)
+            && sections.iter().all(|(known, _)| *known != section)
+        {
             sections.push((section, value.span()));
         }
     }
     sections
 }
 
-fn section_of(
-    value: &Value<'_>,
-    bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
-) -> Option<SectionRequest> {
+fn section_of(value: Value<'_>, bodies: &Bodies<'_>) -> Option<SectionRequest> {
     let what = "a section in [requests]";
-    let DeValue::Table(table) = value.get_ref() else {
-        mismatch(value, "a table", format_args!("{what}"), diagnostics);
-        return None;
-    };
-    let fields = TableReader::new(what, value.span(), table);
-    fields.reject_unknown_keys(&keys::SECTION, diagnostics);
+    let fields = TableReader::of_value(value, value.span(), what)?;
+    fields.reject_unknown_keys(table("section"));
     let help = "write it as `{ body = \"rod\", from = \"B\", to = \"P\" }`";
-    let [body, from, to] = ["body", "from", "to"].map(|key| {
-        let entry = fields.require(key, &fields.span, help, diagnostics)?;
-        let what = format_args!("{key} of {what}");
-        Some((string(entry.value, what, diagnostics)?, entry.value.span()))
-    });
-    let (name, at) = body?;
-    let body = bodies.find(name, &at, diagnostics)?;
-    if bodies.ground == Some(body.0) {
-        diagnostics.push(
-            Diagnostic::new(format!(
-                "`{}` is the ground, which has no sections",
-                shorten(name)
-            ))
-            .label(at, "not a moving body")
-            .help("ask for the sections of a moving body"),
-        );
-        return None;
-    }
-    let from =
-        from.and_then(|(name, at)| bodies.point_of(body, name, &at, diagnostics).zip(Some(at)));
-    let to = to.and_then(|(name, at)| bodies.point_of(body, name, &at, diagnostics).zip(Some(at)));
+    let [body, from, to] = ["body", "from", "to"].map(|key| fields.require(key, help));
+    let help = "ask for the sections of a moving body";
+    let id = moving_body(
+        body?.value,
+        &fields.name_of(body?),
+        "has no sections",
+        help,
+        bodies,
+    )?;
+    let body = &bodies.list[id.0];
+    let end = |entry: Option<&Entry<'_>>| {
+        let (entry, at) = (entry?, entry?.value.span());
+        let name = entry.value.string(fields.name_of(entry))?;
+        Some((&body.points[bodies.point_of(id, name, &at)?], at))
+    };
+    let (from, to) = (end(from), end(to));
     let ((from, at_from), (to, at_to)) = (from?, to?);
-    let points = &bodies.list[body.0].points;
-    let ends = [&points[from], &points[to]];
-    if ends[0].at == ends[1].at {
-        diagnostics.push(
-            Diagnostic::new(format!("{what} of `{}` has no length", shorten(name)))
-                .label(at_from, "from here")
-                .label(at_to, "to the same place")
-                .help("give two points that are apart"),
-        );
-        return None;
+    if from.at == to.at {
+        return fields
+            .error(format!("{what} of `{}` has no length", shorten(body.name)))
+            .label(&at_from, "from here")
+            .label(&at_to, "to the same place")
+            .help("give two points that are apart")
+            .reject();
     }
     Some(SectionRequest {
-        body,
-        names: ends.map(|p| p.name.to_owned()),
-        points: ends.map(|p| p.at),
+        body: id,
+        names: [from, to].map(|p| p.name.to_owned()),
+        points: [from.at, to.at],
     })
 }

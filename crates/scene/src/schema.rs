@@ -1,6 +1,6 @@
 //! The JSON schema of scenes, from which editors complete keys and show what they mean.
 
-use crate::keys::{KeySchema, Presence, SCENE, TableSchema, ValueShape};
+use crate::keys::{self, KeySchema, Presence, TableSchema, ValueShape, kinds};
 use serde_json::{Map, Value, json};
 use toml::de::{DeTable, DeValue};
 
@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 /// scene: keys and the kinds of their values. Whether names exist and numbers make sense is for
 /// [`Scene::read`](crate::Scene::read) to say.
 pub fn schema() -> String {
-    let mut schema = table(&SCENE);
+    let mut schema = table(keys::table("scene"));
     set(
         &mut schema,
         "$schema",
@@ -29,7 +29,7 @@ fn table(table: &TableSchema) -> Value {
     let properties: Map<_, _> = table
         .keys
         .iter()
-        .map(|k| (k.name.to_owned(), key(k)))
+        .map(|k| (k.name.clone(), key(k)))
         .collect();
     let mut schema = json!({
         "type": "object",
@@ -38,15 +38,14 @@ fn table(table: &TableSchema) -> Value {
         "properties": properties,
         "additionalProperties": table.named.as_ref().map_or(json!(false), key),
     });
-    let required = table
-        .keys
-        .iter()
-        .filter(|k| k.presence == Presence::Required);
-    let required: Vec<_> = required.map(|k| k.name).collect();
+    let required = table.keys.iter().filter(|k| k.presence.is_none());
+    let required: Vec<_> = required.map(|k| k.name.as_str()).collect();
     if !required.is_empty() {
         set(&mut schema, "required", required);
     }
-    let choices = choices(table);
+    // The sets of keys of which exactly one is needed.
+    let single = table.alternatives().into_iter().map(|name| vec![name]);
+    let choices: Vec<_> = single.chain(table.sets()).collect();
     if !choices.is_empty() {
         let each = choices.iter().map(|names| json!({ "required": names }));
         set(&mut schema, "oneOf", each.collect::<Vec<_>>());
@@ -54,32 +53,23 @@ fn table(table: &TableSchema) -> Value {
     schema
 }
 
-/// The sets of keys of a table of which exactly one is needed; no table has two such groups.
-fn choices(table: &TableSchema) -> Vec<Vec<&'static str>> {
-    let single = table.keys.iter();
-    let single = single.filter(|k| matches!(k.presence, Presence::OneOf(_)));
-    let mut choices: Vec<_> = single.map(|k| vec![k.name]).collect();
-    choices.extend(table.sets());
-    choices
-}
-
 fn key(key: &KeySchema) -> Value {
-    let mut schema = shape(key.shape);
-    let mut doc = key.doc.to_owned();
+    let mut schema = shape(&key.shape);
+    let mut doc = key.doc.clone();
     if !key.unit.is_empty() {
         doc.push_str(&format!(" Unit: {}.", key.unit));
     }
-    if let Presence::Default(default) = key.presence {
+    if let Some(Presence::Absent(default)) = &key.presence {
         doc.push_str(&format!(" Absent: {default}."));
     }
     set(&mut schema, "description", doc);
-    if let Some(example) = example(key.example) {
+    if let Some(example) = example(&key.example) {
         set(&mut schema, "examples", vec![example]);
     }
     schema
 }
 
-fn shape(shape: ValueShape) -> Value {
+fn shape(shape: &ValueShape) -> Value {
     let number = json!({ "type": "number" });
     let string = |what: &str| json!({ "type": "string", "title": what });
     let list = |item: Value, min_items: usize| json!({ "type": "array", "items": item, "minItems": min_items });
@@ -96,15 +86,15 @@ fn shape(shape: ValueShape) -> Value {
         ValueShape::TwoPairs => two(two(number)),
         ValueShape::Rows => list(two(number), 2),
         ValueShape::TwoNames(what) => two(string(what)),
-        ValueShape::Names(what, min_items) => list(string(what), min_items),
-        ValueShape::Table(inner) => table(inner),
-        ValueShape::Tables(inner) => list(table(inner), 0),
-        ValueShape::Kinds(kinds) => {
-            let kinds: Vec<_> = kinds.iter().map(|t| table(t)).collect();
+        ValueShape::Names(min_items, what) => list(string(what), *min_items),
+        ValueShape::Table(id) => table(keys::table(id)),
+        ValueShape::Tables(id) => list(table(keys::table(id)), 0),
+        ValueShape::Kinds(things) => {
+            let kinds: Vec<_> = kinds(things).into_iter().map(table).collect();
             json!({ "oneOf": kinds })
         }
         ValueShape::Either(shapes) => {
-            let shapes: Vec<_> = shapes.iter().map(|s| self::shape(*s)).collect();
+            let shapes: Vec<_> = shapes.iter().map(self::shape).collect();
             json!({ "anyOf": shapes })
         }
     }

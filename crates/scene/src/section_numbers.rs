@@ -3,7 +3,7 @@
 //! depends on what the numbers mean.
 
 use crate::former_keys::schemas_of;
-use crate::keys::{SCENE, ValueShape};
+use crate::keys::{KeySchema, ValueShape, table};
 use crate::number_paths::SectionNumber;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -24,9 +24,9 @@ const SECTIONS: [&str; 8] = [
 pub(crate) fn section_numbers(text: &str, root: &DeTable<'_>) -> Vec<SectionNumber> {
     let mut found = Vec::new();
     for section in SECTIONS {
-        if let (Some(value), Some(key)) = (root.get(section), SCENE.key(section)) {
+        if let (Some(value), Some(key)) = (root.get(section), table("scene").key(section)) {
             let paths = [section, key.former_name()].map(str::to_owned);
-            gather(text, paths, value, Some(key.shape), &mut found);
+            gather(text, paths, value, Some(&key.shape), &mut found);
         }
     }
     found
@@ -37,7 +37,7 @@ fn gather(
     text: &str,
     paths: [String; 2],
     value: &Spanned<DeValue<'_>>,
-    shape: Option<ValueShape>,
+    shape: Option<&'static ValueShape>,
     found: &mut Vec<SectionNumber>,
 ) {
     match value.get_ref() {
@@ -47,16 +47,11 @@ fn gather(
                 let name = key.get_ref().as_ref();
                 let schema = schemas.iter().find_map(|schema| schema.key(name));
                 // A name of the scene's own has no former one.
-                let former = schema.map_or(name, |s| {
-                    if s.name == name {
-                        s.former_name()
-                    } else {
-                        name
-                    }
-                });
+                let described = schema.filter(|s| s.name == name);
+                let former = described.map_or(name, KeySchema::former_name);
                 let [path, former_path] = &paths;
                 let paths = [format!("{path}.{name}"), format!("{former_path}.{former}")];
-                gather(text, paths, value, schema.map(|s| s.shape), found);
+                gather(text, paths, value, schema.map(|s| &s.shape), found);
             }
         }
         DeValue::Array(array) => {

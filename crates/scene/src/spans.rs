@@ -2,6 +2,7 @@
 
 use crate::diagnostics::Span;
 use dwell_geometry::{ActuatorId, BodyId, JointId};
+use std::collections::HashMap;
 
 /// Something a message can point at. What the file does not write down points at the nearest
 /// thing around it that it does: a missing mass at its body, a missing section at the beginning.
@@ -27,7 +28,7 @@ pub enum SceneLocation {
     JointPoint(JointId, usize),
     /// The axis or axes of a joint.
     Axis(JointId),
-    /// The law of a relation.
+    /// The law of a coupling.
     CouplingLaw(JointId),
     /// The actuator's name where it is defined.
     Actuator(ActuatorId),
@@ -37,20 +38,20 @@ pub enum SceneLocation {
     Assembly,
     /// The actuator's coordinate at assembly.
     AssemblyCoordinate(ActuatorId),
-    /// The body's rough angle at assembly.
+    /// The initial guess of the body's angle at assembly.
     InitialGuess(BodyId),
     /// `[prescribed]`.
     Prescribed,
     /// The prescribed law of the actuator.
     PrescribedLaw(ActuatorId),
-    /// `[sweep]`.
+    /// `[coordinate-sweep]`.
     CoordinateSweep,
-    /// What the sweep says of the actuator.
+    /// What the sweep gives for the actuator.
     Swept(ActuatorId),
     /// The name of the k-th of the scene's loads where it is defined: of a friction, that of its joint
-    /// in `[friction]`. After the loads come the drives, as in a model that has them as its last loads.
+    /// in `[friction]`; of a separating force, that of its joint. After the loads come the drives, as in a model that has them as its last loads.
     Load(usize),
-    /// How strong the k-th of the scene's loads is, or after them what a drive is given.
+    /// The magnitude of the k-th of the scene's loads, or after them that of a drive.
     Magnitude(usize),
     /// The name of the k-th of the scene's drives where it is defined.
     Drive(usize),
@@ -72,118 +73,38 @@ pub enum SceneLocation {
     InitialCoordinate(ActuatorId),
     /// The actuator's speed at the start of the motion.
     InitialVelocity(ActuatorId),
-    /// The law by which the motion leads the actuator.
+    /// The motion law of the actuator in a free motion.
     MotionLaw(ActuatorId),
     /// The name of the k-th of the motion's events where it is defined.
     Event(usize),
     /// The motion's periods or duration.
     Duration,
-    /// The number the calibration sets.
+    /// The number that the calibration fits.
     Calibration,
 }
 
-/// Where each place is. A place that is not written down is `None`.
+/// Where each place is. A place that is not written down is absent.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct SceneSpans {
-    pub(crate) units: Option<Span>,
-    pub(crate) bodies: Vec<BodySpans>,
-    pub(crate) joints: Vec<JointSpans>,
-    pub(crate) actuators: Vec<Span>,
-    pub(crate) coordinates: Vec<Span>,
-    pub(crate) assembly: Option<Span>,
-    pub(crate) assembly_coordinates: Vec<Option<Span>>,
-    pub(crate) initial_guess: Vec<Option<Span>>,
-    pub(crate) prescribed: Option<Span>,
-    pub(crate) prescribed_laws: Vec<Option<Span>>,
-    pub(crate) sweep: Option<Span>,
-    pub(crate) swept: Vec<Option<Span>>,
-    pub(crate) loads: Vec<LoadSpans>,
-    pub(crate) drives: Vec<LoadSpans>,
-    pub(crate) requests: Option<Span>,
-    pub(crate) reactions: Vec<Option<Span>>,
-    pub(crate) paths: Vec<Span>,
-    pub(crate) dwell: Option<Span>,
-    pub(crate) variables: Vec<Span>,
-    pub(crate) sections: Vec<Span>,
-    pub(crate) motion: Option<Span>,
-    pub(crate) initial_coordinates: Vec<Option<Span>>,
-    pub(crate) initial_velocities: Vec<Option<Span>>,
-    pub(crate) motion_laws: Vec<Option<Span>>,
-    pub(crate) events: Vec<Span>,
-    pub(crate) duration: Option<Span>,
-    pub(crate) calibration: Option<Span>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct BodySpans {
-    pub(crate) key: Span,
-    pub(crate) points: Vec<Span>,
-    pub(crate) mass: Option<Span>,
-    pub(crate) inertia: Option<Span>,
-    pub(crate) center: Option<Span>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct JointSpans {
-    pub(crate) key: Span,
-    pub(crate) points: [Span; 2],
-    pub(crate) axis: Option<Span>,
-    pub(crate) law: Option<Span>,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct LoadSpans {
-    pub(crate) key: Span,
-    pub(crate) magnitude: Option<Span>,
-}
+pub(crate) struct SceneSpans(HashMap<SceneLocation, Span>);
 
 impl SceneSpans {
-    pub(crate) fn span(&self, location: SceneLocation) -> Option<Span> {
-        let body = |b: BodyId| self.bodies.get(b.0);
-        let joint = |j: JointId| self.joints.get(j.0);
-        let load = |k: usize| {
-            let mut all = self.loads.iter().chain(&self.drives);
-            all.nth(k)
-        };
-        let nth = |list: &[Option<Span>], k: usize| list.get(k).cloned().flatten();
-        match location {
-            SceneLocation::Whole => None,
-            SceneLocation::Units => self.units.clone(),
-            SceneLocation::Body(b) => body(b).map(|b| b.key.clone()),
-            SceneLocation::Point(b, k) => body(b)?.points.get(k).cloned(),
-            SceneLocation::Mass(b) => body(b)?.mass.clone(),
-            SceneLocation::Inertia(b) => body(b)?.inertia.clone(),
-            SceneLocation::Center(b) => body(b)?.center.clone(),
-            SceneLocation::Joint(j) => joint(j).map(|j| j.key.clone()),
-            SceneLocation::JointPoint(j, k) => joint(j)?.points.get(k).cloned(),
-            SceneLocation::Axis(j) => joint(j)?.axis.clone(),
-            SceneLocation::CouplingLaw(j) => joint(j)?.law.clone(),
-            SceneLocation::Actuator(a) => self.actuators.get(a.0).cloned(),
-            SceneLocation::Coordinate(k) => self.coordinates.get(k).cloned(),
-            SceneLocation::Assembly => self.assembly.clone(),
-            SceneLocation::AssemblyCoordinate(a) => nth(&self.assembly_coordinates, a.0),
-            SceneLocation::InitialGuess(b) => nth(&self.initial_guess, b.0),
-            SceneLocation::Prescribed => self.prescribed.clone(),
-            SceneLocation::PrescribedLaw(a) => nth(&self.prescribed_laws, a.0),
-            SceneLocation::CoordinateSweep => self.sweep.clone(),
-            SceneLocation::Swept(a) => nth(&self.swept, a.0),
-            SceneLocation::Load(k) => load(k).map(|l| l.key.clone()),
-            SceneLocation::Magnitude(k) => load(k)?.magnitude.clone(),
-            SceneLocation::Drive(k) => self.drives.get(k).map(|d| d.key.clone()),
-            SceneLocation::Requests => self.requests.clone(),
-            SceneLocation::Reaction(k) => nth(&self.reactions, k),
-            SceneLocation::Path(k) => self.paths.get(k).cloned(),
-            SceneLocation::Dwell => self.dwell.clone(),
-            SceneLocation::Variable(k) => self.variables.get(k).cloned(),
-            SceneLocation::Section(k) => self.sections.get(k).cloned(),
-            SceneLocation::Motion => self.motion.clone(),
-            SceneLocation::InitialCoordinate(a) => nth(&self.initial_coordinates, a.0),
-            SceneLocation::InitialVelocity(a) => nth(&self.initial_velocities, a.0),
-            SceneLocation::MotionLaw(a) => nth(&self.motion_laws, a.0),
-            SceneLocation::Event(k) => self.events.get(k).cloned(),
-            SceneLocation::Duration => self.duration.clone(),
-            SceneLocation::Calibration => self.calibration.clone(),
+    pub(crate) fn put(&mut self, location: SceneLocation, span: impl Into<Option<Span>>) {
+        self.0.extend(span.into().map(|span| (location, span)));
+    }
+
+    /// The places of a list, by their indices in it.
+    pub(crate) fn put_all<S: Into<Option<Span>>>(
+        &mut self,
+        location: impl Fn(usize) -> SceneLocation,
+        spans: impl IntoIterator<Item = S>,
+    ) {
+        for (k, span) in spans.into_iter().enumerate() {
+            self.put(location(k), span);
         }
+    }
+
+    pub(crate) fn span(&self, location: SceneLocation) -> Option<Span> {
+        self.0.get(&location).cloned()
     }
 
     /// What stands around a place that is not written down.

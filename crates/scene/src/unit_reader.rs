@@ -1,62 +1,47 @@
 //! Reads `[units]`.
 
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys;
-use crate::table_reader::{Entry, TableReader, string};
+use crate::diagnostics::{Diagnostics, Span};
+use crate::keys::table;
+use crate::table_reader::{Entry, TableReader};
 use crate::units::{ANGLES, KnownUnit, LENGTHS, MASSES, Unit, Units};
 use crate::wording::shorten;
 
 impl Units {
-    /// Says so where an inertia is given, at `at`, and its unit has been left open.
-    pub(crate) fn require_inertia_unit(&self, at: &Span, diagnostics: &mut Diagnostics) {
+    /// Reports an inertia, given at `at`, whose unit is not given.
+    pub(crate) fn require_inertia_unit(&self, at: &Span, log: &Diagnostics) {
         if let Some(span) = &self.missing_inertia_unit {
-            diagnostics.push(
-                Diagnostic::new("[units] does not give the unit of inertia")
-                    .label(span.clone(), "not an SI unit")
-                    .label(at.clone(), "inertia without a unit")
-                    .help("add for instance `inertia = \"kg m2\"` to [units]"),
-            );
+            log.error("[units] does not give the unit of inertia")
+                .label(span, "not an SI unit")
+                .label(at, "inertia without a unit")
+                .help("add for instance `inertia = \"kg m2\"` to [units]")
+                .report();
         }
     }
 
-    /// The units of the scene's `[units]`, SI where it says nothing.
-    pub(crate) fn read(section: Option<&Entry<'_>>, diagnostics: &mut Diagnostics) -> Self {
+    /// The units of the scene's `[units]`, SI where it gives none.
+    pub(crate) fn read(section: Option<&Entry<'_>>) -> Self {
         let mut units = Self::default();
-        let Some(entry) = section else { return units };
-        let Some(fields) = TableReader::open(entry, "[units]", diagnostics) else {
+        let Some(fields) = section.and_then(|entry| TableReader::open(entry, "[units]")) else {
             return units;
         };
-        fields.reject_unknown_keys(&keys::UNITS, diagnostics);
-        let mut one = |key, find: &dyn Fn(&str) -> Option<Unit>, names: &dyn Fn() -> String| {
-            let entry = fields.get(key)?;
-            let name = string(
-                entry.value,
-                format_args!("the unit of {key} in [units]"),
-                diagnostics,
-            )?;
-            let unit = find(name);
-            if unit.is_none() {
-                let name = shorten(name);
-                diagnostics.push(
-                    Diagnostic::new(format!("unknown unit of {key} `{name}`"))
-                        .label(entry.value.span(), format!("unknown unit of {key}"))
-                        .help(names()),
-                );
-            }
-            unit
+        fields.reject_unknown_keys(table("units"));
+        let one = |key, find: &dyn Fn(&str) -> Option<Unit>, names: &dyn Fn() -> String| {
+            let value = fields.get(key)?.value;
+            let name = value.string(format_args!("the unit of {key} in [units]"))?;
+            find(name).or_else(|| {
+                let message = format!("unknown unit of {key} `{}`", shorten(name));
+                let label = format!("unknown unit of {key}");
+                value.wrong(message, &label).help(names()).reject()
+            })
         };
-        let simple = |known: &'static [KnownUnit]| {
-            (
-                move |name: &str| find(known, name),
-                move || format!("known are {}", names(known)),
-            )
+        let simple = |key, known: &[KnownUnit]| {
+            one(key, &|name| find(known, name), &|| {
+                format!("known are {}", names(known))
+            })
         };
-        let (find, names) = simple(&LENGTHS);
-        units.length = one("length", &find, &names).unwrap_or(units.length);
-        let (find, names) = simple(&MASSES);
-        units.mass = one("mass", &find, &names).unwrap_or(units.mass);
-        let (find, names) = simple(&ANGLES);
-        units.angle = one("angle", &find, &names).unwrap_or(units.angle);
+        units.length = simple("length", &LENGTHS).unwrap_or(units.length);
+        units.mass = simple("mass", &MASSES).unwrap_or(units.mass);
+        units.angle = simple("angle", &ANGLES).unwrap_or(units.angle);
         units.inertia = one("inertia", &find_inertia, &inertia_names).unwrap_or(units.inertia);
         if fields.get("inertia").is_none() {
             let other = |key: &str, unit: &Unit, si| {

@@ -12,6 +12,13 @@ pub(crate) struct Unit {
     pub(crate) divisor: f64,
 }
 
+/// A unit of SI, whatever its name.
+pub(crate) static SI: Unit = Unit {
+    name: String::new(),
+    factor: 1.0,
+    divisor: 1.0,
+};
+
 impl Unit {
     pub(crate) fn new(name: &str, factor: f64, divisor: f64) -> Self {
         Self {
@@ -19,11 +26,6 @@ impl Unit {
             factor,
             divisor,
         }
-    }
-
-    /// A unit of SI, whatever its name.
-    pub(crate) fn si_unit() -> Self {
-        Self::new("", 1.0, 1.0)
     }
 
     /// `value` of this unit, in SI.
@@ -57,19 +59,6 @@ pub(crate) const MASSES: [KnownUnit; 5] = [
     ("oz", 45_359_237.0, 16e8),
 ];
 pub(crate) const ANGLES: [KnownUnit; 2] = [("rad", 1.0, 1.0), ("deg", PI, 180.0)];
-
-const fn names_of<const N: usize>(known: &[KnownUnit; N]) -> [&'static str; N] {
-    let mut names = [""; N];
-    let mut k = 0;
-    while k < N {
-        names[k] = known[k].0;
-        k += 1;
-    }
-    names
-}
-pub(crate) static LENGTH_NAMES: [&str; 7] = names_of(&LENGTHS);
-pub(crate) static MASS_NAMES: [&str; 5] = names_of(&MASSES);
-pub(crate) static ANGLE_NAMES: [&str; 2] = names_of(&ANGLES);
 
 /// The units of one scene.
 #[derive(Debug, Clone)]

@@ -1,15 +1,15 @@
 //! `dwell check`: mobility, range, groups and assembly modes of a scene, before anything moves.
 
 use crate::explain::StudyError;
-use crate::number_format::{count, number};
+use crate::number_format::{count, digits, number};
 #[cfg(feature = "output")]
 use crate::output::Outcome;
 use dwell_geometry::mobility::mobility;
 use dwell_geometry::plan::GroupModes;
 use dwell_geometry::{
-    AssemblyConfiguration, BodyId, BranchHint, Mechanism, Plan, Range, RangeLimit,
+    AssemblyConfiguration, BodyId, BranchHint, JointId, Mechanism, Plan, Range, RangeLimit,
 };
-use dwell_kinetostatics::Model;
+use dwell_kinetostatics::{Load, Mesh, Model};
 use dwell_scene::Scene;
 use std::fmt::Write as _;
 
@@ -51,6 +51,7 @@ pub fn describe_scene(scene: &Scene) -> Result<String, StudyError> {
     describe_groups(mechanism, plan, &mut text);
     describe_branch(mechanism, plan, &mut text);
     describe_pruning(scene, &model, &mut text);
+    describe_teeth(scene, &mut text);
     describe_requests(scene, &mut text);
     if let Some(note) = &scene.note {
         let _ = writeln!(text, "  note: {note}");
@@ -350,6 +351,34 @@ fn describe_pruning(scene: &Scene, model: &Model, text: &mut String) {
             text,
             "  massless, so without inertia forces: {}",
             massless.join(", ")
+        );
+    }
+}
+
+/// The teeth that have a separating force, and those that have none.
+fn describe_teeth(scene: &Scene, text: &mut String) {
+    let joints = scene.mechanism.joints.iter().enumerate();
+    let toothed = joints.filter(|(_, joint)| Mesh::of(joint).is_some());
+    let (mut with, mut without) = (Vec::new(), Vec::new());
+    for (j, joint) in toothed {
+        let mut teeth = scene.loads.iter().filter_map(Load::pressure_angle);
+        match teeth.find(|teeth| teeth.joint == JointId(j)) {
+            Some(teeth) => with.push(format!(
+                "{} (pressure angle {}°)",
+                joint.name,
+                digits(teeth.angle.to_degrees(), 6)
+            )),
+            None => without.push(joint.name.as_str()),
+        }
+    }
+    if !with.is_empty() {
+        let _ = writeln!(text, "  separating forces: {}", with.join(", "));
+    }
+    if !without.is_empty() {
+        let _ = writeln!(
+            text,
+            "  no separating force is modelled, as no `pressure-angle` is given: {}",
+            list(without)
         );
     }
 }

@@ -59,11 +59,15 @@ impl PositionFormulas<'_> {
                 return Ok(Released::Coupling(coupling));
             }
             (Component::Moment, Some(pair), _) => return Ok(Released::Moment(pair)),
-            _ => {}
+            // Along a direction of a pair, below; or nothing lets go, which is refused there.
+            (Component::X | Component::Y | Component::Normal | Component::Axial, _, _)
+            | (Component::Tooth | Component::Tangent | Component::Force, _, None)
+            | (Component::Moment, None, _) => {}
         }
-        let pair = pair.ok_or(unsupported)?;
+        let pair = pair.ok_or(unsupported.clone())?;
         let described = self.plan.pairs()[pair];
         let direction = match (component, described.kind) {
+            (Component::X, _) => [number(1.0), zero()],
             (Component::Y, _) => [zero(), number(1.0)],
             (Component::Normal, PairKind::Prismatic { axes, .. }) => {
                 let (frame, axis) = self.to_frame(described.bodies[0], axes[0]);
@@ -76,7 +80,10 @@ impl PositionFormulas<'_> {
                 let axis = self.direction(frame, axis, "direction of the line");
                 rotate(&axis, &self.angle(frame))
             }
-            _ => [number(1.0), zero()],
+            (Component::Normal, PairKind::Revolute | PairKind::Rigid { .. })
+            | (Component::Moment | Component::Tooth | Component::Tangent | Component::Force, _) => {
+                return Err(unsupported);
+            }
         };
         Ok(Released::Pair(pair, direction))
     }

@@ -79,7 +79,7 @@ pub use dwell_findings::Finding;
 pub use dwell_geometry::Range;
 pub use error::DenseError;
 pub use free_motion::{CheckedFreeMotion, FreeMotionCase, ToleranceRun, check_free_motion};
-pub use loads::load_wrenches;
+pub use loads::{load_wrenches, magnitude_by_reactions};
 pub use multibody::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 pub use rank::{Rank, Ranks, rank};
 pub use state::{ClaimedState, check_energies, check_states};

@@ -3,8 +3,8 @@
 
 use crate::body_motion::BodyMotion;
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::{Guide, LoadKind, Mass};
+use dwell_geometry::{BodyId, JointId, Mechanism, Reaction, Vec2};
+use dwell_kinetostatics::{Guide, Load, LoadKind, Magnitude, Mass, Mesh, PitchLines};
 
 /// The forces of a load of the given magnitude, with the bodies' frames and their velocities
 /// [x, y, θ] in m, rad and per s; a massless body has no weight, the ground's is left out.
@@ -104,7 +104,77 @@ pub fn load_wrenches(
             let [_, rate] = motion.travel(guide.bodies, guide.points, guide.axis)?;
             guide_wrenches(guide, -magnitude * rate, &motion)
         }
+        LoadKind::SeparatingForce(mesh) => separating_wrenches(mesh, magnitude, &motion),
     }
+}
+
+/// The magnitude of a load that answers to claimed reactions (in the order of [`Mechanism::reactions`]); of every
+/// other load, what is claimed of it. Where the teeth of gears have a pressure angle α, the force between them is
+/// inclined by α to the tooth force, so that its other part is tan α times that.
+pub fn magnitude_by_reactions(
+    load: &Load,
+    claimed: f64,
+    mechanism: &Mechanism,
+    reactions: &[f64],
+) -> f64 {
+    match &load.magnitude {
+        Magnitude::Separating(teeth) => {
+            let tooth = tooth_row(mechanism, teeth.joint).and_then(|row| reactions.get(row));
+            tooth.map_or(f64::NAN, |force| force.abs() * teeth.angle.tan())
+        }
+        Magnitude::Constant(_)
+        | Magnitude::Law(..)
+        | Magnitude::Expression(..)
+        | Magnitude::Function(..)
+        | Magnitude::Friction(_)
+        | Magnitude::External(_) => claimed,
+    }
+}
+
+/// The row of the tooth force of a joint.
+pub(crate) fn tooth_row(mechanism: &Mechanism, joint: JointId) -> Option<usize> {
+    let is_tooth =
+        |r: &Reaction| r.joint == joint && r.component == dwell_geometry::Component::Tooth;
+    mechanism.reactions().iter().position(is_tooth)
+}
+
+/// The forces on two bodies whose teeth push each other apart: of gears along the line of centres, away from where the
+/// pitch circles touch; of a rack along the perpendicular from its pitch line to the pinion's centre.
+fn separating_wrenches(mesh: Mesh, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
+    let [first, second] = mesh.bodies;
+    let center = motion.point(second, mesh.points[1])?;
+    let [gap, _] = motion.gap(mesh.bodies, mesh.points)?;
+    let (at, away) = match mesh.pitch {
+        PitchLines::Circles { radii, internal } => {
+            let line = gap * (1.0 / gap.norm());
+            let first_center = motion.point(first, mesh.points[0])?;
+            // Seen from the first gear, the circles touch beyond the second only if the second is in its ring.
+            let touch = if internal && radii[0] < radii[1] {
+                -radii[0]
+            } else {
+                radii[0]
+            };
+            (
+                first_center + line * touch,
+                if internal { -line } else { line },
+            )
+        }
+        PitchLines::Line { axis, .. } => {
+            let t = axis.rotate(motion.rotation(first)?);
+            let from_line = gap - t * t.dot(gap);
+            (center - from_line, from_line * (1.0 / from_line.norm()))
+        }
+    };
+    let wrench = |body, force| BodyWrench {
+        body,
+        force,
+        point: at,
+        couple: 0.0,
+    };
+    Some(vec![
+        wrench(first, -(away * force)),
+        wrench(second, away * force),
+    ])
 }
 
 /// A force along a guide: it acts on both bodies at the second's point.

@@ -80,7 +80,12 @@ pub(super) fn candidates(mechanism: &Mechanism, length_scale: f64) -> Vec<Candid
                 let name = format!("travel in {}", joint.name);
                 add(name, Coordinate::Travel(JointId(j)));
             }
-            _ => {}
+            JointKind::Weld { .. }
+            | JointKind::Gear { .. }
+            | JointKind::Rack { .. }
+            | JointKind::Rolling { .. }
+            | JointKind::Distance { .. }
+            | JointKind::Coupling(_) => {}
         }
     }
     found

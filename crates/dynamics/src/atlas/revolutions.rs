@@ -57,8 +57,14 @@ pub(super) fn load_angles(description: &MachineDescription<'_>) -> Vec<[BodyId; 
     let mut of = |magnitude: &Magnitude| {
         let signals = match magnitude {
             Magnitude::Law(signal, _) => std::slice::from_ref(signal),
-            Magnitude::Expression(_, signals) => signals.as_slice(),
-            _ => &[],
+            Magnitude::Expression(_, signals) | Magnitude::Function(_, signals) => {
+                signals.as_slice()
+            }
+            // A drive's input is looked at with the drive.
+            Magnitude::Constant(_)
+            | Magnitude::Friction(_)
+            | Magnitude::Separating(_)
+            | Magnitude::External(_) => &[],
         };
         for signal in signals {
             if let Signal::Value(Coordinate::Angle(bodies)) = signal {
@@ -78,7 +84,16 @@ pub(super) fn load_angles(description: &MachineDescription<'_>) -> Vec<[BodyId; 
     }
     angles.extend(description.loads.iter().filter_map(|load| match load.kind {
         LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
-        _ => None,
+        LoadKind::Gravity { .. }
+        | LoadKind::Force { .. }
+        | LoadKind::Torque { .. }
+        | LoadKind::Spring { .. }
+        | LoadKind::Damper { .. }
+        | LoadKind::RotationalDamper { .. }
+        | LoadKind::PointToPointForce { .. }
+        | LoadKind::SlideForce(_)
+        | LoadKind::SlideDamper(_)
+        | LoadKind::SeparatingForce(_) => None,
     }));
     angles
 }

@@ -100,19 +100,13 @@ impl Plan {
         pose: &mut Pose<f64>,
     ) -> Result<Vec<AssemblyMode>, AssemblyError> {
         let unknowns = self.groups[g].group.unknowns.clone();
-        let hints: Vec<Option<f64>> = unknowns
-            .iter()
-            .map(|&u| self.hint(u, initial_guess))
-            .collect();
-        let is_unhinted = |(u, hint): (&Unknown, &Option<f64>)| {
-            matches!(u, Unknown::ClassAngle(_)) && hint.is_none()
-        };
-        let unhinted_count = unknowns
+        let hints = unknowns.iter().map(|&u| self.hint(u, initial_guess));
+        let hints: Vec<Option<f64>> = hints.collect();
+        let unhinted = unknowns
             .iter()
             .zip(&hints)
-            .filter(|&u| is_unhinted(u))
-            .count();
-        let hinted_trials = Trials::new(unhinted_count, MAX_HINTED_STARTS);
+            .filter(|(u, hint)| matches!(u, Unknown::ClassAngle(_)) && hint.is_none());
+        let hinted_trials = Trials::new(unhinted.count(), MAX_HINTED_STARTS);
         let unhinted_trials = Trials::new(unknowns.len(), MAX_STARTS);
         let mut modes: Vec<AssemblyMode> = Vec::new();
         let mut refused = None;
@@ -121,12 +115,8 @@ impl Plan {
                 self.set_trial(g, Some(&hints), hinted_trials.trial(start), pose);
                 self.fit_unhinted(g, &hints, pose);
             } else {
-                self.set_trial(
-                    g,
-                    None,
-                    unhinted_trials.trial(start - hinted_trials.starts),
-                    pose,
-                );
+                let trial = unhinted_trials.trial(start - hinted_trials.starts);
+                self.set_trial(g, None, trial, pose);
             }
             match self.group_positions(g, pose) {
                 Ok(()) => {
@@ -143,10 +133,8 @@ impl Plan {
                         PositionError::NotConverged { residual, .. } => residual,
                         _ => f64::INFINITY,
                     };
-                    if refused
-                        .as_ref()
-                        .is_none_or(|kept| residual_of(&e) < residual_of(kept))
-                    {
+                    let kept = refused.as_ref().map(residual_of);
+                    if kept.is_none_or(|kept| residual_of(&e) < kept) {
                         refused = Some(e);
                     }
                 }

@@ -20,7 +20,7 @@ use std::collections::HashMap;
 impl Plan {
     /// The plan without branches, range and stored poses.
     //
-    // Longer than 60 lines: it fills the fields of a plan one after another.
+    // Long: it fills the fields of a plan one after another.
     pub(super) fn structure(
         mechanism: &Mechanism,
         counted_bodies: &[BodyId],
@@ -77,7 +77,7 @@ impl Plan {
             assembly_pose: None,
             group_modes: Vec::new(),
             determinate: Vec::new(),
-            size: 0.0,
+            size: mechanism.size(),
             frame_vectors: Vec::new(),
             groups: Vec::new(),
             steps: Vec::new(),
@@ -95,7 +95,6 @@ impl Plan {
             actuated_slides,
         };
         plan.frame_vectors.clone_from(&table.vectors);
-        plan.size = plan.largest_length();
         let (mut lu, mut pivots) = (0, 0);
         for group in groups {
             let assur = plan.prepare_group(group, &all_actuated_frames, lu, pivots);
@@ -112,13 +111,6 @@ impl Plan {
             .map(|(i, _)| i)
             .collect();
         Ok(plan)
-    }
-
-    /// The largest distance between two points of one body, m.
-    fn largest_length(&self) -> f64 {
-        let vectors = self.frame_vectors.iter().map(|a| a.local.norm());
-        let fixed = self.loop_closures.iter().map(|c| c.fixed.norm());
-        vectors.chain(fixed).fold(0.0, f64::max)
     }
 
     /// Chooses how a group is solved.
@@ -144,36 +136,19 @@ impl Plan {
         let known_terms = group
             .loops
             .iter()
-            .map(|&closure| {
-                let LoopClosure {
-                    vectors: arms,
-                    slides,
-                    axis,
-                    ..
-                } = &self.loop_closures[closure];
-                let moved = arms.iter().copied().filter(|&(_, f)| is_moved_before(f));
-                KnownTerms {
-                    closure,
-                    axis: axis.map(|(a, _)| a),
-                    axis_frame: axis.map(|(_, f)| f).filter(|&f| is_moved_before(f)),
-                    vectors: moved.collect(),
-                    slides: slides.clone(),
-                }
-            })
-            .collect();
+            .map(|&l| self.known_terms(l, is_moved_before));
+        let known_terms = known_terms.collect();
         let size = self.group_size(&group);
-        let counts_revolutions = group.unknowns.iter().any(|u| match u {
-            Unknown::ClassAngle(c) => {
-                let class_frame = self.class_frames[*c];
-                self.revolution_counted[class_frame]
-                    && !self.carrier_phases.contains_key(&class_frame)
-            }
-            Unknown::SlideTravel(_) => false,
-        });
-        let counts_by_carrier = group.unknowns.iter().any(|u| match u {
-            Unknown::ClassAngle(c) => self.carrier_phases.contains_key(&self.class_frames[*c]),
-            Unknown::SlideTravel(_) => false,
-        });
+        let has_class = |with: &dyn Fn(usize) -> bool| {
+            group.unknowns.iter().any(|u| match u {
+                Unknown::ClassAngle(c) => with(self.class_frames[*c]),
+                Unknown::SlideTravel(_) => false,
+            })
+        };
+        let by_carrier = |frame: usize| self.carrier_phases.contains_key(&frame);
+        let counts_revolutions =
+            has_class(&|frame| self.revolution_counted[frame] && !by_carrier(frame));
+        let counts_by_carrier = has_class(&by_carrier);
         let uses_stored_poses = match &kind {
             GroupKind::Factored(factored_group) => match factored_group.method {
                 PlacementMethod::Newton => true,
@@ -198,6 +173,20 @@ impl Plan {
         }
     }
 
+    /// The terms of a loop on frames that earlier groups or actuators move.
+    fn known_terms(&self, l: usize, is_moved_before: impl Fn(usize) -> bool) -> KnownTerms {
+        let closure = &self.loop_closures[l];
+        let vectors = closure.vectors.iter().copied();
+        let axis_frame = closure.axis.map(|(_, f)| f);
+        KnownTerms {
+            closure: l,
+            axis: closure.axis.map(|(a, _)| a),
+            axis_frame: axis_frame.filter(|&f| is_moved_before(f)),
+            vectors: vectors.filter(|&(_, f)| is_moved_before(f)).collect(),
+            slides: closure.slides.clone(),
+        }
+    }
+
     /// Sum of the lengths in a group's loops, m; that of the mechanism where there are none.
     fn group_size(&self, group: &Group) -> f64 {
         let closures = || group.loops.iter().map(|&l| &self.loop_closures[l]);
@@ -206,13 +195,7 @@ impl Plan {
             .map(|&(a, _)| self.frame_vectors[a].local.norm())
             .chain(closures().map(|c| c.fixed.norm()))
             .sum();
-        if size > 0.0 {
-            size
-        } else if self.size > 0.0 {
-            self.size
-        } else {
-            1.0
-        }
+        if size > 0.0 { size } else { self.size }
     }
 
     /// The two closed forms whose motion and forces are closed forms too.
@@ -444,33 +427,29 @@ fn all_actuated_frames(
     revolution_counted: &[bool],
 ) -> Vec<(usize, ActuatedFrame)> {
     let all = frames.frames.iter().enumerate();
-    all.filter_map(
-        |(
+    let actuated = |(frame, described): (usize, &Frame)| {
+        let class = described.orientation_class;
+        let RotationSource::Actuated {
+            parent,
+            actuator,
+            sign,
+        } = described.rotation_source
+        else {
+            return None;
+        };
+        let class_frame = class_frames[class];
+        let revolution_counted = revolution_counted[frame];
+        let one = ActuatedFrame {
             frame,
-            &Frame {
-                rotation_source: turning,
-                orientation_class: class,
-            },
-        )| match turning {
-            RotationSource::Actuated {
-                parent,
-                actuator,
-                sign,
-            } => Some((
-                class,
-                ActuatedFrame {
-                    frame,
-                    parent,
-                    actuator,
-                    sign,
-                    class_frame: class_frames[class],
-                    revolution_counted: revolution_counted[frame],
-                },
-            )),
-            _ => None,
-        },
-    )
-    .collect()
+            parent,
+            actuator,
+            sign,
+            class_frame,
+            revolution_counted,
+        };
+        Some((class, one))
+    };
+    all.filter_map(actuated).collect()
 }
 
 /// The actuated frames of some classes.

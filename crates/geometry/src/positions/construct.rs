@@ -10,6 +10,8 @@ use dwell_numerics::{FactorOutcome, Scalar, lu};
 
 impl Plan {
     /// The positions of a dyad of one loop in closed form.
+    //
+    // Long: one construction for each placement method, all from the same known part of the loop.
     pub(crate) fn construct<T: Scalar>(
         &self,
         group: usize,

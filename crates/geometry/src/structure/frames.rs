@@ -92,23 +92,7 @@ impl Frames {
     /// [`StructureError::OverConstrained`] when a slide, a weld or an actuator fixes an angle
     /// that others fix already, unless it is a slide or a weld that fixes the same angle.
     pub(crate) fn find(lowered: &Lowered) -> Result<Self, StructureError> {
-        let n = lowered.bodies;
-        let mut neighbours: Vec<Vec<(usize, AngularConstraintSource, bool)>> = vec![Vec::new(); n];
-        let mut connect = |bodies: [usize; 2], source: AngularConstraintSource| {
-            neighbours[bodies[0]].push((bodies[1], source, false));
-            neighbours[bodies[1]].push((bodies[0], source, true));
-        };
-        for (i, coordinate) in lowered.actuated_coordinates.iter().enumerate() {
-            if let ActuatedCoordinate::Angle(bodies) = *coordinate {
-                connect(bodies, AngularConstraintSource::Actuator(ActuatorId(i)));
-            }
-        }
-        for (b, pair) in lowered.pairs.iter().enumerate() {
-            if pair.kind != PairKind::Revolute {
-                connect(pair.bodies, AngularConstraintSource::Pair(b));
-            }
-        }
-
+        let (n, neighbours) = (lowered.bodies, angular_neighbours(lowered));
         let ground_orientation = Orientation {
             frame: 0,
             offset: Vec2::IDENTITY,
@@ -127,10 +111,9 @@ impl Frames {
         let mut reached = vec![false; n];
         let mut visited = VisitedConstraints::new(lowered);
         for first_body in std::iter::once(lowered.ground).chain(0..n) {
-            if reached[first_body] {
+            if std::mem::replace(&mut reached[first_body], true) {
                 continue;
             }
-            reached[first_body] = true;
             if first_body != lowered.ground {
                 found.orientations[first_body].frame = found.frames.len();
                 found.frames.push(Frame {
@@ -145,30 +128,18 @@ impl Frames {
                     if !visited.is_first_visit(source) {
                         continue;
                     }
-                    if reached[other] {
-                        found.add_redundant(
-                            lowered,
-                            body,
-                            other,
-                            source,
-                            other_is_first,
-                            &mut visited,
-                        );
-                        continue;
-                    }
-                    reached[other] = true;
-                    found.orientations[other] = found.constrained_orientation(
-                        lowered,
-                        found.orientations[body],
-                        source,
-                        other_is_first,
-                    );
-                    found.angular_constraints.push(AngularConstraint {
+                    let constraint = AngularConstraint {
                         body: other,
                         reference_body: body,
                         source,
                         body_is_first: other_is_first,
-                    });
+                    };
+                    if std::mem::replace(&mut reached[other], true) {
+                        found.add_redundant(lowered, constraint, &mut visited);
+                        continue;
+                    }
+                    found.orientations[other] = found.constrained_orientation(lowered, constraint);
+                    found.angular_constraints.push(constraint);
                     queue.push(other);
                 }
             }
@@ -181,15 +152,15 @@ impl Frames {
         Ok(found)
     }
 
-    /// The orientation of a body that `source` ties to a body of orientation `reference`.
+    /// The orientation of a body by its constraint to one whose orientation is known.
     fn constrained_orientation(
         &mut self,
         lowered: &Lowered,
-        reference: Orientation,
-        source: AngularConstraintSource,
-        is_first: bool,
+        constraint: AngularConstraint,
     ) -> Orientation {
-        match source {
+        let reference = self.orientations[constraint.reference_body];
+        let is_first = constraint.body_is_first;
+        match constraint.source {
             AngularConstraintSource::Pair(b) => Orientation {
                 frame: reference.frame,
                 offset: offset_across(&lowered.pairs[b], reference.offset, is_first),
@@ -216,27 +187,46 @@ impl Frames {
     fn add_redundant(
         &mut self,
         lowered: &Lowered,
-        body: usize,
-        other: usize,
-        source: AngularConstraintSource,
-        other_is_first: bool,
+        constraint: AngularConstraint,
         visited: &mut VisitedConstraints,
     ) {
-        let (orientation, other_orientation) = (self.orientations[body], self.orientations[other]);
-        if let AngularConstraintSource::Pair(b) = source
-            && orientation.frame == other_orientation.frame
+        let reference = self.orientations[constraint.reference_body];
+        let orientation = self.orientations[constraint.body];
+        if let AngularConstraintSource::Pair(b) = constraint.source
+            && reference.frame == orientation.frame
         {
-            let required = offset_across(&lowered.pairs[b], orientation.offset, other_is_first);
-            if (required - other_orientation.offset).norm() < SAME_ANGLE {
+            let is_first = constraint.body_is_first;
+            let required = offset_across(&lowered.pairs[b], reference.offset, is_first);
+            if (required - orientation.offset).norm() < SAME_ANGLE {
                 self.redundant_pairs.push(b);
                 return;
             }
         }
-        visited.conflicting.push(match source {
+        visited.conflicting.push(match constraint.source {
             AngularConstraintSource::Pair(b) => lowered.pairs[b].owner,
             AngularConstraintSource::Actuator(a) => Owner::Actuator(a),
         });
     }
+}
+
+/// By body: each body whose angle from it is fixed or prescribed, by what, and whether that body is the first-named.
+fn angular_neighbours(lowered: &Lowered) -> Vec<Vec<(usize, AngularConstraintSource, bool)>> {
+    let mut neighbours = vec![Vec::new(); lowered.bodies];
+    let mut connect = |bodies: [usize; 2], source: AngularConstraintSource| {
+        neighbours[bodies[0]].push((bodies[1], source, false));
+        neighbours[bodies[1]].push((bodies[0], source, true));
+    };
+    for (i, coordinate) in lowered.actuated_coordinates.iter().enumerate() {
+        if let ActuatedCoordinate::Angle(bodies) = *coordinate {
+            connect(bodies, AngularConstraintSource::Actuator(ActuatorId(i)));
+        }
+    }
+    for (b, pair) in lowered.pairs.iter().enumerate() {
+        if pair.kind != PairKind::Revolute {
+            connect(pair.bodies, AngularConstraintSource::Pair(b));
+        }
+    }
+    neighbours
 }
 
 /// The constant rotation of the other body of a pair, from that of one of them.

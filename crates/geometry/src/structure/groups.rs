@@ -67,32 +67,15 @@ pub(crate) fn order_groups(
     let unknowns = classes + problem.tree.slide_pairs.len();
     let (of_equation, of_unknown) = match_equations(&dependencies, unknowns);
     let is_actuated = |u: usize| u >= classes && problem.actuated_slides[u - classes].is_some();
-    let undetermined: Vec<usize> = (0..unknowns)
-        .filter(|&u| of_unknown[u] == UNMATCHED && !is_actuated(u))
-        .collect();
-    let redundant: Vec<usize> = (0..equations.len())
-        .filter(|&e| of_equation[e] == UNMATCHED)
-        .collect();
+    let undetermined = |&u: &usize| of_unknown[u] == UNMATCHED && !is_actuated(u);
+    let undetermined: Vec<usize> = (0..unknowns).filter(undetermined).collect();
+    let redundant = |&e: &usize| of_equation[e] == UNMATCHED;
+    let redundant: Vec<usize> = (0..equations.len()).filter(redundant).collect();
     if !redundant.is_empty() && !allow_redundant {
-        let owners = redundant.iter().map(|&e| match equations[e] {
-            Equation::Loop(l) => problem.lowered.pairs[problem.loops[l].pair].owner,
-            Equation::Coupling(r) => problem.couplings[r].owner,
-        });
-        let (joints, actuators) = Lowered::owners(owners);
-        return Err(StructureError::OverConstrained {
-            redundant_count: redundant.len(),
-            joints,
-            actuators,
-        });
+        return Err(problem.over_constrained(redundant.iter().map(|&e| equations[e])));
     }
     if !undetermined.is_empty() {
-        let bodies = undetermined.iter().flat_map(|&u| problem.bodies_of(u));
-        return Err(StructureError::UnderActuated {
-            degrees_of_freedom: problem.lowered.actuated_coordinates.len() + undetermined.len(),
-            actuators: problem.lowered.actuated_coordinates.len(),
-            bodies: problem.lowered.mechanism_bodies(bodies),
-            redundant_joints: Vec::new(),
-        });
+        return Err(problem.under_actuated(&undetermined));
     }
     // Classes with which an equation is evaluated come before it, even if it does not depend on them.
     let mut before = dependencies.clone();
@@ -101,20 +84,17 @@ pub(crate) fn order_groups(
     }
     let groups = strong_components(&of_equation, &before, &of_unknown);
     let groups = absorb_redundant(groups, &redundant, &dependencies, &of_unknown);
-    let as_unknown = |u: usize| {
-        if u < classes {
-            Unknown::ClassAngle(u + 1)
-        } else {
-            Unknown::SlideTravel(u - classes)
-        }
+    let as_unknown = |u: usize| match u.checked_sub(classes) {
+        None => Unknown::ClassAngle(u + 1),
+        Some(slide) => Unknown::SlideTravel(slide),
     };
     let group = |members: Vec<usize>| {
         let rows = members.len();
-        let mut unknowns: Vec<Unknown> = members
+        let matched = members
             .iter()
-            .filter(|&&e| of_equation[e] != UNMATCHED)
-            .map(|&e| as_unknown(of_equation[e]))
-            .collect();
+            .map(|&e| of_equation[e])
+            .filter(|&u| u != UNMATCHED);
+        let mut unknowns: Vec<Unknown> = matched.map(as_unknown).collect();
         unknowns.sort_unstable();
         let (mut loops, mut couplings) = (Vec::new(), Vec::new());
         for e in members {
@@ -137,6 +117,36 @@ pub(crate) fn order_groups(
 }
 
 impl PositionProblem<'_> {
+    /// The error of equations without an unknown of their own.
+    fn over_constrained(
+        &self,
+        redundant: impl ExactSizeIterator<Item = Equation>,
+    ) -> StructureError {
+        let redundant_count = redundant.len();
+        let owners = redundant.map(|equation| match equation {
+            Equation::Loop(l) => self.lowered.pairs[self.loops[l].pair].owner,
+            Equation::Coupling(r) => self.couplings[r].owner,
+        });
+        let (joints, actuators) = Lowered::owners(owners);
+        StructureError::OverConstrained {
+            redundant_count,
+            joints,
+            actuators,
+        }
+    }
+
+    /// The error of unknowns that no equation determines.
+    fn under_actuated(&self, undetermined: &[usize]) -> StructureError {
+        let actuators = self.lowered.actuated_coordinates.len();
+        let bodies = undetermined.iter().flat_map(|&u| self.bodies_of(u));
+        StructureError::UnderActuated {
+            degrees_of_freedom: actuators + undetermined.len(),
+            actuators,
+            bodies: self.lowered.mechanism_bodies(bodies),
+            redundant_joints: Vec::new(),
+        }
+    }
+
     /// Every equation; the unknowns it depends on: classes first (class c is number c − 1), then
     /// slides; and the classes with which it is evaluated, though their angle cancels.
     fn equations(&self) -> (Vec<Equation>, Vec<Vec<usize>>, Vec<Vec<usize>>) {
@@ -240,8 +250,7 @@ fn absorb_redundant(
     // By equation: the redundant equation whose group it joins.
     let mut joins = vec![UNMATCHED; dependencies.len()];
     for &start in redundant {
-        let mut reached = vec![start];
-        let mut queue = vec![start];
+        let (mut reached, mut queue) = (vec![start], vec![start]);
         let mut visited = vec![false; dependencies.len()];
         visited[start] = true;
         while let Some(e) = queue.pop() {

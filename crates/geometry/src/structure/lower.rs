@@ -146,6 +146,8 @@ impl Lowered {
     }
 
     /// The first kinematic pair of a joint, and its coupling.
+    //
+    // Long: a few lines for each kind of joint.
     fn lower_joint(
         &mut self,
         mechanism: &Mechanism,
@@ -158,32 +160,18 @@ impl Lowered {
         let first = self.pairs.len();
         let first_coupling = self.couplings.len();
         match joint.kind {
-            JointKind::Revolute => self.add_pair(owner, bodies, points, PairKind::Revolute),
+            JointKind::Revolute => self.add_pin(owner, bodies, points),
             JointKind::Weld { angle } => {
-                self.add_pair(
-                    owner,
-                    bodies,
-                    points,
-                    PairKind::Rigid(Vec2::from_angle(angle)),
-                );
+                let kind = PairKind::Rigid(Vec2::from_angle(angle));
+                self.add_pair(owner, bodies, points, kind);
             }
             JointKind::Prismatic { axes } => self.add_pair(owner, bodies, points, prismatic(axes)),
             JointKind::Slot { axis } => self.add_slot(owner, bodies, points, axis),
             JointKind::Distance { length } => {
                 let line = self.add_body();
                 let end = X_AXIS * length;
-                self.add_pair(
-                    owner,
-                    [bodies[0], line],
-                    [points[0], Vec2::ZERO],
-                    PairKind::Revolute,
-                );
-                self.add_pair(
-                    owner,
-                    [line, bodies[1]],
-                    [end, points[1]],
-                    PairKind::Revolute,
-                );
+                self.add_pin(owner, [bodies[0], line], [points[0], Vec2::ZERO]);
+                self.add_pin(owner, [line, bodies[1]], [end, points[1]]);
             }
             JointKind::Gear { radii, internal } => {
                 let (_, line) = self.add_line(owner, bodies, points, false);
@@ -195,21 +183,20 @@ impl Lowered {
                 ];
                 self.add_linear_coupling(owner, dependent, true);
                 let carrier = carrier(mechanism, id, radii[0] + radii[1]);
-                if let Some(first_coupling) = self.couplings.last_mut() {
-                    first_coupling.line_of_centres =
-                        carrier.map(|(carrier, phase)| (line, carrier, phase));
+                if let Some(coupling) = self.couplings.last_mut() {
+                    coupling.line_of_centres = carrier.map(|(body, phase)| (line, body, phase));
                 }
             }
             JointKind::Rack { axis, radius } => {
                 // The pinion's centre slides along the rack on a block, and across it on another.
                 let along = self.add_body();
                 let across = self.add_body();
-                let frame = [axis, X_AXIS];
+                let on_rack = [points[0], Vec2::ZERO];
                 self.add_pair(
                     owner,
                     [bodies[0], along],
-                    [points[0], Vec2::ZERO],
-                    prismatic(frame),
+                    on_rack,
+                    prismatic([axis, X_AXIS]),
                 );
                 self.make_travel_coordinate(first);
                 let normal = [X_AXIS.perp(), X_AXIS.perp()];
@@ -217,12 +204,7 @@ impl Lowered {
                 self.add_pair(owner, [along, across], origin, prismatic(normal));
                 // A coordinate of its own, so that the loop closes as a vector.
                 self.make_travel_coordinate(first + 1);
-                self.add_pair(
-                    owner,
-                    [across, bodies[1]],
-                    [Vec2::ZERO, points[1]],
-                    PairKind::Revolute,
-                );
+                self.add_pin(owner, [across, bodies[1]], [Vec2::ZERO, points[1]]);
                 self.add_rolling_coupling(owner, first, bodies, radius);
             }
             JointKind::Rolling { axis, radius } => {
@@ -233,10 +215,8 @@ impl Lowered {
             }
             JointKind::Coupling(_) => return (None, None),
         }
-        (
-            Some(first),
-            (self.couplings.len() > first_coupling).then_some(first_coupling),
-        )
+        let has_coupling = self.couplings.len() > first_coupling;
+        (Some(first), has_coupling.then_some(first_coupling))
     }
 
     fn lower_coupling(&mut self, joint: JointId, coupling: &Coupling) -> usize {
@@ -285,6 +265,10 @@ impl Lowered {
         });
     }
 
+    fn add_pin(&mut self, owner: Owner, bodies: [usize; 2], points: [Vec2; 2]) {
+        self.add_pair(owner, bodies, points, PairKind::Revolute);
+    }
+
     /// A block on the first body, pinned to the second.
     fn add_slot(&mut self, owner: Owner, bodies: [usize; 2], points: [Vec2; 2], axis: Vec2) {
         let block = self.add_body();
@@ -295,12 +279,7 @@ impl Lowered {
             on_first,
             prismatic([axis, X_AXIS]),
         );
-        self.add_pair(
-            owner,
-            [block, bodies[1]],
-            [Vec2::ZERO, points[1]],
-            PairKind::Revolute,
-        );
+        self.add_pin(owner, [block, bodies[1]], [Vec2::ZERO, points[1]]);
     }
 
     /// A line from a point of the first body through one of the second: its slide and its body.
@@ -313,12 +292,7 @@ impl Lowered {
     ) -> (usize, usize) {
         let line = self.add_body();
         let block = self.add_body();
-        self.add_pair(
-            owner,
-            [bodies[0], line],
-            [points[0], Vec2::ZERO],
-            PairKind::Revolute,
-        );
+        self.add_pin(owner, [bodies[0], line], [points[0], Vec2::ZERO]);
         let pair = self.pairs.len();
         let kind = PairKind::Prismatic {
             axes: [X_AXIS, X_AXIS],
@@ -326,12 +300,7 @@ impl Lowered {
             travel_is_length: true,
         };
         self.add_pair(owner, [line, block], [Vec2::ZERO; 2], kind);
-        self.add_pair(
-            owner,
-            [block, bodies[1]],
-            [Vec2::ZERO, points[1]],
-            PairKind::Revolute,
-        );
+        self.add_pin(owner, [block, bodies[1]], [Vec2::ZERO, points[1]]);
         (pair, line)
     }
 
@@ -364,11 +333,11 @@ impl Lowered {
     /// Makes the travel of a pair a coordinate.
     fn make_travel_coordinate(&mut self, pair: usize) {
         if let PairKind::Prismatic {
-            travel_is_coordinate: measured,
+            travel_is_coordinate,
             ..
         } = &mut self.pairs[pair].kind
         {
-            *measured = true;
+            *travel_is_coordinate = true;
         }
     }
 

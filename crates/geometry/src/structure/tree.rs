@@ -195,49 +195,30 @@ impl Tree {
                 break;
             };
             let tree_joint = &self.joints[at];
-            add_vector(
-                &mut vectors,
-                vector_between(frames, end.0, self.joint_origins[end.0], end.1),
-                sign,
-            );
+            let vector = self.vector_to(frames, end.0, end.1);
+            add_vector(&mut vectors, vector, sign);
             if let Some((slide, direction)) = tree_joint.slide {
                 let frame = frames.orientations[end.0].frame;
                 let local = direction * sign;
                 slides.push((slide, FrameVector { frame, local }));
             }
-            *end = (
-                tree_joint.parent,
-                point_on(lowered, tree_joint.pair, tree_joint.parent),
-            );
+            let parent = tree_joint.parent;
+            *end = (parent, point_on(lowered, tree_joint.pair, parent));
         }
-        add_vector(
-            &mut vectors,
-            vector_between(frames, first.0, first.1, second.1),
-            1.0,
-        );
+        let last = vector_between(frames, first.0, first.1, second.1);
+        add_vector(&mut vectors, last, 1.0);
         vectors.retain(|vector| vector.local != Vec2::ZERO);
         let mut axis = None;
-        if let PairKind::Prismatic {
-            axes,
-            travel_is_coordinate,
-            ..
-        } = pair.kind
-        {
+        if let PairKind::Prismatic { axes, .. } = pair.kind {
             let orientation = frames.orientations[pair.bodies[0]];
             let frame = orientation.frame;
             let local = axes[0].rotate(orientation.offset);
-            match self
-                .slide_of_pair(loop_joint)
-                .filter(|_| travel_is_coordinate)
-            {
+            match self.slide_of_pair(loop_joint) {
                 // Its travel is a coordinate: the loop closes along the axis too.
-                Some(travel) => slides.push((
-                    travel,
-                    FrameVector {
-                        frame,
-                        local: -local,
-                    },
-                )),
+                Some(travel) => {
+                    let local = -local;
+                    slides.push((travel, FrameVector { frame, local }));
+                }
                 None => axis = Some(FrameVector { frame, local }),
             }
         }

@@ -47,7 +47,8 @@ impl CompiledLoads {
             | LoadKind::Damper { .. }
             | LoadKind::PointToPointForce { .. }
             | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => [Vec2::ZERO; 2],
+            | LoadKind::SlideDamper(_)
+            | LoadKind::SeparatingForce(_) => [Vec2::ZERO; 2],
         });
         let couple_points = couple_points.collect();
         let weight = |body: BodyId| {
@@ -78,7 +79,8 @@ impl CompiledLoads {
             | LoadKind::RotationalDamper { .. }
             | LoadKind::PointToPointForce { .. }
             | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => 2,
+            | LoadKind::SlideDamper(_)
+            | LoadKind::SeparatingForce(_) => 2,
         });
         LoadState {
             magnitude: vec![T::from_f64(0.0); self.loads.len()],
@@ -97,8 +99,8 @@ impl CompiledLoads {
         }
     }
 
-    /// The magnitudes at time `t` (s). Friction is zero until its reactions are known; an external magnitude
-    /// keeps its value.
+    /// The magnitudes at time `t` (s). Friction and separating forces are zero until their reactions are known; an
+    /// external magnitude keeps its value.
     pub(crate) fn update_magnitudes<T: Scalar>(
         &self,
         t: f64,
@@ -163,7 +165,8 @@ impl CompiledLoads {
             | LoadKind::Spring { .. }
             | LoadKind::TorsionSpring { .. }
             | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideForce(_)) => (kind, 1.0),
+            | LoadKind::SlideForce(_)
+            | LoadKind::SeparatingForce(_)) => (kind, 1.0),
         };
         self.add_wrenches(load, kind, T::from_f64(sign), states, out)?;
         out.sum_by_body();
@@ -209,15 +212,15 @@ impl CompiledLoads {
 
     /// The potential energy of a load, J, where it has one.
     pub(crate) fn potential_energy(&self, load: usize, states: &BodyStates) -> Option<f64> {
-        let Load {
-            kind,
-            magnitude: Magnitude::Constant(f),
-            ..
-        } = self.loads.get(load)?
-        else {
+        let load = self.loads.get(load)?;
+        if let LoadKind::SeparatingForce(_) = load.kind {
+            // It does no work, whatever its magnitude.
+            return Some(0.0);
+        }
+        let Magnitude::Constant(f) = load.magnitude else {
             return None;
         };
-        match *kind {
+        match load.kind {
             LoadKind::Gravity { direction } => {
                 let heights = self.weighted_bodies.iter().map(|&(body, mass)| {
                     mass.mass * states.point(body, mass.center).position.dot(direction)
@@ -253,7 +256,8 @@ impl CompiledLoads {
             | LoadKind::RotationalDamper { .. }
             | LoadKind::PointToPointForce { .. }
             | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => None,
+            | LoadKind::SlideDamper(_)
+            | LoadKind::SeparatingForce(_) => None,
         }
     }
 }
@@ -291,6 +295,7 @@ fn validate_load(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str>
         LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
             (&guide.bodies, finite(&guide.points) && unit(guide.axis))
         }
+        LoadKind::SeparatingForce(mesh) => (&mesh.bodies, mesh.is_valid()),
     };
     if !there(bodies) {
         return Err("it acts on a body that does not exist");
@@ -305,9 +310,11 @@ fn validate_load(mechanism: &Mechanism, load: &Load) -> Result<(), &'static str>
             Err("its magnitude is not a finite number")
         }
         Magnitude::Friction(friction) => friction.validate(mechanism, load.kind),
+        Magnitude::Separating(teeth) => teeth.validate(mechanism, load.kind),
         Magnitude::Constant(_)
         | Magnitude::Law(..)
         | Magnitude::Expression(..)
+        | Magnitude::Function(..)
         | Magnitude::External(_) => Ok(()),
     }
 }

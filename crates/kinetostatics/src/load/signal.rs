@@ -1,6 +1,6 @@
 //! The signals that magnitudes depend on, and magnitudes as laws and expressions of them.
 
-use super::{Magnitude, Signal};
+use super::{MAX_FUNCTION_SIGNALS, Magnitude, Signal};
 use dwell_geometry::Mechanism;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_laws::Expression;
@@ -45,8 +45,8 @@ impl Magnitude {
         self.eval(&numbers[..signals.len()], &values[..signals.len()])
     }
 
-    /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction and external
-    /// magnitudes are zero.
+    /// The magnitude where its [signals](Self::signals) are `numbers`, with plain `values`. Friction, separating
+    /// forces and external magnitudes are zero.
     pub fn eval<T: Scalar>(&self, numbers: &[T], values: &[f64]) -> T {
         match (self, numbers) {
             (Self::Constant(value), _) => T::from_f64(*value),
@@ -55,7 +55,8 @@ impl Magnitude {
             (Self::Expression(expression, _), numbers) => {
                 eval_expression(expression, numbers, values)
             }
-            (Self::Friction(_) | Self::External(_), _) => T::from_f64(0.0),
+            (Self::Function(function, _), numbers) => function.eval(numbers, values),
+            (Self::Friction(_) | Self::Separating(_) | Self::External(_), _) => T::from_f64(0.0),
         }
     }
 }
@@ -99,6 +100,9 @@ pub(crate) fn compile_signals(
         && expression.variables().len() > signals.len()
     {
         return Err("its expression has more variables than signals");
+    }
+    if matches!(magnitude, Magnitude::Function(..)) && signals.len() > MAX_FUNCTION_SIGNALS {
+        return Err("its function depends on more than 16 signals");
     }
     let unknown = "its magnitude depends on a coordinate that the mechanism does not have";
     let find = |coordinate| CoordinateFunction::find(mechanism, coordinate).ok_or(unknown);

@@ -1,6 +1,6 @@
 //! Forces and couples on bodies, and those of a load at its two ends.
 
-use super::{Guide, LoadKind};
+use super::{Guide, LoadKind, Mesh};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{ActuatorId, BodyId, JointId, Vec2};
 use dwell_numerics::Scalar;
@@ -132,6 +132,7 @@ pub(super) fn load_ends<T: Scalar>(
                 None => None,
             }
         }
+        LoadKind::SeparatingForce(mesh) => separating_force_ends(mesh, f, states),
         LoadKind::SlideForce(guide) => Some(slide_force_ends(guide, f, states)),
         LoadKind::SlideDamper(guide) => {
             let [_, velocity, _] = states.coordinate(guide.travel());
@@ -156,4 +157,23 @@ fn slide_force_ends<T: Scalar>(guide: Guide, f: T, states: &BodyStates<T>) -> [L
         Some((bodies[0], -force, on_first, zero)),
         Some((bodies[1], force, on_second, zero)),
     ]
+}
+
+/// A force that separates teeth, on both bodies at the pitch point.
+fn separating_force_ends<T: Scalar>(
+    mesh: Mesh,
+    f: T,
+    states: &BodyStates<T>,
+) -> Option<[LoadEnd<T>; 2]> {
+    let Mesh { bodies, points, .. } = mesh;
+    let [pitch_point, away] = mesh.pitch_point(states)?;
+    let force = away * f;
+    let on_second = states.body(bodies[1]).moment_arm(points[1]) + pitch_point;
+    let between = states.separation(bodies, points).gap + pitch_point;
+    let on_first = states.body(bodies[0]).moment_arm(points[0]) + between;
+    let zero = T::from_f64(0.0);
+    Some([
+        Some((bodies[0], -force, on_first, zero)),
+        Some((bodies[1], force, on_second, zero)),
+    ])
 }

@@ -23,10 +23,28 @@ impl Model {
     pub fn with_loads(mut self, loads: Vec<Load>) -> Result<Self, LoadError> {
         let plan = &self.pass_model.plan;
         self.loads = CompiledLoads::compile(&self.mechanism, plan, &self.masses, loads)?;
+        self.require_determinate_teeth()?;
         self.count_load_angles()?;
         let requested = self.reactions[..self.requested].to_vec();
         self.compile_reactions(&requested);
         Ok(self)
+    }
+
+    /// Refuses a separating force whose tooth force is statically indeterminate: it has no value.
+    fn require_determinate_teeth(&self) -> Result<(), LoadError> {
+        let reactions = self.mechanism.reactions();
+        let is_indeterminate = |load: &Load| {
+            let tooth_force = load.pressure_angle().map(|teeth| teeth.tooth_force());
+            let mut found = (0..reactions.len()).filter(|&k| Some(reactions[k]) == tooth_force);
+            found.any(|k| !self.pass_model.plan.is_determinate(k))
+        };
+        match self.loads().iter().position(is_indeterminate) {
+            Some(load) => Err(LoadError {
+                load,
+                what: "its tooth force is statically indeterminate (redundant constraints share the load), so its separating force has no value",
+            }),
+            None => Ok(()),
+        }
     }
 
     /// The compiled signals of a load's magnitude, in the order of its [signals](Magnitude::signals).
@@ -87,7 +105,7 @@ impl Model {
         self.set_state(t, q, q_dot, workspace)?;
         self.loaded_inverse_dynamics(q_ddot, workspace, result)?;
         workspace.update_body_accelerations(self);
-        if self.joint_frictions.is_empty() {
+        if self.dependent_loads.is_empty() {
             return Ok(());
         }
         let mut responses = std::mem::take(&mut workspace.load_workspace.friction_responses);
@@ -97,27 +115,28 @@ impl Model {
         self.loaded_inverse_dynamics(q_ddot, workspace, result)
     }
 
-    /// Solves for the frictions of a prescribed motion, from the reactions without them.
+    /// Solves for the frictions and separating forces of a prescribed motion, from the reactions without them.
     fn solve_prescribed_friction<T: Scalar>(
         &self,
         responses: &mut [InverseDynamics<T>],
         frictionless: &[T],
         workspace: &mut Workspace<T>,
     ) -> Result<(), KinetostaticsError> {
-        for (response, joint_friction) in responses.iter_mut().zip(&self.joint_frictions) {
-            self.unit_load_response(joint_friction.load, workspace, response)?;
+        for (response, dependent) in responses.iter_mut().zip(&self.dependent_loads) {
+            self.unit_load_response(dependent.load, workspace, response)?;
         }
         self.solve_friction(frictionless, responses, workspace)
     }
 
-    /// The loads that are frictions, by their indices in [`Model::loads`].
+    /// The loads that depend on reactions (frictions, and separating forces where a reaction is computed), by their
+    /// indices in [`Model::loads`].
     pub fn frictions(&self) -> impl ExactSizeIterator<Item = usize> + '_ {
-        self.joint_frictions.iter().map(|friction| friction.load)
+        self.dependent_loads.iter().map(|dependent| dependent.load)
     }
 
-    /// Solves for the frictions at the state set last: `frictionless` are the reactions without friction, and
-    /// `responses[j]` what a unit of friction j adds to each (its [response](Model::unit_load_response), with that of
-    /// the free coordinates' accelerations). The frictions become the magnitudes of their loads, and the loads'
+    /// Solves for the [loads that depend on reactions](Model::frictions) at the state set last: `frictionless` are the
+    /// reactions without them, and `responses[j]` what a unit of load j adds to each (its [response](Model::unit_load_response), with that of
+    /// the free coordinates' accelerations). They become the magnitudes of their loads, and the loads'
     /// wrenches are updated.
     ///
     /// # Errors
@@ -135,14 +154,14 @@ impl Model {
             ..
         } = &mut workspace.load_workspace;
         friction::solve(
-            &self.joint_frictions,
+            &self.dependent_loads,
             states,
             frictionless,
             responses,
             friction_workspace,
         )?;
-        for (friction, force) in self.joint_frictions.iter().zip(&friction_workspace.force) {
-            loads.magnitude[friction.load] = *force;
+        for (dependent, force) in self.dependent_loads.iter().zip(&friction_workspace.force) {
+            loads.magnitude[dependent.load] = *force;
         }
         self.loads.update_wrenches(states, loads)
     }

@@ -70,7 +70,14 @@ impl FreeBodyForces {
                         independent: coordinate(coupling.independent)?,
                     })
                 }),
-                _ => None,
+                JointKind::Revolute
+                | JointKind::Prismatic { .. }
+                | JointKind::Slot { .. }
+                | JointKind::Weld { .. }
+                | JointKind::Gear { .. }
+                | JointKind::Rack { .. }
+                | JointKind::Rolling { .. }
+                | JointKind::Distance { .. } => None,
             };
             joints.push(JointEntry {
                 joint: joint.clone(),

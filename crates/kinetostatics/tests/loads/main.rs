@@ -6,5 +6,6 @@ mod machines;
 mod revolutions;
 mod scenes;
 mod sections;
+mod separating;
 mod shapes;
 mod statics;

@@ -2,102 +2,52 @@
 
 use super::Joints;
 use crate::coordinates::{ParsedCoordinates, is_same};
-use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::keys::{COUPLING_LAWS, JOINTS};
+use crate::keys::table;
 use crate::law::{LawDomain, law};
-use crate::table_reader::{TableReader, coordinate, two_strings};
-use crate::units::Units;
+use crate::table_reader::TableReader;
 use crate::wording::list;
-use dwell_geometry::{Coordinate, Coupling, Joint, JointKind, Vec2};
+use dwell_geometry::{BodyId, Coordinate, Coupling, Joint, JointKind, Vec2};
 
 impl Joints<'_> {
     /// Reads the couplings, once the coordinates are known.
-    pub(crate) fn read_couplings(
-        &mut self,
-        named_coordinates: &ParsedCoordinates<'_>,
-        units: &Units,
-        diagnostics: &mut Diagnostics,
-    ) {
+    pub(crate) fn read_couplings(&mut self, named: &ParsedCoordinates<'_>) {
         for (k, fields) in std::mem::take(&mut self.pending_couplings) {
-            self.list[k].joint =
-                self.read_coupling(k, &fields, named_coordinates, units, diagnostics);
+            self.list[k].joint = self.coupling(k, &fields, named);
         }
     }
 
-    fn read_coupling(
+    fn coupling(
         &mut self,
         k: usize,
         fields: &TableReader<'_>,
-        named_coordinates: &ParsedCoordinates<'_>,
-        units: &Units,
-        diagnostics: &mut Diagnostics,
+        named: &ParsedCoordinates<'_>,
     ) -> Option<Joint> {
+        let both = self.coupled_coordinates(k, fields, named);
+        let laws = list(table("coupling").alternatives().into_iter()).unwrap_or_default();
+        let help = format!("add `expression = \"0.01*(1 - cos(x))\"`; the laws are {laws}");
+        let chosen = fields.alternative(table("coupling"), ("has no law", "no law"), help)?;
+        self.list[k].law = Some(chosen.span());
+        let [dependent, independent] = both?;
         let what = &fields.what;
-        let kind_entry = fields.get("coupling")?;
-        let names = two_strings(
-            kind_entry.value,
-            "two coordinates [\"value\", \"variable\"]",
-            format_args!("coupling of {what}"),
-            diagnostics,
-        );
-        let parsed = &mut self.list[k];
-        let both = names.and_then(
-            |[(dependent, at_dependent), (independent, at_independent)]| {
-                parsed.points = [at_dependent.clone(), at_independent.clone()];
-                let first = named_coordinates.find(dependent, &at_dependent, diagnostics);
-                let second = named_coordinates.find(independent, &at_independent, diagnostics);
-                let (first, second) = (first?, second?);
-                if is_same(first, second) {
-                    diagnostics.push(
-                        Diagnostic::new(format!("{what} couples a coordinate to itself"))
-                            .label(at_dependent, "this coordinate")
-                            .label(at_independent, "and the same again")
-                            .help("the first is the function's value, the second its variable"),
-                    );
-                    return None;
-                }
-                Some((first, second))
-            },
-        );
-        let chosen = fields
-            .one_of(|n| COUPLING_LAWS.contains(&n), diagnostics)
-            .ok()?;
-        let Some(chosen) = chosen else {
-            // Its other keys have been looked at: a misspelt law is one slip, not two.
-            let kind = JOINTS.iter().find(|t| t.kind_key() == "coupling");
-            if kind.is_some_and(|table| fields.has_unknown_keys(table)) {
-                return None;
-            }
-            let laws = list(COUPLING_LAWS.into_iter()).unwrap_or_default();
-            diagnostics.push(
-                Diagnostic::new(format!("{what} has no law"))
-                    .label(parsed.key.clone(), "no law")
-                    .help(format!(
-                        "add `expression = \"0.01*(1 - cos(x))\"`; the laws are {laws}"
-                    )),
-            );
-            return None;
-        };
-        parsed.law = Some(chosen.key.start..chosen.value.span().end);
-        let (dependent, independent) = both?;
         let start = match fields.get("start") {
             None => 0.0,
-            Some(e) => {
-                let what = format_args!("the start of {what}");
-                coordinate(e.value, dependent.is_angle(), units, what, diagnostics)?
-            }
+            Some(e) => e
+                .value
+                .coordinate(dependent.is_angle(), format_args!("the start of {what}"))?,
         };
         if let (Some(e), "expression" | "table") = (fields.get("start"), chosen.name) {
-            diagnostics.push(
-                Diagnostic::new(format!(
-                    "{what} has a `start` that its {} does not need",
-                    chosen.name
-                ))
-                .label(e.key.clone(), "only for a sinusoid or a rise")
-                .help("leave it out, or add it to the function itself"),
+            let message = format!(
+                "{what} has a `start` that its {} does not need",
+                chosen.name
             );
-            return None;
+            let diagnostic = e
+                .error(message)
+                .label(&e.key, "only for a sinusoid or a rise");
+            return diagnostic
+                .help("leave it out, or add it to the function itself")
+                .reject();
         }
+        let units = fields.units();
         let domain = LawDomain {
             variable: "x",
             x_unit: units.coordinate_unit(independent.is_angle()),
@@ -105,7 +55,7 @@ impl Joints<'_> {
             start_value: start,
             end_time: None,
         };
-        let law = law(chosen, what, &domain, units, diagnostics)?;
+        let law = law(chosen, what, &domain)?;
         let (bodies, points) = self.bodies_and_points(dependent)?;
         self.couplings.push(Coupling {
             dependent,
@@ -120,11 +70,32 @@ impl Joints<'_> {
         })
     }
 
+    /// The dependent and the independent coordinate, which differ.
+    fn coupled_coordinates(
+        &mut self,
+        k: usize,
+        fields: &TableReader<'_>,
+        named: &ParsedCoordinates<'_>,
+    ) -> Option<[Coordinate; 2]> {
+        let entry = fields.get("coupling")?;
+        let expected = "two coordinates [\"value\", \"variable\"]";
+        let names = entry.value.two_strings(expected, fields.name_of(entry))?;
+        self.list[k].points = [names[0].1.clone(), names[1].1.clone()];
+        let [first, second] = names.each_ref().map(|(name, at)| named.find(name, at));
+        let (first, second) = (first?, second?);
+        if is_same(first, second) {
+            return fields
+                .error(format!("{} couples a coordinate to itself", fields.what))
+                .label(&names[0].1, "this coordinate")
+                .label(&names[1].1, "and the same again")
+                .help("the first is the function's value, the second its variable")
+                .reject();
+        }
+        Some([first, second])
+    }
+
     /// The bodies whose coordinate it is, and the points it is measured at.
-    fn bodies_and_points(
-        &self,
-        of: Coordinate,
-    ) -> Option<([dwell_geometry::BodyId; 2], [Vec2; 2])> {
+    fn bodies_and_points(&self, of: Coordinate) -> Option<([BodyId; 2], [Vec2; 2])> {
         match of {
             Coordinate::Angle(bodies) => Some((bodies, [Vec2::ZERO; 2])),
             Coordinate::Length { bodies, points } => Some((bodies, points)),

@@ -1,71 +1,64 @@
 //! Gears, racks and rolling wheels.
 
-use super::pairs::{axis, two_radii};
-use crate::diagnostics::{Diagnostic, Diagnostics};
-use crate::table_reader::{Entry, SignRule, TableReader, boolean, quantity_with_sign};
-use crate::units::Units;
+use super::pairs::axis;
+use crate::diagnostics::Span;
+use crate::table_reader::TableReader;
+use crate::value::{NumberRule, SignRule};
 use dwell_geometry::{JointKind, Vec2};
+use dwell_kinetostatics::PressureAngle;
 
-pub(super) fn gear(
-    entry: &Entry<'_>,
-    fields: &TableReader<'_>,
-    units: &Units,
-    diagnostics: &mut Diagnostics,
-) -> Option<JointKind> {
+pub(super) fn gear(fields: &TableReader<'_>) -> Option<JointKind> {
     let what = &fields.what;
-    let internal = match fields.get("internal") {
-        None => Some(false),
-        Some(e) => boolean(e.value, format_args!("`internal` of {what}"), diagnostics),
-    };
-    let help = "add `radii = [30, 20]`: the pitch radius of each gear";
-    let given = fields.require("radii", &entry.key, help, diagnostics)?;
-    let radii = two_radii(
-        given,
-        units,
-        SignRule::Positive,
-        &format!("the radii of {what}"),
-        "a pitch radius is above zero; a ring gear is one with `internal = true`",
-        diagnostics,
+    let internal = fields.boolean("internal");
+    let given = fields.require(
+        "radii",
+        "add `radii = [30, 20]`: the pitch radius of each gear",
     )?;
-    let internal = internal?;
+    let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
+    let rule =
+        rule.because("a pitch radius is above zero; a ring gear is one with `internal = true`");
+    let [a, b] = given
+        .value
+        .pair("two radii [r1, r2]", format_args!("the radii of {what}"))?;
+    let a = a.quantity_with_sign(&rule, format_args!("the first of the radii of {what}"));
+    let b = b.quantity_with_sign(&rule, format_args!("the second of the radii of {what}"));
+    let (radii, internal) = ([a?, b?], internal?);
     if internal && radii[0] == radii[1] {
-        diagnostics.push(
-            Diagnostic::new(format!("the ring and the gear of {what} have equal radii"))
-                .label(given.value.span(), "the gear does not fit into the ring")
-                .help("the ring's radius is the larger one; two equal gears are external"),
-        );
-        return None;
+        let message = format!("the ring and the gear of {what} have equal radii");
+        let help = "the ring's radius is the larger one; two equal gears are external";
+        let diagnostic = given
+            .value
+            .wrong(message, "the gear does not fit into the ring");
+        return diagnostic.help(help).reject();
     }
     Some(JointKind::Gear { radii, internal })
 }
 
-/// The axis and the radius of a pinion or wheel that rolls along a line.
-pub(super) fn on_a_line(
-    entry: &Entry<'_>,
-    fields: &TableReader<'_>,
-    units: &Units,
-    diagnostics: &mut Diagnostics,
-) -> Option<(Vec2, f64)> {
-    let axis = axis(entry, fields, diagnostics);
-    let radius = radius(entry, fields, units, diagnostics);
-    Some((axis?, radius?))
+/// The pressure angle of teeth, rad, where the scene gives one.
+pub(super) fn pressure_angle(fields: &TableReader<'_>) -> Option<(f64, Span)> {
+    let entry = fields.get("pressure-angle")?;
+    let what = fields.name_of(entry);
+    let si = entry.value.angle(&what)?;
+    if si > 0.0 && si <= PressureAngle::MAX {
+        return Some((si, entry.value.span()));
+    }
+    let message = format!("{what} is not between 0° and 45°");
+    let help = "standard teeth have 20°; leave it out for teeth without a separating force";
+    let unit = &fields.units().angle.name;
+    entry
+        .value
+        .wrong(message, &format!("in {unit}"))
+        .help(help)
+        .reject()
 }
 
-/// A radius other than zero; its sign tells on which side of the line it is.
-fn radius(
-    entry: &Entry<'_>,
-    fields: &TableReader<'_>,
-    units: &Units,
-    diagnostics: &mut Diagnostics,
-) -> Option<f64> {
+/// The axis and the radius of a pinion or wheel that rolls along a line.
+pub(super) fn on_a_line(fields: &TableReader<'_>) -> Option<(Vec2, f64)> {
+    let axis = axis(fields);
+    // Its sign gives the side of the line on which the wheel is.
+    let rule = NumberRule::new(&fields.units().length, SignRule::NotZero);
+    let rule = rule.because("a wheel without a radius cannot roll");
     let help = "add `radius = 20`: above zero to the left of the axis, below to its right";
-    let radius = fields.require("radius", &entry.key, help, diagnostics)?;
-    quantity_with_sign(
-        radius.value,
-        &units.length,
-        SignRule::NotZero,
-        format_args!("the radius of {}", fields.what),
-        "a wheel without a radius cannot roll",
-        diagnostics,
-    )
+    let radius = fields.number("radius", help, &rule);
+    Some((axis?, radius?))
 }

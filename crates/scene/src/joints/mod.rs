@@ -5,12 +5,10 @@ mod gears;
 mod pairs;
 
 use crate::bodies::{Bodies, NamedPoint, TWO_POINTS};
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
-use crate::keys::JOINTS;
+use crate::diagnostics::{Diagnostics, Span};
 use crate::kind::kind;
 use crate::names::check;
-use crate::table_reader::{Entry, TableReader, array, string};
-use crate::units::Units;
+use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
 use dwell_geometry::{Coupling, Joint, JointId, JointKind};
 use dwell_kinetostatics::Guide;
@@ -18,7 +16,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 /// A joint as read; nothing in it if it was wrong, while its name still counts as known.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct ParsedJoint {
     pub(crate) name: String,
     pub(crate) key: Span,
@@ -28,11 +26,13 @@ pub(crate) struct ParsedJoint {
     pub(crate) axis: Option<Span>,
     /// The law of a coupling.
     pub(crate) law: Option<Span>,
+    /// The pressure angle of teeth, rad.
+    pub(crate) pressure_angle: Option<(f64, Span)>,
     pub(crate) joint: Option<Joint>,
 }
 
 /// All the joints as read.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Joints<'a> {
     pub(crate) list: Vec<ParsedJoint>,
     /// Which joints a name stands for: several only if it is that of a pin of several bodies.
@@ -40,84 +40,72 @@ pub(crate) struct Joints<'a> {
     pub(crate) couplings: Vec<Coupling>,
     /// Couplings, which are read after the coordinates.
     pending_couplings: Vec<(usize, TableReader<'a>)>,
+    pub(crate) log: &'a Diagnostics,
 }
 
 impl<'a> Joints<'a> {
+    /// No joints, as long as none is read.
+    pub(crate) fn new(log: &'a Diagnostics) -> Self {
+        Self {
+            list: Vec::new(),
+            by_name: HashMap::new(),
+            couplings: Vec::new(),
+            pending_couplings: Vec::new(),
+            log,
+        }
+    }
+
     /// Every joint, the couplings by their names alone: [`Self::read_couplings`] reads them.
-    pub(crate) fn read(
-        fields: &TableReader<'a>,
-        bodies: &Bodies<'_>,
-        units: &Units,
-        diagnostics: &mut Diagnostics,
-    ) -> Self {
-        let mut joints = Self::default();
+    pub(crate) fn read(mut self, fields: &TableReader<'a>, bodies: &Bodies<'_>) -> Self {
         for entry in &fields.entries {
-            check("a joint", entry.name, &entry.key, diagnostics);
-            let (first, count) = (joints.list.len(), diagnostics.count());
-            joints.joint(entry, bodies, units, diagnostics);
-            if diagnostics.count() > count {
-                // What is wrong with it is said: nothing follows from the rest of it.
-                for joint in &mut joints.list[first..] {
+            check("a joint", entry);
+            let (first, count) = (self.list.len(), self.log.count());
+            self.joint(entry, bodies);
+            if self.log.count() > count {
+                // What is wrong with it is reported: nothing follows from the rest of it.
+                for joint in &mut self.list[first..] {
                     joint.joint = None;
                 }
             }
-            let all = first..joints.list.len();
-            joints.by_name.insert(entry.name.to_owned(), all);
+            let all = first..self.list.len();
+            self.by_name.insert(entry.name.to_owned(), all);
         }
-        joints.name_pins(diagnostics);
-        joints
+        self.name_pins();
+        self
     }
 
     /// The joints of that name.
-    pub(crate) fn find(
-        &self,
-        name: &str,
-        at: &Span,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Range<usize>> {
-        if let Some(range) = self.by_name.get(name) {
-            return Some(range.clone());
-        }
+    pub(crate) fn find(&self, name: &str, at: &Span) -> Option<Range<usize>> {
+        let found = self.by_name.get(name);
         // Without any joint the scene has a greater problem, reported by now.
-        if !self.list.is_empty() {
-            let help = diagnostics.choices(name, "joints", self.names());
-            diagnostics.push(
-                Diagnostic::new(format!("there is no joint `{}`", shorten(name)))
-                    .label(at.clone(), "unknown joint")
-                    .help(help),
-            );
+        if found.is_none() && !self.list.is_empty() {
+            let names = self.list.iter().map(|j| j.name.as_str());
+            let help = self.log.choices(name, "joints", names);
+            let diagnostic = self
+                .log
+                .error(format!("there is no joint `{}`", shorten(name)));
+            diagnostic.label(at, "unknown joint").help(help).report();
         }
-        None
+        found.cloned()
     }
 
     /// The prismatic joint or slot of that name, which has a travel.
-    pub(crate) fn sliding(
-        &self,
-        name: &str,
-        at: &Span,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<JointId> {
-        let first = self.find(name, at, diagnostics)?.start;
+    pub(crate) fn sliding(&self, name: &str, at: &Span) -> Option<JointId> {
+        let first = self.find(name, at)?.start;
         let kind = self.list[first].joint.as_ref()?.kind;
         if has_travel(kind) {
             return Some(JointId(first));
         }
-        let sliding = self.list.iter().filter(|j| match &j.joint {
-            Some(joint) => has_travel(joint.kind),
-            None => false,
-        });
-        let help = diagnostics.choices(
-            "",
-            "prismatic joints and slots",
-            sliding.map(|j| j.name.as_str()),
-        );
-        let name = shorten(name);
-        diagnostics.push(
-            Diagnostic::new(format!("joint `{name}` has no travel"))
-                .label(at.clone(), format!("its kind is {}", kind_name(kind)))
-                .help(help),
-        );
-        None
+        let has_travel = |j: &&ParsedJoint| j.joint.as_ref().is_some_and(|j| has_travel(j.kind));
+        let sliding = self.list.iter().filter(has_travel).map(|j| j.name.as_str());
+        let help = self.log.choices("", "prismatic joints and slots", sliding);
+        let diagnostic = self
+            .log
+            .error(format!("joint `{}` has no travel", shorten(name)));
+        diagnostic
+            .label(at, format!("its kind is {}", kind_name(kind)))
+            .help(help)
+            .reject()
     }
 
     /// The line along which a joint slides.
@@ -127,20 +115,17 @@ impl<'a> Joints<'a> {
             JointKind::Prismatic { axes: [axis, _] } | JointKind::Slot { axis } => axis,
             _ => return None,
         };
+        let (bodies, points) = (joint.bodies, joint.points);
         Some(Guide {
-            bodies: joint.bodies,
-            points: joint.points,
+            bodies,
+            points,
             axis,
         })
     }
 
-    fn names(&self) -> impl Iterator<Item = &str> + Clone {
-        self.list.iter().map(|j| j.name.as_str())
-    }
-
     /// A joint between two bodies stands in the list under its own name; the joints of a pin of
     /// several bodies have names of their own, which no other joint may have.
-    fn name_pins(&mut self, diagnostics: &mut Diagnostics) {
+    fn name_pins(&mut self) {
         for (k, joint) in self.list.iter().enumerate() {
             if self
                 .by_name
@@ -152,25 +137,17 @@ impl<'a> Joints<'a> {
             let Some(other) = self.by_name.insert(joint.name.clone(), k..k + 1) else {
                 continue;
             };
-            let name = shorten(&joint.name);
-            diagnostics.push(
-                Diagnostic::new(format!("two joints are named `{name}`"))
-                    .label(joint.key.clone(), "one is made from this pin")
-                    .label(self.list[other.start].key.clone(), "the other is here")
-                    .help(
-                        "rename this joint: a pin of several bodies makes joints named `pin-body`",
-                    ),
-            );
+            self.log
+                .error(format!("two joints are named `{}`", shorten(&joint.name)))
+                .label(&joint.key, "one is made from this pin")
+                .label(&self.list[other.start].key, "the other is here")
+                .help("rename this joint: a pin of several bodies makes joints named `pin-body`")
+                .report();
         }
     }
 
-    fn joint(
-        &mut self,
-        entry: &Entry<'a>,
-        bodies: &Bodies<'_>,
-        units: &Units,
-        diagnostics: &mut Diagnostics,
-    ) {
+    /// Appends the joints that an entry describes, several if it is a pin of several bodies.
+    fn joint(&mut self, entry: &Entry<'a>, bodies: &Bodies<'_>) {
         let key = entry.key.clone();
         let mut parsed = ParsedJoint {
             name: entry.name.to_owned(),
@@ -178,84 +155,78 @@ impl<'a> Joints<'a> {
             key,
             axis: None,
             law: None,
+            pressure_angle: None,
             joint: None,
         };
-        let what = format!("joint `{}`", shorten(entry.name));
-        let Some(fields) = TableReader::open(entry, what, diagnostics) else {
-            self.list.push(parsed);
-            return;
-        };
-        let Some((kind, kind_entry)) = kind(&fields, &entry.key, "joint", &JOINTS, diagnostics)
-        else {
+        let fields = TableReader::open(entry, format!("joint `{}`", shorten(entry.name)));
+        let kind = fields.as_ref().and_then(|fields| kind(fields, "joint"));
+        let (Some(fields), Some((kind, kind_entry))) = (&fields, kind) else {
             self.list.push(parsed);
             return;
         };
         let axis = fields.get("axis").or(fields.get("axes"));
         parsed.axis = axis.map(|e| e.value.span());
-        if kind == "revolute" {
-            self.pin(parsed, kind_entry, &fields, bodies, diagnostics);
-            return;
+        match kind {
+            "revolute" => match pin_points(kind_entry, fields, bodies).as_deref() {
+                Some([first, others @ ..]) => self.pin(&parsed, first, others, bodies),
+                _ => self.list.push(parsed),
+            },
+            "coupling" => {
+                self.pending_couplings
+                    .push((self.list.len(), fields.clone()));
+                self.list.push(parsed);
+            }
+            _ => {
+                let points = two_points(kind_entry, TWO_POINTS, fields, bodies);
+                if matches!(kind, "gear" | "rack") {
+                    parsed.pressure_angle = gears::pressure_angle(fields);
+                }
+                let kind = joint_kind(kind, fields);
+                if let Some([a, b]) = points {
+                    parsed.points = [a.2.clone(), b.2.clone()];
+                    parsed.joint = kind.map(|kind| between(&parsed.name, &a, &b, kind, bodies));
+                }
+                self.list.push(parsed);
+            }
         }
-        if kind == "coupling" {
-            self.pending_couplings.push((self.list.len(), fields));
-            self.list.push(parsed);
-            return;
-        }
-        let points = two_points(kind_entry, TWO_POINTS, &fields, bodies, diagnostics);
-        let kind =
-            match kind {
-                "prismatic" => pairs::prismatic(entry, &fields, diagnostics),
-                "slot" => pairs::slot(entry, &fields, diagnostics),
-                "weld" => pairs::weld(&fields, units, diagnostics),
-                "distance" => pairs::distance(entry, &fields, units, diagnostics),
-                "gear" => gears::gear(entry, &fields, units, diagnostics),
-                _ => gears::on_a_line(entry, &fields, units, diagnostics).map(|(axis, radius)| {
-                    match kind {
-                        "rack" => JointKind::Rack { axis, radius },
-                        _ => JointKind::Rolling { axis, radius },
-                    }
-                }),
-            };
-        if let Some(points) = points {
-            parsed.points = points.clone().map(|(_, _, at)| at);
-            let [a, b] = &points;
-            parsed.joint = kind.map(|kind| between(&parsed.name, a, b, kind, bodies));
-        }
-        self.list.push(parsed);
     }
 
     /// A pin: the first body holds every other.
     fn pin(
         &mut self,
-        mut parsed: ParsedJoint,
-        kind_entry: &Entry<'_>,
-        fields: &TableReader<'_>,
+        parsed: &ParsedJoint,
+        first: &NamedPoint,
+        others: &[NamedPoint],
         bodies: &Bodies<'_>,
-        diagnostics: &mut Diagnostics,
     ) {
-        let Some(points) = pin_points(kind_entry, fields, bodies, diagnostics) else {
-            self.list.push(parsed);
-            return;
-        };
-        let [first, others @ ..] = points.as_slice() else {
-            self.list.push(parsed);
-            return;
-        };
         for other in others {
             let name = match others.len() {
                 1 => parsed.name.clone(),
                 _ => format!("{}-{}", parsed.name, bodies.list[other.0.0].name),
             };
-            parsed.points = [first.2.clone(), other.2.clone()];
             self.list.push(ParsedJoint {
                 joint: Some(between(&name, first, other, JointKind::Revolute, bodies)),
                 name,
-                key: parsed.key.clone(),
-                points: parsed.points.clone(),
+                points: [first.2.clone(), other.2.clone()],
                 axis: None,
-                law: None,
+                ..parsed.clone()
             });
         }
+    }
+}
+
+/// The kind of a joint of two points, with its numbers.
+fn joint_kind(kind: &str, fields: &TableReader<'_>) -> Option<JointKind> {
+    match kind {
+        "prismatic" => pairs::prismatic(fields),
+        "slot" => pairs::axis(fields).map(|axis| JointKind::Slot { axis }),
+        "weld" => pairs::weld(fields),
+        "distance" => pairs::distance(fields),
+        "gear" => gears::gear(fields),
+        _ => gears::on_a_line(fields).map(|(axis, radius)| match kind {
+            "rack" => JointKind::Rack { axis, radius },
+            _ => JointKind::Rolling { axis, radius },
+        }),
     }
 }
 
@@ -300,13 +271,11 @@ fn two_points(
     expected: &str,
     fields: &TableReader<'_>,
     bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
 ) -> Option<[NamedPoint; 2]> {
-    let what = format_args!("{} of {}", kind_entry.name, fields.what);
-    let points = bodies.find_two_points(kind_entry.value, expected, what, diagnostics)?;
-    let [a, b] = &points;
-    require_different_bodies(a, b, fields, bodies, diagnostics)?;
-    Some(points)
+    let what = fields.name_of(kind_entry);
+    let [a, b] = bodies.find_two_points(kind_entry.value, expected, what)?;
+    require_different_bodies(&a, &b, fields, bodies)?;
+    Some([a, b])
 }
 
 /// The points of a pin, two or more, each of another body.
@@ -314,59 +283,50 @@ fn pin_points(
     kind_entry: &Entry<'_>,
     fields: &TableReader<'_>,
     bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
 ) -> Option<Vec<NamedPoint>> {
-    let what = format!("{} of {}", kind_entry.name, fields.what);
+    let what = fields.name_of(kind_entry);
     let expected = "two or more points [\"body.point\", \"body.point\"]";
-    let values = array(
-        kind_entry.value,
-        expected,
-        format_args!("{what}"),
-        diagnostics,
-    )?;
+    let values = kind_entry.value.array(expected, &what)?;
     if values.len() < 3 {
-        return two_points(kind_entry, expected, fields, bodies, diagnostics).map(Vec::from);
+        return two_points(kind_entry, expected, fields, bodies).map(Vec::from);
     }
-    let count = diagnostics.count();
+    let count = fields.log().count();
     let mut points: Vec<NamedPoint> = Vec::new();
     for value in values {
-        let Some(name) = string(value, format_args!("{what}"), diagnostics) else {
-            continue;
-        };
         let at = value.span();
-        let Some((body, point)) = bodies.find_point(name, &at, diagnostics) else {
+        let found = value
+            .string(&what)
+            .and_then(|name| bodies.find_point(name, &at));
+        let Some((body, point)) = found else {
             continue;
         };
         let named_point = (body, point, at);
         match points.iter().find(|e| e.0 == body) {
             Some(other) => {
-                require_different_bodies(other, &named_point, fields, bodies, diagnostics);
+                require_different_bodies(other, &named_point, fields, bodies);
             }
             None => points.push(named_point),
         }
     }
-    (diagnostics.count() == count).then_some(points)
+    (fields.log().count() == count).then_some(points)
 }
 
-/// A joint is between two bodies: says so if it is not.
+/// A joint is between two bodies: reports one that is not.
 fn require_different_bodies(
     a: &NamedPoint,
     b: &NamedPoint,
     fields: &TableReader<'_>,
     bodies: &Bodies<'_>,
-    diagnostics: &mut Diagnostics,
 ) -> Option<()> {
     if a.0 != b.0 {
         return Some(());
     }
-    diagnostics.push(
-        Diagnostic::new(format!(
-            "{} joins body `{}` to itself",
-            fields.what, bodies.list[a.0.0].name
-        ))
-        .label(a.2.clone(), "this body")
-        .label(b.2.clone(), "and the same again")
-        .help("a joint holds two different bodies together"),
-    );
-    None
+    let message = |name: &str| format!("{} joins body `{name}` to itself", fields.what);
+    let labels = [(&a.2, "this body"), (&b.2, "and the same again")];
+    bodies.reject_same_body(
+        a.0,
+        message,
+        labels,
+        "a joint holds two different bodies together",
+    )
 }

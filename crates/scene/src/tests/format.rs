@@ -2,7 +2,7 @@
 //! say is held against what the reader does.
 
 use super::*;
-use crate::keys::{KeySchema, Presence, SCENE, TableSchema, ValueShape};
+use crate::keys::{self, KeySchema, Presence, TableSchema, ValueShape, kinds};
 use crate::schema::{as_json, schema};
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -11,11 +11,11 @@ const PAGE: &str = include_str!("../../../../docs/scene-format.md");
 
 /// Every table that the scene's keys lead to, each once.
 pub(super) fn tables() -> Vec<&'static TableSchema> {
-    fn follow(shape: ValueShape, found: &mut Vec<&'static TableSchema>) {
+    fn follow(shape: &'static ValueShape, found: &mut Vec<&'static TableSchema>) {
         match shape {
-            ValueShape::Table(table) | ValueShape::Tables(table) => visit(table, found),
-            ValueShape::Kinds(kinds) => kinds.iter().for_each(|table| visit(table, found)),
-            ValueShape::Either(shapes) => shapes.iter().for_each(|shape| follow(*shape, found)),
+            ValueShape::Table(id) | ValueShape::Tables(id) => visit(keys::table(id), found),
+            ValueShape::Kinds(things) => kinds(things).into_iter().for_each(|t| visit(t, found)),
+            ValueShape::Either(shapes) => shapes.iter().for_each(|shape| follow(shape, found)),
             _ => {}
         }
     }
@@ -25,16 +25,16 @@ pub(super) fn tables() -> Vec<&'static TableSchema> {
         }
         found.push(table);
         for key in table.keys.iter().chain(&table.named) {
-            follow(key.shape, found);
+            follow(&key.shape, found);
         }
     }
     let mut found = Vec::new();
-    visit(&SCENE, &mut found);
+    visit(keys::table("scene"), &mut found);
     found
 }
 
 /// How the value of a key is written, for a reader.
-fn value(shape: ValueShape) -> String {
+fn value(shape: &ValueShape) -> String {
     match shape {
         ValueShape::Text => "text".to_owned(),
         ValueShape::Number => "number".to_owned(),
@@ -48,18 +48,19 @@ fn value(shape: ValueShape) -> String {
         ValueShape::Pair => "two numbers".to_owned(),
         ValueShape::TwoPairs => "two pairs of numbers".to_owned(),
         ValueShape::Rows => "two or more pairs of numbers".to_owned(),
-        ValueShape::Name(what) => what.to_owned(),
+        ValueShape::Name(what) => what.clone(),
         ValueShape::TwoNames(what) => format!("two of {what}"),
-        ValueShape::Names(what, 0) => format!("list of {what}"),
-        ValueShape::Names(what, min) => format!("{min} or more of {what}"),
+        ValueShape::Names(0, what) => format!("list of {what}"),
+        ValueShape::Names(min, what) => format!("{min} or more of {what}"),
         ValueShape::Table(_) => "table".to_owned(),
         ValueShape::Tables(_) => "list of tables".to_owned(),
-        ValueShape::Kinds(kinds) => {
-            let kinds: Vec<_> = kinds.iter().map(|t| format!("`{}`", t.name)).collect();
+        ValueShape::Kinds(things) => {
+            let kinds = kinds(things).into_iter();
+            let kinds: Vec<_> = kinds.map(|t| format!("`{}`", t.name)).collect();
             format!("table of a kind: {}", kinds.join(", "))
         }
         ValueShape::Either(shapes) => {
-            let mut shapes: Vec<_> = shapes.iter().map(|s| value(*s)).collect();
+            let mut shapes: Vec<_> = shapes.iter().map(|s| value(s)).collect();
             shapes.dedup();
             shapes.join(", or ")
         }
@@ -69,7 +70,7 @@ fn value(shape: ValueShape) -> String {
 /// When a key of a set may be absent.
 fn instead_of(table: &TableSchema, key: &KeySchema) -> String {
     let sets = table.sets();
-    let others = sets.iter().filter(|set| !set.contains(&key.name));
+    let others = sets.iter().filter(|set| !set.contains(&key.name.as_str()));
     let others: Vec<_> = others.flatten().map(|name| format!("`{name}`")).collect();
     format!("needed, or else {}", others.join(", "))
 }
@@ -81,18 +82,18 @@ fn markdown(table: &TableSchema) -> String {
         "| key | value | unit | if absent | meaning | example |\n|---|---|---|---|---|---|\n",
     );
     for key in table.keys.iter().chain(&table.named) {
-        let absent = match key.presence {
-            Presence::Required if key.name.starts_with('<') => "",
-            Presence::Required => "needed",
-            Presence::OneOf(_) => "one of these is needed",
-            Presence::Set(_) => &instead_of(table, key),
-            Presence::Default(default) => default,
+        let absent = match &key.presence {
+            None if key.name.starts_with('<') => "",
+            None => "needed",
+            Some(Presence::OneOf(_)) => "one of these is needed",
+            Some(Presence::Set(_)) => &instead_of(table, key),
+            Some(Presence::Absent(default)) => default,
         };
         let _ = writeln!(
             text,
             "| `{}` | {} | {} | {absent} | {} | `{}` |",
             key.name,
-            value(key.shape),
+            value(&key.shape),
             key.unit,
             key.doc,
             key.example
@@ -200,15 +201,12 @@ fn tables_of_examples(table: &TableSchema) -> Vec<(String, String)> {
         let mut parts: Vec<_> = table
             .keys
             .iter()
-            .filter(|k| k.presence == Presence::Required && k.name != wanted.name)
+            .filter(|k| k.presence.is_none() && k.name != wanted.name)
             .map(written)
             .collect();
-        let alternative = table
-            .keys
-            .iter()
-            .find(|k| matches!(k.presence, Presence::OneOf(_)));
-        match (wanted.presence, alternative) {
-            (Presence::OneOf(_), _) => {}
+        let alternative = table.keys.iter().find(|k| k.is_one_of());
+        match (wanted.is_one_of(), alternative) {
+            (true, _) => {}
             // Numbers of dry friction make sense together.
             _ if table.name.starts_with("[friction.") => {
                 let others = table.keys.iter().filter(|k| k.name != wanted.name);
@@ -216,9 +214,9 @@ fn tables_of_examples(table: &TableSchema) -> Vec<(String, String)> {
             }
             (_, None) => {
                 let sets = table.sets();
-                let containing = sets.iter().find(|set| set.contains(&wanted.name));
+                let containing = sets.iter().find(|set| set.contains(&wanted.name.as_str()));
                 let set = containing.or(sets.first()).into_iter().flatten();
-                let keys = set.filter_map(|name| table.keys.iter().find(|k| k.name == *name));
+                let keys = set.filter_map(|name| table.keys.iter().find(|k| k.name == **name));
                 parts.extend(keys.filter(|k| k.name != wanted.name).map(written));
             }
             // A start is that of a sine or a rise.
@@ -229,10 +227,7 @@ fn tables_of_examples(table: &TableSchema) -> Vec<(String, String)> {
             (_, Some(key)) => parts.push(written(key)),
         }
         parts.push(written(wanted));
-        (
-            wanted.name.to_owned(),
-            format!("{{ {} }}", parts.join(", ")),
-        )
+        (wanted.name.clone(), format!("{{ {} }}", parts.join(", ")))
     };
     let keys = table.keys.iter().filter(|k| !k.name.starts_with('<'));
     keys.map(one).collect()
@@ -243,7 +238,7 @@ fn every_example_of_a_key_is_read() {
     let scene = &examples()[0];
     let around = |table: &TableSchema, inner: &str| -> Option<String> {
         let law = "cycloidal = { rise = 1.0, duration = 0.5 }";
-        Some(match table.name {
+        Some(match table.name.as_str() {
             "[bodies.<body>]" => format!("bodies.crank = {inner}"),
             "[actuators.<actuator>]" => format!("actuators.other = {inner}\nassembly.other = 10"),
             "[coordinates.<coordinate>]" => format!("coordinates.other = {inner}"),
@@ -274,17 +269,17 @@ fn every_example_of_a_key_is_read() {
             "dwell" => format!("requests.dwell = {inner}"),
             "sections" => format!("requests.sections = [{inner}]"),
             name if name.starts_with('[') => format!("{} = {inner}", name.trim_matches(['[', ']'])),
-            name if crate::keys::JOINTS.iter().any(|t| t.name == name) => {
+            name if kinds("joints").iter().any(|t| t.name == name) => {
                 format!("joints.other = {inner}")
             }
-            name if crate::keys::LOADS.iter().any(|t| t.name == name) => {
+            name if kinds("loads").iter().any(|t| t.name == name) => {
                 let replaced = if name == "gravity" { "weight" } else { "other" };
                 format!("loads.{replaced} = {inner}")
             }
-            name if crate::keys::DRIVES.iter().any(|t| t.name == name) => {
+            name if kinds("drives").iter().any(|t| t.name == name) => {
                 format!("drives.other = {inner}")
             }
-            name if crate::keys::EVENT_KINDS.iter().any(|t| t.name == name) => {
+            name if kinds("events").iter().any(|t| t.name == name) => {
                 format!("motion = {{ initial-velocity = 1, duration = 1, events.other = {inner} }}")
             }
             _ => return None,
@@ -292,7 +287,7 @@ fn every_example_of_a_key_is_read() {
     };
     let mut read = 0;
     for table in tables() {
-        let texts = if std::ptr::eq(table, &raw const SCENE) {
+        let texts = if table.name == "the scene" {
             let each = table.keys.iter().filter(|k| k.name != "actuators");
             each.map(|k| format!("{} = {}", k.name, k.example))
                 .collect()
@@ -424,4 +419,18 @@ fn the_schema_refuses_what_has_the_wrong_shape() {
         }
     }
     assert!(refused_count > 40, "{refused_count}");
+}
+
+#[test]
+fn the_units_are_those_that_the_reader_knows() {
+    use crate::units::{ANGLES, KnownUnit, LENGTHS, MASSES};
+    let all: [(&str, &[KnownUnit]); 3] =
+        [("length", &LENGTHS), ("mass", &MASSES), ("angle", &ANGLES)];
+    for (key, units) in all {
+        let key = keys::table("units").key(key).unwrap();
+        let ValueShape::Word(words) = &key.shape else {
+            panic!("{key:?}");
+        };
+        assert_eq!(*words, units.iter().map(|u| u.0).collect::<Vec<_>>());
+    }
 }

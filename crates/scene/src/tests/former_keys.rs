@@ -1,7 +1,7 @@
 //! Former names of keys: read as the current ones, with a warning.
 
 use super::*;
-use crate::keys::{KeySchema, TableSchema, ValueShape};
+use crate::keys::{TableSchema, ValueShape, kinds};
 use crate::tests::format::tables;
 
 /// A text with current names, which one of the three scenes contains once, and the same with former names.
@@ -51,10 +51,10 @@ fn data(scene: &Scene) -> String {
     )
 }
 
-fn keys_with_former_names() -> Vec<(&'static TableSchema, KeySchema)> {
+fn former_names() -> Vec<(&'static TableSchema, &'static str)> {
     let keys = tables().into_iter().flat_map(|table| {
-        let renamed = table.keys.iter().filter(|k| !k.former.is_empty());
-        renamed.map(move |key| (table, *key))
+        let former = table.keys.iter().filter_map(|k| k.former.as_deref());
+        former.map(move |former| (table, former))
     });
     keys.collect()
 }
@@ -87,14 +87,12 @@ fn a_former_name_is_read_as_the_current_one_with_a_warning() {
         );
     }
     // Every key that was renamed is among them.
-    for (_, key) in keys_with_former_names() {
-        for former in key.former {
-            let named = |text: &str| {
-                text.split(|c: char| !c.is_alphanumeric() && c != '-')
-                    .any(|word| word == *former)
-            };
-            assert!(RENAMED.iter().any(|(_, _, text)| named(text)), "`{former}`");
-        }
+    for (_, former) in former_names() {
+        let named = |text: &str| {
+            text.split(|c: char| !c.is_alphanumeric() && c != '-')
+                .any(|word| word == former)
+        };
+        assert!(RENAMED.iter().any(|(_, _, text)| named(text)), "`{former}`");
     }
 }
 
@@ -133,19 +131,18 @@ fn the_former_and_the_current_name_at_once_are_an_error() {
 /// Otherwise one name would mean two things.
 #[test]
 fn no_former_name_is_a_current_one_beside_it() {
-    for (table, key) in keys_with_former_names() {
-        for former in key.former {
-            assert!(!table.contains_key(former), "`{former}` of {}", table.name);
-        }
+    for (table, former) in former_names() {
+        assert!(!table.contains_key(former), "`{former}` of {}", table.name);
     }
-    let kinds = tables()
+    let keys = tables()
         .into_iter()
         .flat_map(|table| table.keys.iter().chain(&table.named));
-    for key in kinds {
-        let ValueShape::Kinds(kinds) = key.shape else {
+    for key in keys {
+        let ValueShape::Kinds(things) = &key.shape else {
             continue;
         };
-        for former in kinds.iter().flat_map(|kind| kind.keys[0].former) {
+        let kinds = kinds(things);
+        for former in kinds.iter().filter_map(|kind| kind.keys[0].former.as_ref()) {
             assert!(
                 !kinds.iter().any(|kind| kind.contains_key(former)),
                 "`{former}`"
@@ -189,4 +186,37 @@ fn an_unknown_name_in_an_expression_is_answered_with_current_names() {
         "{}",
         messages(&text)[0]
     );
+}
+
+#[test]
+fn an_error_names_the_key_as_the_file_has_it() {
+    for (scene, current, wrong, message) in [
+        (
+            MACHINE,
+            "free-length = 77.85",
+            "free = -1",
+            "free of load `coil` is negative",
+        ),
+        (
+            MACHINE,
+            "damping = 100",
+            "constant = -1",
+            "constant of load `oil` is negative",
+        ),
+        (
+            FREE_MOTION,
+            "regularization-speed = 2",
+            "fade = 0",
+            "fade of friction of `slide`",
+        ),
+        (
+            WHOLE,
+            "initial-coordinate = 30",
+            "start = true",
+            "start of [motion]: expected",
+        ),
+    ] {
+        let found = messages(&changed(scene, current, wrong));
+        assert!(found[0].contains(message), "{found:?}");
+    }
 }

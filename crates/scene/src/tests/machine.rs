@@ -7,7 +7,7 @@ use dwell_geometry::{
     ActuatorId, ActuatorKind, BodyId, Component, Coordinate, JointId, JointKind, Reaction, Vec2,
     vec2,
 };
-use dwell_kinetostatics::{LoadKind, Magnitude, Signal};
+use dwell_kinetostatics::{Load, LoadKind, Magnitude, Signal};
 use dwell_laws::{Expression, Law, Polynomial, Profile, Rise, Shape, Spline};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -39,6 +39,34 @@ fn mm(x: f64, y: f64) -> Vec2 {
 /// x π/180, as the reader converts degrees.
 fn deg(x: f64) -> f64 {
     x * PI / 180.0
+}
+
+/// A pressure angle makes a load, named after the joint, which points to the angle in the file.
+#[test]
+fn teeth_with_a_pressure_angle_have_a_separating_force() {
+    let text = MACHINE
+        .replace(
+            "internal = true }",
+            "internal = true, pressure-angle = 45 }",
+        )
+        .replace("radius = -30 }", "radius = -30, pressure-angle = 20 }");
+    let scene = parse(&text).unwrap();
+    let count = machine().loads.len();
+    assert_eq!(scene.loads[..count], machine().loads);
+    let joint = |name: &str| {
+        let found = scene.mechanism.joints.iter().position(|j| j.name == name);
+        JointId(found.unwrap())
+    };
+    let separating = |name: &str, angle: f64| {
+        let id = joint(name);
+        Load::separating(&scene.mechanism.joints[id.0], id, deg(angle)).unwrap()
+    };
+    let expected = [separating("mesh", 45.0), separating("strip", 20.0)];
+    assert_eq!(scene.loads[count..], expected);
+    assert_eq!(expected[0].name, "mesh.separating");
+    let place = crate::SceneLocation::Magnitude(count);
+    let error = scene.error(String::new(), None, &[(place, "here".to_owned())]);
+    assert_eq!(error.errors()[0].labelled(), [("45", "here")]);
 }
 
 #[test]

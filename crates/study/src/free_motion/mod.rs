@@ -6,5 +6,6 @@ mod document;
 #[cfg(feature = "output")]
 mod output;
 
+pub use compute::{MotionSolver, MotionTable, compute_free_motion};
 #[cfg(feature = "output")]
 pub use output::{simulate, simulate_to_accuracy};

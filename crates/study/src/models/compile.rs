@@ -66,7 +66,13 @@ pub(crate) fn with_loads(scene: &Scene, model: Model) -> Result<Model, StudyErro
     let loads = scene.loads.clone();
     model.with_loads(loads).map_err(|e| {
         let labels = [(SceneLocation::Load(e.load), "this load".to_owned())];
-        scene.error(e.to_string(), None, &labels).into()
+        let name = scene
+            .loads
+            .get(e.load)
+            .map_or("", |load| load.name.as_str());
+        scene
+            .error(format!("load `{name}`: {}", e.what), None, &labels)
+            .into()
     })
 }
 

@@ -12,6 +12,6 @@ pub(crate) use compile::{
     determinate_model, loaded_determinate_model, requested_reaction_bodies, with_loads,
 };
 pub use prepared_scene::PreparedScene;
-pub(crate) use prepared_scene::indeterminate_note;
+pub(crate) use prepared_scene::{indeterminate_note, separating_note};
 pub(crate) use scene_machine::SceneMachine;
 pub use solver_settings::{PRESETS, SolverSettings};

@@ -54,12 +54,14 @@ impl<'a> PreparedScene<'a> {
                 )
                 .into());
         }
-        if for_period && !scene.loads.is_empty() {
+        // A separating force changes no motion.
+        let ignored = scene.loads.iter().position(|load| load.does_work());
+        if let Some(load) = ignored.filter(|_| for_period) {
             return Err(scene
                 .error(
                     "calibration needs the period of a motion without loads".to_owned(),
                     Some("remove the loads, or try values with `dwell simulate`".to_owned()),
-                    &label(SceneLocation::Load(0), "this load would be ignored"),
+                    &label(SceneLocation::Load(load), "this load would be ignored"),
                 )
                 .into());
         }
@@ -120,6 +122,19 @@ pub(crate) fn indeterminate_note(names: impl Iterator<Item = String>) -> String 
     }
     format!(
         "  statically indeterminate (redundant constraints share the load), so in no table: {}\n",
+        names.join(", ")
+    )
+}
+
+/// The line of a summary about separating forces, which a and b cannot hold; empty if there are none.
+pub(crate) fn separating_note(scene: &Scene) -> String {
+    let separating = scene.loads.iter().filter(|load| !load.does_work());
+    let names: Vec<&str> = separating.map(|load| load.name.as_str()).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    format!(
+        "  a and b are without the separating forces {}: each is |tooth force| × tan(pressure angle) at one state, and adds c times itself to a reaction\n",
         names.join(", ")
     )
 }

@@ -1,5 +1,6 @@
 //! The summary of the reduced parameters and of the table.
 
+use crate::models::separating_note;
 use crate::number_format::digits;
 use crate::reduce::compute::{Reduction, RoundingErrors};
 use dwell_kinetostatics::Coefficients;
@@ -42,5 +43,6 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     if m1 == 0.0 {
         summary += "  no body with mass moves: there is no equation of motion, and every inertial reaction is zero\n";
     }
+    summary += &separating_note(prepared.scene);
     summary + &prepared.indeterminate_text()
 }

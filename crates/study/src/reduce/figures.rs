@@ -4,7 +4,7 @@
 //! m q̈ + ½m′ q̇² = Σ w_ℓ F_ℓ,    R_k = a_k q̈ + b_k q̇² + Σ c_kℓ F_ℓ
 //! ```
 //!
-//! F is the magnitude that the scene gives; for a damper or friction, the force or moment itself.
+//! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself.
 
 use crate::models::PreparedScene;
 use crate::output::{
@@ -168,13 +168,14 @@ pub(crate) fn unit_loads(
     let mut unit_names: Vec<&str> = curves
         .loads
         .iter()
+        .filter(|load| load.does_work())
         .map(|load| units(load.kind)[0])
         .collect();
     unit_names.sort_unstable();
     unit_names.dedup();
     for unit in unit_names {
         let of_unit: Vec<usize> = (0..curves.loads.len())
-            .filter(|&l| units(curves.loads[l].kind)[0] == unit)
+            .filter(|&l| curves.loads[l].does_work() && units(curves.loads[l].kind)[0] == unit)
             .collect();
         for members in of_unit.chunks(MAX_CURVES) {
             let curve = |&l: &usize| {

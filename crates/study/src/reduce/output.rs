@@ -4,6 +4,7 @@ use super::{document, figures};
 use crate::explain::StudyError;
 use crate::output::{Outcome, signed_png};
 use crate::reduce::compute::{Reduction, TableRequest, compute_reduction, tabulate};
+use dwell_kinetostatics::Load;
 use dwell_report::{Figure, TableFormat};
 use dwell_scene::Scene;
 
@@ -23,7 +24,9 @@ pub fn reduce(scene: &Scene, table: Option<TableRequest>) -> Result<Outcome, Stu
     let mut figures: Vec<Figure> = vec![figures::reduced(prepared, curves)];
     let (coefficients, note) = figures::coefficients(prepared, curves);
     figures.extend(coefficients);
-    if let Some(unit_loads) = unit_loads {
+    if let Some(unit_loads) = unit_loads
+        && unit_loads.loads.iter().any(Load::does_work)
+    {
         figures.push(figures::unit_loads(unit_loads, prepared, &curves.q));
     }
     let mut outcome = Outcome::default();

@@ -13,6 +13,6 @@ mod store;
 #[cfg(feature = "output")]
 mod tests;
 
-pub use compute::Shard;
+pub use compute::{Shard, SweepTable, compute_sweep};
 #[cfg(feature = "output")]
 pub use output::{ParameterSweep, sweep};

@@ -1,5 +1,6 @@
 //! Closed forms as a document.
 
+use crate::models::separating_note;
 use crate::number_format::{count, digits};
 use dwell_findings::Finding;
 use dwell_report::{Block, Document};
@@ -27,6 +28,9 @@ pub(crate) fn summary(scene: &Scene, form: &ClosedForm, findings: &[Finding]) ->
         count(form.assignment_count(), "step"),
         scene.mechanism.actuators[0].name,
     );
+    if form.reaction.is_some() {
+        text += &separating_note(scene);
+    }
     for f in findings {
         let result = if f.pass { "pass" } else { "FAIL" };
         text += &format!(

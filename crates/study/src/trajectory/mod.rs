@@ -9,7 +9,7 @@ mod figures;
 #[cfg(feature = "output")]
 mod output;
 
-pub use compute::Analysis;
+pub use compute::{Analysis, TrajectoryTable, compute_trajectory};
 #[cfg(feature = "output")]
 pub(crate) use output::evaluate_and_report;
 #[cfg(feature = "output")]

@@ -6,11 +6,11 @@ use crate::models::loaded_model;
 use crate::output::{Outcome, signed_gif, signed_png};
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, Trajectory, TrajectoryResults, check_variables, evaluate_trajectory, selected_columns,
+    Analysis, Trajectory, check_variables, evaluate_trajectory, selected_columns,
 };
 use dwell_kinetostatics::Model;
 use dwell_report::TableExport as _;
-use dwell_report::{Figure, ReportError, Table, TableFormat};
+use dwell_report::{Figure, ReportError, TableFormat};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
@@ -72,7 +72,7 @@ pub(crate) fn evaluate_and_report(
     let selected = selected_columns(scene, &results.columns);
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-{}{rest}", scene.name, analysis.name());
-    let table = table(&results, &selected);
+    let table = results.table(&selected);
     outcome
         .files
         .add_table(&name(""), &table, &TableFormat::ALL)?;
@@ -133,17 +133,4 @@ fn render(
         Ok(bytes)
     };
     figures.par_iter().map(one).collect()
-}
-
-/// The selected columns as a table.
-fn table(results: &TrajectoryResults, selected: &[usize]) -> Table {
-    let column = |&k: &usize| {
-        let column = &results.columns[k];
-        dwell_report::Column::new(column.name.clone(), column.unit)
-    };
-    let row = |row: &Vec<f64>| selected.iter().map(|&k| row[k]).collect();
-    Table {
-        columns: selected.iter().map(column).collect(),
-        rows: results.rows.iter().map(row).collect(),
-    }
 }

@@ -6,6 +6,7 @@ mod branch_hints;
 mod early_stops;
 mod forces;
 mod former_names;
+mod gears;
 mod machines;
 mod mechanical_advantage;
 mod motion;

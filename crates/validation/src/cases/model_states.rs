@@ -6,7 +6,7 @@ use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_position;
 use dwell_study::models::loaded_model;
-use dwell_verify::{ClaimedState, condition_number, load_wrenches};
+use dwell_verify::{ClaimedState, condition_number, load_wrenches, magnitude_by_reactions};
 use std::f64::consts::TAU;
 
 /// Between two positions no coordinate changes by more than this, rad, or this part of the size:
@@ -105,7 +105,9 @@ impl<'a> ModelStates<'a> {
         let (velocities, accelerations): (Vec<_>, Vec<_>) = (0..bodies.len()).map(rates).unzip();
         let loads = scene.loads.iter().zip(&self.workspace.loads().magnitude);
         let (ground, masses) = (scene.mechanism.ground, &scene.masses);
+        let reactions = &self.result.reactions;
         let loads = loads.filter_map(|(load, &magnitude)| {
+            let magnitude = magnitude_by_reactions(load, magnitude, &scene.mechanism, reactions);
             load_wrenches(&load.kind, magnitude, ground, masses, &bodies, &velocities)
         });
         Ok(ClaimedState {

@@ -30,7 +30,7 @@ pub(super) struct MultibodySolution {
     state: MultibodyState,
 }
 
-/// All forces but friction, and the inertia.
+/// All forces but those that depend on reactions, and the inertia.
 struct AppliedForces {
     mass: Mat<f64>,
     force: Vec<f64>,
@@ -114,7 +114,7 @@ impl MultibodyOde<'_> {
         }
     }
 
-    /// All loads but frictions; none if a magnitude cannot be evaluated.
+    /// All loads but those that depend on reactions; none if a magnitude cannot be evaluated.
     fn add_loads(
         &self,
         at: &MultibodyState,
@@ -122,7 +122,10 @@ impl MultibodyOde<'_> {
         to: &mut AppliedForces,
     ) -> Option<()> {
         for (i, load) in self.system.loads.iter().enumerate() {
-            if matches!(load.magnitude, Magnitude::Friction(_)) {
+            if matches!(
+                load.magnitude,
+                Magnitude::Friction(_) | Magnitude::Separating(_)
+            ) {
                 continue;
             }
             let magnitude = self.system.magnitude(&load.magnitude, at)?;

@@ -1,24 +1,33 @@
-//! Coulomb friction: each friction force depends on reactions, which depend on all friction forces.
+//! Coulomb friction and the separating forces of teeth: each depends on reactions, which depend on all of them.
 //!
 //! ```text
 //! F_j = −µ g(R_j) tanh(v/v₀),    R = R⁰ + Σ F_k R^k
 //! g = r √(X² + Y²)  in a pin,    |N/2 + M/l| + |N/2 − M/l|  in a guide of length l
+//! S_j = tan α |T_j|  of teeth with the pressure angle α and the tooth force T
 //! ```
 
 use super::equations::MultibodyOde;
 use super::state::MultibodyState;
 use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::slide_axis;
+use crate::loads::tooth_row;
 use crate::lu::Lu;
 use dwell_geometry::{Component, JointKind, Reaction};
-use dwell_kinetostatics::{Friction, FrictionContact, LoadKind, Magnitude};
+use dwell_kinetostatics::{Friction, FrictionContact, LoadKind, Magnitude, PressureAngle};
 use faer::Mat;
 
 const MAX_NEWTON_STEPS: usize = 100;
 /// Newton's change of a friction, relative to the largest, that is none.
 const CONVERGED_CHANGE: f64 = 1e-15;
 
-/// Reactions by row: without friction, and what a unit of each friction adds.
+/// How a load answers to the reactions of its joint.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum ReactionLaw {
+    Friction(Friction),
+    Teeth(PressureAngle),
+}
+
+/// Reactions by row: without these loads, and what a unit of each adds.
 pub(super) struct FrictionResponse {
     pub(super) frictionless: Vec<f64>,
     pub(super) unit_responses: Vec<Vec<f64>>,
@@ -34,15 +43,38 @@ impl MultibodySystem {
         on_pin && joint.kind == JointKind::Revolute || on_slide && slide_axis(joint.kind).is_some()
     }
 
-    /// The loads that are frictions.
-    pub(super) fn frictions(&self) -> Vec<(usize, Friction)> {
+    /// Whether a separating force is that of the teeth of its joint.
+    pub(super) fn check_teeth(&self, kind: &LoadKind, teeth: &PressureAngle) -> bool {
+        let LoadKind::SeparatingForce(mesh) = kind else {
+            return false;
+        };
+        let joint = self.mechanism.joints.get(teeth.joint.0);
+        let fits = joint.is_some_and(|joint| match joint.kind {
+            JointKind::Gear { .. } | JointKind::Rack { .. } => {
+                (joint.bodies, joint.points) == (mesh.bodies, mesh.points)
+            }
+            JointKind::Revolute
+            | JointKind::Prismatic { .. }
+            | JointKind::Slot { .. }
+            | JointKind::Weld { .. }
+            | JointKind::Rolling { .. }
+            | JointKind::Distance { .. }
+            | JointKind::Coupling(_) => false,
+        });
+        fits && teeth.angle.is_finite()
+    }
+
+    /// The loads that answer to reactions.
+    pub(super) fn frictions(&self) -> Vec<(usize, ReactionLaw)> {
         let loads = self.loads.iter().enumerate();
         loads
             .filter_map(|(i, load)| match load.magnitude {
-                Magnitude::Friction(friction) => Some((i, friction)),
+                Magnitude::Friction(friction) => Some((i, ReactionLaw::Friction(friction))),
+                Magnitude::Separating(teeth) => Some((i, ReactionLaw::Teeth(teeth))),
                 Magnitude::Constant(_)
                 | Magnitude::Law(..)
                 | Magnitude::Expression(..)
+                | Magnitude::Function(..)
                 | Magnitude::External(_) => None,
             })
             .collect()
@@ -56,8 +88,12 @@ impl MultibodySystem {
         reactions.iter().position(|r| *r == wanted)
     }
 
-    /// µ tanh(v/v₀).
-    fn friction_factor(&self, load: usize, of: &Friction, at: &MultibodyState) -> Option<f64> {
+    /// µ tanh(v/v₀), or −tan α.
+    fn factor(&self, load: usize, law: &ReactionLaw, at: &MultibodyState) -> Option<f64> {
+        let friction = match law {
+            ReactionLaw::Friction(friction) => friction,
+            ReactionLaw::Teeth(teeth) => return Some(-teeth.angle.tan()),
+        };
         let [_, velocity] = match self.loads.get(load)?.kind {
             LoadKind::SlideForce(guide) => {
                 at.motion().travel(guide.bodies, guide.points, guide.axis)?
@@ -70,13 +106,23 @@ impl MultibodySystem {
             | LoadKind::Damper { .. }
             | LoadKind::RotationalDamper { .. }
             | LoadKind::PointToPointForce { .. }
-            | LoadKind::SlideDamper(_) => return None,
+            | LoadKind::SlideDamper(_)
+            | LoadKind::SeparatingForce(_) => return None,
         };
-        Some(of.coefficient * (velocity / of.regularization_speed).tanh())
+        Some(friction.coefficient * (velocity / friction.regularization_speed).tanh())
     }
 
-    /// g, with its derivative by every row that it depends on.
-    fn contact_force(&self, friction: &Friction, reactions: &[f64]) -> (f64, Vec<(usize, f64)>) {
+    /// g or |T|, with its derivative by every row that it depends on.
+    fn contact_force(&self, law: &ReactionLaw, reactions: &[f64]) -> (f64, Vec<(usize, f64)>) {
+        let friction = match law {
+            ReactionLaw::Friction(friction) => friction,
+            ReactionLaw::Teeth(teeth) => {
+                let row = tooth_row(&self.mechanism, teeth.joint);
+                return row.map_or((f64::NAN, vec![]), |row| {
+                    (reactions[row].abs(), vec![(row, reactions[row].signum())])
+                });
+            }
+        };
         let row = |component| {
             let row = self.reaction_row(friction, component)?;
             Some((row, reactions[row]))
@@ -110,7 +156,7 @@ impl MultibodyOde<'_> {
     /// The friction forces that agree with the reactions which they cause.
     pub(super) fn solve_friction(
         &self,
-        frictions: &[(usize, Friction)],
+        frictions: &[(usize, ReactionLaw)],
         response: &FrictionResponse,
         at: &MultibodyState,
     ) -> Result<Vec<f64>> {
@@ -119,7 +165,7 @@ impl MultibodyOde<'_> {
             return Ok(vec![]);
         }
         let self_locking = MultibodyError::SelfLocking { t: at.t };
-        let factor = |(load, friction): &_| self.system.friction_factor(*load, friction, at);
+        let factor = |(load, law): &_| self.system.factor(*load, law, at);
         let factors: Option<Vec<f64>> = frictions.iter().map(factor).collect();
         let factors = factors.ok_or(MultibodyError::NotFinite { t: at.t })?;
         let mut force = vec![0.0_f64; n];
@@ -131,8 +177,8 @@ impl MultibodyOde<'_> {
             }
             let mut matrix = Mat::<f64>::identity(n, n);
             let mut step = Mat::zeros(n, 1);
-            for (j, ((_, friction), factor)) in frictions.iter().zip(&factors).enumerate() {
-                let (contact_force, gradient) = self.system.contact_force(friction, &reactions);
+            for (j, ((_, law), factor)) in frictions.iter().zip(&factors).enumerate() {
+                let (contact_force, gradient) = self.system.contact_force(law, &reactions);
                 step[(j, 0)] = -(force[j] + factor * contact_force);
                 for (k, unit) in response.unit_responses.iter().enumerate() {
                     let sensitivity: f64 = gradient.iter().map(|&(row, s)| s * unit[row]).sum();

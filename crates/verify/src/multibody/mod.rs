@@ -11,8 +11,8 @@
 //! ```
 //!
 //! in dense numbers: M is singular where bodies are massless, the whole matrix is not. λ of a row is
-//! the force or moment of its first body on its second. Friction makes f depend on λ; the response of (1) to
-//! each friction is a column more, and Newton's method finds how much of each there is.
+//! the force or moment of its first body on its second. Friction and the separating forces of teeth make f depend on λ;
+//! the response of (1) to each is a column more, and Newton's method finds how much of each there is.
 //!
 //! ẋ = v, v̇ = ẍ of (1) are integrated by extrapolation, to the order that the step needs; after each
 //! step positions and velocities are moved by the least that closes the rows again. Nothing here

@@ -54,8 +54,8 @@ impl MultibodySystem {
         }
     }
 
-    /// A magnitude; none if it needs a coordinate or a signal that is not there. Friction and
-    /// external magnitudes have none of their own.
+    /// A magnitude; none if it needs a coordinate or a signal that is not there. What depends on reactions, and
+    /// external magnitudes, have none of their own.
     pub(super) fn magnitude(&self, magnitude: &Magnitude, at: &MultibodyState) -> Option<f64> {
         match magnitude {
             Magnitude::Constant(value) => Some(*value),
@@ -66,7 +66,11 @@ impl MultibodySystem {
                 let enough = expression.variables().len() <= values.len();
                 enough.then(|| expression.eval(&values))
             }
-            Magnitude::Friction(_) | Magnitude::External(_) => None,
+            Magnitude::Function(function, signals) => {
+                let signals = signals.iter().map(|s| self.signal(*s, at));
+                Some(function.value(&signals.collect::<Option<Vec<f64>>>()?))
+            }
+            Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => None,
         }
     }
 
@@ -100,7 +104,12 @@ impl MultibodySystem {
                 .ok_or(wrong("it acts on a body that is not there"))?;
             match &load.magnitude {
                 Magnitude::Friction(friction) => self.check_friction(&load.kind, friction),
-                other => self.magnitude(other, &at).is_some(),
+                Magnitude::Separating(teeth) => self.check_teeth(&load.kind, teeth),
+                other @ (Magnitude::Constant(_)
+                | Magnitude::Law(..)
+                | Magnitude::Expression(..)
+                | Magnitude::Function(..)
+                | Magnitude::External(_)) => self.magnitude(other, &at).is_some(),
             }
             .then_some(())
             .ok_or(wrong("its magnitude does not fit the mechanism"))?;
@@ -161,7 +170,8 @@ impl MultibodySystem {
             | LoadKind::RotationalDamper { .. }
             | LoadKind::PointToPointForce { .. }
             | LoadKind::SlideForce(_)
-            | LoadKind::SlideDamper(_) => None,
+            | LoadKind::SlideDamper(_)
+            | LoadKind::SeparatingForce(_) => None,
         }
     }
 }

@@ -4,9 +4,10 @@ use crate::machines::{describe, findings_for};
 use crate::plant::{GROUND, Plant};
 use crate::setup::Setup;
 use dwell_findings::all_pass;
-use dwell_geometry::{Actuator, BodyId, Coordinate, Joint, JointKind, Vec2, vec2};
-use dwell_kinetostatics::{DriveKind, Magnitude, Motor};
+use dwell_geometry::{Actuator, BodyId, Coordinate, Joint, JointId, JointKind, Vec2, vec2};
+use dwell_kinetostatics::{DriveKind, Load, Magnitude, Motor};
 use dwell_laws::{Law, Polynomial};
+use dwell_verify::MotionSample;
 
 /// Let go at the coordinates of the start, with the actuators before `led` prescribed.
 fn let_go(setup: &Setup, prescribed_count: usize) -> Plant {
@@ -121,4 +122,29 @@ fn val_motors_on_led_coordinates() {
             check(&plant, setup.name);
         }
     }
+}
+
+/// The teeth of every gear and rack push each other apart. The motion is the same: both sides must find the reactions
+/// of the bearings.
+#[test]
+fn val_teeth_with_a_pressure_angle() {
+    let mut count = 0;
+    for setup in crate::mechanisms::all() {
+        let joints = setup.mechanism.joints.iter().enumerate();
+        let separating = joints.filter_map(|(j, joint)| Load::separating(joint, JointId(j), 0.4));
+        let separating: Vec<Load> = separating.collect();
+        if separating.is_empty() {
+            continue;
+        }
+        count += separating.len();
+        let mut plant = let_go(&setup, 0);
+        let plain = plant.model_motion(0.2, 4);
+        for load in separating {
+            plant.load(&load.name, load.kind, load.magnitude);
+        }
+        check(&plant, setup.name);
+        let reactions = |motion: &[MotionSample]| motion.last().map(|s| s.reactions.clone());
+        assert_ne!(reactions(&plain), reactions(&plant.model_motion(0.2, 4)));
+    }
+    assert!(count >= 3, "{count}");
 }

@@ -4,7 +4,9 @@
 //! m q̈ + ½m′ q̇² = Σ w_ℓ F_ℓ,    R_k = a_k q̈ + b_k q̇² + Σ c_kℓ F_ℓ
 //! ```
 //!
-//! F is the magnitude that the scene gives; for a damper or friction, the force or moment itself.
+//! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself. A
+//! separating force is |tooth force| tan α of the sum itself, so that it belongs to one state: its column c is the
+//! response to one newton of it. Its w is zero and has no column.
 
 use crate::explain::{StudyError, explain_motion};
 use crate::models::{PreparedScene, loaded_determinate_model};
@@ -32,7 +34,8 @@ pub(crate) fn units(kind: LoadKind) -> [&'static str; 3] {
         | LoadKind::Damper { .. }
         | LoadKind::PointToPointForce { .. }
         | LoadKind::SlideForce(_)
-        | LoadKind::SlideDamper(_) => ["m", "", "m"],
+        | LoadKind::SlideDamper(_)
+        | LoadKind::SeparatingForce(_) => ["m", "", "m"],
     }
 }
 
@@ -51,7 +54,10 @@ impl UnitLoadCurves {
             loads: scene.loads.clone(),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
-            conservative: (0..scene.loads.len()).any(|l| model.is_conservative(l)),
+            conservative: scene
+                .loads
+                .iter()
+                .any(|load| load.does_work() && load.is_conservative()),
         };
         for &q in q {
             model
@@ -81,7 +87,12 @@ impl UnitLoadCurves {
             all.push((Column::new("V", "J"), self.potential.clone()));
         }
         let value = |load: usize, k: usize| self.rows.iter().map(|row| row[load][k]).collect();
-        for (l, load) in self.loads.iter().enumerate() {
+        let working = self
+            .loads
+            .iter()
+            .enumerate()
+            .filter(|(_, load)| load.does_work());
+        for (l, load) in working {
             let [unit, ..] = units(load.kind);
             all.push((Column::new(format!("{}.w", load.name), unit), value(l, 0)));
         }

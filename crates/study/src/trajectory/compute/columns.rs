@@ -4,7 +4,7 @@ use crate::former_names::former_column;
 use crate::trajectory::compute::{Analysis, Dyad, dyads};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{ActuatorKind, BodyId, Component, JointId, JointKind, Plan, Reaction, Vec2};
-use dwell_kinetostatics::{LoadKind, Model};
+use dwell_kinetostatics::{Load, LoadKind, Model};
 use dwell_scene::Scene;
 use std::collections::HashSet;
 
@@ -439,6 +439,7 @@ impl Columns {
                 let name = mechanism.reaction_name(reaction);
                 self.add(name, component.unit(), ColumnQuantity::Reaction(k), meaning);
             }
+            self.separating_force(scene, id);
             use JointKind::{Prismatic, Revolute, Rolling, Slot, Weld};
             if !is_determinate(model, id) {
                 continue;
@@ -479,9 +480,22 @@ impl Columns {
         }
     }
 
+    /// The separating force of teeth, beside their tooth force.
+    fn separating_force(&mut self, scene: &Scene, joint: JointId) {
+        let mut loads = scene.loads.iter();
+        let is_of_joint = |load: &Load| load.pressure_angle().is_some_and(|p| p.joint == joint);
+        if let Some(k) = loads.position(is_of_joint) {
+            let meaning = "separating force: |tooth force| × tan(pressure angle), pushes the two bodies apart at the pitch point";
+            let name = scene.loads[k].name.clone();
+            self.add(name, "N", ColumnQuantity::LoadForce(k), meaning);
+        }
+    }
+
     fn loads(&mut self, scene: &Scene) {
         for (k, load) in scene.loads.iter().enumerate() {
             let description = match load.kind {
+                // It has its column beside the tooth force, and does no work.
+                LoadKind::SeparatingForce(_) => continue,
                 LoadKind::Gravity { .. } => None,
                 LoadKind::Force { .. } => Some(("N", "force along its direction")),
                 LoadKind::Torque { .. } => Some(("N m", "moment on the second body")),

@@ -13,6 +13,7 @@ mod results;
 mod rounding_error;
 mod sectioned_link;
 mod selection;
+mod table;
 mod trajectory;
 
 pub use analysis::Analysis;
@@ -30,6 +31,7 @@ pub(crate) use results::{TrajectoryResults, evaluate_trajectory};
 pub(crate) use rounding_error::RoundingError;
 pub(crate) use sectioned_link::SectionedLink;
 pub(crate) use selection::{check_variables, is_requested, selected_columns};
+pub use table::{TrajectoryTable, compute_trajectory};
 pub(crate) use trajectory::{
     BALANCE, ExtraColumn, KINETIC, POTENTIAL, Trajectory, TrajectorySample, swept_range,
 };

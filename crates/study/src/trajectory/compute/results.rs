@@ -257,7 +257,8 @@ impl<'a> PositionEvaluator<'a> {
             LoadKind::Gravity { .. }
             | LoadKind::Force { .. }
             | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. } => self.workspace.loads().magnitude[k],
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SeparatingForce(_) => self.workspace.loads().magnitude[k],
             LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
                 let line = self.workspace.states().separation(bodies, points).direction;
                 let on_second = by_load().find(|wrench| wrench.body == bodies[1]);

@@ -1,0 +1,332 @@
+//! Building a mechanism in a program.
+
+use crate::error::Error;
+use crate::mechanism::Mechanism;
+use crate::parts::{
+    Actuator, Coordinate, Drive, Friction, Joint, Keys, Law, Load, LoadFunction, Motion,
+};
+use crate::scene::Scene;
+use crate::value::{Value, key, quoted};
+use std::fmt::Write as _;
+
+/// Collects the parts of a mechanism; [`assemble`](MechanismBuilder::assemble) puts them together. All numbers are in
+/// SI: m, rad, kg, s, N. Parts are named by their keys of a scene file, and the errors are those of the file that
+/// [`to_toml`](MechanismBuilder::to_toml) gives.
+///
+/// ```
+/// use dwell::{Actuator, Joint, Mechanism};
+///
+/// let mut m = Mechanism::builder("Pendulum");
+/// m.ground().point("O", [0.0, 0.0]);
+/// m.body("bob").point("O", [0.0, 0.0]).mass(2.0, [0.5, 0.0], 0.0);
+/// m.joint("O", Joint::revolute("ground.O", "bob.O"));
+/// m.actuator("phi", Actuator::angle("ground", "bob"));
+/// let pendulum = m.assemble()?;
+/// assert_eq!(pendulum.reactions(), ["O.x", "O.y"]);
+/// # Ok::<(), dwell::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct MechanismBuilder {
+    title: String,
+    bodies: Vec<(String, BodyKeys)>,
+    /// The other sections, in the order of the file, each with its entries.
+    sections: Vec<(&'static str, Keys)>,
+    functions: Vec<(String, LoadFunction)>,
+}
+
+/// The keys of one body.
+#[derive(Debug, Clone, Default)]
+struct BodyKeys {
+    points: Keys,
+    keys: Keys,
+}
+
+impl MechanismBuilder {
+    pub(crate) fn new(title: &str) -> Self {
+        Self {
+            title: title.to_owned(),
+            bodies: Vec::new(),
+            sections: Vec::new(),
+            functions: Vec::new(),
+        }
+    }
+
+    /// The ground, to which points can be added.
+    ///
+    /// ```
+    /// let mut m = dwell::Mechanism::builder("Four-bar");
+    /// m.ground().point("A", [0.0, 0.0]).point("D", [0.4, 0.0]);
+    /// ```
+    pub fn ground(&mut self) -> BodyBuilder<'_> {
+        self.body("ground")
+    }
+
+    /// A body, new or already there, to which points and a mass can be added.
+    ///
+    /// ```
+    /// let mut m = dwell::Mechanism::builder("Four-bar");
+    /// m.body("crank").point("A", [0.0, 0.0]).point("B", [0.1, 0.0]);
+    /// ```
+    pub fn body(&mut self, name: &str) -> BodyBuilder<'_> {
+        let known = self.bodies.iter().position(|(known, _)| known == name);
+        let index = known.unwrap_or_else(|| {
+            self.bodies.push((name.to_owned(), BodyKeys::default()));
+            self.bodies.len() - 1
+        });
+        BodyBuilder(&mut self.bodies[index].1)
+    }
+
+    /// Adds a joint or coupling.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.joint("A", dwell::Joint::revolute("ground.A", "crank.A"));
+    /// ```
+    pub fn joint(&mut self, name: &str, joint: Joint) -> &mut Self {
+        self.add("joints", name, joint.0)
+    }
+
+    /// Adds a pin that both bodies have as a point of the joint's name: `pin("A", "ground", "crank")` joins `ground.A` and
+    /// `crank.A`.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.pin("A", "ground", "crank").pin("B", "crank", "coupler");
+    /// ```
+    pub fn pin(&mut self, name: &str, first: &str, second: &str) -> &mut Self {
+        let [first, second] = [first, second].map(|body| format!("{body}.{name}"));
+        self.joint(name, Joint::revolute(&first, &second))
+    }
+
+    /// Adds an actuator: an independent coordinate.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.actuator("phi", dwell::Actuator::angle("ground", "crank"));
+    /// ```
+    pub fn actuator(&mut self, name: &str, actuator: Actuator) -> &mut Self {
+        self.add("actuators", name, actuator.0)
+    }
+
+    /// Gives a coordinate a name.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.coordinate("rise", dwell::Coordinate::travel("guide"));
+    /// ```
+    pub fn coordinate(&mut self, name: &str, coordinate: Coordinate) -> &mut Self {
+        self.add("coordinates", name, coordinate.0)
+    }
+
+    /// Where the mechanism is assembled: the exact coordinate of an actuator, or the rough angle of a body, rad, or
+    /// travel of a joint, m. Rough values select the assembly mode.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.assembly("phi", 0.5).assembly("rocker", 1.2);
+    /// ```
+    pub fn assembly(&mut self, name: &str, value: f64) -> &mut Self {
+        self.add("assembly", name, value)
+    }
+
+    /// Adds a load.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.load("weight", dwell::Load::gravity([0.0, -9.81]));
+    /// ```
+    pub fn load(&mut self, name: &str, load: Load) -> &mut Self {
+        if let Some(function) = load.function {
+            self.functions.push((name.to_owned(), function));
+        }
+        self.add("loads", name, load.keys)
+    }
+
+    /// Adds friction to a joint.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.friction("guide", dwell::Friction::slide(0.1));
+    /// ```
+    pub fn friction(&mut self, joint: &str, friction: Friction) -> &mut Self {
+        self.add("friction", joint, friction.0)
+    }
+
+    /// Adds a drive.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.drive("engine", dwell::Drive::applied_force("phi", 2.0));
+    /// ```
+    pub fn drive(&mut self, name: &str, drive: Drive) -> &mut Self {
+        self.add("drives", name, drive.0)
+    }
+
+    /// Prescribes the motion of an actuator over a duration, s, for [`kinetostatics`](Mechanism::kinetostatics).
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.prescribed(2.0, "phi", dwell::Law::speed(10.0));
+    /// ```
+    pub fn prescribed(&mut self, duration: f64, actuator: &str, law: Law) -> &mut Self {
+        self.add("prescribed", "duration", duration);
+        self.add("prescribed", actuator, law.0)
+    }
+
+    /// Sets the free motion, for [`simulate`](Mechanism::simulate) and [`period`](Mechanism::period).
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.motion(dwell::Motion::seconds(5.0).initial_velocity("phi", 3.0));
+    /// ```
+    pub fn motion(&mut self, motion: Motion) -> &mut Self {
+        self.sections.retain(|(section, _)| *section != "motion");
+        self.sections.push(("motion", motion.into_keys()));
+        self
+    }
+
+    /// Restricts the reactions to these joints or components: `A`, `guide.normal`. Without it all are computed.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.request_reactions(&["A", "guide.normal"]);
+    /// ```
+    pub fn request_reactions(&mut self, reactions: &[&str]) -> &mut Self {
+        self.add("requests", "reactions", reactions.to_vec())
+    }
+
+    /// The mechanism as the text of a scene file. A load's function of one's own is not in it.
+    ///
+    /// ```
+    /// let mut m = dwell::Mechanism::builder("Pendulum");
+    /// m.ground().point("O", [0.0, 0.0]);
+    /// assert!(m.to_toml().contains("[bodies.ground]\npoints = { O = [0.0, 0.0] }"));
+    /// ```
+    pub fn to_toml(&self) -> String {
+        let mut text = format!("title = {}\n", quoted(&self.title));
+        // Writing to a string cannot fail.
+        for (name, body) in &self.bodies {
+            let _ = writeln!(text, "\n[bodies.{}]", key(name));
+            let _ = writeln!(text, "points = {}", Value::from(body.points.clone()));
+            write_keys(&mut text, &body.keys);
+        }
+        for (section, entries) in &self.sections {
+            let _ = writeln!(text, "\n[{section}]");
+            write_keys(&mut text, entries);
+        }
+        text
+    }
+
+    /// The scene of this mechanism.
+    ///
+    /// # Errors
+    /// [`Error::Study`] with everything that is wrong.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("Pendulum");
+    /// # m.ground().point("O", [0.0, 0.0]);
+    /// # m.body("bob").point("O", [0.0, 0.0]).mass(2.0, [0.5, 0.0], 0.0);
+    /// # m.joint("O", dwell::Joint::revolute("ground.O", "bob.O"));
+    /// # m.actuator("phi", dwell::Actuator::angle("ground", "bob"));
+    /// let scene = m.scene()?;
+    /// assert_eq!(scene.value("bob.mass")?, 2.0);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn scene(&self) -> Result<Scene, Error> {
+        let mut scene = Scene::parse(&self.to_toml())?;
+        for (load, (signals, function)) in &self.functions {
+            scene = scene.with_load_function(load, signals, function)?;
+        }
+        Ok(scene)
+    }
+
+    /// Assembles the mechanism.
+    ///
+    /// # Errors
+    /// [`Error::Study`] with everything that is wrong, by the names of bodies and joints.
+    ///
+    /// ```
+    /// let m = dwell::Mechanism::builder("Nothing");
+    /// assert!(m.assemble().unwrap_err().to_string().contains("bodies"));
+    /// ```
+    pub fn assemble(&self) -> Result<Mechanism, Error> {
+        self.scene()?.assemble()
+    }
+
+    fn add(&mut self, section: &'static str, name: &str, value: impl Into<Value>) -> &mut Self {
+        let known = self
+            .sections
+            .iter()
+            .position(|(known, _)| *known == section);
+        let index = known.unwrap_or_else(|| {
+            self.sections.push((section, Keys::default()));
+            self.sections.len() - 1
+        });
+        let (_, entries) = &mut self.sections[index];
+        *entries = std::mem::take(entries).with(name, value);
+        self
+    }
+}
+
+fn write_keys(text: &mut String, keys: &Keys) {
+    for (name, value) in &keys.0 {
+        let _ = writeln!(text, "{} = {value}", key(name));
+    }
+}
+
+/// A body of a mechanism that is being built.
+///
+/// ```
+/// let mut m = dwell::Mechanism::builder("Four-bar");
+/// m.body("crank").point("A", [0.0, 0.0]).point("B", [0.1, 0.0]).mass(1.2, [0.05, 0.0], 1e-3);
+/// ```
+#[derive(Debug)]
+pub struct BodyBuilder<'m>(&'m mut BodyKeys);
+
+impl BodyBuilder<'_> {
+    /// Adds a point in the body's frame, m.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.body("crank").point("A", [0.0, 0.0]).point("B", [0.1, 0.0]);
+    /// ```
+    #[expect(
+        clippy::return_self_not_must_use,
+        reason = "the point is added to the mechanism either way"
+    )]
+    pub fn point(self, name: &str, position: [f64; 2]) -> Self {
+        self.0.points = std::mem::take(&mut self.0.points).with(name, position);
+        self
+    }
+
+    /// Makes it a bar of a length, m: one point at its origin, the other along its x axis.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.body("crank").bar("A", "B", 0.1).mass(1.2, [0.05, 0.0], 1e-3);
+    /// ```
+    #[expect(
+        clippy::return_self_not_must_use,
+        reason = "the points are added to the mechanism either way"
+    )]
+    pub fn bar(self, first: &str, second: &str, length: f64) -> Self {
+        self.point(first, [0.0, 0.0]).point(second, [length, 0.0])
+    }
+
+    /// Gives it a mass, kg, a centre of mass (m in the body's frame, or the name of a point), and a moment of inertia about
+    /// that, kg·m². A body without them is a massless link.
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("");
+    /// m.body("rod").point("B", [0.0, 0.0]).mass(0.8, [0.1, 0.0], 2e-3);
+    /// ```
+    #[expect(
+        clippy::return_self_not_must_use,
+        reason = "the mass is given to the mechanism either way"
+    )]
+    pub fn mass(self, mass: f64, center: impl Into<Value>, inertia: f64) -> Self {
+        let keys = std::mem::take(&mut self.0.keys).with("mass", mass);
+        self.0.keys = keys.with("center", center).with("inertia", inertia);
+        self
+    }
+}

@@ -1,0 +1,124 @@
+//! Why a call fails.
+
+use dwell_scene::SceneError;
+use dwell_study::StudyError;
+use std::fmt;
+use thiserror::Error;
+
+/// Why a call of this crate fails. Its text names the bodies, joints and coordinates; [`Error::scene_error`] has the
+/// places in the scene's text.
+///
+/// ```
+/// use dwell::{Joint, Mechanism};
+///
+/// let mut m = Mechanism::builder("Two bars");
+/// m.ground().point("A", [0.0, 0.0]);
+/// m.body("crank").point("A", [0.0, 0.0]);
+/// m.joint("A", Joint::revolute("ground.A", "crnk.A"));
+/// let error = m.assemble().unwrap_err();
+/// assert!(error.to_string().contains("crnk"));
+/// ```
+#[derive(Error)]
+pub enum Error {
+    /// The scene cannot be read or evaluated, or a sweep cannot be made.
+    #[error("{}", all_messages(.0))]
+    Study(StudyError),
+    /// The mechanism has nothing of that name.
+    #[error("there is no {what} `{name}`: {help}")]
+    Unknown {
+        /// What was looked for: a body, a point, a reaction, an actuator, a coordinate, or a column.
+        what: &'static str,
+        /// The name that was given.
+        name: String,
+        /// The nearest name, or all of them.
+        help: String,
+    },
+    /// A list of coordinates, velocities or accelerations that does not have one number for each actuator.
+    #[error("{given} numbers given as {what}, but the mechanism has {actuators} actuators")]
+    Count {
+        /// Which list.
+        what: &'static str,
+        /// How many numbers it has.
+        given: usize,
+        /// How many it needs.
+        actuators: usize,
+    },
+    /// A table that cannot be made or written.
+    #[error("{0}")]
+    Table(String),
+    /// A coordinate beyond a table's domain.
+    #[error("{q} is not in the table, which reaches from {from} to {to}")]
+    OutOfTable {
+        /// The coordinate, rad or m.
+        q: f64,
+        /// Where the table begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+    },
+}
+
+impl Error {
+    /// The error of the scene, with its places in the text of the scene and a hint for each.
+    ///
+    /// ```
+    /// let error = dwell::Scene::parse("bodies = 3").unwrap_err();
+    /// let place = &error.scene_error().unwrap().errors()[0];
+    /// assert_eq!(place.labelled()[0].0, "3");
+    /// ```
+    pub fn scene_error(&self) -> Option<&SceneError> {
+        match self {
+            Self::Study(StudyError::Scene(error)) => Some(error),
+            Self::Study(_)
+            | Self::Unknown { .. }
+            | Self::Count { .. }
+            | Self::Table(_)
+            | Self::OutOfTable { .. } => None,
+        }
+    }
+
+    pub(crate) fn unknown<'n>(
+        what: &'static str,
+        kind: &str,
+        name: &str,
+        known: impl Iterator<Item = &'n str> + Clone,
+    ) -> Self {
+        Self::Unknown {
+            what,
+            name: name.to_owned(),
+            help: dwell_scene::choices(name, kind, known),
+        }
+    }
+}
+
+/// Its text, because that is what a program shows whose `main` returns this error.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{self}")
+    }
+}
+
+/// Every message of an error with its hint.
+fn all_messages(error: &StudyError) -> String {
+    let StudyError::Scene(error) = error else {
+        return error.to_string();
+    };
+    let text = |one: &SceneError| match &one.help {
+        Some(help) => format!("{} ({help})", one.message),
+        None => one.message.clone(),
+    };
+    let texts: Vec<String> = error.errors().iter().map(text).collect();
+    texts.join("; ")
+}
+
+impl From<SceneError> for Error {
+    fn from(error: SceneError) -> Self {
+        Self::Study(error.into())
+    }
+}
+
+impl From<StudyError> for Error {
+    fn from(error: StudyError) -> Self {
+        Self::Study(error)
+    }
+}

@@ -1,0 +1,106 @@
+//! Kinematics, forces, the reduced model and the motion of planar mechanisms.
+//!
+//! A mechanism is built in a program, or read from a scene file; it is assembled; and then it is asked.
+//!
+//! ```
+//! use dwell::{Actuator, Mechanism};
+//!
+//! // A four-bar: the ground, a crank of 0.1 m, a coupler and a rocker; mass, centre of mass and inertia of each.
+//! let mut m = Mechanism::builder("Four-bar");
+//! m.ground().point("A", [0.0, 0.0]).point("D", [0.3, 0.0]);
+//! m.body("crank").bar("A", "B", 0.1).mass(1.0, [0.05, 0.0], 8e-4);
+//! m.body("coupler").bar("B", "C", 0.25).mass(1.5, [0.125, 0.0], 8e-3);
+//! m.body("rocker").bar("D", "C", 0.2).mass(1.2, [0.1, 0.0], 4e-3);
+//! m.pin("A", "ground", "crank").pin("B", "crank", "coupler");
+//! m.pin("C", "coupler", "rocker").pin("D", "ground", "rocker");
+//! m.actuator("phi", Actuator::angle("ground", "crank"));
+//! m.assembly("phi", 1.0).assembly("rocker", 1.8); // the rocker's angle is a rough one: it selects the branch
+//! let four_bar = m.assemble()?;
+//!
+//! // The forces of a motion: crank at 60°, 20 rad/s, constant speed.
+//! let q = 60f64.to_radians();
+//! let forces = four_bar.inverse_dynamics(0.0, &[q], &[20.0], &[0.0])?;
+//! let torque = forces.actuator_force("phi")?; // N·m
+//! let [x, y] = [forces.reaction("B.x")?, forces.reaction("B.y")?]; // N, of the crank on the coupler
+//!
+//! // The same from the reduced model, m q̈ + ½m′ q̇² = Q and R = a q̈ + b q̇².
+//! let reduced = four_bar.reduced(["B.x", "B.y"])?;
+//! let at = reduced.at(q)?;
+//! assert!((at.half_dm * 20.0 * 20.0 - torque).abs() < 1e-12);
+//! assert!((at.b[0] * 20.0 * 20.0 - x).abs() < 1e-11 && (at.b[1] * 20.0 * 20.0 - y).abs() < 1e-11);
+//! # Ok::<(), dwell::Error>(())
+//! ```
+//!
+//! # What can be asked
+//!
+//! | question | call |
+//! |---|---|
+//! | where are the bodies? | [`Mechanism::positions`], [`Mechanism::kinematics`] |
+//! | which forces does a motion need? | [`Mechanism::inverse_dynamics`] at one instant, [`Mechanism::kinetostatics`] along the prescribed motion |
+//! | the equation of motion | [`Mechanism::reduced`]: m, ½m′, w, and a, b, c of each reaction; [`ReducedModel::table`] |
+//! | how does it move under its loads and drives? | [`Mechanism::simulate`], [`Mechanism::period`] |
+//! | where does it rest, how does it vibrate? | [`Mechanism::equilibria`], [`Mechanism::linearise`] |
+//! | how steadily does it run, which flywheel does it need? | [`Mechanism::cycle`] |
+//! | what if its dimensions vary? | [`Sweep`] |
+//!
+//! # Conventions
+//!
+//! SI everywhere: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. A reaction is the action of the joint's
+//! first-named body on the second. Points are written `body.point`, reactions `joint.component`. Coordinates are those of
+//! the actuators, in their order. A [`Mechanism`] and a [`ReducedModel`] are constant and shared between threads.
+//!
+//! A mechanism that is built in a program is a scene: [`MechanismBuilder::to_toml`] writes it for the `dwell` command, and
+//! every key of `docs/scene-format.md` that has no function here is set with `with`.
+//!
+//! More programs are in the folder `examples`: reactions of a four-bar, the single-dwell study, the flywheel of a press,
+//! equilibrium and eigenfrequencies, a tolerance study, and loads of one's own.
+
+mod builder;
+mod error;
+mod kinematics;
+mod machine;
+mod mechanism;
+mod motion;
+mod parts;
+mod reduced;
+mod scene;
+mod sweep;
+mod table;
+mod value;
+
+pub use builder::{BodyBuilder, MechanismBuilder};
+/// An integration method; see [`Solver::method`].
+///
+/// ```
+/// let solver = dwell::Solver::method(dwell::Method::Bdf, 1e-10);
+/// ```
+pub use dwell_dynamics::Method;
+/// A vibration mode of an [`Equilibrium`].
+///
+/// ```
+/// # fn show(mode: &dwell::Mode) {
+/// println!("{:.3} rad/s, damping ratio {:.3}", mode.angular_frequency, mode.damping_ratio);
+/// # }
+/// ```
+pub use dwell_dynamics::Mode;
+/// The stability of an [`Equilibrium`].
+///
+/// ```
+/// # fn show(found: &dwell::Equilibrium) {
+/// if found.stability == dwell::Stability::Unstable { println!("unstable at {:?}", found.coordinates); }
+/// # }
+/// ```
+pub use dwell_dynamics::Stability;
+pub use error::Error;
+pub use kinematics::{InverseDynamics, Kinematics};
+pub use machine::{Cycle, Equilibrium, StateSpace};
+pub use mechanism::Mechanism;
+pub use motion::{MotionResults, Period, Solver};
+pub use parts::{
+    Actuator, Coordinate, Drive, Event, Friction, Joint, Law, Load, Magnitude, Motion,
+};
+pub use reduced::{Coefficients, Evaluator, ReducedModel};
+pub use scene::Scene;
+pub use sweep::{Sweep, SweepResults};
+pub use table::Table;
+pub use value::Value;

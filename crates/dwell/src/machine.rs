@@ -1,0 +1,211 @@
+//! Equilibria, linearised motion and the steady cycle of a machine.
+
+use crate::error::Error;
+use crate::mechanism::Mechanism;
+use crate::motion::Solver;
+use dwell_dynamics::Stability;
+use dwell_findings::Column;
+use dwell_study::{OperatingPoint, compute_cycle, compute_equilibria, compute_linearisation};
+
+impl Mechanism {
+    /// The equilibria: over the range of the only coordinate all of them, else the one nearest to the initial state.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where loads depend on time, or there is no equilibrium.
+    ///
+    /// ```
+    /// use dwell::{Actuator, Joint, Load, Mechanism, Stability};
+    ///
+    /// let mut m = Mechanism::builder("Pendulum");
+    /// m.ground().point("O", [0.0, 0.0]);
+    /// m.body("bob").point("O", [0.0, 0.0]).mass(2.0, [0.0, -0.5], 0.0);
+    /// m.joint("O", Joint::revolute("ground.O", "bob.O"));
+    /// m.actuator("phi", Actuator::angle("ground", "bob"));
+    /// m.load("weight", Load::gravity([0.0, -9.81]));
+    /// let found = m.assemble()?.equilibria()?;
+    /// assert_eq!(found.len(), 2);
+    /// let hanging = found.iter().find(|e| e.stability == Stability::Centre).unwrap();
+    /// assert!((hanging.modes[0].angular_frequency - (9.81_f64 / 0.5).sqrt()).abs() < 1e-9);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn equilibria(&self) -> Result<Vec<Equilibrium>, Error> {
+        let results = compute_equilibria(self.scene.inner())?;
+        let free = self.free_count();
+        let equilibrium = |e: &dwell_dynamics::Equilibrium| Equilibrium {
+            coordinates: e.y[..free].to_vec(),
+            stability: e.stability,
+            modes: e.modes(),
+            eigenvalues: e.eigenvalues.clone(),
+        };
+        Ok(results.found.iter().map(equilibrium).collect())
+    }
+
+    /// Small motions about the equilibrium nearest to the initial state, as ẋ = A x + B u, z = C x + D u.
+    ///
+    /// # Errors
+    /// As [`Mechanism::equilibria`].
+    ///
+    /// ```
+    /// # use dwell::{Actuator, Joint, Load, Mechanism};
+    /// # let mut m = Mechanism::builder("Pendulum");
+    /// # m.ground().point("O", [0.0, 0.0]);
+    /// # m.body("bob").point("O", [0.0, 0.0]).mass(2.0, [0.0, -0.5], 0.0);
+    /// # m.joint("O", Joint::revolute("ground.O", "bob.O"));
+    /// # m.actuator("phi", Actuator::angle("ground", "bob"));
+    /// # m.load("weight", Load::gravity([0.0, -9.81]));
+    /// # let pendulum = m.assemble()?;
+    /// let linear = pendulum.linearise()?;
+    /// assert_eq!(linear.states, ["phi [rad]", "phi.velocity [rad/s]"]);
+    /// assert!((linear.a[1][0] + 9.81 / 0.5).abs() < 1e-9);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn linearise(&self) -> Result<StateSpace, Error> {
+        let found = compute_linearisation(self.scene.inner(), OperatingPoint::Equilibrium)?;
+        let named = |columns: &[Column]| columns.iter().map(heading).collect();
+        Ok(StateSpace {
+            states: named(&found.names.states),
+            inputs: named(&found.names.inputs),
+            outputs: named(&found.names.outputs),
+            operating_point: found.state[..found.names.states.len()].to_vec(),
+            a: found.linear.a,
+            b: found.linear.b,
+            c: found.linear.c,
+            d: found.linear.d,
+            eigenvalues: found.eigenvalues,
+        })
+    }
+
+    /// The steady cycle of a rotating machine, and the flywheel that keeps its coefficient of fluctuation to
+    /// `fluctuation`, if one is given.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the machine does not rotate, has no drive or loss, or depends on time.
+    ///
+    /// ```
+    /// use dwell::{Actuator, Drive, Joint, Load, Mechanism, Solver};
+    ///
+    /// // A wheel of 0.2 kg m2 with a motor line and a load torque that varies over the revolution.
+    /// let mut m = Mechanism::builder("Wheel");
+    /// m.ground().point("O", [0.0, 0.0]);
+    /// m.body("wheel").point("O", [0.0, 0.0]).mass(5.0, "O", 0.2);
+    /// m.joint("O", Joint::revolute("ground.O", "wheel.O"));
+    /// m.actuator("phi", Actuator::angle("ground", "wheel"));
+    /// m.load("work", Load::torque("wheel", "-2 - 1.5*cos(phi)"));
+    /// m.drive("motor", Drive::motor_line("phi", 10.0, 30.0));
+    /// let cycle = m.assemble()?.cycle(&Solver::accuracy(1e-10), Some(0.005))?;
+    /// assert!(cycle.fluctuation > 0.005);
+    /// assert!(cycle.flywheel.unwrap() > 0.0); // kg m2 to be added
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn cycle(&self, solver: &Solver, fluctuation: Option<f64>) -> Result<Cycle, Error> {
+        let found = compute_cycle(self.scene.inner(), &solver.settings(), fluctuation)?;
+        let works = found
+            .works
+            .columns
+            .iter()
+            .zip(found.works.rows.iter().flatten());
+        Ok(Cycle {
+            period: found.steady.period,
+            mean_speed: found.steady.mean_speed,
+            fluctuation: found.steady.fluctuation,
+            is_stable: found.steady.is_stable(),
+            works: works
+                .map(|(column, work)| (column.name.clone(), *work))
+                .collect(),
+            flywheel: found.flywheel.map(|(_, flywheel)| flywheel.inertia),
+        })
+    }
+
+    fn free_count(&self) -> usize {
+        let scene = self.scene.inner();
+        let prescribed = scene
+            .motion
+            .as_ref()
+            .map_or(0, |m| m.laws.iter().flatten().count());
+        scene.mechanism.actuators.len() - prescribed
+    }
+}
+
+/// A column's name with its unit.
+fn heading(column: &Column) -> String {
+    match column.unit.as_str() {
+        "" => column.name.clone(),
+        unit => format!("{} [{unit}]", column.name),
+    }
+}
+
+/// An equilibrium.
+///
+/// ```
+/// # fn show(found: &dwell::Equilibrium) {
+/// for mode in &found.modes {
+///     println!("{:.3} Hz", mode.angular_frequency / std::f64::consts::TAU);
+/// }
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Equilibrium {
+    /// The free coordinates, rad or m.
+    pub coordinates: Vec<f64>,
+    /// What a small disturbance does.
+    pub stability: Stability,
+    /// The vibration modes of the linearised motion, the lowest frequency first.
+    pub modes: Vec<dwell_dynamics::Mode>,
+    /// The eigenvalues, 1/s, as real and imaginary parts.
+    pub eigenvalues: Vec<[f64; 2]>,
+}
+
+/// A linearised motion: ẋ = A x + B u, z = C x + D u, in deviations from the operating point. Matrices are lists of rows.
+///
+/// ```
+/// # fn show(linear: &dwell::StateSpace) {
+/// for (state, row) in linear.states.iter().zip(&linear.a) {
+///     println!("{state}: {row:?}");
+/// }
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct StateSpace {
+    /// Names and units of the states x.
+    pub states: Vec<String>,
+    /// Of the inputs u: one for each drive.
+    pub inputs: Vec<String>,
+    /// Of the outputs z: coordinates, velocities, reactions, drives' forces.
+    pub outputs: Vec<String>,
+    /// The states about which it is linearised.
+    pub operating_point: Vec<f64>,
+    /// By state, by state.
+    pub a: Vec<Vec<f64>>,
+    /// By state, by input.
+    pub b: Vec<Vec<f64>>,
+    /// By output, by state.
+    pub c: Vec<Vec<f64>>,
+    /// By output, by input.
+    pub d: Vec<Vec<f64>>,
+    /// The eigenvalues of A, 1/s, as real and imaginary parts.
+    pub eigenvalues: Vec<[f64; 2]>,
+}
+
+/// A steady cycle.
+///
+/// ```
+/// # fn show(cycle: &dwell::Cycle) {
+/// println!("{:.2} rad/s, coefficient of fluctuation {:.4}", cycle.mean_speed, cycle.fluctuation);
+/// # }
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cycle {
+    /// Its duration, s.
+    pub period: f64,
+    /// Mean speed, rad/s.
+    pub mean_speed: f64,
+    /// Coefficient of fluctuation: largest less smallest speed, over the mean speed.
+    pub fluctuation: f64,
+    /// Whether a small disturbance decays.
+    pub is_stable: bool,
+    /// The work of each load and drive in a cycle, J, and their sum.
+    pub works: Vec<(String, f64)>,
+    /// The moment of inertia to be added along the coordinate for the coefficient of fluctuation that was asked for,
+    /// kg·m².
+    pub flywheel: Option<f64>,
+}

@@ -1,0 +1,198 @@
+//! An assembled mechanism, and what can be asked of it at one position.
+
+use crate::builder::MechanismBuilder;
+use crate::error::Error;
+use crate::kinematics::{InverseDynamics, Kinematics};
+use crate::scene::Scene;
+use dwell_geometry::body_states::BodyStates;
+use dwell_kinetostatics::Model;
+use dwell_study::explain::{explain_motion, explain_position};
+use std::sync::Arc;
+
+/// An assembled mechanism: constant, cheap to clone, and shared between threads.
+///
+/// It is [built](Mechanism::builder) or [read](Scene::read), and then asked. Coordinates are those of its
+/// [actuators](Mechanism::actuators), in their order, in rad or m; everything is in SI.
+///
+/// ```
+/// use dwell::{Actuator, Joint, Load, Mechanism};
+///
+/// // A uniform bar of 2 kg and 1 m hangs from its end.
+/// let mut m = Mechanism::builder("Bar");
+/// m.ground().point("O", [0.0, 0.0]);
+/// m.body("bar").point("O", [0.0, 0.0]).point("P", [1.0, 0.0]).mass(2.0, [0.5, 0.0], 2.0 / 12.0);
+/// m.joint("O", Joint::revolute("ground.O", "bar.O"));
+/// m.actuator("phi", Actuator::angle("ground", "bar"));
+/// m.load("weight", Load::gravity([0.0, -9.81]));
+/// let bar = m.assemble()?;
+///
+/// // Held horizontally, the actuator carries half its weight times its length.
+/// let held = bar.inverse_dynamics(0.0, &[0.0], &[0.0], &[0.0])?;
+/// assert!((held.actuator_force("phi")? - 0.5 * 2.0 * 9.81).abs() < 1e-12);
+/// assert!((held.reaction("O.y")? - 2.0 * 9.81).abs() < 1e-12);
+/// # Ok::<(), dwell::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Mechanism {
+    pub(crate) scene: Scene,
+    /// With all loads and reactions.
+    pub(crate) model: Arc<Model>,
+}
+
+impl Mechanism {
+    /// Starts to build a mechanism.
+    ///
+    /// ```
+    /// let m = dwell::Mechanism::builder("Four-bar");
+    /// ```
+    pub fn builder(title: &str) -> MechanismBuilder {
+        MechanismBuilder::new(title)
+    }
+
+    pub(crate) fn new(scene: Scene) -> Result<Self, Error> {
+        let model = Arc::new(dwell_study::models::loaded_model(scene.inner())?);
+        Ok(Self { scene, model })
+    }
+
+    /// The scene it was assembled from.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.scene().title(), "Offset slider-crank");
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Names of the actuators: the coordinates, in their order.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.actuators(), ["phi"]);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn actuators(&self) -> Vec<&str> {
+        let actuators = &self.scene.inner().mechanism.actuators;
+        actuators.iter().map(|a| a.name.as_str()).collect()
+    }
+
+    /// Names of the reactions: `joint.component`.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.reactions()[..2], ["A.x", "A.y"]);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn reactions(&self) -> Vec<String> {
+        let mechanism = &self.scene.inner().mechanism;
+        let all = mechanism.reactions().into_iter();
+        all.map(|r| mechanism.reaction_name(r)).collect()
+    }
+
+    /// The limits of the only coordinate, rad or m, where it has limits: limit positions of the mechanism.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.limits(), None); // the crank rotates fully
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn limits(&self) -> Option<(f64, f64)> {
+        self.model.plan().range().limits()
+    }
+
+    /// The positions of all bodies at the coordinates `q`.
+    ///
+    /// # Errors
+    /// [`Error::Count`]; [`Error::Study`] where the mechanism cannot reach them.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// let at = slider.positions(&[0.5])?;
+    /// let [x, y] = at.position("piston.C")?;
+    /// assert!((y - 0.025).abs() < 1e-12);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn positions(&self, q: &[f64]) -> Result<Kinematics, Error> {
+        let rest = vec![0.0; q.len()];
+        self.kinematics(q, &rest, &rest)
+    }
+
+    /// Positions, velocities and accelerations of all bodies, from those of the coordinates.
+    ///
+    /// # Errors
+    /// As [`Mechanism::positions`].
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// let at = slider.kinematics(&[0.5], &[100.0], &[0.0])?;
+    /// let [velocity, _] = at.velocity("piston.C")?;
+    /// # assert!(velocity < 0.0);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn kinematics(
+        &self,
+        q: &[f64],
+        q_dot: &[f64],
+        q_ddot: &[f64],
+    ) -> Result<Kinematics, Error> {
+        self.check_counts([q, q_dot, q_ddot])?;
+        let plan = self.model.plan();
+        let (mut pose, mut motion) = (plan.pose(), plan.motion());
+        let found = plan.positions(q, &mut pose);
+        found.map_err(|e| explain_position(self.scene.inner(), plan, &e))?;
+        plan.velocities(&pose, q_dot, &mut motion);
+        plan.accelerations(&pose, q_ddot, &mut motion);
+        let mut states = BodyStates::new(plan);
+        states.fill(plan, &pose, &motion);
+        Ok(Kinematics::new(self.scene.clone(), states))
+    }
+
+    /// Inverse dynamics under all loads at time `t` (s): the actuators' forces and all reactions that the motion with
+    /// coordinates `q`, velocities and accelerations needs. At rest it is statics.
+    ///
+    /// # Errors
+    /// As [`Mechanism::positions`]; [`Error::Study`] where a load has no value or friction locks the mechanism.
+    ///
+    /// ```
+    /// # let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// let forces = slider.inverse_dynamics(0.0, &[0.5], &[150.0], &[0.0])?;
+    /// let torque = forces.actuator_force("phi")?; // N·m
+    /// let normal = forces.reaction("guide.normal")?; // N
+    /// # assert!(torque.is_finite() && normal.is_finite());
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn inverse_dynamics(
+        &self,
+        t: f64,
+        q: &[f64],
+        q_dot: &[f64],
+        q_ddot: &[f64],
+    ) -> Result<InverseDynamics, Error> {
+        self.check_counts([q, q_dot, q_ddot])?;
+        let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
+        let done = self
+            .model
+            .kinetostatics(t, q, q_dot, q_ddot, &mut workspace, &mut result);
+        done.map_err(|e| explain_motion(self.scene.inner(), self.model.plan(), &e.into()))?;
+        let kinematics = Kinematics::new(self.scene.clone(), workspace.states().clone());
+        Ok(InverseDynamics::new(self.clone(), kinematics, result))
+    }
+
+    fn check_counts(&self, lists: [&[f64]; 3]) -> Result<(), Error> {
+        let actuators = self.model.plan().actuators();
+        let names = ["coordinates", "velocities", "accelerations"];
+        match lists
+            .iter()
+            .zip(names)
+            .find(|(list, _)| list.len() != actuators)
+        {
+            None => Ok(()),
+            Some((list, what)) => Err(Error::Count {
+                what,
+                given: list.len(),
+                actuators,
+            }),
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Actuators, and coordinates with names.
+
+use super::Keys;
+
+/// An actuator: an independent coordinate, which is prescribed or free.
+///
+/// ```
+/// use dwell::Actuator;
+/// let [crank, cylinder] = [Actuator::angle("ground", "crank"), Actuator::length("ground.T", "boom.P")];
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Actuator(pub(crate) Keys);
+
+impl Actuator {
+    /// The angle of the second body from the first, rad.
+    ///
+    /// ```
+    /// let phi = dwell::Actuator::angle("ground", "crank");
+    /// ```
+    pub fn angle(first: &str, second: &str) -> Self {
+        Self(Keys::new("angle", [first, second]))
+    }
+
+    /// The distance of two points, m.
+    ///
+    /// ```
+    /// let cylinder = dwell::Actuator::length("ground.T", "boom.P");
+    /// ```
+    pub fn length(first: &str, second: &str) -> Self {
+        Self(Keys::new("length", [first, second]))
+    }
+
+    /// The travel of a prismatic joint or a slot, m.
+    ///
+    /// ```
+    /// let feed = dwell::Actuator::travel("guide");
+    /// ```
+    pub fn travel(joint: &str) -> Self {
+        Self(Keys::new("length", joint))
+    }
+}
+
+/// A coordinate with a name: loads, laws and events can depend on it.
+///
+/// ```
+/// let rise = dwell::Coordinate::travel("guide");
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Coordinate(pub(crate) Keys);
+
+impl Coordinate {
+    /// The angle of the second body from the first, rad.
+    ///
+    /// ```
+    /// let swing = dwell::Coordinate::angle("ground", "rocker");
+    /// ```
+    pub fn angle(first: &str, second: &str) -> Self {
+        Self(Keys::new("angle", [first, second]))
+    }
+
+    /// The travel of a prismatic joint or a slot, m.
+    ///
+    /// ```
+    /// let rise = dwell::Coordinate::travel("guide");
+    /// ```
+    pub fn travel(joint: &str) -> Self {
+        Self(Keys::new("travel", joint))
+    }
+
+    /// The distance of two points, m.
+    ///
+    /// ```
+    /// let gap = dwell::Coordinate::length("ground.A", "piston.P");
+    /// ```
+    pub fn length(first: &str, second: &str) -> Self {
+        Self(Keys::new("length", [first, second]))
+    }
+}

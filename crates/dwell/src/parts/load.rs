@@ -1,0 +1,222 @@
+//! Loads, and how strong they are.
+
+use super::Keys;
+use crate::value::Value;
+use dwell_kinetostatics::MagnitudeFunction;
+
+/// How strong a load is: a number, an expression, a table, or a function of one's own program. Numbers and texts
+/// convert into it.
+///
+/// ```
+/// use dwell::{Load, Magnitude};
+/// let constant = Load::torque("crank", -3.0);
+/// let expression = Load::torque("crank", "-0.2*phi.velocity");
+/// let table = Load::torque("crank", Magnitude::table("phi", &[[0.0, 1.0], [6.3, 1.5]]));
+/// let own = Load::torque("crank", Magnitude::function(&["phi.velocity"], |s| -0.2 * s[0] * s[0].abs()));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Magnitude {
+    value: Value,
+    function: Option<LoadFunction>,
+}
+
+/// A function with the names of its signals.
+pub(crate) type LoadFunction = (Vec<String>, MagnitudeFunction);
+
+impl Magnitude {
+    /// A smooth curve through points [x, magnitude], where x is `t`, a coordinate, or a velocity such as `phi.velocity`.
+    ///
+    /// ```
+    /// let gas = dwell::Magnitude::table("phi", &[[0.0, 900.0], [3.2, 100.0], [6.3, 900.0]]);
+    /// ```
+    pub fn table(of: &str, points: &[[f64; 2]]) -> Self {
+        let keys = Keys::new("table", points.to_vec()).with("of", of);
+        Self {
+            value: keys.into(),
+            function: None,
+        }
+    }
+
+    /// A function of signals: `t` (s), coordinates (rad or m) and velocities such as `phi.velocity`, in the order in
+    /// which they are named. It must be smooth where the mechanism moves. A scene's text cannot hold it: there the
+    /// magnitude stands as an expression without a value.
+    ///
+    /// ```
+    /// let drag = dwell::Magnitude::function(&["phi.velocity"], |s| -0.2 * s[0] * s[0].abs());
+    /// ```
+    pub fn function(
+        signals: &[&str],
+        function: impl Fn(&[f64]) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        let signals = signals.iter().map(|&s| s.to_owned()).collect();
+        Self {
+            value: NO_VALUE.into(),
+            function: Some((signals, MagnitudeFunction::new(function))),
+        }
+    }
+}
+
+/// What stands in a scene's text for a function: without it, every evaluation fails and names the load.
+const NO_VALUE: &str = "0/(t - t)";
+
+impl From<f64> for Magnitude {
+    fn from(number: f64) -> Self {
+        Self {
+            value: number.into(),
+            function: None,
+        }
+    }
+}
+
+impl From<&str> for Magnitude {
+    fn from(expression: &str) -> Self {
+        Self {
+            value: expression.into(),
+            function: None,
+        }
+    }
+}
+
+/// A load. Points are written `body.point`; a couple of two bodies acts from the first on the second.
+///
+/// ```
+/// let gas = dwell::Load::force("piston.C", [-1.0, 0.0], "400*(1 + cos(phi))");
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Load {
+    pub(crate) keys: Keys,
+    pub(crate) function: Option<LoadFunction>,
+}
+
+impl Load {
+    fn new(keys: Keys, magnitude_key: &str, magnitude: impl Into<Magnitude>) -> Self {
+        let Magnitude { value, function } = magnitude.into();
+        Self {
+            keys: keys.with(magnitude_key, value),
+            function,
+        }
+    }
+
+    /// The weight of every body: the acceleration of gravity, m/s².
+    ///
+    /// ```
+    /// let weight = dwell::Load::gravity([0.0, -9.81]);
+    /// ```
+    pub fn gravity(acceleration: [f64; 2]) -> Self {
+        Self {
+            keys: Keys::new("gravity", acceleration),
+            function: None,
+        }
+    }
+
+    /// A force, N, at a point, in a direction of the ground's frame (or the body's: `.with("frame", "body")`).
+    ///
+    /// ```
+    /// let push = dwell::Load::force("piston.P", [-1.0, 0.0], 100.0);
+    /// ```
+    pub fn force(point: &str, direction: [f64; 2], magnitude: impl Into<Magnitude>) -> Self {
+        let keys = Keys::new("force", point).with("direction", direction);
+        Self::new(keys, "magnitude", magnitude)
+    }
+
+    /// A torque on a body, N·m, counter-clockwise positive.
+    ///
+    /// ```
+    /// let brake = dwell::Load::torque("crank", "-0.5*phi.velocity");
+    /// ```
+    pub fn torque(body: &str, magnitude: impl Into<Magnitude>) -> Self {
+        Self::new(Keys::new("torque", body), "magnitude", magnitude)
+    }
+
+    /// A torque of the first body on the second, N·m.
+    ///
+    /// ```
+    /// let motor = dwell::Load::torque_between("rod", "crank", 2.0);
+    /// ```
+    pub fn torque_between(first: &str, second: &str, magnitude: impl Into<Magnitude>) -> Self {
+        Self::new(Keys::new("torque", [first, second]), "magnitude", magnitude)
+    }
+
+    /// A force that pushes two points apart, N.
+    ///
+    /// ```
+    /// let cylinder = dwell::Load::point_to_point_force("ground.T", "boom.P", 50.0);
+    /// ```
+    pub fn point_to_point_force(
+        first: &str,
+        second: &str,
+        magnitude: impl Into<Magnitude>,
+    ) -> Self {
+        let keys = Keys::new("point-to-point-force", [first, second]);
+        Self::new(keys, "magnitude", magnitude)
+    }
+
+    /// A force along the axis of a prismatic joint or a slot, of its first body on its second, N.
+    ///
+    /// ```
+    /// let cutting = dwell::Load::slide_force("guide", -20.0);
+    /// ```
+    pub fn slide_force(joint: &str, magnitude: impl Into<Magnitude>) -> Self {
+        Self::new(Keys::new("slide-force", joint), "magnitude", magnitude)
+    }
+
+    /// A spring between two points: stiffness, N/m, and free length, m.
+    ///
+    /// ```
+    /// let spring = dwell::Load::spring("ground.A", "piston.P", 4530.0, 0.0779);
+    /// ```
+    pub fn spring(
+        first: &str,
+        second: &str,
+        stiffness: impl Into<Magnitude>,
+        free_length: f64,
+    ) -> Self {
+        let keys = Keys::new("spring", [first, second]).with("free-length", free_length);
+        Self::new(keys, "stiffness", stiffness)
+    }
+
+    /// A torsional spring between two bodies: stiffness, N·m/rad, and free angle, rad.
+    ///
+    /// ```
+    /// let spring = dwell::Load::torsion_spring("ground", "crank", 10.0, 0.0);
+    /// ```
+    pub fn torsion_spring(
+        first: &str,
+        second: &str,
+        stiffness: impl Into<Magnitude>,
+        free_angle: f64,
+    ) -> Self {
+        let keys = Keys::new("torsion-spring", [first, second]).with("free-angle", free_angle);
+        Self::new(keys, "stiffness", stiffness)
+    }
+
+    /// A viscous damper between two points, N·s/m.
+    ///
+    /// ```
+    /// let damper = dwell::Load::damper("ground.A", "piston.P", 100.0);
+    /// ```
+    pub fn damper(first: &str, second: &str, damping: impl Into<Magnitude>) -> Self {
+        Self::new(Keys::new("damper", [first, second]), "damping", damping)
+    }
+
+    /// A viscous damper between the angles of two bodies, N·m·s/rad.
+    ///
+    /// ```
+    /// let damper = dwell::Load::rotational_damper("ground", "crank", 0.1);
+    /// ```
+    pub fn rotational_damper(first: &str, second: &str, damping: impl Into<Magnitude>) -> Self {
+        let keys = Keys::new("rotational-damper", [first, second]);
+        Self::new(keys, "damping", damping)
+    }
+
+    /// The same with one more key of its kind.
+    ///
+    /// ```
+    /// let thrust = dwell::Load::force("boat.P", [1.0, 0.0], 10.0).with("frame", "body");
+    /// ```
+    #[must_use]
+    pub fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
+        self.keys = self.keys.with(key, value);
+        self
+    }
+}

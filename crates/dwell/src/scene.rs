@@ -1,0 +1,129 @@
+//! A mechanism as a scene file describes it.
+
+use crate::error::Error;
+use crate::mechanism::Mechanism;
+use dwell_kinetostatics::MagnitudeFunction;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A scene: the description of a mechanism with its masses, loads, drives and motions, read and checked, in the form that
+/// `docs/scene-format.md` documents.
+///
+/// ```
+/// let scene = dwell::Scene::read("../../docs/slider.toml")?;
+/// assert_eq!(scene.title(), "Offset slider-crank");
+/// # Ok::<(), dwell::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Scene(Arc<dwell_scene::Scene>);
+
+impl Scene {
+    /// Reads a scene file.
+    ///
+    /// # Errors
+    /// [`Error::Study`] with everything that is wrong in the file, each with its place.
+    ///
+    /// ```
+    /// let error = dwell::Scene::read("slidr.toml").unwrap_err();
+    /// assert_eq!(error.to_string(), "there is no file `slidr.toml`");
+    /// ```
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(Self(Arc::new(dwell_scene::Scene::read(path)?)))
+    }
+
+    /// Reads the text of a scene.
+    ///
+    /// # Errors
+    /// As [`Scene::read`].
+    ///
+    /// ```
+    /// let scene = dwell::Scene::parse(
+    ///     r#"
+    ///     bodies.ground.points = { O = [0, 0] }
+    ///     bodies.bob = { points = { O = [0, 0] }, mass = 2.0, center = [0.5, 0] }
+    ///     joints.O = { revolute = ["ground.O", "bob.O"] }
+    ///     actuators.phi = { angle = ["ground", "bob"] }
+    ///     "#,
+    /// )?;
+    /// assert_eq!(scene.value("bob.mass")?, 2.0);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        Ok(Self(Arc::new(dwell_scene::Scene::parse(
+            "scene.toml",
+            text,
+        )?)))
+    }
+
+    /// Its title.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// assert_eq!(scene.title(), "Offset slider-crank");
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn title(&self) -> &str {
+        &self.0.title
+    }
+
+    /// A number of the scene by its path, in the scene's own unit: `crank.mass`, `rod.points.C[0]`,
+    /// `loads.brake.damping`.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the path leads nowhere.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// assert_eq!(scene.value("rod.points.C[0]")?, 280.0); // mm
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn value(&self, path: &str) -> Result<f64, Error> {
+        Ok(self.0.value(path)?)
+    }
+
+    /// The same scene with a number replaced.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the path leads nowhere, or the scene makes no sense with it.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let heavier = scene.with_value("piston.mass", 1.4)?;
+    /// assert_eq!(heavier.value("piston.mass")?, 1.4);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn with_value(&self, path: &str, value: f64) -> Result<Self, Error> {
+        Ok(Self(Arc::new(self.0.with_value(path, value)?)))
+    }
+
+    /// Assembles its mechanism.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the mechanism cannot be assembled, does not move, or a load does not fit it.
+    ///
+    /// ```
+    /// let slider = dwell::Scene::read("../../docs/slider.toml")?.assemble()?;
+    /// assert_eq!(slider.actuators(), ["phi"]);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn assemble(&self) -> Result<Mechanism, Error> {
+        Mechanism::new(self.clone())
+    }
+
+    pub(crate) fn inner(&self) -> &dwell_scene::Scene {
+        &self.0
+    }
+
+    /// The same scene with the magnitude of a load computed by a function.
+    pub(crate) fn with_load_function(
+        &self,
+        load: &str,
+        signals: &[String],
+        function: &MagnitudeFunction,
+    ) -> Result<Self, Error> {
+        let signals: Vec<&str> = signals.iter().map(String::as_str).collect();
+        let scene = (*self.0).clone();
+        let scene = scene.with_load_function(load, &signals, function.clone())?;
+        Ok(Self(Arc::new(scene)))
+    }
+}

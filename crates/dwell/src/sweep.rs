@@ -1,0 +1,160 @@
+//! Many variants of one scene.
+
+use crate::error::Error;
+use crate::scene::Scene;
+use dwell_findings::Column;
+use dwell_study::sweep::compute_sweep;
+
+/// A parameter sweep: numbers of a scene over grids, lists or at random, and results of every combination, computed on all
+/// cores. The results are those of `dwell sweep`: `m.min`, `m.max`, `period`, `phi.actuator_force.max_abs`,
+/// `guide.normal.max_abs` …
+///
+/// ```
+/// let scene = dwell::Scene::read("../../docs/slider.toml")?;
+/// let table = dwell::Sweep::new(&scene)
+///     .vary("rod.mass", "=0.8:1.6:5")
+///     .result("A.x.max_abs")
+///     .run()?;
+/// assert_eq!(table.column("rod.mass")?.len(), 5);
+/// # Ok::<(), dwell::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Sweep {
+    scene: Scene,
+    vary: Vec<String>,
+    samples: Option<u64>,
+    seed: u64,
+    results: Vec<String>,
+}
+
+impl Sweep {
+    /// A sweep of a scene.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let sweep = dwell::Sweep::new(&scene);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn new(scene: &Scene) -> Self {
+        Self {
+            scene: scene.clone(),
+            vary: Vec::new(),
+            samples: None,
+            seed: 0,
+            results: Vec::new(),
+        }
+    }
+
+    /// The same with a number that varies, in the scene's unit: `=FROM:TO:COUNT`, `=A,B,C`, `~normal(MEAN,SD)`,
+    /// `~uniform(FROM,TO)`, `±TOLERANCE` or `±PERCENT%`.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let sweep = dwell::Sweep::new(&scene).vary("rod.points.C[0]", "±0.2").samples(1000, 1);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    #[must_use]
+    pub fn vary(mut self, path: &str, variation: &str) -> Self {
+        self.vary.push(format!("{path}{variation}"));
+        self
+    }
+
+    /// The same with a number of random samples and the seed of the random numbers.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let sweep = dwell::Sweep::new(&scene).vary("rod.mass", "±5%").samples(1000, 1);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    #[must_use]
+    pub fn samples(mut self, samples: u64, seed: u64) -> Self {
+        self.samples = Some(samples);
+        self.seed = seed;
+        self
+    }
+
+    /// The same with a result to compute; without any, all that the scene has are computed.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let sweep = dwell::Sweep::new(&scene).result("m.max");
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    #[must_use]
+    pub fn result(mut self, name: &str) -> Self {
+        self.results.push(name.to_owned());
+        self
+    }
+
+    /// Computes all combinations.
+    ///
+    /// # Errors
+    /// [`Error::Study`] where the sweep is not valid, or the unchanged scene cannot be assembled.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let table = dwell::Sweep::new(&scene).vary("rod.mass", "=1,1.2").result("m.max").run()?;
+    /// assert_eq!(table.column("m.max")?.len(), 2);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn run(&self) -> Result<SweepResults, Error> {
+        let scene = self.scene.inner();
+        let swept = compute_sweep(scene, &self.vary, self.samples, self.seed, &self.results)?;
+        Ok(SweepResults {
+            columns: swept.table.columns,
+            rows: swept.table.rows,
+            messages: swept.messages,
+        })
+    }
+}
+
+/// The results of a sweep: a row for each combination, NaN where a variant has no such result.
+///
+/// ```
+/// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+/// let table = dwell::Sweep::new(&scene).vary("rod.mass", "=1,1.2").result("m").run()?;
+/// let names: Vec<&str> = table.columns().map(|(name, _)| name).collect();
+/// assert_eq!(names, ["rod.mass", "m.min", "m.max"]);
+/// # Ok::<(), dwell::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct SweepResults {
+    columns: Vec<Column>,
+    rows: Vec<Vec<f64>>,
+    /// By row: why results are missing.
+    pub messages: Vec<Option<String>>,
+}
+
+impl SweepResults {
+    /// Names and units of the columns: the varied numbers, then the results.
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// let table = dwell::Sweep::new(&scene).vary("rod.mass", "=1,1.2").result("m.max").run()?;
+    /// assert_eq!(table.columns().last(), Some(("m.max", "kg m2")));
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn columns(&self) -> impl Iterator<Item = (&str, &str)> + Clone {
+        self.columns
+            .iter()
+            .map(|c| (c.name.as_str(), c.unit.as_str()))
+    }
+
+    /// A column.
+    ///
+    /// # Errors
+    /// [`Error::Unknown`].
+    ///
+    /// ```
+    /// # let scene = dwell::Scene::read("../../docs/slider.toml")?;
+    /// # let table = dwell::Sweep::new(&scene).vary("rod.mass", "=1,1.2").result("m.max").run()?;
+    /// assert_eq!(table.column("rod.mass")?, [1.0, 1.2]);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn column(&self, name: &str) -> Result<Vec<f64>, Error> {
+        let found = self.columns.iter().position(|c| c.name == name);
+        let names = self.columns().map(|(name, _)| name);
+        let k = found.ok_or_else(|| Error::unknown("column", "columns", name, names))?;
+        Ok(self.rows.iter().map(|row| row[k]).collect())
+    }
+}

@@ -1,0 +1,156 @@
+//! The separating force of gears and racks whose teeth have a pressure angle.
+//!
+//! The force between two teeth acts along the line of action, which is inclined by the pressure angle α to the common
+//! tangent of the pitch circles. Its tangential part is the tooth force F_t, the reaction of the coupling; the other
+//! part, |F_t| tan α, pushes the teeth apart along the line of centres (of a rack: normal to the pitch line). Where
+//! the teeth bear on their other flanks, it still pushes them apart. It acts across the velocity of the teeth, so it
+//! does no work and is conjugate to no constraint row: it is a load, whose magnitude depends on the reactions.
+
+use super::{Load, LoadKind, Magnitude};
+use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::{BodyId, Component, Joint, JointId, JointKind, Mechanism, Reaction, Vec2};
+use dwell_numerics::Scalar;
+
+/// The teeth of two gears, or of a rack and its pinion, in mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mesh {
+    /// The two gears, or the rack and the pinion.
+    pub bodies: [BodyId; 2],
+    /// The centres of the gears, or a point of the rack's pitch line and the pinion's centre, m.
+    pub points: [Vec2; 2],
+    /// Where the pitch point lies.
+    pub pitch: PitchLines,
+}
+
+/// The lines of two bodies in mesh that roll on each other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PitchLines {
+    /// The pitch circles of two gears.
+    Circles {
+        /// Pitch radii, m.
+        radii: [f64; 2],
+        /// Whether the larger one is a ring around the other.
+        internal: bool,
+    },
+    /// The pitch line of a rack and the pitch circle of its pinion.
+    Line {
+        /// Unit vector of the pitch line in the rack's frame.
+        axis: Vec2,
+        /// Pitch radius, m: positive with the pinion on the side of the axis turned by +90°.
+        radius: f64,
+    },
+}
+
+/// The pressure angle of the teeth of a joint: the separating force is tan α times the absolute tooth force.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PressureAngle {
+    /// The gear pair, or the rack and its pinion.
+    pub joint: JointId,
+    /// α, rad, above zero and at most [`PressureAngle::MAX`].
+    pub angle: f64,
+}
+
+impl PressureAngle {
+    /// The largest pressure angle, rad (45°): standard teeth have 14.5° to 25°, and with more than 45° more force would
+    /// separate the teeth than drives them.
+    pub const MAX: f64 = std::f64::consts::FRAC_PI_4;
+
+    /// The tooth force on which the separating force depends.
+    pub(crate) fn tooth_force(&self) -> Reaction {
+        Reaction {
+            joint: self.joint,
+            component: Component::Tooth,
+        }
+    }
+
+    /// Why it does not fit a load of this kind in this mechanism.
+    pub(super) fn validate(
+        &self,
+        mechanism: &Mechanism,
+        kind: LoadKind,
+    ) -> Result<(), &'static str> {
+        let Some(joint) = mechanism.joints.get(self.joint.0) else {
+            return Err("its joint does not exist");
+        };
+        if !(self.angle > 0.0 && self.angle <= Self::MAX) {
+            return Err("its pressure angle must be above 0 and at most 45°");
+        }
+        match Mesh::of(joint).map(LoadKind::SeparatingForce) {
+            Some(separating) if separating == kind => Ok(()),
+            _ => Err("its joint is no gear pair or rack with these teeth"),
+        }
+    }
+}
+
+impl Mesh {
+    /// The teeth of a joint; none if it has no teeth.
+    pub fn of(joint: &Joint) -> Option<Self> {
+        let pitch = match joint.kind {
+            JointKind::Gear { radii, internal } => PitchLines::Circles { radii, internal },
+            JointKind::Rack { axis, radius } => PitchLines::Line { axis, radius },
+            JointKind::Revolute
+            | JointKind::Prismatic { .. }
+            | JointKind::Slot { .. }
+            | JointKind::Weld { .. }
+            | JointKind::Rolling { .. }
+            | JointKind::Distance { .. }
+            | JointKind::Coupling(_) => return None,
+        };
+        Some(Self {
+            bodies: joint.bodies,
+            points: joint.points,
+            pitch,
+        })
+    }
+
+    /// Whether its points, axis and radii are usable.
+    pub(super) fn is_valid(&self) -> bool {
+        let positive = |radius: f64| radius.is_finite() && radius > 0.0;
+        let pitch = match self.pitch {
+            PitchLines::Circles { radii, .. } => radii.into_iter().all(positive),
+            // A unit vector to rounding, from any way of normalising it.
+            PitchLines::Line { axis, radius } => {
+                (axis.norm() - 1.0).abs() < 1e-9 && positive(radius.abs())
+            }
+        };
+        pitch && self.points.iter().all(|point| point.is_finite())
+    }
+
+    /// From the second body's centre to the pitch point, m, and the unit vector along which the teeth of the first
+    /// body push the second away; none where the centres of two gears coincide.
+    pub(super) fn pitch_point<T: Scalar>(&self, states: &BodyStates<T>) -> Option<[Vec2<T>; 2]> {
+        let Self { bodies, points, .. } = *self;
+        match self.pitch {
+            PitchLines::Circles { radii, internal } => {
+                let u = states.separation(bodies, points).direction?;
+                let radius = T::from_f64(radii[1]);
+                // A ring reaches over the other's centre, and pushes its pinion towards its own.
+                Some(match (internal, radii[0] > radii[1]) {
+                    (false, _) => [u * -radius, u],
+                    (true, true) => [u * radius, -u],
+                    (true, false) => [u * -radius, -u],
+                })
+            }
+            PitchLines::Line { axis, radius } => {
+                let normal = axis.perp().cast().rotate(states.body(bodies[0]).rotation);
+                let away = normal * T::from_f64(radius.signum());
+                Some([normal * T::from_f64(-radius), away])
+            }
+        }
+    }
+}
+
+impl Load {
+    /// The separating force of a gear pair or a rack with teeth of this pressure angle (rad), named after the joint; none
+    /// if the joint has no teeth. `id` is the joint's index in its mechanism.
+    pub fn separating(joint: &Joint, id: JointId, pressure_angle: f64) -> Option<Self> {
+        Some(Self {
+            name: format!("{}.separating", joint.name),
+            kind: LoadKind::SeparatingForce(Mesh::of(joint)?),
+            magnitude: Magnitude::Separating(PressureAngle {
+                joint: id,
+                angle: pressure_angle,
+            }),
+        })
+    }
+}

@@ -1,0 +1,156 @@
+//! What can be written in a scene: the tables of `keys.toml`, which says what each field is.
+
+use serde::Deserialize;
+use std::collections::HashMap;
+use std::sync::LazyLock;
+
+#[derive(Deserialize)]
+struct Keys {
+    kinds: HashMap<String, Vec<String>>,
+    tables: HashMap<String, TableSchema>,
+}
+
+/// A table of a scene.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct TableSchema {
+    pub(crate) name: String,
+    pub(crate) doc: String,
+    #[serde(default)]
+    pub(crate) keys: Vec<KeySchema>,
+    pub(crate) named: Option<KeySchema>,
+}
+
+/// A key of a table.
+#[derive(Debug, Deserialize)]
+pub(crate) struct KeySchema {
+    pub(crate) name: String,
+    pub(crate) former: Option<String>,
+    #[serde(rename = "value")]
+    pub(crate) shape: ValueShape,
+    #[serde(default)]
+    pub(crate) unit: String,
+    /// Absent for a key that is needed.
+    #[serde(flatten)]
+    pub(crate) presence: Option<Presence>,
+    pub(crate) doc: String,
+    pub(crate) example: String,
+}
+
+/// When a key may be absent.
+#[derive(Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Presence {
+    /// Always; this stands in for it.
+    Absent(String),
+    /// Where another of its group is given: exactly one of them is needed.
+    OneOf(String),
+    /// Where all keys of another set are given.
+    Set(String),
+}
+
+/// How the value of a key is written.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum ValueShape {
+    Text,
+    Number,
+    Boolean,
+    /// A whole number, at least two.
+    Count,
+    /// One of these words.
+    Word(Vec<String>),
+    /// An expression in a string.
+    Expression,
+    /// `[x, y]`.
+    Pair,
+    /// `[[x, y], [x, y]]`, two of them exactly.
+    TwoPairs,
+    /// `[[x, y], ...]`, two or more.
+    Rows,
+    /// A string that names something: `body`, `body.point`.
+    Name(String),
+    /// Two of them.
+    TwoNames(String),
+    /// A list of them, at least so many.
+    Names(usize, String),
+    /// The table of that id.
+    Table(String),
+    /// A list of such tables.
+    Tables(String),
+    /// A table of one of several kinds, each identified by its first key.
+    Kinds(String),
+    /// Any of these.
+    Either(Vec<ValueShape>),
+}
+
+static KEYS: LazyLock<Keys> = LazyLock::new(|| {
+    // The file is part of the program: every test would meet a mistake in it.
+    #[allow(clippy::expect_used, reason = "no user can influence it")]
+    toml::from_str(include_str!("keys.toml")).expect("keys.toml has tables of this form")
+});
+
+/// The table that `keys.toml` describes under `id`. Panics where there is none: ids stand in this crate and in the file, and a test
+/// follows all of them.
+pub(crate) fn table(id: &str) -> &'static TableSchema {
+    &KEYS.tables[id]
+}
+
+/// The kinds of `things`: joints, loads, drives or events.
+pub(crate) fn kinds(things: &str) -> Vec<&'static TableSchema> {
+    KEYS.kinds[things].iter().map(|id| table(id)).collect()
+}
+
+impl KeySchema {
+    /// Its name before it was renamed; its name if it never was.
+    pub(crate) fn former_name(&self) -> &str {
+        self.former.as_ref().unwrap_or(&self.name)
+    }
+
+    pub(crate) fn is_one_of(&self) -> bool {
+        matches!(self.presence, Some(Presence::OneOf(_)))
+    }
+}
+
+impl TableSchema {
+    /// Names of its keys.
+    pub(crate) fn names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.keys.iter().map(|k| k.name.as_str())
+    }
+
+    pub(crate) fn contains_key(&self, name: &str) -> bool {
+        self.names().any(|n| n == name)
+    }
+
+    /// The key of that name, or the description of the names of the scene's own.
+    pub(crate) fn key(&self, name: &str) -> Option<&KeySchema> {
+        let known = self.keys.iter().find(|k| k.name == name);
+        known.or(self.named.as_ref())
+    }
+
+    /// Names of its keys of which exactly one is needed; no table has two such groups.
+    pub(crate) fn alternatives(&self) -> Vec<&str> {
+        let alternatives = self.keys.iter().filter(|k| k.is_one_of());
+        alternatives.map(|k| k.name.as_str()).collect()
+    }
+
+    /// The names of each of its sets of keys, in their order.
+    pub(crate) fn sets(&self) -> Vec<Vec<&str>> {
+        let mut sets: Vec<(&str, Vec<&str>)> = Vec::new();
+        for key in &self.keys {
+            let Some(Presence::Set(set)) = &key.presence else {
+                continue;
+            };
+            match sets.iter_mut().find(|(name, _)| name == set) {
+                Some((_, keys)) => keys.push(&key.name),
+                None => sets.push((set, vec![&key.name])),
+            }
+        }
+        sets.into_iter().map(|(_, keys)| keys).collect()
+    }
+
+    /// The key that names its kind among others.
+    pub(crate) fn kind_key(&self) -> &str {
+        self.keys.first().map_or("", |k| &k.name)
+    }
+}

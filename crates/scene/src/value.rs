@@ -1,0 +1,318 @@
+//! Typed reading of one value: each reader returns what it was asked for, or reports what it found
+//! instead. `what` is how a message calls the value.
+
+use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::units::{Unit, Units};
+use dwell_geometry::{Vec2, vec2};
+use std::fmt::Display;
+use toml::Spanned;
+use toml::de::DeValue;
+
+/// Largest magnitude of a number in SI: a product of mass, length², speed² and more of such
+/// numbers is still finite.
+const MAX_NUMBER: f64 = 1e60;
+
+/// Largest angle, rad: beyond it, less than ten digits of the position within a revolution are left.
+pub const MAX_ANGLE: f64 = 1e6;
+
+/// How a point or a direction is written.
+pub(crate) const POINT: &str = "two numbers [x, y]";
+
+/// What all readers of a scene share: its units, and the list of its errors.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Context<'a> {
+    pub(crate) units: &'a Units,
+    pub(crate) log: &'a Diagnostics,
+}
+
+/// A value of the file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Value<'a> {
+    pub(crate) tree: &'a Spanned<DeValue<'a>>,
+    pub(crate) context: Context<'a>,
+}
+
+/// What a number has to be, besides finite.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SignRule {
+    Any,
+    /// Zero or more.
+    NotNegative,
+    /// More than zero.
+    Positive,
+    /// Not zero.
+    NotZero,
+}
+
+/// Unit and sign of a number; `why` is the reason for the sign, shown where it is violated.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct NumberRule<'u> {
+    pub(crate) unit: &'u Unit,
+    pub(crate) sign: SignRule,
+    pub(crate) why: &'u str,
+}
+
+impl<'u> NumberRule<'u> {
+    pub(crate) fn new(unit: &'u Unit, sign: SignRule) -> Self {
+        let why = "";
+        Self { unit, sign, why }
+    }
+
+    pub(crate) fn because(self, why: &'u str) -> Self {
+        Self { why, ..self }
+    }
+}
+
+impl<'a> Value<'a> {
+    pub(crate) fn get(self) -> &'a DeValue<'a> {
+        self.tree.get_ref()
+    }
+
+    pub(crate) fn span(self) -> Span {
+        self.tree.span()
+    }
+
+    pub(crate) fn log(self) -> &'a Diagnostics {
+        self.context.log
+    }
+
+    pub(crate) fn units(self) -> &'a Units {
+        self.context.units
+    }
+
+    pub(crate) fn is_number(self) -> bool {
+        matches!(self.get(), DeValue::Integer(_) | DeValue::Float(_))
+    }
+
+    pub(crate) fn error(self, message: impl Into<String>) -> Diagnostic<'a> {
+        self.log().error(message)
+    }
+
+    /// An error whose first label is at this value.
+    pub(crate) fn wrong(self, message: impl Into<String>, label: &str) -> Diagnostic<'a> {
+        self.error(message).label(&self.span(), label)
+    }
+
+    /// Reports that it is not what was expected.
+    pub(crate) fn mismatch<T>(self, expected: &str, what: impl Display) -> Option<T> {
+        let found = match self.get() {
+            DeValue::String(_) => "a string",
+            DeValue::Integer(_) | DeValue::Float(_) => "a number",
+            DeValue::Boolean(_) => "true or false",
+            DeValue::Datetime(_) => "a date or time",
+            DeValue::Array(_) => "an array",
+            DeValue::Table(_) => "a table",
+        };
+        let help = match (self.get(), expected) {
+            (DeValue::String(text), "a number") if text.trim().parse::<f64>().is_ok() => {
+                "write it without the quotes"
+            }
+            (DeValue::String(_), "a number") => {
+                "a number stands without quotes; its unit is given once, in [units]"
+            }
+            (DeValue::Array(_), "a table") => {
+                "every entry is a table under its own name, as in `[bodies.crank]`"
+            }
+            _ => "",
+        };
+        self.unexpected(expected, found, what).help(help).reject()
+    }
+
+    fn unexpected(self, expected: &str, found: &str, what: impl Display) -> Diagnostic<'a> {
+        let message = format!("{what}: expected {expected}, found {found}");
+        self.wrong(message, &format!("expected {expected}"))
+    }
+
+    /// A finite number, in the unit of the scene.
+    pub(crate) fn number(self, what: impl Display) -> Option<f64> {
+        let parsed = match self.get() {
+            // Decimal digits go to the float parser whatever their count, so that they round once.
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
+            DeValue::Integer(i) => u64::from_str_radix(i.as_str(), i.radix())
+                .ok()
+                .map(|n| n as f64),
+            DeValue::Float(x) => x.as_str().parse().ok(),
+            _ => return self.mismatch("a number", what),
+        };
+        match (parsed, self.get()) {
+            (Some(x), _) if f64::is_finite(x) => Some(x),
+            (_, DeValue::Float(x)) if x.as_str().contains('n') => {
+                let message = format!("{what} is not finite");
+                self.wrong(message, "expected a finite number").reject()
+            }
+            _ => self.too_large(what),
+        }
+    }
+
+    fn too_large<T>(self, what: impl Display) -> Option<T> {
+        let message = format!("{what} is too large to compute with");
+        let help = format!("the largest number, in SI, is {MAX_NUMBER:e}");
+        self.wrong(message, "too large").help(help).reject()
+    }
+
+    /// A number as (as written, in SI).
+    pub(crate) fn written_and_si(self, unit: &Unit, what: impl Display) -> Option<(f64, f64)> {
+        let written = self.number(&what)?;
+        let si = unit.to_si(written);
+        match si.abs() <= MAX_NUMBER {
+            true => Some((written, si)),
+            false => self.too_large(what),
+        }
+    }
+
+    /// A number in SI.
+    pub(crate) fn quantity(self, unit: &Unit, what: impl Display) -> Option<f64> {
+        self.written_and_si(unit, what).map(|(_, si)| si)
+    }
+
+    /// An angle in rad.
+    pub(crate) fn angle(self, what: impl Display) -> Option<f64> {
+        let si = self.quantity(&self.units().angle, &what)?;
+        if si.abs() <= MAX_ANGLE {
+            return Some(si);
+        }
+        let help = "subtract whole revolutions: so large an angle has lost its last digits";
+        let message = format!("{what} is more than {MAX_ANGLE:e} rad");
+        self.wrong(message, "too many revolutions")
+            .help(help)
+            .reject()
+    }
+
+    /// A coordinate or its speed, in SI: an angle does not have too many revolutions.
+    pub(crate) fn coordinate(self, is_angle: bool, what: impl Display) -> Option<f64> {
+        match is_angle {
+            true => self.angle(what),
+            false => self.quantity(&self.units().length, what),
+        }
+    }
+
+    /// A number in SI, of the sign it has to have.
+    pub(crate) fn quantity_with_sign(
+        self,
+        rule: &NumberRule<'_>,
+        what: impl Display,
+    ) -> Option<f64> {
+        let si = self.quantity(rule.unit, &what)?;
+        let (good, wrong, expected) = match rule.sign {
+            SignRule::Any => return Some(si),
+            SignRule::NotNegative => (si >= 0.0, "is negative", "expected 0 or more"),
+            SignRule::Positive => (si > 0.0, "is not above zero", "expected a number above 0"),
+            SignRule::NotZero => (si != 0.0, "is zero", "expected a number other than 0"),
+        };
+        if good {
+            return Some(si);
+        }
+        self.wrong(format!("{what} {wrong}"), expected)
+            .help(rule.why)
+            .reject()
+    }
+
+    /// A count of at least two and at most a million.
+    pub(crate) fn count(self, what: impl Display) -> Option<usize> {
+        const MAX_COUNT: f64 = 1e6;
+        let x = self.number(&what)?;
+        if x.fract() == 0.0 && (2.0..=MAX_COUNT).contains(&x) {
+            return Some(x as usize);
+        }
+        let message = format!("{what} is not a whole number from 2 to {MAX_COUNT:e}");
+        self.wrong(message, "expected a whole number").reject()
+    }
+
+    /// The rows [x, y] of a table in SI: two or more, each x above the one before.
+    pub(crate) fn rows(self, units: [&Unit; 2], what: &str) -> Option<Vec<[f64; 2]>> {
+        let values = self.array("rows [[x, y], [x, y], ...]", what)?;
+        let before = self.log().count();
+        let mut rows: Vec<[f64; 2]> = Vec::with_capacity(values.len());
+        for (k, row) in values.iter().enumerate() {
+            let name = format!("row {} of {what}", k + 1);
+            let Some([x, y]) = row.pair(POINT, &name) else {
+                continue;
+            };
+            let x = x.quantity(units[0], format_args!("x in {name}"));
+            let y = y.quantity(units[1], format_args!("y in {name}"));
+            let (Some(x), Some(y)) = (x, y) else {
+                continue;
+            };
+            if rows.last().is_some_and(|last| x <= last[0]) {
+                let message = format!("x in {name} is not above that of the row before");
+                let help = "sort the rows of a table by x, each x once";
+                row.wrong(message, "out of order").help(help).report();
+            }
+            rows.push([x, y]);
+        }
+        if self.log().count() != before {
+            return None;
+        }
+        if rows.len() < 2 {
+            let diagnostic = self.wrong(format!("{what} has fewer than two rows"), "no curve");
+            return diagnostic.help("give at least two rows [x, y]").reject();
+        }
+        Some(rows)
+    }
+
+    /// A direction: only the ratio of its components counts, so it has no unit.
+    pub(crate) fn unit_vector(self, what: impl Display) -> Option<Vec2> {
+        let [x, y] = self.pair(POINT, &what)?;
+        let x = x.number(format_args!("x of {what}"));
+        let y = y.number(format_args!("y of {what}"));
+        let (x, y) = (x?, y?);
+        let largest = x.abs().max(y.abs());
+        if largest == 0.0 {
+            let diagnostic = self.wrong(format!("{what} has no length"), "no direction");
+            return diagnostic.help("give a direction, such as [1, 0]").reject();
+        }
+        // Scaled first: the largest and the smallest numbers would lose their direction in a square.
+        let (x, y) = (x / largest, y / largest);
+        let length = x.hypot(y);
+        Some(vec2(x / length, y / length))
+    }
+
+    /// A string.
+    pub(crate) fn string(self, what: impl Display) -> Option<&'a str> {
+        match self.get() {
+            DeValue::String(text) => Some(text),
+            _ => self.mismatch("a string", what),
+        }
+    }
+
+    /// `true` or `false`.
+    pub(crate) fn boolean(self, what: impl Display) -> Option<bool> {
+        match self.get() {
+            DeValue::Boolean(b) => Some(*b),
+            _ => self.mismatch("true or false", what),
+        }
+    }
+
+    /// The values of an array of any length.
+    pub(crate) fn array(self, expected: &str, what: impl Display) -> Option<Vec<Value<'a>>> {
+        let context = self.context;
+        match self.get() {
+            DeValue::Array(all) => Some(all.iter().map(|tree| Self { tree, context }).collect()),
+            _ => self.mismatch(expected, what),
+        }
+    }
+
+    /// The two values of an array; `expected` says two of what, and how it is written.
+    pub(crate) fn pair(self, expected: &str, what: impl Display) -> Option<[Value<'a>; 2]> {
+        let values = self.array(expected, &what)?;
+        let found = match values.len() {
+            0 => "an empty array".to_owned(),
+            1 => "only one value".to_owned(),
+            2 => return Some([values[0], values[1]]),
+            n => format!("{n} values"),
+        };
+        self.unexpected(expected, &found, what).reject()
+    }
+
+    /// Two strings.
+    pub(crate) fn two_strings(
+        self,
+        expected: &str,
+        what: impl Display,
+    ) -> Option<[(&'a str, Span); 2]> {
+        let [first, second] = self.pair(expected, &what)?;
+        // Both are read before either fails, so that both are reported.
+        let (a, b) = (first.string(&what), second.string(&what));
+        Some([(a?, first.span()), (b?, second.span())])
+    }
+}
