@@ -4,7 +4,6 @@ use crate::models::SceneMachine;
 use crate::number_format::{count, digits};
 use dwell_dynamics::{Cycle, Flywheel};
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write as _;
 
 /// An angular velocity in rad/s and revolutions per minute.
 fn speed_text(value: f64) -> String {
@@ -12,18 +11,15 @@ fn speed_text(value: f64) -> String {
     format!("{} rad/s ({minute} 1/min)", digits(value, 9))
 }
 
-pub(crate) fn summary(scene_machine: &SceneMachine<'_>, cycle: &Cycle) -> String {
-    let (coordinate, _) = scene_machine.first_free_coordinate();
+pub(crate) fn summary(prepared: &SceneMachine<'_>, cycle: &Cycle) -> String {
+    let (coordinate, _) = prepared.first_free_coordinate();
     let revolutions = count((cycle.cycle_angle / TAU).round() as usize, "revolution");
-    let position = |[q, _]: [f64; 2]| scene_machine.describe_coordinate(coordinate, q);
-    // Writing to a string cannot fail.
-    let mut text = String::new();
-    let _ = writeln!(
-        text,
+    let position = |[q, _]: [f64; 2]| prepared.describe_coordinate(coordinate, q);
+    let mut text = format!(
         "{}: steady cycle of {}, {revolutions} in {} s\n  mean speed {}\n  slowest {} at {}\n  fastest {} \
-         at {}\n  coefficient of fluctuation {}",
-        scene_machine.scene.title,
-        scene_machine.coordinate_name(coordinate),
+         at {}\n  coefficient of fluctuation {}\n",
+        prepared.scene.title,
+        prepared.coordinate_name(coordinate),
         digits(cycle.period, 9),
         speed_text(cycle.mean_speed),
         speed_text(cycle.slowest[1]),
@@ -32,61 +28,50 @@ pub(crate) fn summary(scene_machine: &SceneMachine<'_>, cycle: &Cycle) -> String
         position(cycle.fastest),
         digits(cycle.fluctuation, 9),
     );
-    let multipliers = cycle
-        .floquet_multipliers
-        .iter()
-        .map(|&z| complex_text(z, 6));
-    let multipliers: Vec<String> = multipliers.collect();
-    let stability = if cycle.is_stable() {
-        "stable"
-    } else {
-        "unstable"
+    let multipliers = cycle.floquet_multipliers.iter();
+    let multipliers: Vec<String> = multipliers.map(|&z| complex_text(z, 6)).collect();
+    let multipliers = multipliers.join(", ");
+    text += match cycle.is_stable() {
+        true => "  stable",
+        false => "  unstable",
     };
-    let _ = writeln!(
-        text,
-        "  {stability}: a disturbance changes by these factors per cycle (Floquet multipliers): {}",
-        multipliers.join(", ")
+    text += &format!(
+        ": a disturbance changes by these factors per cycle (Floquet multipliers): {multipliers}\n"
     );
-    let sources = scene_machine
-        .machine
-        .nonconservative_sources()
-        .iter()
-        .zip(&cycle.works);
-    for (source, work) in sources {
-        let name = scene_machine.source_name(*source);
-        let _ = writeln!(text, "  work of {name} per cycle {} J", digits(*work, 9));
+    let sources = prepared.machine.nonconservative_sources().iter();
+    for (&source, &work) in sources.zip(&cycle.works) {
+        let name = prepared.source_name(source);
+        text += &format!("  work of {name} per cycle {} J\n", digits(work, 9));
     }
     let sum: f64 = cycle.works.iter().sum();
     let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
     if size > 0.0 {
-        let _ = writeln!(
-            text,
-            "  sum of these works: {:.1e} of the sum of their absolute values",
-            (sum / size).abs()
-        );
+        let relative = (sum / size).abs();
+        text +=
+            &format!("  sum of these works: {relative:.1e} of the sum of their absolute values\n");
     }
     text
 }
 
 /// The flywheel and its effect.
 pub(crate) fn flywheel_text(
-    scene_machine: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_>,
     target: f64,
-    with_flywheel: &Flywheel,
+    flywheel: &Flywheel,
 ) -> String {
     let target = digits(target, 6);
-    if with_flywheel.inertia == 0.0 {
+    if flywheel.inertia == 0.0 {
         return format!("  no flywheel is needed for a coefficient of fluctuation of {target}\n");
     }
-    let (coordinate, _) = scene_machine.first_free_coordinate();
+    let (coordinate, _) = prepared.first_free_coordinate();
     format!(
         "  for a coefficient of fluctuation of {target}: flywheel of {} kg m² on {}\n  with it: mean speed {}, \
          from {} to {}\n",
-        digits(with_flywheel.inertia, 9),
-        scene_machine.coordinate_name(coordinate),
-        speed_text(with_flywheel.cycle.mean_speed),
-        speed_text(with_flywheel.cycle.slowest[1]),
-        speed_text(with_flywheel.cycle.fastest[1]),
+        digits(flywheel.inertia, 9),
+        prepared.coordinate_name(coordinate),
+        speed_text(flywheel.cycle.mean_speed),
+        speed_text(flywheel.cycle.slowest[1]),
+        speed_text(flywheel.cycle.fastest[1]),
     )
 }
 

@@ -28,9 +28,9 @@ pub fn cycle(
     }
     let figure = figures::cycle(&results, settings);
     outcome.files.add(name(".png"), signed_png(scene, &figure)?);
-    outcome.summary = document::summary(&results.scene_machine, &results.steady);
+    outcome.summary = document::summary(&results.prepared, &results.steady);
     if let Some((target, flywheel)) = &results.flywheel {
-        outcome.summary += &document::flywheel_text(&results.scene_machine, *target, flywheel);
+        outcome.summary += &document::flywheel_text(&results.prepared, *target, flywheel);
     }
     Ok(outcome)
 }

@@ -2,72 +2,62 @@
 
 use crate::equilibria::compute::without_rounding;
 use crate::models::SceneMachine;
-use crate::number_format::{count, digits};
+use crate::number_format::{coordinate_unit, count, digits};
 use dwell_dynamics::{Equilibrium, Stability};
 use std::f64::consts::TAU;
 
 pub(crate) fn summary(
-    scene_machine: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_>,
     found: &[Equilibrium],
     interval: Option<[f64; 2]>,
 ) -> String {
-    let (coordinate, is_angle) = scene_machine.first_free_coordinate();
+    let (coordinate, is_angle) = prepared.first_free_coordinate();
+    let title = &prepared.scene.title;
     let mut text = match interval {
         Some([from, to]) => {
             let is_whole_period = is_angle && (to - from) >= TAU * (1.0 - 1e-12);
-            let endpoint = |q: f64| {
-                if is_angle {
-                    format!("{}°", digits(q.to_degrees(), 6))
-                } else {
-                    format!("{} m", digits(q, 6))
-                }
+            let [from, to] = [from, to].map(|q| match is_angle {
+                true => format!("{}°", digits(q.to_degrees(), 6)),
+                false => format!("{} m", digits(q, 6)),
+            });
+            let found = match found.len() {
+                0 => "no equilibrium".to_owned(),
+                1 => "1 equilibrium".to_owned(),
+                n => format!("{n} equilibria"),
             };
+            let name = prepared.coordinate_name(coordinate);
+            let period = match is_whole_period {
+                true => ", one revolution around the start",
+                false => "",
+            };
+            format!("{title}: {found} of {name} between {from} and {to}{period}\n")
+        }
+        None => {
+            let free = count(prepared.machine.free().len(), "free coordinate");
             format!(
-                "{}: {} of {} between {} and {}{}\n",
-                scene_machine.scene.title,
-                match found.len() {
-                    0 => "no equilibrium".to_owned(),
-                    1 => "1 equilibrium".to_owned(),
-                    n => format!("{n} equilibria"),
-                },
-                scene_machine.coordinate_name(coordinate),
-                endpoint(from),
-                endpoint(to),
-                if is_whole_period {
-                    ", one revolution around the start"
-                } else {
-                    ""
-                }
+                "{title}: the equilibrium of {free} that Newton's method finds from the start\n"
             )
         }
-        None => format!(
-            "{}: the equilibrium of {} that Newton's method finds from the start\n",
-            scene_machine.scene.title,
-            count(scene_machine.machine.free().len(), "free coordinate")
-        ),
     };
     for equilibrium in found {
-        text += &describe_equilibrium(scene_machine, equilibrium);
+        text += &describe_equilibrium(prepared, equilibrium);
     }
     text
 }
 
 /// An equilibrium as text.
 pub(crate) fn describe_equilibrium(
-    scene_machine: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_>,
     equilibrium: &Equilibrium,
 ) -> String {
-    let start = scene_machine.initial_state();
-    let free = scene_machine.machine.free().iter().enumerate();
+    let start = prepared.initial_state();
+    let free = prepared.machine.free().iter().enumerate();
     let positions: Vec<String> = free
         .map(|(k, &i)| {
-            let deflection = equilibrium.y[k] - start[k];
-            let deflection = match scene_machine.is_angle(i) {
-                true => format!("{} rad", digits(deflection, 6)),
-                false => format!("{} m", digits(deflection, 6)),
-            };
-            let position = scene_machine.describe_coordinate(i, equilibrium.y[k]);
-            format!("{position}, {deflection} from the start")
+            let deflection = digits(equilibrium.y[k] - start[k], 6);
+            let unit = coordinate_unit(prepared.is_angle(i));
+            let position = prepared.describe_coordinate(i, equilibrium.y[k]);
+            format!("{position}, {deflection} {unit} from the start")
         })
         .collect();
     let stability = match equilibrium.stability {

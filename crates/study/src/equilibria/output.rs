@@ -19,9 +19,9 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
     let name = |rest: &str| format!("{}-equilibria.{rest}", scene.name);
     outcome.files.add(name("csv"), results.table.csv()?);
     if let Some((curves, marked)) = &results.curves {
-        let figure = figures::equilibria(&results.scene_machine, curves, &results.found, marked);
+        let figure = figures::equilibria(&results.prepared, curves, &results.found, marked);
         outcome.files.add(name("png"), signed_png(scene, &figure)?);
     }
-    outcome.summary = document::summary(&results.scene_machine, &results.found, results.interval);
+    outcome.summary = document::summary(&results.prepared, &results.found, results.interval);
     Ok(outcome)
 }

@@ -1,12 +1,12 @@
 //! Writes a free motion: everything that is written of a trajectory, events and summary.
 
-use crate::explain::{StudyError, explain_machine, explain_motion};
+use crate::explain::{StudyError, missing_section_label, scene_error};
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
-use crate::models::SolverSettings;
+use crate::models::{SolverSettings, with_drive_loads};
 use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, Trajectory};
+use crate::trajectory::compute::{Analysis, FreeTrajectory, Trajectory};
 use crate::trajectory::{TrajectoryOutcome, evaluate_and_report};
-use dwell_dynamics::{DynamicsError, Options, loads_with_drives};
+use dwell_dynamics::Options;
 use dwell_report::TableExport as _;
 use dwell_scene::{Scene, SceneLocation};
 
@@ -69,43 +69,35 @@ fn simulate_with(
     compute: &dyn Fn(&FreeMotionProblem<'_>, f64, f64) -> Result<ComputedMotion, StudyError>,
 ) -> Result<TrajectoryOutcome, StudyError> {
     let Some(spec) = &scene.motion else {
-        return Err(no_motion_error(scene));
+        return Err(scene_error(
+            scene,
+            "the scene has no [motion] to simulate",
+            "add [motion] with `speed`, and `periods` or `duration`",
+            missing_section_label("motion"),
+        ));
     };
-    let mut loaded_scene = scene.clone();
-    let loads = loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives);
-    loaded_scene.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
+    let loaded_scene = with_drive_loads(scene)?;
     let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
     let duration = problem.duration()?;
     let sample_interval = sample_interval.unwrap_or(duration / DEFAULT_SAMPLES);
-    let computed = compute(
-        &problem,
-        duration,
-        sample_interval.max(duration / MAX_SAMPLES),
-    )?;
-    let ComputedMotion {
-        motion,
-        method_text,
-        ..
-    } = &computed;
-    let explain = |e: &DynamicsError| explain_motion(&loaded_scene, problem.output_model.plan(), e);
+    let sample_interval = sample_interval.max(duration / MAX_SAMPLES);
+    let computed = compute(&problem, duration, sample_interval)?;
+    let motion = &computed.motion;
     if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
-        return Err(explain(error));
+        return Err(problem.explain(error));
     }
-    let samples = problem.samples(motion).map_err(|e| explain(&e))?;
-    let prescribed = spec.laws.iter().map(Option::is_some).collect();
-    let charts = motion
-        .charts
-        .iter()
-        .map(|c| c.output_model.clone())
-        .collect();
+    let charts = motion.charts.iter();
+    let plan = problem.output_model.plan();
     let mut trajectory = Trajectory::of_free_motion(
-        problem.output_model.plan(),
-        samples,
-        problem.extra_columns(),
-        prescribed,
-        charts,
+        plan,
+        FreeTrajectory {
+            samples: problem.samples(motion).map_err(|e| problem.explain(&e))?,
+            extra_columns: problem.extra_columns(),
+            prescribed: spec.laws.iter().map(Option::is_some).collect(),
+            charts: charts.map(|c| c.output_model.clone()).collect(),
+        },
     );
-    trajectory.method_text.clone_from(method_text);
+    trajectory.method_text.clone_from(&computed.method_text);
     let mut result = evaluate_and_report(
         &loaded_scene,
         &problem.output_model,
@@ -118,42 +110,22 @@ fn simulate_with(
         let name = format!("{}-motion-events.csv", scene.name);
         outcome.files.add(name, problem.event_table(motion).csv()?);
     }
-    outcome.summary += &problem.summary(motion, method_text, duration);
+    outcome.summary += &problem.summary(motion, &computed.method_text, duration);
     outcome.summary += &problem.notes;
     outcome.summary += &computed.remarks;
     if let Some(error) = &motion.failure {
-        result.early_stop = Some(explain(error));
+        result.early_stop = Some(problem.explain(error));
     } else if let Some([requested, error]) = computed.accuracy
         && error > requested
     {
-        result.early_stop = Some(accuracy_not_reached(scene, requested, error));
+        result.early_stop = Some(scene_error(
+            scene,
+            format!(
+                "an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}"
+            ),
+            "the results are written with the error above; require that accuracy, or a shorter motion",
+            [(SceneLocation::Duration, "the error grows with the duration")],
+        ));
     }
     Ok(result)
-}
-
-fn accuracy_not_reached(scene: &Scene, requested: f64, error: f64) -> StudyError {
-    let message =
-        format!("an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}");
-    let help =
-        "the results are written with the error above; require that accuracy, or a shorter motion";
-    let label = (
-        SceneLocation::Duration,
-        "the error grows with the duration".to_owned(),
-    );
-    scene.error(message, Some(help.to_owned()), &[label]).into()
-}
-
-fn no_motion_error(scene: &Scene) -> StudyError {
-    let help = "add [motion] with `speed`, and `periods` or `duration`";
-    let label = (
-        SceneLocation::Whole,
-        "there is no [motion] in this file".to_owned(),
-    );
-    scene
-        .error(
-            "the scene has no [motion] to simulate".to_owned(),
-            Some(help.to_owned()),
-            &[label],
-        )
-        .into()
 }

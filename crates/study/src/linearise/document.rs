@@ -8,7 +8,6 @@ use crate::output::provenance_line;
 use dwell_dynamics::StateSpace;
 use dwell_report::{Array, Block, Column, Document};
 use dwell_scene::Scene;
-use std::fmt::Write as _;
 
 fn column_list(columns: &[Column]) -> String {
     let one = |c: &Column| format!("{} ({})", c.name, c.unit);
@@ -29,34 +28,29 @@ fn row_name(matrix: &str, column: &Column) -> String {
 
 /// The printed summary.
 pub(crate) fn summary(motion: &LinearisedMotion<'_>) -> String {
-    let (scene, names) = (motion.scene_machine.scene, &motion.names);
-    let mut summary = format!("{}: linearised ", scene.title);
+    let (scene, names) = (motion.prepared.scene, &motion.names);
+    let mut summary = format!("{}: linearised about ", scene.title);
     match &motion.equilibrium {
         Some(equilibrium) => {
-            summary += "about its equilibrium\n";
-            summary += &describe_equilibrium(&motion.scene_machine, equilibrium);
+            summary += "its equilibrium\n";
+            summary += &describe_equilibrium(&motion.prepared, equilibrium);
         }
         None => {
-            summary += "about the initial state\n";
-            if motion
-                .linear
-                .state_derivative
-                .iter()
-                .any(|rate| rate.abs() > 0.0)
-            {
+            summary += "the initial state\n";
+            let mut rates = motion.linear.state_derivative.iter();
+            if rates.any(|rate| rate.abs() > 0.0) {
                 summary += "  not an equilibrium: the state derivative is not zero there\n";
             }
             summary += &describe_eigenvalues(&motion.eigenvalues);
         }
     }
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        summary,
-        "  states: {}\n  inputs: {}\n  outputs: {}",
-        column_list(&names.states),
-        column_list(&names.inputs),
-        column_list(&names.outputs)
-    );
+    for (what, columns) in [
+        ("states", &names.states),
+        ("inputs", &names.inputs),
+        ("outputs", &names.outputs),
+    ] {
+        summary += &format!("  {what}: {}\n", column_list(columns));
+    }
     let omitted = motion.omitted.iter();
     summary + &indeterminate_note(omitted.map(|&r| scene.mechanism.reaction_name(r)))
 }
@@ -66,22 +60,14 @@ pub(crate) fn arrays(
     linear: &StateSpace,
     state: &[f64],
 ) -> Vec<(&'static str, Array)> {
-    let matrix = |(name, _, columns, rows): (&'static str, _, &[Column], &[Vec<f64>])| {
-        let rows = rows.to_vec();
-        let columns = columns.len();
-        (name, Array::Matrix { columns, rows })
-    };
-    let mut arrays: Vec<_> = names.matrices(linear).map(matrix).into();
-    let mut row = |name, values: &[f64]| {
-        let array = Array::Matrix {
-            columns: values.len(),
-            rows: vec![values.to_vec()],
-        };
-        arrays.push((name, array));
-    };
-    row("state", &state[..names.states.len()]);
-    row("rates", &linear.state_derivative);
-    row("output", &linear.outputs);
+    let matrix = |columns: usize, rows: Vec<Vec<f64>>| Array::Matrix { columns, rows };
+    let matrices = names.matrices(linear);
+    let matrices = matrices.map(|(name, _, of, rows)| (name, matrix(of.len(), rows.to_vec())));
+    let row = |values: &[f64]| matrix(values.len(), vec![values.to_vec()]);
+    let mut arrays = Vec::from(matrices);
+    arrays.push(("state", row(&state[..names.states.len()])));
+    arrays.push(("rates", row(&linear.state_derivative)));
+    arrays.push(("output", row(&linear.outputs)));
     let text_array = |of: fn(&Column) -> &String, columns: &[Column]| {
         Array::Strings(columns.iter().map(|c| of(c).clone()).collect())
     };
@@ -101,16 +87,12 @@ pub(crate) fn csv(names: &StateSpaceNames, linear: &StateSpace) -> String {
     let mut text = String::new();
     for (name, rows, columns, matrix) in names.matrices(linear) {
         // Names of a scene hold neither commas nor quotes.
-        let _ = write!(text, "matrix,row");
-        for column in columns {
-            let _ = write!(text, ",{} [{}]", column.name, column.unit);
-        }
+        text += "matrix,row";
+        text.extend(columns.iter().map(|c| format!(",{} [{}]", c.name, c.unit)));
         text.push('\n');
         for (row, values) in rows.iter().zip(matrix) {
-            let _ = write!(text, "{name},{}", row_name(name, row));
-            for value in values {
-                let _ = write!(text, ",{value:?}");
-            }
+            text += &format!("{name},{}", row_name(name, row));
+            text.extend(values.iter().map(|value| format!(",{value:?}")));
             text.push('\n');
         }
     }

@@ -1,7 +1,8 @@
 //! A scene with the exact reduced model of what it requests.
 
-use crate::explain::{StudyError, not_one_actuator};
+use crate::explain::{StudyError, not_one_actuator, scene_error};
 use crate::models::{determinate_model, indeterminate_reactions, requested_reaction_bodies};
+use crate::ranges::equally_spaced;
 use dwell_dynamics::ReducedState;
 use dwell_geometry::{ActuatorId, Reaction};
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
@@ -42,26 +43,21 @@ impl<'a> PreparedScene<'a> {
         let model = determinate_model(scene)?;
         let pruned = model.pruned_for(&requested_reaction_bodies(scene));
         let prepared_scene = Self::from_model(scene, pruned)?;
-        let label = |place, word: &str| [(place, word.to_owned())];
         if !prepared_scene.model.model().plan().is_angle(0) {
-            return Err(scene
-                .error(
-                    "the reduced model is available for driven angles only".to_owned(),
-                    Some(
-                        "use `dwell simulate` or `dwell kinetostatics`, which support driven lengths, or drive an angle".to_owned(),
-                    ),
-                    &label(SceneLocation::Actuator(ActuatorId(0)), "drives a length"),
-                )
-                .into());
+            return Err(scene_error(
+                scene,
+                "the reduced model is available for driven angles only",
+                "use `dwell simulate` or `dwell kinetostatics`, which support driven lengths, or drive an angle",
+                [(SceneLocation::Actuator(ActuatorId(0)), "drives a length")],
+            ));
         }
         if for_period && !scene.loads.is_empty() {
-            return Err(scene
-                .error(
-                    "calibration needs the period of a motion without loads".to_owned(),
-                    Some("remove the loads, or try values with `dwell simulate`".to_owned()),
-                    &label(SceneLocation::Load(0), "this load would be ignored"),
-                )
-                .into());
+            return Err(scene_error(
+                scene,
+                "calibration needs the period of a motion without loads",
+                "remove the loads, or try values with `dwell simulate`",
+                [(SceneLocation::Load(0), "this load would be ignored")],
+            ));
         }
         Ok(prepared_scene)
     }
@@ -89,15 +85,10 @@ impl<'a> PreparedScene<'a> {
 
     /// The initial state of the free motion, if the scene has one.
     pub fn initial_state(&self) -> Option<ReducedState> {
-        let spec = self.scene.motion.as_ref()?;
-        Some(ReducedState {
-            t: 0.0,
-            q: spec.initial_coordinates[0],
-            q_dot: spec.initial_velocities[0],
-        })
+        initial_reduced_state(self.scene)
     }
 
-    /// `count` + 1 equally spaced coordinates over the range, rad: over a turn from 0, or between
+    /// `count` + 1 equally spaced coordinates over the range, rad: over a revolution from 0, or between
     /// the limit positions, of which a thousandth is left out where everything grows.
     pub fn range_positions(&self, count: usize) -> Vec<f64> {
         let (from, to) = match self.model.range().limits() {
@@ -107,9 +98,18 @@ impl<'a> PreparedScene<'a> {
                 (from + margin, to - margin)
             }
         };
-        let at = |i: usize| from + (to - from) * i as f64 / count as f64;
-        (0..=count).map(at).collect()
+        equally_spaced([from, to], count)
     }
+}
+
+/// The initial state of the free motion of one degree of freedom, if the scene has one.
+pub(crate) fn initial_reduced_state(scene: &Scene) -> Option<ReducedState> {
+    let spec = scene.motion.as_ref()?;
+    Some(ReducedState {
+        t: 0.0,
+        q: *spec.initial_coordinates.first()?,
+        q_dot: *spec.initial_velocities.first()?,
+    })
 }
 
 /// The line of a summary that names the statically indeterminate reactions; empty if there are none.
@@ -118,8 +118,8 @@ pub(crate) fn indeterminate_note(names: impl Iterator<Item = String>) -> String 
     if names.is_empty() {
         return String::new();
     }
+    let names = names.join(", ");
     format!(
-        "  statically indeterminate (redundant constraints share the load), so in no table: {}\n",
-        names.join(", ")
+        "  statically indeterminate (redundant constraints share the load), so in no table: {names}\n"
     )
 }

@@ -1,10 +1,11 @@
-//! Captions, labels and limits that figures share.
+//! Captions, labels, limits and axes that figures share.
 
 use crate::models::PreparedScene;
 use crate::number_format::count;
+use crate::ranges::extent;
 use dwell_geometry::Range;
 use dwell_kinetostatics::ReducedModel;
-use dwell_report::{Figure, Series};
+use dwell_report::{Axis, Chart, Figure, Panel, Series};
 use dwell_scene::Scene;
 
 /// Maximum number of reaction figures if none is requested by name.
@@ -31,7 +32,45 @@ pub(crate) fn add_note(figures: &mut [Figure], note: Option<&str>) {
     }
 }
 
-/// The caption of a figure over the range, which explains why curves may leave it.
+/// A figure of a scene with its caption, one panel below another.
+pub(crate) fn figure(
+    scene: &Scene,
+    name: impl Into<String>,
+    title: impl Into<String>,
+    text: &str,
+    panels: Vec<Panel>,
+    provenance: impl Into<String>,
+) -> Figure {
+    Figure {
+        name: name.into(),
+        title: title.into(),
+        caption: scene_caption(scene, text),
+        columns: 1,
+        panels,
+        provenance: provenance.into(),
+    }
+}
+
+/// Curves over two axes.
+pub(crate) fn chart(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Chart {
+    Chart {
+        title: title.into(),
+        x,
+        y,
+        series,
+        ..Chart::default()
+    }
+}
+
+/// The axis of a coordinate: in degrees, or in m.
+pub(crate) fn coordinate_axis(label: &str, is_angle: bool) -> Axis {
+    match is_angle {
+        true => Axis::degrees(label),
+        false => Axis::new(label, "m"),
+    }
+}
+
+/// The text of a caption of a figure over the range, which explains why curves may leave it.
 pub(crate) fn range_caption(prepared: &PreparedScene<'_>, text: &str) -> String {
     let limits = match prepared.model.model().plan().range_limits() {
         [None, None] => "",
@@ -40,7 +79,7 @@ pub(crate) fn range_caption(prepared: &PreparedScene<'_>, text: &str) -> String 
         }
         _ => " Towards the limit position all quantities grow without bound.",
     };
-    caption(prepared, &format!("{text}{limits}"))
+    format!("{text}{limits}")
 }
 
 /// The caption of a figure: the scene's title and the text. The provenance is added when it is drawn.
@@ -79,18 +118,15 @@ pub fn symbol(name: &str) -> String {
 
 /// The label of the axis of the independent coordinate.
 pub fn coordinate_label(prepared: &PreparedScene<'_>) -> String {
-    let bodies = prepared.scene.mechanism.actuators[0].bodies;
     let mechanism = &prepared.scene.mechanism;
-    // The angle of the body that turns; from another than the ground, both are named.
-    let body = mechanism.body_name(bodies[1]);
+    let bodies = mechanism.actuators[0].bodies;
     let symbol = symbol(prepared.coordinate_name());
+    // The angle of the second body; from another than the ground, both are named.
+    let [from, body] = bodies.map(|b| mechanism.body_name(b));
     if bodies[0].0 == mechanism.ground {
         format!("{body} angle {symbol}")
     } else {
-        format!(
-            "angle {symbol} of {body} from {}",
-            mechanism.body_name(bodies[0])
-        )
+        format!("angle {symbol} of {body} from {from}")
     }
 }
 
@@ -104,10 +140,7 @@ pub(crate) fn inner_range(prepared: &PreparedScene<'_>, curves: &[Series]) -> Op
         let n = c.points.len();
         c.points[n / 20..n - n / 20].to_vec()
     };
-    let (low, high) = curves
-        .iter()
-        .flat_map(inner)
-        .fold((f64::MAX, f64::MIN), |(a, b), [_, v]| (a.min(v), b.max(v)));
+    let [low, high] = extent(curves.iter().flat_map(inner).map(|[_, v]| v));
     let margin = 0.08 * (high - low);
     (high > low).then_some([low - margin, high + margin])
 }

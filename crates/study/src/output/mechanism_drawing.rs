@@ -1,6 +1,6 @@
 //! Drawing of a mechanism in one position: bodies as bars, plates and blocks, joints and springs.
 
-use crate::bodies::{BodyPose, mean_body_length, point_position};
+use crate::bodies::{BodyPose, point_position};
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointId, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
@@ -451,4 +451,21 @@ fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<[f64; 2]> {
     points.extend((0..2 * SPRING_COILS).map(zigzag_point));
     points.extend([a + gap * 0.85, b]);
     points.into_iter().map(|p| [p.x, p.y]).collect()
+}
+
+/// The mean length of the bodies that have one, m.
+pub(crate) fn mean_body_length(scene: &Scene) -> f64 {
+    let extent = |points: &Vec<(String, Vec2)>| {
+        let all = points
+            .iter()
+            .flat_map(|(_, p)| points.iter().map(|(_, r)| (*p - *r).norm()));
+        all.fold(0.0, f64::max)
+    };
+    let lengths: Vec<f64> = scene
+        .points
+        .iter()
+        .map(extent)
+        .filter(|l| *l > 0.0)
+        .collect();
+    lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
 }

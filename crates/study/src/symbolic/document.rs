@@ -4,16 +4,13 @@ use crate::number_format::{count, digits};
 use dwell_findings::Finding;
 use dwell_report::{Block, Document};
 use dwell_scene::Scene;
-use dwell_symbolic::{ClosedForm, FormulaSection};
+use dwell_symbolic::{ClosedForm, Constant, FormulaSection};
 
 /// The name of the generated function; the prefix keeps it from being a reserved word.
 pub(crate) fn function_name(scene: &str) -> String {
-    let plain = |c: char| {
-        if c.is_ascii_alphanumeric() {
-            c.to_ascii_lowercase()
-        } else {
-            '_'
-        }
+    let plain = |c: char| match c {
+        c if c.is_ascii_alphanumeric() => c.to_ascii_lowercase(),
+        _ => '_',
     };
     format!("reduced_{}", scene.chars().map(plain).collect::<String>())
 }
@@ -40,7 +37,15 @@ pub(crate) fn summary(scene: &Scene, form: &ClosedForm, findings: &[Finding]) ->
 /// Markdown with LaTeX.
 pub(crate) fn document(scene: &Scene, form: &ClosedForm) -> String {
     let of = &form.coordinate;
-    let text = |text_below: &str| Block::Text(text_below.to_owned());
+    let constant = |c: &Constant| {
+        let latex = format!("${}$", c.latex);
+        vec![
+            latex,
+            digits(c.value, 12),
+            c.unit.to_owned(),
+            c.meaning.clone(),
+        ]
+    };
     let mut blocks = vec![
         Block::Text(format!(
             "The coordinate is ${}$ ({}), in {}. Each line uses those above it. A prime is the derivative with respect to the \
@@ -50,35 +55,21 @@ pub(crate) fn document(scene: &Scene, form: &ClosedForm) -> String {
         Block::Heading("Constants".to_owned()),
         Block::Table {
             header: ["", "value", "unit", "meaning"].map(str::to_owned).into(),
-            rows: form
-                .constants
-                .iter()
-                .map(|c| {
-                    vec![
-                        format!("${}$", c.latex),
-                        digits(c.value, 12),
-                        c.unit.to_owned(),
-                        c.meaning.clone(),
-                    ]
-                })
-                .collect(),
+            rows: form.constants.iter().map(constant).collect(),
         },
     ];
     for (part, lines) in form.latex() {
         let (heading, text_below) = part_heading(part, form);
         blocks.push(Block::Heading(heading.to_owned()));
         if !text_below.is_empty() {
-            blocks.push(text(&text_below));
+            blocks.push(Block::Text(text_below));
         }
         blocks.push(Block::Text(format!(
             "```math\n\\begin{{aligned}}\n{lines}\n\\end{{aligned}}\n```"
         )));
     }
-    Document {
-        title: format!("{}: closed forms", scene.title),
-        blocks,
-    }
-    .markdown()
+    let title = format!("{}: closed forms", scene.title);
+    Document { title, blocks }.markdown()
 }
 
 /// The heading of a part and the words under it.
@@ -88,7 +79,7 @@ fn part_heading(part: FormulaSection, form: &ClosedForm) -> (&'static str, Strin
         FormulaSection::Positions => (
             "Positions",
             "Dyad by dyad, each by the joint that closes it: $d$ is the part of the loop that is known, $D$ its \
-             square. The first arm of a pinned dyad is $f$ times $d$ and $h$ times $d$ turned by +90°, the second \
+             square. The first arm of a pinned dyad is $f$ times $d$ and $h$ times $d$ rotated by +90°, the second \
              arm closes the loop. At a guide, $\\kappa$ or $k$ and $g$ are the parts across and along it. The sign \
              $\\sigma$ is the branch. Points then follow, and the centres of mass $G$."
                 .to_owned(),
@@ -98,8 +89,8 @@ fn part_heading(part: FormulaSection, form: &ClosedForm) -> (&'static str, Strin
         FormulaSection::VirtualDisplacements => (
             "Virtual displacements",
             format!(
-                "The joint lets go along {reaction}: its second body is shifted against its first by a second \
-                 coordinate $q_2$ (turned, for a couple). $\\delta$ is the derivative by $q_2$, at $q_2 = 0$."
+                "The joint is released along {reaction}: its second body is displaced against its first by a second \
+                 coordinate $q_2$ (rotated, for a couple). $\\delta$ is the derivative by $q_2$, at $q_2 = 0$."
             ),
         ),
         FormulaSection::Results if form.reaction.is_some() => (

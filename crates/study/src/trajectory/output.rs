@@ -10,7 +10,7 @@ use crate::trajectory::compute::{
 };
 use dwell_kinetostatics::Model;
 use dwell_report::TableExport as _;
-use dwell_report::{Figure, ReportError, Table, TableFormat};
+use dwell_report::{Column, Figure, Files, ReportError, Table, TableFormat};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
@@ -70,76 +70,55 @@ pub(crate) fn evaluate_and_report(
     let early_stop = results.early_stop.as_ref();
     let early_stop = early_stop.map(|stop| stop.explain(scene, model.plan(), trajectory));
     let selected = selected_columns(scene, &results.columns);
-    let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-{}{rest}", scene.name, analysis.name());
-    let table = table(&results, &selected);
-    outcome
-        .files
-        .add_table(&name(""), &table, &TableFormat::ALL)?;
+    let mut files = Files::new();
+    files.add_table(&name(""), &table(&results, &selected), &TableFormat::ALL)?;
     let document = document::Document::new(scene, &results, trajectory, analysis, &selected);
-    outcome
-        .files
-        .add(name("-extrema.csv"), document.extrema_csv());
+    files.add(name("-extrema.csv"), document.extrema_csv());
     for link in &results.sectioned_links {
         let of = link.file_name(scene.mechanism.body_name(link.request.body));
         let file = |rest: &str| name(&format!("-internal-forces-{of}{rest}.csv"));
-        outcome.files.add(file(""), link.table().csv()?);
-        outcome
-            .files
-            .add(file("-envelope"), link.envelope_table().csv()?);
+        files.add(file(""), link.table().csv()?);
+        files.add(file("-envelope"), link.envelope_table().csv()?);
     }
     let (figures, left_out) = figures::trajectory_figures(scene, &results, trajectory, analysis);
     let total = steps + figures.len() + 1;
-    let drawn = render(scene, &figures, total, progress)?;
-    for (figure, bytes) in figures.iter().zip(drawn) {
-        outcome
-            .files
-            .add(name(&format!("-{}.png", figure.name)), bytes);
+    let file = |figure: &Figure| name(&format!("-{}.png", figure.name));
+    let drawn = figures.par_iter().map(|figure| {
+        let bytes = signed_png(scene, figure)?;
+        progress(Step {
+            total,
+            done: &figure.name,
+        });
+        Ok((file(figure), bytes))
+    });
+    for (path, bytes) in drawn.collect::<Result<Vec<_>, ReportError>>()? {
+        files.add(path, bytes);
     }
     let animation = figures::animation(scene, &results, trajectory);
-    outcome
-        .files
-        .add(name("-mechanism.gif"), signed_gif(scene, animation)?);
+    files.add(name("-mechanism.gif"), signed_gif(scene, animation)?);
     progress(Step {
         total,
         done: "animation",
     });
-    let file = |figure: &Figure| name(&format!("-{}.png", figure.name));
-    outcome
-        .files
-        .add(name(".md"), document.markdown(&figures, &file));
-    outcome.summary = document.summary();
-    if let Some(note) = left_out {
-        outcome.summary += &format!("  {note}\n");
-    }
+    files.add(name(".md"), document.markdown(&figures, &file));
+    let note = left_out.map(|note| format!("  {note}\n"));
+    let outcome = Outcome {
+        summary: document.summary() + &note.unwrap_or_default(),
+        files,
+        findings: Vec::new(),
+    };
     Ok(TrajectoryOutcome {
         outcome,
         early_stop,
     })
 }
 
-fn render(
-    scene: &Scene,
-    figures: &[Figure],
-    total: usize,
-    progress: Progress<'_>,
-) -> Result<Vec<Vec<u8>>, ReportError> {
-    let one = |figure: &Figure| {
-        let bytes = signed_png(scene, figure)?;
-        progress(Step {
-            total,
-            done: &figure.name,
-        });
-        Ok(bytes)
-    };
-    figures.par_iter().map(one).collect()
-}
-
 /// The selected columns as a table.
 fn table(results: &TrajectoryResults, selected: &[usize]) -> Table {
     let column = |&k: &usize| {
         let column = &results.columns[k];
-        dwell_report::Column::new(column.name.clone(), column.unit)
+        Column::new(column.name.clone(), column.unit)
     };
     let row = |row: &Vec<f64>| selected.iter().map(|&k| row[k]).collect();
     Table {

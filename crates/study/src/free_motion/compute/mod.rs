@@ -4,6 +4,7 @@ mod accuracy;
 mod difference;
 mod error_estimate;
 mod problem;
+mod refinement;
 mod segmented_motion;
 mod tables;
 

@@ -1,9 +1,11 @@
 //! Computes columns, extrema, sections and peak forces along a trajectory.
 
 mod analysis;
+mod column;
 mod columns;
 mod dyads;
 mod early_stop;
+mod evaluator;
 mod extrema;
 mod mechanical_advantage;
 mod monitor;
@@ -16,11 +18,13 @@ mod selection;
 mod trajectory;
 
 pub use analysis::Analysis;
-pub(crate) use columns::{Column, ColumnQuantity, Columns, PowerTerm, is_prefix_of};
+pub(crate) use column::{Column, PowerTerm, Quantity, is_prefix_of};
+pub(crate) use columns::all_columns;
 pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
+pub(crate) use evaluator::PositionEvaluator;
 pub(crate) use extrema::{ColumnExtrema, extrema};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryFault, TrajectoryMonitor, table_of};
@@ -31,5 +35,6 @@ pub(crate) use rounding_error::RoundingError;
 pub(crate) use sectioned_link::SectionedLink;
 pub(crate) use selection::{check_variables, is_requested, selected_columns};
 pub(crate) use trajectory::{
-    BALANCE, ExtraColumn, KINETIC, POTENTIAL, Trajectory, TrajectorySample, swept_range,
+    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, Trajectory, TrajectorySample,
+    swept_range,
 };

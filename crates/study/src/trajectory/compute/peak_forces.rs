@@ -3,8 +3,7 @@
 
 use crate::explain::StudyError;
 use crate::trajectory::compute::{
-    Analysis, EarlyStop, StopCause, Trajectory, TrajectoryMonitor, TrajectorySample,
-    unreachable_error,
+    Analysis, StopCause, Trajectory, TrajectoryMonitor, TrajectorySample,
 };
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Motion, Plan};
@@ -32,13 +31,11 @@ pub(crate) fn peak_forces(
     let plan = model.plan();
     let trajectory = Trajectory::new(scene, plan, analysis, None)?;
     trajectory.check_laws(scene)?;
-    // A static sweep has no time.
-    let timed = trajectory.swept_actuator().is_none() || analysis != Analysis::Statics;
     let mut evaluator = ForceEvaluator {
         model,
         analysis,
         workspace: model.workspace(),
-        inverse_dynamics: model.result_buffer(),
+        results: model.result_buffer(),
         motion_buffer: plan.motion(),
         body_states: BodyStates::new(plan),
         monitor: TrajectoryMonitor::new(scene),
@@ -48,31 +45,16 @@ pub(crate) fn peak_forces(
         reactions: vec![0.0; model.reactions().len()],
         actuator_forces: vec![0.0; plan.actuators()],
     };
-    let mut previous: Option<f64> = None;
-    for k in 0..trajectory.points {
-        let fraction = trajectory.fraction_at(k);
-        let sample = trajectory.sample_at(fraction);
-        let unreachable = previous
-            .filter(|_| plan.actuators() == 1)
-            .and_then(|q| unreachable_error(plan, q, sample.q[0]));
-        let done = match unreachable {
-            Some(error) => Err(error.into()),
-            None => evaluator.evaluate(plan, &sample, if timed { sample.t } else { 0.0 }),
-        };
-        if let Err(cause) = done {
-            let reached = if k > 0 {
-                trajectory.fraction_at(k - 1)
-            } else {
-                fraction
-            };
-            let early_stop = EarlyStop::find(plan, &trajectory, [reached, fraction], cause);
-            return Err(early_stop.explain(scene, plan, &trajectory));
-        }
-        previous = sample.q.first().copied();
-        raise_to(&mut peaks.reactions, &evaluator.inverse_dynamics.reactions);
-        raise_to(&mut peaks.actuator_forces, &evaluator.inverse_dynamics.tau);
+    let early_stop = trajectory.follow(plan, |_, sample| {
+        evaluator.evaluate(plan, sample, trajectory.load_time(sample, analysis))?;
+        raise_to(&mut peaks.reactions, &evaluator.results.reactions);
+        raise_to(&mut peaks.actuator_forces, &evaluator.results.tau);
+        Ok(())
+    });
+    match early_stop {
+        Some(stop) => Err(stop.explain(scene, plan, &trajectory)),
+        None => Ok(peaks),
     }
-    Ok(peaks)
 }
 
 fn raise_to(peaks: &mut [f64], values: &[f64]) {
@@ -85,11 +67,11 @@ struct ForceEvaluator<'a> {
     model: &'a Model,
     analysis: Analysis,
     workspace: Workspace<f64>,
-    inverse_dynamics: InverseDynamics<f64>,
+    results: InverseDynamics<f64>,
     motion_buffer: Motion<f64>,
     body_states: BodyStates,
     monitor: TrajectoryMonitor<'a>,
-    /// Whether there are relations, whose functions may jump.
+    /// Whether there are couplings, whose functions may jump.
     has_couplings: bool,
 }
 
@@ -100,24 +82,22 @@ impl ForceEvaluator<'_> {
         sample: &TrajectorySample,
         t: f64,
     ) -> Result<(), StopCause> {
-        let (workspace, inverse_dynamics) = (&mut self.workspace, &mut self.inverse_dynamics);
+        let (model, workspace, results) = (self.model, &mut self.workspace, &mut self.results);
         let TrajectorySample {
             q, q_dot, q_ddot, ..
         } = sample;
         match self.analysis {
-            Analysis::Statics => self.model.statics(t, q, workspace, inverse_dynamics)?,
-            _ => self
-                .model
-                .kinetostatics(t, q, q_dot, q_ddot, workspace, inverse_dynamics)?,
+            Analysis::Statics => model.statics(t, q, workspace, results)?,
+            _ => model.kinetostatics(t, q, q_dot, q_ddot, workspace, results)?,
         }
         if let Some(fault) = self.monitor.off_table(t, workspace.states()) {
             return Err(StopCause::Fault(fault));
         }
         if self.has_couplings {
-            plan.velocities(&workspace.pose, q_dot, &mut self.motion_buffer);
-            plan.accelerations(&workspace.pose, q_ddot, &mut self.motion_buffer);
-            self.body_states
-                .fill(plan, &workspace.pose, &self.motion_buffer);
+            let (pose, motion) = (&workspace.pose, &mut self.motion_buffer);
+            plan.velocities(pose, q_dot, motion);
+            plan.accelerations(pose, q_ddot, motion);
+            self.body_states.fill(plan, pose, motion);
             if let Some(fault) = self.monitor.discontinuity(&self.body_states) {
                 return Err(StopCause::Fault(fault));
             }

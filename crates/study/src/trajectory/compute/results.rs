@@ -1,18 +1,13 @@
 //! Evaluation along a trajectory: the table, and what sections and drawings need of each position.
 
-use crate::bodies::{BodyPose, mean_body_length};
-use crate::explain::{StudyError, explain_model};
+use crate::bodies::BodyPose;
+use crate::explain::StudyError;
 use crate::trajectory::compute::{
-    Analysis, Column, ColumnQuantity, Columns, EarlyStop, PowerTerm, RoundingError, SectionedLink,
-    SpeedScale, StopCause, Trajectory, TrajectoryMonitor, TrajectorySample, is_requested,
-    prune_model, unreachable_error,
+    Analysis, Column, EarlyStop, PositionEvaluator, Quantity, RoundingError, SectionedLink,
+    Trajectory, TrajectorySample, all_columns, is_requested, prune_model,
 };
-use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
-use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
-use dwell_kinetostatics::{
-    AppliedWrench, ForceSource, FreeBodyForces, InverseDynamics, LoadKind, Model, PowerBalance,
-    Workspace, Wrench,
-};
+use dwell_geometry::Plan;
+use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
@@ -45,250 +40,46 @@ impl TrajectoryResults {
         let unmodelled = bodies.filter(|(_, modelled)| !**modelled);
         unmodelled.map(|(body, _)| body.name.clone()).collect()
     }
-}
 
-/// Evaluates one position after another.
-struct PositionEvaluator<'a> {
-    scene: &'a Scene,
-    model: &'a Model,
-    body_forces: FreeBodyForces,
-    analysis: Analysis,
-    /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
-    whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
-    workspace: Workspace<f64>,
-    inverse_dynamics: InverseDynamics<f64>,
-    wrenches: Vec<AppliedWrench>,
-    motion_buffer: Motion<f64>,
-    /// The bodies at the velocities of the trajectory, whatever the analysis.
-    body_states: BodyStates,
-    /// The bodies at q̇ = 1 of a single actuator.
-    unit_speed_states: BodyStates,
-    /// Mean length of a body, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
-    size: f64,
-    speed_scales: [SpeedScale; 2],
-    load_powers: Vec<f64>,
-    /// By joint: the force on its second body, N.
-    joint_forces: Vec<Vec2>,
-    shaking_wrench: Wrench,
-    power_balance: PowerBalance,
-    monitor: TrajectoryMonitor<'a>,
-}
-
-impl<'a> PositionEvaluator<'a> {
-    fn new(
-        scene: &'a Scene,
-        whole_plan: &'a Plan,
-        model: &'a Model,
-        analysis: Analysis,
-    ) -> Result<Self, StudyError> {
-        let is_pruned = model.plan().pruned_groups().contains(&true);
-        let checks_whole = is_pruned && whole_plan.actuators() > 1;
-        let body_forces = FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?;
-        Ok(Self {
-            body_forces,
-            scene,
-            model,
-            analysis,
-            whole_mechanism: checks_whole.then(|| (whole_plan, whole_plan.pose())),
-            size: mean_body_length(scene),
-            speed_scales: [SpeedScale::default(); 2],
-            workspace: model.workspace(),
-            inverse_dynamics: model.result_buffer(),
-            wrenches: Vec::new(),
-            motion_buffer: model.plan().motion(),
-            body_states: BodyStates::new(model.plan()),
-            unit_speed_states: BodyStates::new(model.plan()),
-            load_powers: vec![0.0; scene.loads.len()],
-            joint_forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
-            shaking_wrench: Wrench::default(),
-            power_balance: PowerBalance::default(),
-            monitor: TrajectoryMonitor::new(scene),
-        })
+    /// The index of the column of a quantity.
+    pub(crate) fn column_index(&self, quantity: Quantity) -> Option<usize> {
+        self.columns.iter().position(|c| c.quantity == quantity)
     }
 
-    fn evaluate(&mut self, sample: &TrajectorySample, timed: bool) -> Result<(), StopCause> {
-        let plan = self.model.plan();
-        let TrajectorySample {
-            t,
-            q,
-            q_dot,
-            q_ddot,
-            drive_magnitudes: given,
-            ..
-        } = sample;
-        if let Some((whole_plan, pose)) = &mut self.whole_mechanism {
-            whole_plan.positions(q, pose)?;
-        }
-        let (workspace, inverse_dynamics) = (&mut self.workspace, &mut self.inverse_dynamics);
-        // Without time, loads have their value at t = 0.
-        let t = if timed { *t } else { 0.0 };
-        match self.analysis {
-            Analysis::Kinematics => plan.positions(q, &mut workspace.pose)?,
-            Analysis::Statics => self.model.statics(t, q, workspace, inverse_dynamics)?,
-            Analysis::Kinetostatics | Analysis::FreeMotion => {
-                for &(load, magnitude) in given {
-                    workspace.set_magnitude(load, magnitude);
-                }
-                self.model
-                    .kinetostatics(t, q, q_dot, q_ddot, workspace, inverse_dynamics)?;
-            }
-        }
-        if self.analysis != Analysis::Kinematics
-            && let Some(fault) = self.monitor.off_table(t, workspace.states())
-        {
-            return Err(StopCause::Fault(fault));
-        }
-        if plan.actuators() == 1 {
-            plan.velocities(&workspace.pose, &[1.0], &mut self.motion_buffer);
-            self.unit_speed_states
-                .fill(plan, &workspace.pose, &self.motion_buffer);
-        }
-        plan.velocities(&workspace.pose, q_dot, &mut self.motion_buffer);
-        plan.accelerations(&workspace.pose, q_ddot, &mut self.motion_buffer);
-        self.body_states
-            .fill(plan, &workspace.pose, &self.motion_buffer);
-        self.speed_scales = [&self.unit_speed_states, &self.body_states]
-            .map(|states| SpeedScale::new(states, self.size));
-        if let Some(fault) = self.monitor.discontinuity(&self.body_states) {
-            return Err(StopCause::Fault(fault));
-        }
-        if self.analysis != Analysis::Kinematics {
-            self.compute_forces();
-        }
-        Ok(())
+    /// The index of the column of the abscissa: time, or the swept coordinate.
+    pub(crate) fn abscissa(&self, trajectory: &Trajectory<'_>) -> usize {
+        let swept = trajectory.swept_actuator();
+        let quantity = swept.map_or(Quantity::Time, |a| Quantity::ActuatorCoordinate(a, 0));
+        self.column_index(quantity).unwrap_or(0)
     }
 
-    /// Computes joint forces, shaking force and power balance.
-    fn compute_forces(&mut self) {
-        let (model, workspace, inverse_dynamics) =
-            (self.model, &self.workspace, &self.inverse_dynamics);
-        self.body_forces
-            .wrenches(model, workspace, inverse_dynamics, &mut self.wrenches);
-        self.joint_forces.fill(Vec2::ZERO);
-        for wrench in &self.wrenches {
-            if let ForceSource::Joint(j) = wrench.source
-                && wrench.body == self.scene.mechanism.joints[j.0].bodies[1]
-            {
-                self.joint_forces[j.0] += wrench.force;
+    /// Adds what has been evaluated at the `k`th position.
+    fn add_position(
+        &mut self,
+        k: usize,
+        evaluator: &PositionEvaluator<'_>,
+        sample: &TrajectorySample,
+        unwrapper: &mut AngleUnwrapper,
+    ) {
+        let value = |(i, column): (usize, &Column)| {
+            let value = evaluator.value(column.quantity, sample);
+            if !column.unwraps() {
+                return value;
             }
-        }
-        let shaking_force = self
-            .body_forces
-            .shaking_force(model, workspace, &self.wrenches);
-        let [by_reactions, by_loads] =
-            [shaking_force.from_reactions, shaking_force.loads_on_ground];
-        self.shaking_wrench = Wrench {
-            force: by_reactions.force + by_loads.force,
-            moment: by_reactions.moment + by_loads.moment,
+            let speed = evaluator.angular_velocity(column.quantity);
+            unwrapper.unwrap_angle(i, value, speed, sample.t)
         };
-        self.power_balance = model.power_balance(workspace, inverse_dynamics);
-        model.load_powers(workspace, &mut self.load_powers);
-    }
-
-    fn value(&self, quantity: ColumnQuantity, sample: &TrajectorySample) -> f64 {
-        let states = &self.body_states;
-        match quantity {
-            ColumnQuantity::Time => sample.t,
-            ColumnQuantity::ActuatorCoordinate(i, order) => match sample.actuator_coordinate {
-                Some(actuator_coordinate) => actuator_coordinate[order],
-                None => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
-            },
-            ColumnQuantity::ActuatorForce(i) => self.inverse_dynamics.tau[i],
-            ColumnQuantity::Measured(measured, order) => states.coordinate(measured)[order],
-            // As couplings and loads count revolutions, so that columns of one angle agree.
-            ColumnQuantity::BodyAngle(body, 0) => {
-                let ground = BodyId(self.scene.mechanism.ground);
-                states.angle([ground, body])[0]
-            }
-            ColumnQuantity::BodyAngle(body, 1) => states.body(body).angular_velocity,
-            ColumnQuantity::BodyAngle(body, _) => states.body(body).angular_acceleration,
-            ColumnQuantity::VelocityRatio(body) => {
-                self.unit_speed_states.body(body).angular_velocity
-            }
-            ColumnQuantity::MechanicalAdvantage(body, point) => {
-                self.speed_scales[0].mechanical_advantage(&self.unit_speed_states, body, point)
-            }
-            ColumnQuantity::Pole(body, order, axis) => {
-                let pole = match order {
-                    // At rest of a single actuator the body still has its pole.
-                    1 if self.model.plan().actuators() == 1 => {
-                        self.speed_scales[0].pole(&self.unit_speed_states, body)
-                    }
-                    1 => self.speed_scales[1].pole(states, body),
-                    _ => self.speed_scales[1].acceleration_pole(states, body),
-                };
-                if axis == 0 { pole.x } else { pole.y }
-            }
-            ColumnQuantity::PointCoordinate(body, at, k) => {
-                let point = states.point(body, at);
-                let vector = [point.position, point.velocity, point.acceleration][k / 2];
-                if k % 2 == 0 { vector.x } else { vector.y }
-            }
-            ColumnQuantity::TransmissionAngle(dyad) => dyad.angle(states),
-            ColumnQuantity::Reaction(k) => self.inverse_dynamics.reactions[k],
-            ColumnQuantity::BodyFrameForce(joint, body, axis) => {
-                let local = self.joint_forces[joint.0].rotate_inverse(states.body(body).rotation);
-                if axis == 0 { local.x } else { local.y }
-            }
-            ColumnQuantity::ForceMagnitude(joint) => self.joint_forces[joint.0].norm(),
-            ColumnQuantity::ForceDirection(joint) => self.joint_forces[joint.0].angle(),
-            ColumnQuantity::ShakingForce(0) => self.shaking_wrench.force.x,
-            ColumnQuantity::ShakingForce(1) => self.shaking_wrench.force.y,
-            ColumnQuantity::ShakingForce(_) => self.shaking_wrench.moment,
-            ColumnQuantity::Power(PowerTerm::Actuators) => self.power_balance.actuators,
-            ColumnQuantity::Power(PowerTerm::Loads) => self.power_balance.loads,
-            ColumnQuantity::Power(PowerTerm::KineticRate) => self.power_balance.kinetic_energy_rate,
-            ColumnQuantity::Power(PowerTerm::Residual) => self.power_balance.residual(),
-            ColumnQuantity::Power(PowerTerm::KineticEnergy) => self.power_balance.kinetic_energy,
-            ColumnQuantity::LoadForce(k) => self.load_force(k),
-            ColumnQuantity::LoadPower(k) => self.load_powers[k],
-            ColumnQuantity::Extra(k) => sample.extra_values[k],
+        self.rows
+            .push(self.columns.iter().enumerate().map(value).collect());
+        self.body_poses.push(evaluator.body_poses());
+        for link in &mut self.sectioned_links {
+            link.add_position(k, evaluator);
         }
-    }
-
-    /// The force of a load along its direction or line, or its moment on its second body.
-    fn load_force(&self, k: usize) -> f64 {
-        let by_load = || {
-            self.wrenches
-                .iter()
-                .filter(|wrench| wrench.source == ForceSource::Load(k))
-        };
-        match self.scene.loads[k].kind {
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. } => self.workspace.loads().magnitude[k],
-            LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
-                let line = self.workspace.states().separation(bodies, points).direction;
-                let on_second = by_load().find(|wrench| wrench.body == bodies[1]);
-                match (line, on_second) {
-                    (Some(line), Some(wrench)) => wrench.force.dot(line),
-                    _ => 0.0,
-                }
-            }
-            LoadKind::TorsionSpring { bodies, .. } | LoadKind::RotationalDamper { bodies } => {
-                by_load()
-                    .find(|wrench| wrench.body == bodies[1])
-                    .map_or(0.0, |wrench| wrench.couple)
-            }
-            LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
-                let [first, second] = guide.bodies;
-                let axis = guide
-                    .axis
-                    .rotate(self.workspace.states().body(first).rotation);
-                let on_second = by_load().find(|wrench| wrench.body == second);
-                on_second.map_or(0.0, |wrench| wrench.force.dot(axis))
-            }
+        let balance = &evaluator.power_balance;
+        if balance.scale > 0.0 {
+            let residual = balance.residual().abs() / balance.scale;
+            self.power_residual = self.power_residual.max(residual);
         }
-    }
-
-    fn body_poses(&self) -> Vec<BodyPose> {
-        let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
-        let body_pose = |b| {
-            let origin = self.body_states.point(b, Vec2::ZERO).position;
-            (origin, self.body_states.body(b).rotation)
-        };
-        bodies.map(body_pose).collect()
     }
 }
 
@@ -308,6 +99,38 @@ impl AngleUnwrapper {
     }
 }
 
+/// The columns of an analysis along a trajectory, of the bodies that `model` places.
+fn computed_columns(
+    scene: &Scene,
+    model: &Model,
+    trajectory: &Trajectory<'_>,
+    analysis: Analysis,
+) -> Vec<Column> {
+    let modelled = model.plan().placed_bodies();
+    let is_modelled = |column: &Column| {
+        let bodies = column.quantity.bodies(scene, model.reactions());
+        bodies.iter().all(|b| modelled[b.0])
+    };
+    let is_exerted = |column: &Column| match column.quantity {
+        Quantity::ActuatorForce(i) => trajectory.exerts_force(i),
+        _ => true,
+    };
+    let extra = trajectory.extra_columns().iter().enumerate();
+    let extra = extra.map(|(k, extra)| Column {
+        name: extra.name.clone(),
+        former: None,
+        unit: extra.unit,
+        quantity: Quantity::Extra(k),
+        meaning: extra.meaning.to_owned(),
+    });
+    all_columns(scene, model, trajectory.is_timed(analysis))
+        .into_iter()
+        .chain(extra)
+        .filter(|c| c.is_computed_by(analysis) && is_modelled(c) && is_exerted(c))
+        .filter(|c| !c.is_optional() || is_requested(scene, c))
+        .collect()
+}
+
 /// Evaluates a scene along a trajectory.
 ///
 /// # Errors
@@ -322,40 +145,15 @@ pub(crate) fn evaluate_trajectory(
     // The trajectory ends where the whole mechanism does, however much of it is modelled.
     let plan: &Plan = full_model.plan();
     let model = &prune_model(scene, full_model);
-    let modelled = model.plan().placed_bodies();
-    let is_modelled = |column: &Column| {
-        let bodies = column.quantity.bodies(scene, model.reactions());
-        bodies.iter().all(|b| modelled[b.0])
-    };
-    // A static sweep has no time.
-    let timed = trajectory.swept_actuator().is_none() || analysis != Analysis::Statics;
-    let extra = trajectory
-        .extra_columns()
-        .iter()
-        .enumerate()
-        .map(|(k, extra)| Column {
-            name: extra.name.clone(),
-            former: None,
-            unit: extra.unit,
-            quantity: ColumnQuantity::Extra(k),
-            meaning: extra.meaning.clone(),
-        });
-    let columns: Vec<Column> = Columns::all(scene, model, timed)
-        .into_iter()
-        .chain(extra)
-        .filter(|c| c.is_computed_by(analysis) && is_modelled(c))
-        .filter(|c| !matches!(c.quantity, ColumnQuantity::ActuatorForce(i) if !trajectory.exerts_force(i)))
-        .filter(|c| !c.is_optional() || is_requested(scene, c))
-        .collect();
+    let columns = computed_columns(scene, model, trajectory, analysis);
     trajectory.check_laws(scene)?;
     let charts = match trajectory.charts() {
         [] => std::slice::from_ref(model),
         charts => charts,
     };
-    let mut evaluators = charts
-        .iter()
-        .map(|chart| PositionEvaluator::new(scene, plan, chart, analysis))
-        .collect::<Result<Vec<_>, _>>()?;
+    let evaluators = charts.iter();
+    let evaluators = evaluators.map(|chart| PositionEvaluator::new(scene, plan, chart, analysis));
+    let mut evaluators = evaluators.collect::<Result<Vec<_>, _>>()?;
     let mut unwrapper = AngleUnwrapper {
         last: vec![None; columns.len()],
     };
@@ -363,6 +161,8 @@ pub(crate) fn evaluate_trajectory(
         Analysis::Kinematics => &[],
         _ => scene.requests.sections.as_slice(),
     };
+    let reactions = model.reactions().iter().enumerate();
+    let indeterminate = reactions.filter(|&(k, _)| !model.plan().is_determinate(k));
     let mut results = TrajectoryResults {
         columns,
         rows: Vec::with_capacity(trajectory.points),
@@ -370,78 +170,20 @@ pub(crate) fn evaluate_trajectory(
         sectioned_links: sections.iter().map(SectionedLink::new).collect(),
         power_residual: 0.0,
         rounding_error: None,
-        indeterminate: (0..model.reactions().len())
-            .filter(|&k| !model.plan().is_determinate(k))
-            .map(|k| scene.mechanism.reaction_name(model.reactions()[k]))
+        indeterminate: indeterminate
+            .map(|(_, r)| scene.mechanism.reaction_name(*r))
             .collect(),
-        modelled,
+        modelled: model.plan().placed_bodies(),
         early_stop: None,
     };
-    let estimates_rounding = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics);
-    let mut rounding_error =
-        estimates_rounding.then(|| RoundingError::new(scene, model, trajectory.points));
-    let mut previous: Option<f64> = None;
-    for k in 0..trajectory.points {
-        let fraction = trajectory.fraction_at(k);
-        let sample = trajectory.sample_at(fraction);
+    let mut rounding_error = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics)
+        .then(|| RoundingError::new(scene, model, trajectory.points));
+    results.early_stop = trajectory.follow(plan, |k, sample| {
         let evaluator = &mut evaluators[sample.chart];
-        let unreachable = previous
-            .filter(|_| plan.actuators() == 1 && trajectory.charts().is_empty())
-            .and_then(|q| unreachable_error(plan, q, sample.q[0]));
-        let done = match unreachable {
-            Some(error) => Err(error.into()),
-            None => evaluator.evaluate(&sample, timed),
-        };
-        if let Err(error) = done {
-            let reached = if k > 0 {
-                trajectory.fraction_at(k - 1)
-            } else {
-                fraction
-            };
-            let early_stop = EarlyStop::find(plan, trajectory, [reached, fraction], error);
-            if k == 0 {
-                return Err(early_stop.explain(scene, plan, trajectory));
-            }
-            results.early_stop = Some(early_stop);
-            break;
-        }
-        previous = sample.q.first().copied();
-        let value = |(i, column): (usize, &Column)| {
-            let value = evaluator.value(column.quantity, &sample);
-            if !column.unwraps() {
-                return value;
-            }
-            let speed = match column.quantity {
-                ColumnQuantity::Measured(measured @ CoordinateFunction::Angle(_), _) => {
-                    evaluator.body_states.coordinate(measured)[1]
-                }
-                ColumnQuantity::BodyAngle(body, _) => {
-                    evaluator.body_states.body(body).angular_velocity
-                }
-                _ => 0.0,
-            };
-            unwrapper.unwrap_angle(i, value, speed, sample.t)
-        };
-        let row = results.columns.iter().enumerate().map(value).collect();
-        results.rows.push(row);
-        results.body_poses.push(evaluator.body_poses());
-        for sectioned_link in &mut results.sectioned_links {
-            sectioned_link.add_position(
-                k,
-                &evaluator.body_forces,
-                evaluator.model,
-                &evaluator.workspace,
-                &evaluator.wrenches,
-            );
-        }
-        if matches!(analysis, Analysis::Kinetostatics | Analysis::FreeMotion)
-            && evaluator.power_balance.scale > 0.0
-        {
-            let residual = evaluator.power_balance.residual().abs() / evaluator.power_balance.scale;
-            results.power_residual = results.power_residual.max(residual);
-        }
+        let t = trajectory.load_time(sample, analysis);
+        evaluator.evaluate(sample, t)?;
+        results.add_position(k, evaluator, sample, &mut unwrapper);
         if let Some(rounding_error) = &mut rounding_error {
-            let t = if timed { sample.t } else { 0.0 };
             let rest = vec![0.0; sample.q.len()];
             let at = match analysis {
                 Analysis::Statics => [sample.q.as_slice(), &rest, &rest],
@@ -450,7 +192,12 @@ pub(crate) fn evaluate_trajectory(
             rounding_error.add_position(k, model, t, at, &evaluator.inverse_dynamics);
         }
         on_position(k);
+        Ok(())
+    });
+    match &results.early_stop {
+        Some(stop) if !stop.has_begun => return Err(stop.explain(scene, plan, trajectory)),
+        _ => {}
     }
-    results.rounding_error = rounding_error.map(|rounding_error| rounding_error.max_relative());
+    results.rounding_error = rounding_error.map(|error| error.max_relative());
     Ok(results)
 }
