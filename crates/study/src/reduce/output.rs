@@ -4,7 +4,7 @@ use super::{document, figures};
 use crate::explain::StudyError;
 use crate::output::{Outcome, signed_png};
 use crate::reduce::compute::{Reduction, TableRequest, compute_reduction, tabulate};
-use dwell_report::{Figure, TableFormat};
+use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
 /// The reduced parameters of a scene over its range, and an interpolation table if requested.
@@ -26,24 +26,24 @@ pub fn reduce(scene: &Scene, table: Option<TableRequest>) -> Result<Outcome, Stu
     if let Some(unit_loads) = unit_loads {
         figures.push(figures::unit_loads(unit_loads, prepared, &curves.q));
     }
-    let mut outcome = Outcome::default();
+    let mut files = Files::new();
     let stem = format!("{}-reduced", scene.name);
-    outcome
-        .files
-        .add_table(&stem, &reduction.table(), &TableFormat::ALL)?;
+    files.add_table(&stem, &reduction.table(), &TableFormat::ALL)?;
     for figure in &figures {
         let name = format!("{}-{}.png", scene.name, figure.name);
-        outcome.files.add(name, signed_png(scene, figure)?);
+        files.add(name, signed_png(scene, figure)?);
     }
-    outcome.summary = document::summary(&reduction, note.as_deref());
+    let mut summary = document::summary(&reduction, note.as_deref());
     if let Some(request) = table {
         let tabulation = tabulate(prepared, &request)?;
-        outcome.summary += &tabulation.summary;
+        summary += &tabulation.summary;
         if let Some(text) = tabulation.text {
-            outcome
-                .files
-                .add(format!("{}.table", scene.name), text.into_bytes());
+            files.add(format!("{}.table", scene.name), text);
         }
     }
-    Ok(outcome)
+    Ok(Outcome {
+        summary,
+        files,
+        findings: Vec::new(),
+    })
 }

@@ -45,30 +45,29 @@ impl UnitLoadCurves {
         }
         let model = loaded_determinate_model(scene)?;
         let explain = |e: KinetostaticsError| explain_motion(scene, model.plan(), &e.into());
-        let mut workspace = model.workspace();
-        let mut inverse_dynamics = model.result_buffer();
+        let (mut workspace, mut results) = (model.workspace(), model.result_buffer());
+        let loads = 0..scene.loads.len();
         let mut curves = Self {
             loads: scene.loads.clone(),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
-            conservative: (0..scene.loads.len()).any(|l| model.is_conservative(l)),
+            conservative: loads.clone().any(|l| model.is_conservative(l)),
         };
         for &q in q {
-            model
-                .set_state(0.0, &[q], &[1.0], &mut workspace)
-                .map_err(explain)?;
+            let set = model.set_state(0.0, &[q], &[1.0], &mut workspace);
+            set.map_err(explain)?;
             let mut row = Vec::with_capacity(curves.loads.len());
-            for load in 0..curves.loads.len() {
-                let response =
-                    model.unit_load_response(load, &mut workspace, &mut inverse_dynamics);
+            for load in loads.clone() {
+                let response = model.unit_load_response(load, &mut workspace, &mut results);
                 response.map_err(explain)?;
-                let mut values = vec![-inverse_dynamics.tau[0]];
-                values.extend(&inverse_dynamics.reactions);
+                let mut values = vec![-results.tau[0]];
+                values.extend(&results.reactions);
                 row.push(values);
             }
             curves.rows.push(row);
-            let potentials =
-                (0..curves.loads.len()).filter_map(|l| model.potential_energy(l, &workspace));
+            let potentials = loads
+                .clone()
+                .filter_map(|l| model.potential_energy(l, &workspace));
             curves.potential.push(potentials.sum());
         }
         Ok(Some(curves))

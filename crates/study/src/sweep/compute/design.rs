@@ -29,10 +29,8 @@ impl Design {
         seed: u64,
     ) -> Result<Self, SweepError> {
         let design = |message: &str| Err(SweepError::Design(message.to_owned()));
-        let axes: Vec<Axis> = vary
-            .iter()
-            .map(|given| Axis::parse(scene, given))
-            .collect::<Result<_, _>>()?;
+        let axes = vary.iter().map(|given| Axis::parse(scene, given));
+        let axes: Vec<Axis> = axes.collect::<Result<_, _>>()?;
         if axes.is_empty() {
             return design("no axis: give one or more --vary PATH=FROM:TO:COUNT");
         }
@@ -43,13 +41,9 @@ impl Design {
         }
         let random = axes.iter().any(Axis::is_random);
         let samples = match (random, samples) {
-            (true, None) => {
-                return design("random axes need a number of samples: give --samples");
-            }
+            (true, None) => return design("random axes need a number of samples: give --samples"),
             (true, Some(0)) => return design("--samples must be at least 1"),
-            (false, Some(_)) => {
-                return design("--samples needs a random axis");
-            }
+            (false, Some(_)) => return design("--samples needs a random axis"),
             (_, samples) => samples.unwrap_or(1),
         };
         let mut counts = axes.iter().map(Axis::count);
