@@ -22,7 +22,8 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
         prepared, curves, ..
     } = reduction;
     let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
-    let [m_min, m_max] = extent_of(|c| c.m).map(|m| digits(m, 9));
+    let m = extent_of(|c| c.m);
+    let [m_min, m_max] = m.map(|m| digits(m, 9));
     let [h_min, h_max] = extent_of(|c| c.half_dm).map(|h| digits(h, 9));
     let (title, count) = (&prepared.scene.title, curves.q.len());
     let name = prepared.coordinate_name();
@@ -34,7 +35,7 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     if let Some(note) = note {
         summary += &format!("  {note}\n");
     }
-    if curves.coefficients.iter().all(|c| c.m <= 0.0) {
+    if m[1] == 0.0 {
         summary += "  no body with mass moves: there is no equation of motion, and every inertial reaction is zero\n";
     }
     summary + &prepared.indeterminate_text()
