@@ -132,7 +132,8 @@ fn work_table(prepared: &SceneMachine<'_>, cycle: &Cycle) -> Table {
 
 /// A steady cycle with its tables, and with the flywheel if a fluctuation was required.
 pub struct CycleResults<'a> {
-    pub(crate) prepared: SceneMachine<'a>,
+    /// The scene with its machine.
+    pub prepared: SceneMachine<'a>,
     /// The cycle.
     pub steady: Cycle,
     /// One cycle: time, states, acceleration and works since its start.

@@ -13,8 +13,10 @@ use std::f64::consts::TAU;
 
 /// Static force (N·m or N) and potential (J) over the coordinate.
 pub struct StaticCurves {
-    pub(crate) q: Vec<f64>,
-    pub(crate) force_and_potential: Vec<[f64; 2]>,
+    /// Coordinates, rad or m.
+    pub q: Vec<f64>,
+    /// Force and potential at each.
+    pub force_and_potential: Vec<[f64; 2]>,
 }
 
 /// Fraction of a range left out at each end, where the configuration is singular.
@@ -113,7 +115,8 @@ pub(crate) fn without_rounding([re, im]: [f64; 2]) -> [f64; 2] {
 
 /// The equilibria of a scene with their table, and the static force around them.
 pub struct EquilibriaResults<'a> {
-    pub(crate) prepared: SceneMachine<'a>,
+    /// The scene with its machine.
+    pub prepared: SceneMachine<'a>,
     /// The equilibria.
     pub found: Vec<Equilibrium>,
     /// The interval that was searched for all equilibria, if there is a single coordinate.

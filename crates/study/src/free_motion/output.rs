@@ -1,19 +1,13 @@
 //! Writes a free motion: everything that is written of a trajectory, events and summary.
 
-use crate::explain::{StudyError, missing_section_label, scene_error};
-use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
-use crate::models::{SolverSettings, with_drive_loads};
+use crate::explain::StudyError;
+use crate::free_motion::compute::{FreeMotion, compute_motion, compute_motion_to_accuracy};
+use crate::models::SolverSettings;
 use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, FreeTrajectory, Trajectory};
-use crate::trajectory::{TrajectoryOutcome, evaluate_and_report};
-use dwell_dynamics::Options;
+use crate::trajectory::compute::Analysis;
+use crate::trajectory::{TrajectoryOutcome, report};
 use dwell_report::TableExport as _;
-use dwell_scene::{Scene, SceneLocation};
-
-/// Number of samples if no sample interval is given.
-const DEFAULT_SAMPLES: f64 = 1000.0;
-/// Maximum number of samples of a motion.
-const MAX_SAMPLES: f64 = 100_000.0;
+use dwell_scene::Scene;
 
 /// The free motion of a scene, by a method and a tolerance.
 ///
@@ -25,23 +19,7 @@ pub fn simulate(
     settings: &SolverSettings,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let compute = |problem: &FreeMotionProblem<'_>, duration: f64, sample_interval: f64| {
-        let options = Options {
-            atol: settings.atol,
-            max_step: settings.max_step,
-            sample_interval: Some(sample_interval),
-            ..Options::new(settings.method, settings.rtol)
-        };
-        let motion = problem.solve(scene, duration, &options)?;
-        let error = problem.estimate_error(scene, &motion, &options)?;
-        Ok(ComputedMotion {
-            method_text: settings.describe(),
-            remarks: problem.method_hint(&motion, settings) + &error,
-            accuracy: None,
-            motion,
-        })
-    };
-    simulate_with(scene, settings.sample_interval, progress, &compute)
+    report_motion(compute_motion(scene, settings, progress)?, progress)
 }
 
 /// The free motion of a scene to a required accuracy, by the cheapest method that reaches it. `accuracy` bounds the
@@ -56,76 +34,23 @@ pub fn simulate_to_accuracy(
     sample_interval: Option<f64>,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let compute = |problem: &FreeMotionProblem<'_>, duration: f64, sample_interval: f64| {
-        problem.to_accuracy(scene, accuracy, duration, sample_interval)
-    };
-    simulate_with(scene, sample_interval, progress, &compute)
+    let motion = compute_motion_to_accuracy(scene, accuracy, sample_interval, progress)?;
+    report_motion(motion, progress)
 }
 
-fn simulate_with(
-    scene: &Scene,
-    sample_interval: Option<f64>,
+fn report_motion(
+    motion: FreeMotion,
     progress: Progress<'_>,
-    compute: &dyn Fn(&FreeMotionProblem<'_>, f64, f64) -> Result<ComputedMotion, StudyError>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let Some(spec) = &scene.motion else {
-        return Err(scene_error(
-            scene,
-            "the scene has no [motion] to simulate",
-            "add [motion] with `speed`, and `periods` or `duration`",
-            missing_section_label("motion"),
-        ));
-    };
-    let loaded_scene = with_drive_loads(scene)?;
-    let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
-    let duration = problem.duration()?;
-    let sample_interval = sample_interval.unwrap_or(duration / DEFAULT_SAMPLES);
-    let sample_interval = sample_interval.max(duration / MAX_SAMPLES);
-    let computed = compute(&problem, duration, sample_interval)?;
-    let motion = &computed.motion;
-    if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
-        return Err(problem.explain(error));
-    }
-    let charts = motion.charts.iter();
-    let plan = problem.output_model.plan();
-    let mut trajectory = Trajectory::of_free_motion(
-        plan,
-        FreeTrajectory {
-            samples: problem.samples(motion).map_err(|e| problem.explain(&e))?,
-            extra_columns: problem.extra_columns(),
-            prescribed: spec.laws.iter().map(Option::is_some).collect(),
-            charts: charts.map(|c| c.output_model.clone()).collect(),
-        },
-    );
-    trajectory.method_text.clone_from(&computed.method_text);
-    let mut result = evaluate_and_report(
-        &loaded_scene,
-        &problem.output_model,
-        &trajectory,
-        Analysis::FreeMotion,
-        progress,
-    )?;
-    let outcome = &mut result.outcome;
-    if motion.occurrences().next().is_some() {
+    let (scene, computed) = (&motion.loaded_scene, motion.computed);
+    let mut outcome = report(scene, &computed, Analysis::FreeMotion, progress)?;
+    if let Some(events) = &motion.events {
         let name = format!("{}-motion-events.csv", scene.name);
-        outcome.files.add(name, problem.event_table(motion).csv()?);
+        outcome.files.add(name, events.csv()?);
     }
-    outcome.summary += &problem.summary(motion, &computed.method_text, duration);
-    outcome.summary += &problem.notes;
-    outcome.summary += &computed.remarks;
-    if let Some(error) = &motion.failure {
-        result.early_stop = Some(problem.explain(error));
-    } else if let Some([requested, error]) = computed.accuracy
-        && error > requested
-    {
-        result.early_stop = Some(scene_error(
-            scene,
-            format!(
-                "an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}"
-            ),
-            "the results are written with the error above; require that accuracy, or a shorter motion",
-            [(SceneLocation::Duration, "the error grows with the duration")],
-        ));
-    }
-    Ok(result)
+    outcome.summary += &motion.summary;
+    Ok(TrajectoryOutcome {
+        outcome,
+        early_stop: motion.early_stop.or(computed.early_stop),
+    })
 }

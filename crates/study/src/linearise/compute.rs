@@ -33,9 +33,6 @@ fn nearest_equilibrium(prepared: &SceneMachine<'_>) -> Result<Equilibrium, Study
     nearest.ok_or_else(|| prepared.explain(&DynamicsError::NoEquilibrium { what }))
 }
 
-/// A matrix: its name, what its rows and its columns stand for, its rows.
-type NamedMatrix<'a> = (&'static str, &'a [Column], &'a [Column], &'a [Vec<f64>]);
-
 /// Names and units of states, inputs and outputs.
 pub struct StateSpaceNames {
     /// Names and units of the states.
@@ -73,21 +70,12 @@ impl StateSpaceNames {
             outputs,
         }
     }
-
-    /// The four matrices with the names of their rows and columns.
-    pub(crate) fn matrices<'a>(&'a self, linear: &'a StateSpace) -> [NamedMatrix<'a>; 4] {
-        [
-            ("A", &self.states, &self.states, &linear.a),
-            ("B", &self.states, &self.inputs, &linear.b),
-            ("C", &self.outputs, &self.states, &linear.c),
-            ("D", &self.outputs, &self.inputs, &linear.d),
-        ]
-    }
 }
 
 /// The linearised motion of a scene.
 pub struct LinearisedMotion<'a> {
-    pub(crate) prepared: SceneMachine<'a>,
+    /// The scene with its machine.
+    pub prepared: SceneMachine<'a>,
     /// The state about which it is linearised.
     pub state: Vec<f64>,
     /// The equilibrium there, if it was asked for.

@@ -2,12 +2,26 @@
 
 use crate::equilibria::document::{describe_eigenvalues, describe_equilibrium};
 use crate::linearise::compute::{LinearisedMotion, StateSpaceNames};
-use crate::models::indeterminate_note;
 use crate::number_format::number;
-use crate::output::provenance_line;
+use crate::output::{indeterminate_note, provenance_line};
 use dwell_dynamics::StateSpace;
 use dwell_report::{Array, Block, Column, Document};
 use dwell_scene::Scene;
+
+/// A matrix: its name, what its rows and its columns stand for, its rows.
+type NamedMatrix<'a> = (&'static str, &'a [Column], &'a [Column], &'a [Vec<f64>]);
+
+impl StateSpaceNames {
+    /// The four matrices with the names of their rows and columns.
+    fn matrices<'a>(&'a self, linear: &'a StateSpace) -> [NamedMatrix<'a>; 4] {
+        [
+            ("A", &self.states, &self.states, &linear.a),
+            ("B", &self.states, &self.inputs, &linear.b),
+            ("C", &self.outputs, &self.states, &linear.c),
+            ("D", &self.outputs, &self.inputs, &linear.d),
+        ]
+    }
+}
 
 fn column_list(columns: &[Column]) -> String {
     let one = |c: &Column| format!("{} ({})", c.name, c.unit);

@@ -15,6 +15,6 @@ pub(crate) use compile::{
 };
 pub(crate) use drives::{drive_states, source_name};
 pub use prepared_scene::PreparedScene;
-pub(crate) use prepared_scene::{indeterminate_note, initial_reduced_state};
-pub(crate) use scene_machine::SceneMachine;
+pub(crate) use prepared_scene::initial_reduced_state;
+pub use scene_machine::SceneMachine;
 pub use solver_settings::{PRESETS, SolverSettings};

@@ -1,7 +1,7 @@
 //! A scene with the exact reduced model of what it requests.
 
 use crate::explain::{StudyError, not_one_actuator, scene_error};
-use crate::models::{determinate_model, indeterminate_reactions, requested_reaction_bodies};
+use crate::models::{determinate_model, requested_reaction_bodies};
 use crate::ranges::equally_spaced;
 use dwell_dynamics::ReducedState;
 use dwell_geometry::{ActuatorId, Reaction};
@@ -75,14 +75,6 @@ impl<'a> PreparedScene<'a> {
         reactions.iter().map(named).collect()
     }
 
-    /// The summary's line about the requested reactions that are statically indeterminate.
-    pub(crate) fn indeterminate_text(&self) -> String {
-        let indeterminate = indeterminate_reactions(self.scene, self.model.model().plan());
-        let requested = self.scene.requests.reactions.iter();
-        let names = requested.filter(|r| indeterminate.contains(r));
-        indeterminate_note(names.map(|&r| self.scene.mechanism.reaction_name(r)))
-    }
-
     /// The initial state of the free motion, if the scene has one.
     pub fn initial_state(&self) -> Option<ReducedState> {
         initial_reduced_state(self.scene)
@@ -110,16 +102,4 @@ pub(crate) fn initial_reduced_state(scene: &Scene) -> Option<ReducedState> {
         q: *spec.initial_coordinates.first()?,
         q_dot: *spec.initial_velocities.first()?,
     })
-}
-
-/// The line of a summary that names the statically indeterminate reactions; empty if there are none.
-pub(crate) fn indeterminate_note(names: impl Iterator<Item = String>) -> String {
-    let names: Vec<String> = names.collect();
-    if names.is_empty() {
-        return String::new();
-    }
-    let names = names.join(", ");
-    format!(
-        "  statically indeterminate (redundant constraints share the load), so in no table: {names}\n"
-    )
 }

@@ -12,12 +12,14 @@ use dwell_kinetostatics::Signal;
 use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SceneLocation};
 
 /// A scene with its machine and its initial state.
-pub(crate) struct SceneMachine<'a> {
-    pub(crate) scene: &'a Scene,
+pub struct SceneMachine<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
     /// The scene with the loads of its drives added.
     loaded_scene: Scene,
     spec: FreeMotionSpec,
-    pub(crate) machine: Machine,
+    /// Its machine without reactions.
+    pub machine: Machine,
 }
 
 impl<'a> SceneMachine<'a> {
@@ -111,7 +113,7 @@ impl<'a> SceneMachine<'a> {
     }
 
     /// A coordinate as text.
-    pub(crate) fn describe_coordinate(&self, actuator: usize, value: f64) -> String {
+    pub fn describe_coordinate(&self, actuator: usize, value: f64) -> String {
         let (name, text) = (self.coordinate_name(actuator), digits(value, 9));
         match self.is_angle(actuator) {
             true => format!("{name} = {text} rad ({}°)", digits(value.to_degrees(), 9)),

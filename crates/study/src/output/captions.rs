@@ -145,6 +145,18 @@ pub(crate) fn inner_range(prepared: &PreparedScene<'_>, curves: &[Series]) -> Op
     (high > low).then_some([low - margin, high + margin])
 }
 
+/// The line of a summary that names the statically indeterminate reactions; empty if there are none.
+pub(crate) fn indeterminate_note(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    let names = names.join(", ");
+    format!(
+        "  statically indeterminate (redundant constraints share the load), so in no table: {names}\n"
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -6,8 +6,8 @@ mod outcome;
 mod provenance;
 
 pub(crate) use captions::{
-    add_note, chart, coordinate_axis, figure, inner_range, range_caption, reaction_figure_count,
-    reduced_provenance,
+    add_note, chart, coordinate_axis, figure, indeterminate_note, inner_range, range_caption,
+    reaction_figure_count, reduced_provenance,
 };
 pub use captions::{caption, coordinate_label, scene_caption, symbol};
 pub use mechanism_drawing::MechanismDrawing;

@@ -1,6 +1,8 @@
 //! The summary of the reduced parameters and of the table.
 
+use crate::models::indeterminate_reactions;
 use crate::number_format::digits;
+use crate::output::indeterminate_note;
 use crate::ranges::extent;
 use crate::reduce::compute::{Reduction, RoundingErrors};
 use dwell_kinetostatics::Coefficients;
@@ -38,5 +40,9 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     if m[1] == 0.0 {
         summary += "  no body with mass moves: there is no equation of motion, and every inertial reaction is zero\n";
     }
-    summary + &prepared.indeterminate_text()
+    let scene = prepared.scene;
+    let indeterminate = indeterminate_reactions(scene, prepared.model.model().plan());
+    let requested = scene.requests.reactions.iter();
+    let names = requested.filter(|r| indeterminate.contains(r));
+    summary + &indeterminate_note(names.map(|&r| scene.mechanism.reaction_name(r)))
 }

@@ -3,9 +3,9 @@
 use crate::explain::StudyError;
 use crate::number_format::{count, digits, number};
 use crate::output::{Outcome, signed_png};
-use crate::sweep::compute::Spread;
 use crate::sweep::figure::figure;
 use crate::sweep::output::{ParameterSweep, PreparedSweep};
+use crate::sweep::spread::Spread;
 use crate::sweep::store::Row;
 use dwell_report::TableExport as _;
 use dwell_report::{Column, Table, TableFormat};
@@ -65,13 +65,9 @@ pub(crate) fn report_sweep(
 
 /// Inputs and results.
 fn table(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Table {
-    let axes = prepared.design.axes.iter();
-    let results = prepared.requested.quantities.iter();
-    let mut columns: Vec<Column> = axes.map(|a| Column::new(&a.path, &a.unit)).collect();
-    columns.extend(results.map(|q| Column::new(&q.name, q.unit)));
     let row = |row: &Row| [row.inputs.as_slice(), &row.result.values].concat();
     Table {
-        columns,
+        columns: prepared.requested.columns(&prepared.design),
         rows: rows.iter().map(row).collect(),
     }
 }

@@ -8,11 +8,12 @@ mod figure;
 #[cfg(feature = "output")]
 mod output;
 #[cfg(feature = "output")]
-mod store;
-#[cfg(test)]
+mod spread;
 #[cfg(feature = "output")]
+mod store;
+#[cfg(all(test, feature = "output"))]
 mod tests;
 
-pub use compute::Shard;
+pub use compute::{Shard, compute_sweep};
 #[cfg(feature = "output")]
 pub use output::{ParameterSweep, sweep};

@@ -10,7 +10,7 @@ use super::export;
 use crate::explain::{StudyError, SweepError};
 use crate::output::Outcome;
 use crate::progress::{Progress, Step};
-use crate::sweep::compute::{Axis, Design, RequestedQuantities, Shard};
+use crate::sweep::compute::{Axis, Design, RequestedQuantities, Shard, VariationKind};
 use crate::sweep::store::{Row, SCENE_TEXT, SHARD, Store, StudyIdentity};
 use dwell_report::TableFormat;
 use dwell_scene::Scene;
@@ -74,7 +74,7 @@ impl<'a> PreparedSweep<'a> {
                 "an export gathers all shards: leave --shard {shard} out"
             ));
         }
-        let exact: Vec<String> = design.axes.iter().map(Axis::to_exact_text).collect();
+        let exact: Vec<String> = design.axes.iter().map(exact_text).collect();
         let shard = sweep
             .shard
             .map_or(WHOLE_STUDY.to_owned(), |s| s.to_string());
@@ -116,10 +116,7 @@ impl<'a> PreparedSweep<'a> {
 
     /// Computes one point.
     fn row(&self, index: u64) -> Row {
-        let inputs = self.design.values(index);
-        let paths = self.design.axes.iter().map(|axis| axis.path.as_str());
-        let values: Vec<(&str, f64)> = paths.zip(inputs.iter().copied()).collect();
-        let result = self.requested.evaluate(self.scene, &values);
+        let (inputs, result) = self.requested.point(self.scene, &self.design, index);
         Row {
             index,
             inputs,
@@ -233,4 +230,20 @@ fn shard_files(scene: &Scene, folder: &Path) -> Vec<(PathBuf, String)> {
     let mut files: Vec<(PathBuf, String)> = files.collect();
     files.sort();
     files
+}
+
+/// An axis with all digits, as the store records it.
+fn exact_text(axis: &Axis) -> String {
+    let path = &axis.path;
+    match &axis.kind {
+        VariationKind::Grid { from, to, count } => format!("{path}={from:?}:{to:?}:{count}"),
+        VariationKind::Listed(values) => {
+            let values: Vec<String> = values.iter().map(|v| format!("{v:?}")).collect();
+            format!("{path}={}", values.join(","))
+        }
+        VariationKind::Normal { mean, deviation } => {
+            format!("{path}~normal({mean:?},{deviation:?})")
+        }
+        VariationKind::Uniform { from, to } => format!("{path}~uniform({from:?},{to:?})"),
+    }
 }

@@ -1,11 +1,11 @@
 //! The text of a trajectory analysis: the printed summary, and the Markdown page with extrema, column meanings and figures.
 
-use crate::models::indeterminate_note;
 use crate::number_format::{count, number};
-use crate::output::provenance_line;
+use crate::output::{indeterminate_note, provenance_line};
 use crate::trajectory::compute::{
-    Analysis, ColumnExtrema, Quantity, SectionedLink, Trajectory, TrajectoryResults, extrema,
+    Analysis, Quantity, SectionedLink, Trajectory, TrajectoryResults,
 };
+use crate::trajectory::extrema::{ColumnExtrema, extrema};
 use dwell_kinetostatics::Distribution;
 use dwell_report::{Block, Document as Page, Figure};
 use dwell_scene::Scene;

@@ -1,14 +1,17 @@
 //! Computes the free motion of a scene.
 
 mod accuracy;
+mod description;
 mod difference;
 mod error_estimate;
 mod problem;
 mod refinement;
 mod segmented_motion;
+mod simulation;
 mod tables;
 
 pub(crate) use difference::Difference;
 pub use problem::FreeMotionProblem;
 pub(crate) use segmented_motion::ComputedMotion;
 pub use segmented_motion::SegmentedMotion;
+pub use simulation::{FreeMotion, compute_motion, compute_motion_to_accuracy};

@@ -27,7 +27,7 @@ pub struct RoundingErrors {
     /// By position: the largest of all coefficients.
     pub(crate) rows: Vec<f64>,
     /// Over all positions: of m, of ½m′, of every a and b.
-    pub(crate) max_errors: [f64; 3],
+    pub max_errors: [f64; 3],
 }
 
 impl RoundingErrors {

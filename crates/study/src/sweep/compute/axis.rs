@@ -116,22 +116,6 @@ impl Axis {
     pub(crate) fn heading(&self) -> String {
         heading(&self.path, &self.unit)
     }
-
-    /// The axis with all digits, as the store records it.
-    pub(crate) fn to_exact_text(&self) -> String {
-        let path = &self.path;
-        match &self.kind {
-            VariationKind::Grid { from, to, count } => format!("{path}={from:?}:{to:?}:{count}"),
-            VariationKind::Listed(values) => {
-                let values: Vec<String> = values.iter().map(|v| format!("{v:?}")).collect();
-                format!("{path}={}", values.join(","))
-            }
-            VariationKind::Normal { mean, deviation } => {
-                format!("{path}~normal({mean:?},{deviation:?})")
-            }
-            VariationKind::Uniform { from, to } => format!("{path}~uniform({from:?},{to:?})"),
-        }
-    }
 }
 
 /// `name [unit]`.

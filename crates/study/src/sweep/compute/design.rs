@@ -90,7 +90,7 @@ pub struct Shard {
 
 impl Shard {
     /// Whether it contains a point.
-    pub(crate) fn contains(self, k: u64) -> bool {
+    pub fn contains(self, k: u64) -> bool {
         k % self.of == self.part - 1
     }
 }

@@ -1,4 +1,4 @@
-//! Computes columns, extrema, sections and peak forces along a trajectory.
+//! Computes columns, sections and peak forces along a trajectory.
 
 mod analysis;
 mod column;
@@ -6,7 +6,6 @@ mod columns;
 mod dyads;
 mod early_stop;
 mod evaluator;
-mod extrema;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
@@ -25,16 +24,16 @@ pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
 pub(crate) use evaluator::PositionEvaluator;
-pub(crate) use extrema::{ColumnExtrema, extrema};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryFault, TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::peak_forces;
 pub(crate) use pruning::{prune_model, requested_bodies};
-pub(crate) use results::{TrajectoryResults, evaluate_trajectory};
+pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
+pub(crate) use results::{POSITIONS_PER_STEP, compute_along};
 pub(crate) use rounding_error::RoundingError;
-pub(crate) use sectioned_link::SectionedLink;
+pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{check_variables, is_requested, selected_columns};
+pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, Trajectory, TrajectorySample,
-    swept_range,
+    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, TrajectorySample, swept_range,
 };

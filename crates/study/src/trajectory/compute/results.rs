@@ -2,55 +2,59 @@
 
 use crate::bodies::BodyPose;
 use crate::explain::StudyError;
+use crate::models::loaded_model;
+use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
     Analysis, Column, EarlyStop, PositionEvaluator, Quantity, RoundingError, SectionedLink,
-    Trajectory, TrajectorySample, all_columns, is_requested, prune_model,
+    Trajectory, TrajectorySample, all_columns, check_variables, is_requested, prune_model,
+    selected_columns,
 };
+use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
 use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
-/// Results of an analysis along a trajectory.
-pub(crate) struct TrajectoryResults {
+/// Positions per progress step.
+pub(crate) const POSITIONS_PER_STEP: usize = 500;
+
+/// What is evaluated at the positions of a trajectory.
+pub struct TrajectoryResults {
     /// All columns of the analysis.
     pub(crate) columns: Vec<Column>,
     /// By position: a value for each column.
     pub(crate) rows: Vec<Vec<f64>>,
     /// By position and body.
-    pub(crate) body_poses: Vec<Vec<BodyPose>>,
+    pub body_poses: Vec<Vec<BodyPose>>,
     /// The links whose internal forces are requested.
-    pub(crate) sectioned_links: Vec<SectionedLink>,
+    pub sectioned_links: Vec<SectionedLink>,
     /// The largest residual of the power balance, relative to the sum of its absolute terms.
-    pub(crate) power_residual: f64,
+    pub power_residual: f64,
     /// The estimated rounding error of actuator forces and reactions, relative to the largest of their unit.
-    pub(crate) rounding_error: Option<f64>,
-    /// The statically indeterminate reactions, by name.
-    pub(crate) indeterminate: Vec<String>,
-    /// By body: whether it is modelled.
-    pub(crate) modelled: Vec<bool>,
-    /// Where and why the trajectory ended early, if it did.
-    pub(crate) early_stop: Option<EarlyStop>,
+    pub rounding_error: Option<f64>,
+    /// The statically indeterminate reactions, by name: no column has them.
+    pub indeterminate: Vec<String>,
+    /// By body: whether it is modelled; without `variables` all bodies are.
+    pub modelled: Vec<bool>,
 }
 
 impl TrajectoryResults {
-    /// The bodies that are not modelled, because nothing needs them.
-    pub(crate) fn unmodelled_bodies(&self, scene: &Scene) -> Vec<String> {
-        let bodies = scene.mechanism.bodies.iter().zip(&self.modelled);
-        let unmodelled = bodies.filter(|(_, modelled)| !**modelled);
-        unmodelled.map(|(body, _)| body.name.clone()).collect()
+    /// Name, unit and meaning of every column of the analysis.
+    pub fn columns(&self) -> impl Iterator<Item = (&str, &str, &str)> {
+        let columns = self.columns.iter();
+        columns.map(|c| (c.name.as_str(), c.unit, c.meaning.as_str()))
     }
 
-    /// The index of the column of a quantity.
-    pub(crate) fn column_index(&self, quantity: Quantity) -> Option<usize> {
-        self.columns.iter().position(|c| c.quantity == quantity)
-    }
-
-    /// The index of the column of the abscissa: time, or the swept coordinate.
-    pub(crate) fn abscissa(&self, trajectory: &Trajectory<'_>) -> usize {
-        let swept = trajectory.swept_actuator();
-        let quantity = swept.map_or(Quantity::Time, |a| Quantity::ActuatorCoordinate(a, 0));
-        self.column_index(quantity).unwrap_or(0)
+    /// Some columns as a table.
+    fn table(&self, selected: &[usize]) -> Table {
+        let columns = selected.iter().map(|&k| &self.columns[k]);
+        let row = |row: &Vec<f64>| selected.iter().map(|&k| row[k]).collect();
+        Table {
+            columns: columns
+                .map(|c| findings::Column::new(&c.name, c.unit))
+                .collect(),
+            rows: self.rows.iter().map(row).collect(),
+        }
     }
 
     /// Adds what has been evaluated at the `k`th position.
@@ -131,17 +135,64 @@ fn computed_columns(
         .collect()
 }
 
+/// An analysis along a trajectory, up to where it ended.
+pub struct ComputedTrajectory<'a> {
+    /// The coordinates that it followed.
+    pub trajectory: Trajectory<'a>,
+    /// What was evaluated at each position.
+    pub results: TrajectoryResults,
+    /// A row for each position: time, actuator coordinates and the requested columns.
+    pub table: Table,
+    /// Why the trajectory ended early, if it did.
+    pub early_stop: Option<StudyError>,
+}
+
+/// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, at `points` positions
+/// (two or more) if given. With a line for each requested column that is called by a former name.
+///
+/// # Errors
+/// [`StudyError`] when the mechanism cannot be assembled, the scene defines no actuator
+/// coordinates, a requested column does not exist, or the first position cannot be reached.
+pub fn compute_trajectory<'a>(
+    scene: &'a Scene,
+    analysis: Analysis,
+    points: Option<usize>,
+    progress: Progress<'_>,
+) -> Result<(ComputedTrajectory<'a>, String), StudyError> {
+    let model = loaded_model(scene)?;
+    let notes = check_variables(scene, &model)?;
+    let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
+    let computed = compute_along(scene, &model, trajectory, analysis, progress)?;
+    Ok((computed, notes))
+}
+
 /// Evaluates a scene along a trajectory.
 ///
 /// # Errors
-/// [`StudyError::Scene`] when not even the first position can be reached.
-pub(crate) fn evaluate_trajectory(
+/// [`StudyError`] where not even the first position can be reached.
+pub(crate) fn compute_along<'a>(
+    scene: &Scene,
+    model: &Model,
+    trajectory: Trajectory<'a>,
+    analysis: Analysis,
+    progress: Progress<'_>,
+) -> Result<ComputedTrajectory<'a>, StudyError> {
+    let (results, early_stop) = evaluate(scene, model, &trajectory, analysis, progress)?;
+    Ok(ComputedTrajectory {
+        table: results.table(&selected_columns(scene, &results.columns)),
+        early_stop: early_stop.map(|stop| stop.explain(scene, model.plan(), &trajectory)),
+        trajectory,
+        results,
+    })
+}
+
+fn evaluate(
     scene: &Scene,
     full_model: &Model,
     trajectory: &Trajectory<'_>,
     analysis: Analysis,
-    on_position: &dyn Fn(usize),
-) -> Result<TrajectoryResults, StudyError> {
+    progress: Progress<'_>,
+) -> Result<(TrajectoryResults, Option<EarlyStop>), StudyError> {
     // The trajectory ends where the whole mechanism does, however much of it is modelled.
     let plan: &Plan = full_model.plan();
     let model = &prune_model(scene, full_model);
@@ -174,11 +225,10 @@ pub(crate) fn evaluate_trajectory(
             .map(|(_, r)| scene.mechanism.reaction_name(*r))
             .collect(),
         modelled: model.plan().placed_bodies(),
-        early_stop: None,
     };
     let mut rounding_error = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics)
         .then(|| RoundingError::new(scene, model, trajectory.points));
-    results.early_stop = trajectory.follow(plan, |k, sample| {
+    let early_stop = trajectory.follow(plan, |k, sample| {
         let evaluator = &mut evaluators[sample.chart];
         let t = trajectory.load_time(sample, analysis);
         evaluator.evaluate(sample, t)?;
@@ -191,13 +241,18 @@ pub(crate) fn evaluate_trajectory(
             };
             rounding_error.add_position(k, model, t, at, &evaluator.inverse_dynamics);
         }
-        on_position(k);
+        if k.is_multiple_of(POSITIONS_PER_STEP) {
+            let steps = trajectory.points.div_ceil(POSITIONS_PER_STEP);
+            progress(Step {
+                total: steps + 1,
+                done: "positions",
+            });
+        }
         Ok(())
     });
-    match &results.early_stop {
-        Some(stop) if !stop.has_begun => return Err(stop.explain(scene, plan, trajectory)),
-        _ => {}
+    if let Some(stop) = early_stop.as_ref().filter(|stop| !stop.has_begun) {
+        return Err(stop.explain(scene, plan, trajectory));
     }
     results.rounding_error = rounding_error.map(|error| error.max_relative());
-    Ok(results)
+    Ok((results, early_stop))
 }

@@ -11,14 +11,16 @@ const INTERVALS: usize = 100;
 const COMPONENTS: [(&str, &str); 3] = [("axial", "N"), ("shear", "N"), ("bending", "N m")];
 
 /// A link and its internal forces.
-pub(crate) struct SectionedLink {
-    pub(crate) request: Request,
-    pub(crate) distribution: Distribution,
+pub struct SectionedLink {
+    /// The body and the two points.
+    pub request: Request,
+    /// How its mass is distributed.
+    pub distribution: Distribution,
     /// The position of the largest bending moment, and the sections there.
-    pub(crate) max_bending_sections: Option<(usize, Vec<Section>)>,
+    pub max_bending_sections: Option<(usize, Vec<Section>)>,
     max_bending: f64,
     /// By station: smallest and largest axial force, shear and bending moment.
-    pub(crate) envelope: Vec<(f64, [[f64; 2]; 3])>,
+    pub envelope: Vec<(f64, [[f64; 2]; 3])>,
 }
 
 impl SectionedLink {
@@ -69,7 +71,7 @@ impl SectionedLink {
     }
 
     /// The largest bending moment, N·m, with its sign and its station.
-    pub(crate) fn max_bending_section(&self) -> Option<Section> {
+    pub fn max_bending_section(&self) -> Option<Section> {
         let (_, sections) = self.max_bending_sections.as_ref()?;
         let size = |s: &&Section| s.bending.abs();
         let largest = sections.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
@@ -77,13 +79,13 @@ impl SectionedLink {
     }
 
     /// `body from … to …`, as part of a file's name.
-    pub(crate) fn file_name(&self, body: &str) -> String {
+    pub fn file_name(&self, body: &str) -> String {
         let [from, to] = &self.request.names;
         format!("{body}-{from}-{to}")
     }
 
     /// The sections where the bending moment is largest.
-    pub(crate) fn table(&self) -> Table {
+    pub fn table(&self) -> Table {
         let mut columns = vec![Column::new("station", "m")];
         columns.extend(COMPONENTS.map(|(name, unit)| Column::new(name, unit)));
         let sections = self.max_bending_sections.iter().flat_map(|(_, s)| s);
@@ -95,7 +97,7 @@ impl SectionedLink {
     }
 
     /// The envelope over the whole trajectory, by station.
-    pub(crate) fn envelope_table(&self) -> Table {
+    pub fn envelope_table(&self) -> Table {
         let mut columns = vec![Column::new("station", "m")];
         for (name, unit) in COMPONENTS {
             columns.push(Column::new(format!("{name}.min"), unit));

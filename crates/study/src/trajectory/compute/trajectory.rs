@@ -54,20 +54,20 @@ pub(crate) struct ExtraColumn {
 
 /// A trajectory of the actuator coordinates, as a function of the completed fraction (0 to 1).
 #[derive(Debug, Clone)]
-pub(crate) struct Trajectory<'a> {
+pub struct Trajectory<'a> {
     kind: TrajectoryKind<'a>,
     /// Number of positions, both ends included.
-    pub(crate) points: usize,
+    pub points: usize,
     /// Description for summaries.
-    pub(crate) description: String,
+    pub description: String,
     /// The method that computed its positions, for captions.
-    pub(crate) method_text: String,
+    pub method_text: String,
     /// Where the scene defines it.
-    pub(crate) location: SceneLocation,
+    pub location: SceneLocation,
     /// Whether its start and its end are next to a limit position.
-    pub(crate) ends_at_limit_position: [bool; 2],
+    pub ends_at_limit_position: [bool; 2],
     /// Period of the pose in the coordinate of the only actuator, rad.
-    pub(crate) period: Option<f64>,
+    pub period: Option<f64>,
 }
 
 #[derive(Debug, Clone)]

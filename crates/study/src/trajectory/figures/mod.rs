@@ -9,7 +9,7 @@ use crate::number_format::digits;
 use crate::output::{MechanismDrawing, chart, coordinate_axis, figure, symbol};
 use crate::ranges::extent;
 use crate::trajectory::compute::{
-    Analysis, Column, Quantity, Trajectory, TrajectoryResults, is_requested,
+    Analysis, Column, ComputedTrajectory, Quantity, TrajectoryResults, is_requested,
 };
 use dwell_report::{
     Animation, Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Scale, Series, Shape, Stroke,
@@ -46,12 +46,11 @@ pub(crate) struct FigureContext<'a> {
 /// The figures of a trajectory without the animation, and a note if some are left out.
 pub(crate) fn trajectory_figures(
     scene: &Scene,
-    results: &TrajectoryResults,
-    trajectory: &Trajectory<'_>,
+    computed: &ComputedTrajectory<'_>,
     analysis: Analysis,
 ) -> (Vec<Figure>, Option<String>) {
-    let context = FigureContext::new(scene, results, trajectory, analysis);
-    let mut figures = vec![context.mechanism(last_drawn(results, trajectory.period))];
+    let context = FigureContext::new(scene, computed, analysis);
+    let mut figures = vec![context.mechanism(last_drawn(computed))];
     figures.extend(context.angles());
     figures.extend(context.paths());
     figures.extend(context.lengths());
@@ -64,20 +63,17 @@ pub(crate) fn trajectory_figures(
     figures.extend(context.power());
     figures.extend(context.energies());
     figures.extend(context.phase_portraits());
-    let links = results.sectioned_links.iter();
+    let links = context.results.sectioned_links.iter();
     figures.extend(links.filter_map(|link| context.internal_forces(link)));
     (figures, note)
 }
 
 /// The animation of the mechanism, with the requested paths.
-pub(crate) fn animation(
-    scene: &Scene,
-    results: &TrajectoryResults,
-    trajectory: &Trajectory<'_>,
-) -> Animation {
-    let context = FigureContext::new(scene, results, trajectory, Analysis::Kinematics);
+pub(crate) fn animation(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Animation {
+    let context = FigureContext::new(scene, computed, Analysis::Kinematics);
+    let results = context.results;
     let drawing = MechanismDrawing::new(scene, &results.body_poses).with_visible(&results.modelled);
-    let last = last_drawn(results, trajectory.period);
+    let last = last_drawn(computed);
     let count = MAX_FRAMES.min(last + 1);
     // Over a whole period the last position equals the first.
     let is_closed = is_closed(&results.body_poses[..=last]);
@@ -95,18 +91,19 @@ pub(crate) fn animation(
         frames: (0..count).map(frame).collect(),
         delay_ms: DELAY_MS,
         width_px: WIDTH_PX,
-        provenance: trajectory.method_text.clone(),
+        provenance: context.method_text,
     }
 }
 
 /// The last position that is drawn: the end of the trajectory, or of the first period of the only actuator.
-fn last_drawn(results: &TrajectoryResults, period: Option<f64>) -> usize {
+fn last_drawn(computed: &ComputedTrajectory<'_>) -> usize {
+    let results = &computed.results;
     let end_of_period = || {
         let k = results.column_index(Quantity::ActuatorCoordinate(0, 0))?;
         let rows = results.rows.iter();
         let mut rotated = rows.map(|row| (row[k] - results.rows[0][k]).abs());
         // Up to rounding.
-        let full = period? * (1.0 - 1e-9);
+        let full = computed.trajectory.period? * (1.0 - 1e-9);
         rotated.position(|q| q >= full)
     };
     end_of_period().unwrap_or(results.body_poses.len().saturating_sub(1))
@@ -125,12 +122,8 @@ fn is_closed(body_poses: &[Vec<BodyPose>]) -> bool {
 }
 
 impl<'a> FigureContext<'a> {
-    fn new(
-        scene: &'a Scene,
-        results: &'a TrajectoryResults,
-        trajectory: &Trajectory<'_>,
-        analysis: Analysis,
-    ) -> Self {
+    fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'_>, analysis: Analysis) -> Self {
+        let (trajectory, results) = (&computed.trajectory, &computed.results);
         let abscissa = results.abscissa(trajectory);
         let values = results.rows.iter().map(|row| row[abscissa]);
         let (x, abscissa_values) = match trajectory.swept_actuator() {
@@ -153,7 +146,7 @@ impl<'a> FigureContext<'a> {
             method_text: trajectory.method_text.clone(),
             x,
             abscissa_values,
-            limits: [start, end || results.early_stop.is_some()],
+            limits: [start, end || computed.early_stop.is_some()],
         }
     }
 
