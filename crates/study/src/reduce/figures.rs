@@ -11,7 +11,7 @@ use crate::output::{
     add_note, chart, coordinate_label, figure, inner_range, range_caption, reaction_figure_count,
     reduced_provenance, symbol,
 };
-use crate::reduce::compute::{ReducedCurves, UnitLoadCurves, units};
+use crate::reduce::compute::{ReducedCurves, UnitLoadCurves};
 use dwell_kinetostatics::Coefficients;
 use dwell_report::{Axis, Figure, Panel, Series};
 
@@ -139,7 +139,7 @@ pub(crate) fn unit_loads(
         Series::line(name, points.collect())
     };
     let mut panels = Vec::new();
-    let unit_of = |l: usize| units(curves.loads[l].kind)[0];
+    let unit_of = |l: usize| curves.unit(l);
     let mut unit_names: Vec<&str> = (0..curves.loads.len()).map(unit_of).collect();
     unit_names.sort_unstable();
     unit_names.dedup();

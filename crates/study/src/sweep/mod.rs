@@ -11,7 +11,8 @@ mod output;
 mod spread;
 #[cfg(feature = "output")]
 mod store;
-#[cfg(all(test, feature = "output"))]
+#[cfg(test)]
+#[cfg(feature = "output")]
 mod tests;
 
 pub use compute::{Shard, compute_sweep};

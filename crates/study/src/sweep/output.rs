@@ -12,7 +12,7 @@ use crate::output::Outcome;
 use crate::progress::{Progress, Step};
 use crate::sweep::compute::{Axis, Design, RequestedQuantities, Shard, VariationKind};
 use crate::sweep::store::{Row, SCENE_TEXT, SHARD, Store, StudyIdentity};
-use dwell_report::TableFormat;
+use dwell_report::{Column, TableFormat};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -61,9 +61,11 @@ impl<'a> PreparedSweep<'a> {
     fn new(scene: &'a Scene, sweep: &ParameterSweep<'_>) -> Result<Self, StudyError> {
         let design = Design::new(scene, sweep.vary, sweep.samples, sweep.seed)?;
         let requested = RequestedQuantities::new(scene, sweep.requests)?;
-        let inputs: Vec<String> = design.axes.iter().map(Axis::heading).collect();
-        let results: Vec<String> = requested.quantities.iter().map(|q| q.heading()).collect();
-        let columns = inputs.len() + results.len();
+        let headings = |columns: &[Column]| columns.iter().map(heading).collect::<Vec<String>>();
+        let columns = requested.columns(&design);
+        let (inputs, results) = columns.split_at(design.axes.len());
+        let (inputs, results) = (headings(inputs), headings(results));
+        let columns = columns.len();
         let refuse = |message: String| Err(SweepError::Design(message).into());
         if columns > MAX_COLUMNS {
             let fault = "exceed what a file can hold: select results with --result";
@@ -230,6 +232,14 @@ fn shard_files(scene: &Scene, folder: &Path) -> Vec<(PathBuf, String)> {
     let mut files: Vec<(PathBuf, String)> = files.collect();
     files.sort();
     files
+}
+
+/// `name [unit]`.
+fn heading(column: &Column) -> String {
+    match column.unit.as_str() {
+        "" => column.name.clone(),
+        unit => format!("{} [{unit}]", column.name),
+    }
 }
 
 /// An axis with all digits, as the store records it.

@@ -5,7 +5,7 @@ use crate::explain::StudyError;
 use crate::output::{Outcome, signed_gif, signed_png};
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, POSITIONS_PER_STEP, compute_trajectory, selected_columns,
+    Analysis, ComputedTrajectory, compute_trajectory, selected_columns,
 };
 use dwell_report::TableExport as _;
 use dwell_report::{Figure, Files, ReportError, TableFormat};
@@ -63,8 +63,7 @@ pub(crate) fn report(
         files.add(file("-envelope"), link.envelope_table().csv()?);
     }
     let (figures, left_out) = figures::trajectory_figures(scene, computed, analysis);
-    let steps = trajectory.points.div_ceil(POSITIONS_PER_STEP);
-    let total = steps + figures.len() + 1;
+    let total = trajectory.progress_steps() + figures.len() + 1;
     let file = |figure: &Figure| name(&format!("-{}.png", figure.name));
     let drawn = figures.par_iter().map(|figure| {
         let bytes = signed_png(scene, figure)?;

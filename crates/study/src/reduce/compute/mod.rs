@@ -6,4 +6,4 @@ mod unit_load_curves;
 
 pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
 pub use table::{TableRequest, Tabulation, tabulate};
-pub(crate) use unit_load_curves::{UnitLoadCurves, units};
+pub use unit_load_curves::UnitLoadCurves;

@@ -22,7 +22,7 @@ pub struct UnitLoadCurves {
 }
 
 /// Unit of w and of c (of a force and of a moment) for a load.
-pub(crate) fn units(kind: LoadKind) -> [&'static str; 3] {
+fn units(kind: LoadKind) -> [&'static str; 3] {
     match kind {
         LoadKind::Gravity { .. } => ["kg m", "kg", "kg m"],
         LoadKind::Spring { .. } => ["m2", "m", "m2"],
@@ -37,6 +37,11 @@ pub(crate) fn units(kind: LoadKind) -> [&'static str; 3] {
 }
 
 impl UnitLoadCurves {
+    /// The unit of w of a load.
+    pub fn unit(&self, load: usize) -> &'static str {
+        units(self.loads[load].kind)[0]
+    }
+
     /// The unit-load response at the coordinates `q` (rad); `None` without loads.
     pub(crate) fn new(prepared: &PreparedScene<'_>, q: &[f64]) -> Result<Option<Self>, StudyError> {
         let scene = prepared.scene;

@@ -111,19 +111,6 @@ impl Axis {
             }
         }
     }
-
-    /// Its heading in tables.
-    pub(crate) fn heading(&self) -> String {
-        heading(&self.path, &self.unit)
-    }
-}
-
-/// `name [unit]`.
-pub(crate) fn heading(name: &str, unit: &str) -> String {
-    match unit {
-        "" => name.to_owned(),
-        unit => format!("{name} [{unit}]"),
-    }
 }
 
 type Number<'a> = &'a dyn Fn(&str) -> Result<f64, SweepError>;

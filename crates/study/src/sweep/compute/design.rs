@@ -39,26 +39,26 @@ impl Design {
                 return design(&format!("`{}` is varied twice", axis.path));
             }
         }
-        let random = axes.iter().any(Axis::is_random);
-        let samples = match (random, samples) {
+        let mut found = Self {
+            axes,
+            samples: samples.unwrap_or(1),
+            seed,
+            points: 0,
+        };
+        match (found.is_random(), samples) {
             (true, None) => return design("random axes need a number of samples: give --samples"),
             (true, Some(0)) => return design("--samples must be at least 1"),
             (false, Some(_)) => return design("--samples needs a random axis"),
-            (_, samples) => samples.unwrap_or(1),
-        };
-        let mut counts = axes.iter().map(Axis::count);
-        let points = counts.try_fold(samples, u64::checked_mul);
-        match points {
-            Some(points) if points <= MAX_POINTS => Ok(Self {
-                axes,
-                samples,
-                seed,
-                points,
-            }),
-            _ => design(&format!(
-                "more than {MAX_POINTS} points: use fewer values or samples, or several studies"
-            )),
+            _ => {}
         }
+        let mut counts = found.axes.iter().map(Axis::count);
+        let points = counts.try_fold(found.samples, u64::checked_mul);
+        let Some(points) = points.filter(|points| *points <= MAX_POINTS) else {
+            let fault = "use fewer values or samples, or several studies";
+            return design(&format!("more than {MAX_POINTS} points: {fault}"));
+        };
+        found.points = points;
+        Ok(found)
     }
 
     /// Whether an axis is random.

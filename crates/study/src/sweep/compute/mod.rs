@@ -6,9 +6,11 @@ mod point;
 mod random;
 mod table;
 
-pub(crate) use axis::{Axis, VariationKind, heading};
+pub(crate) use axis::Axis;
 pub(crate) use design::Design;
 pub use design::Shard;
-pub(crate) use point::{PointResult, RequestedQuantities, SweepQuantity};
+pub(crate) use point::{PointResult, RequestedQuantities};
 pub(crate) use random::{normal, uniform};
 pub use table::{ComputedSweep, compute_sweep};
+#[cfg(feature = "output")]
+pub(crate) use {axis::VariationKind, point::SweepQuantity};

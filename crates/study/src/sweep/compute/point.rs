@@ -7,7 +7,6 @@ use crate::former_names;
 use crate::models::{compile_model, initial_reduced_state, with_loads};
 use crate::number_format::{coordinate_unit, force_unit};
 use crate::ranges::extent;
-use crate::sweep::compute::heading;
 use crate::trajectory::compute::{Analysis, is_prefix_of, peak_forces, swept_range};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
@@ -44,10 +43,6 @@ pub(crate) struct SweepQuantity {
 }
 
 impl SweepQuantity {
-    pub(crate) fn heading(&self) -> String {
-        heading(&self.name, self.unit)
-    }
-
     /// Whether a request names it: its whole name, the part before one of its dots, or its former name.
     fn matches(&self, request: &str) -> bool {
         is_prefix_of(request, &self.name) || self.matches_former(request)

@@ -28,12 +28,13 @@ pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryFault, TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::peak_forces;
 pub(crate) use pruning::{prune_model, requested_bodies};
+pub(crate) use results::compute_along;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
-pub(crate) use results::{POSITIONS_PER_STEP, compute_along};
 pub(crate) use rounding_error::RoundingError;
 pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{check_variables, is_requested, selected_columns};
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, TrajectorySample, swept_range,
+    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample,
+    swept_range,
 };

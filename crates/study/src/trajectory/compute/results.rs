@@ -5,18 +5,15 @@ use crate::explain::StudyError;
 use crate::models::loaded_model;
 use crate::progress::{Progress, Step};
 use crate::trajectory::compute::{
-    Analysis, Column, EarlyStop, PositionEvaluator, Quantity, RoundingError, SectionedLink,
-    Trajectory, TrajectorySample, all_columns, check_variables, is_requested, prune_model,
-    selected_columns,
+    Analysis, Column, EarlyStop, POSITIONS_PER_STEP, PositionEvaluator, Quantity, RoundingError,
+    SectionedLink, Trajectory, TrajectorySample, all_columns, check_variables, is_requested,
+    prune_model, selected_columns,
 };
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::Plan;
 use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
-
-/// Positions per progress step.
-pub(crate) const POSITIONS_PER_STEP: usize = 500;
 
 /// What is evaluated at the positions of a trajectory.
 pub struct TrajectoryResults {
@@ -242,9 +239,8 @@ fn evaluate(
             rounding_error.add_position(k, model, t, at, &evaluator.inverse_dynamics);
         }
         if k.is_multiple_of(POSITIONS_PER_STEP) {
-            let steps = trajectory.points.div_ceil(POSITIONS_PER_STEP);
             progress(Step {
-                total: steps + 1,
+                total: trajectory.progress_steps() + 1,
                 done: "positions",
             });
         }

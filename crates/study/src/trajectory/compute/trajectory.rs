@@ -10,6 +10,8 @@ use dwell_kinetostatics::Model;
 use dwell_scene::{CoordinateSweep, MAX_ANGLE, PrescribedMotion, Scene, SceneLocation};
 use std::f64::consts::TAU;
 
+/// Positions per step of progress.
+pub(crate) const POSITIONS_PER_STEP: usize = 500;
 /// Number of positions if neither the scene nor the caller gives one.
 const DEFAULT_POINTS: usize = 361;
 /// Fraction of a range left out at a limit position, where velocities grow without bound.
@@ -204,6 +206,11 @@ impl<'a> Trajectory<'a> {
             ends_at_limit_position: [false; 2],
             period: plan.range().period(),
         }
+    }
+
+    /// The number of steps in which progress is reported.
+    pub(crate) fn progress_steps(&self) -> usize {
+        self.points.div_ceil(POSITIONS_PER_STEP)
     }
 
     fn free_motion(&self) -> Option<&FreeTrajectory> {
