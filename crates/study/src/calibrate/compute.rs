@@ -71,22 +71,14 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
     }
     let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
     let search = BracketSearch::outwards(current, current_period, period, &period_with);
-    let Some((a, b)) = search.bracket else {
-        let what = format!("no value of `{path}` gives the period {} s", number(period));
-        let [from, to] = search.values.map(|v| digits(v, 3));
-        let periods = match search.periods.map(number) {
-            [shortest, longest] if shortest == longest => format!("the period stays {shortest} s"),
-            [shortest, longest] => format!("it gives periods from {shortest} to {longest} s"),
-        };
-        let help = match search.left_range {
-            true => "beyond these values the motion has no period",
-            false => "calibrate another value, or require a period within this interval",
-        };
-        return Err(refuse(
-            format!("{what}: from {from} to {to} {unit} {periods}"),
+    let (a, b) = search.bracket.ok_or_else(|| {
+        let (found, help) = search.describe(&unit);
+        let required = number(period);
+        refuse(
+            format!("no value of `{path}` gives the period {required} s: {found}"),
             help,
-        ));
-    };
+        )
+    })?;
     let residual = |value: f64| -> Result<f64, StudyError> { Ok(period_with(value)? - period) };
     let value = root::find(residual, a, b)?.ok_or_else(|| {
         let [period, a, b] = [period, a, b].map(number);
@@ -113,6 +105,20 @@ struct BracketSearch {
 }
 
 impl BracketSearch {
+    /// The values tried and their periods, and what to try instead.
+    fn describe(&self, unit: &str) -> (String, &'static str) {
+        let [from, to] = self.values.map(|v| digits(v, 3));
+        let periods = match self.periods.map(number) {
+            [shortest, longest] if shortest == longest => format!("the period stays {shortest} s"),
+            [shortest, longest] => format!("it gives periods from {shortest} to {longest} s"),
+        };
+        let help = match self.left_range {
+            true => "beyond these values the motion has no period",
+            false => "calibrate another value, or require a period within this interval",
+        };
+        (format!("from {from} to {to} {unit} {periods}"), help)
+    }
+
     /// Searches outwards from a value in both directions, squaring the factor each time. Before a value
     /// without a period it bisects, so that the values near that limit are tried as well.
     fn outwards(

@@ -31,7 +31,8 @@ pub fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
     }
 }
 
-/// Explains a mechanism whose structure is sound but which cannot be assembled.
+/// Explains a mechanism whose structure is sound but which cannot be assembled. One arm for each error, so longer than
+/// a screen.
 fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
     let mechanism = &scene.mechanism;
     let with_start = |joints: &[JointId], text: &str| {

@@ -11,7 +11,7 @@ pub(crate) fn quoted_coordinate(scene: &Scene) -> String {
     first.map_or_else(|| "the coordinate".to_owned(), |a| format!("`{}`", a.name))
 }
 
-/// Explains a position that cannot be computed.
+/// Explains a position that cannot be computed. One arm for each error, so longer than a screen.
 pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> StudyError {
     const RANGE_ENDS: &str = "this is outside the range; `dwell check` shows the range";
     let phi = quoted_coordinate(scene);

@@ -56,56 +56,62 @@ impl FreeMotionProblem<'_> {
         let explicit = coarse_run(Method::Dop853)?;
         let (methods, expected_evaluations, reason) =
             self.rank_methods(&explicit, || coarse_run(Method::Bdf), accuracy)?;
-        let untabled = |method| Candidate {
-            method,
-            visited: None,
-        };
-        let mut candidates = methods.map(untabled).to_vec();
+        let mut candidates: Vec<Candidate> = methods.map(|method| (method, None)).to_vec();
         if expected_evaluations > TABLE_BREAK_EVEN && self.stays_on_branch(&explicit) {
-            let visited = Some(visited_range(&explicit));
-            let method = methods[0];
-            candidates.insert(0, Candidate { method, visited });
+            candidates.insert(0, (methods[0], Some(visited_range(&explicit))));
         }
-        // If the first method cannot reach the accuracy, the next may.
-        let mut best: Option<(Refinement, Candidate)> = None;
-        let mut last = (candidates[0] == untabled(Method::Dop853) && reached_end(&explicit))
-            .then_some((COARSE_TOLERANCE, explicit));
-        for candidate in candidates {
-            let solve = |tolerance: f64| {
-                let options = Options {
-                    sample_interval: Some(sample_interval),
-                    ..Options::new(candidate.method, tolerance)
-                };
-                match candidate.visited {
-                    Some(visited) => self.solve_on_table(visited, duration, &options),
-                    None => self.solve(scene, duration, &options).map(Some),
-                }
+        let is_comparable = candidates[0] == (Method::Dop853, None) && reached_end(&explicit);
+        let first = is_comparable.then_some((COARSE_TOLERANCE, explicit));
+        let solve = |(method, visited): Candidate, tolerance: f64| {
+            let options = Options {
+                sample_interval: Some(sample_interval),
+                ..Options::new(method, tolerance)
             };
-            let refined = self.refine(accuracy, candidate.method, last.take(), &solve)?;
+            match visited {
+                Some(visited) => self.solve_on_table(visited, duration, &options),
+                None => self.solve(scene, duration, &options).map(Some),
+            }
+        };
+        let best = self.best_of(&candidates, accuracy, first, &solve)?;
+        let ((method, visited), found) =
+            best.ok_or_else(|| self.explain(&DynamicsError::DurationTooShort))?;
+        let suffix = visited.map_or("", |_| " on a table");
+        let tolerance = two_digits(found.tolerance);
+        let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
+        let how = format!("{method_text}, {reason}; {} runs", found.runs);
+        let (motion, difference) = (found.motion, &found.difference);
+        Ok(ComputedMotion::to_accuracy(
+            motion,
+            method_text,
+            accuracy,
+            &how,
+            difference,
+        ))
+    }
+
+    /// The first candidate that reaches the accuracy, or else the one that comes nearest to it.
+    fn best_of(
+        &self,
+        candidates: &[Candidate],
+        accuracy: f64,
+        mut last: Option<(f64, SegmentedMotion)>,
+        solve: &dyn Fn(Candidate, f64) -> Result<Option<SegmentedMotion>, StudyError>,
+    ) -> Result<Option<(Candidate, Refinement)>, StudyError> {
+        let mut best: Option<(Candidate, Refinement)> = None;
+        for &candidate in candidates {
+            let by_candidate = |tolerance| solve(candidate, tolerance);
+            let refined = self.refine(accuracy, candidate.0, last.take(), &by_candidate)?;
             let Some(refinement) = refined else { continue };
             let largest = refinement.difference.largest();
-            let is_better = |(best, _): &(Refinement, _)| largest < best.difference.largest();
+            let is_better = |(_, best): &(_, Refinement)| largest < best.difference.largest();
             if best.as_ref().is_none_or(is_better) {
-                best = Some((refinement, candidate));
+                best = Some((candidate, refinement));
             }
             if largest <= accuracy {
                 break;
             }
         }
-        let (refinement, candidate) =
-            best.ok_or_else(|| self.explain(&DynamicsError::DurationTooShort))?;
-        let suffix = candidate.visited.map_or("", |_| " on a table");
-        let tolerance = two_digits(refinement.tolerance);
-        let method_text = format!("{}{suffix}, tolerance {tolerance}", candidate.method.name());
-        let runs = format!("{method_text}, {reason}; {} runs", refinement.runs);
-        let (motion, difference) = (refinement.motion, &refinement.difference);
-        Ok(ComputedMotion::to_accuracy(
-            motion,
-            method_text,
-            accuracy,
-            &runs,
-            difference,
-        ))
+        Ok(best)
     }
 
     /// The methods to try, the cheaper first; the expected number of evaluations; and the reason.

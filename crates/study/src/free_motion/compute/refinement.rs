@@ -27,12 +27,8 @@ const TABLE_MARGIN: f64 = 0.05;
 /// Maximum number of runs.
 const MAX_RUNS: usize = 6;
 
-/// A way to compute a motion: by a method, and on a table if the visited interval is given.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Candidate {
-    pub(super) method: Method,
-    pub(super) visited: Option<[f64; 2]>,
-}
+/// How a motion may be computed: by a method, and on a table if the interval that it visits is given.
+pub(super) type Candidate = (Method, Option<[f64; 2]>);
 
 /// The result of a refinement.
 pub(super) struct Refinement {

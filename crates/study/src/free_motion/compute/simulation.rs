@@ -4,9 +4,7 @@ use crate::explain::{StudyError, missing_section_label, scene_error};
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::progress::Progress;
-use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, FreeTrajectory, Trajectory, compute_along,
-};
+use crate::trajectory::compute::{Analysis, ComputedTrajectory, compute_along};
 use dwell_dynamics::Options;
 use dwell_findings::Table;
 use dwell_scene::{Scene, SceneLocation};
@@ -101,26 +99,11 @@ fn compute_with(
     if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
-    let charts = motion.charts.iter();
-    let plan = problem.output_model.plan();
-    let mut trajectory = Trajectory::of_free_motion(
-        plan,
-        FreeTrajectory {
-            samples: problem.samples(motion).map_err(|e| problem.explain(&e))?,
-            extra_columns: problem.extra_columns(),
-            prescribed: spec.laws.iter().map(Option::is_some).collect(),
-            charts: charts.map(|c| c.output_model.clone()).collect(),
-        },
-    );
-    trajectory.method_text.clone_from(&computed.method_text);
-    let output_model = &problem.output_model;
-    let computed_trajectory = compute_along(
-        &loaded_scene,
-        output_model,
-        trajectory,
-        Analysis::FreeMotion,
-        progress,
-    )?;
+    let trajectory = problem
+        .trajectory(&computed)
+        .map_err(|e| problem.explain(&e))?;
+    let (model, analysis) = (&problem.output_model, Analysis::FreeMotion);
+    let along = compute_along(&loaded_scene, model, trajectory, analysis, progress)?;
     let occurred = motion.occurrences().next().is_some();
     let events = occurred.then(|| problem.event_table(motion));
     let mut summary = problem.summary(motion, &computed.method_text, duration);
@@ -139,7 +122,7 @@ fn compute_with(
         _ => None,
     };
     Ok(FreeMotion {
-        computed: computed_trajectory,
+        computed: along,
         events,
         summary,
         early_stop,

@@ -1,14 +1,33 @@
 //! The samples and the events of a motion as tables.
 
-use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
+use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
 use crate::models::{drive_states, source_name};
 use crate::number_format::coordinate_unit;
-use crate::trajectory::compute::{BALANCE, ExtraColumn, KINETIC, POTENTIAL, TrajectorySample};
+use crate::trajectory::compute::{
+    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, Trajectory, TrajectorySample,
+};
 use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState};
 use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
 impl FreeMotionProblem<'_> {
+    /// A computed motion as a trajectory.
+    pub(crate) fn trajectory(
+        &self,
+        computed: &ComputedMotion,
+    ) -> Result<Trajectory<'static>, DynamicsError> {
+        let charts = computed.motion.charts.iter();
+        let motion = FreeTrajectory {
+            samples: self.samples(&computed.motion)?,
+            extra_columns: self.extra_columns(),
+            prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
+            charts: charts.map(|c| c.output_model.clone()).collect(),
+        };
+        let mut trajectory = Trajectory::of_free_motion(self.output_model.plan(), motion);
+        trajectory.method_text.clone_from(&computed.method_text);
+        Ok(trajectory)
+    }
+
     /// Every sample with its accelerations, drive magnitudes and energies. Within the window of a change
     /// point's fit there are no reactions, and no row.
     pub(crate) fn samples(
@@ -75,7 +94,7 @@ impl FreeMotionProblem<'_> {
     }
 
     /// The columns of [`TrajectorySample::extra_values`].
-    pub(crate) fn extra_columns(&self) -> Vec<ExtraColumn> {
+    fn extra_columns(&self) -> Vec<ExtraColumn> {
         let column = |(name, unit, meaning)| ExtraColumn {
             name,
             unit,

@@ -13,20 +13,73 @@ use dwell_kinetostatics::{
 };
 use dwell_scene::Scene;
 
-/// Evaluates one position after another.
-pub(crate) struct PositionEvaluator<'a> {
-    scene: &'a Scene,
+/// Evaluates the forces at one position after another.
+pub(crate) struct ForceEvaluator<'a> {
     pub(crate) model: &'a Model,
-    pub(crate) body_forces: FreeBodyForces,
     analysis: Analysis,
-    /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
-    whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
     pub(crate) workspace: Workspace<f64>,
-    pub(crate) inverse_dynamics: InverseDynamics<f64>,
-    pub(crate) wrenches: Vec<AppliedWrench>,
+    pub(crate) results: InverseDynamics<f64>,
     motion_buffer: Motion<f64>,
     /// The bodies at the velocities of the trajectory, whatever the analysis.
     body_states: BodyStates,
+    monitor: TrajectoryMonitor<'a>,
+}
+
+impl<'a> ForceEvaluator<'a> {
+    pub(crate) fn new(scene: &'a Scene, model: &'a Model, analysis: Analysis) -> Self {
+        Self {
+            model,
+            analysis,
+            workspace: model.workspace(),
+            results: model.result_buffer(),
+            motion_buffer: model.plan().motion(),
+            body_states: BodyStates::new(model.plan()),
+            monitor: TrajectoryMonitor::new(scene),
+        }
+    }
+
+    /// Evaluates the position of a sample, with the loads at time `t`.
+    pub(crate) fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
+        let (model, workspace, results) = (self.model, &mut self.workspace, &mut self.results);
+        let TrajectorySample {
+            q, q_dot, q_ddot, ..
+        } = sample;
+        match self.analysis {
+            Analysis::Kinematics => {
+                model.plan().positions(q, &mut workspace.pose)?;
+                return Ok(());
+            }
+            Analysis::Statics => model.statics(t, q, workspace, results)?,
+            Analysis::Kinetostatics | Analysis::FreeMotion => {
+                for &(load, magnitude) in &sample.drive_magnitudes {
+                    workspace.set_magnitude(load, magnitude);
+                }
+                model.kinetostatics(t, q, q_dot, q_ddot, workspace, results)?;
+            }
+        }
+        let fault = self.monitor.off_table(t, workspace.states());
+        fault.map_or(Ok(()), |fault| Err(StopCause::Fault(fault)))
+    }
+
+    /// Computes the states of the bodies at the velocities of the sample; fails where a coupling jumps.
+    pub(crate) fn fill_states(&mut self, sample: &TrajectorySample) -> Result<(), StopCause> {
+        let (plan, pose) = (self.model.plan(), &self.workspace.pose);
+        plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
+        plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
+        self.body_states.fill(plan, pose, &self.motion_buffer);
+        let fault = self.monitor.discontinuity(&self.body_states);
+        fault.map_or(Ok(()), |fault| Err(StopCause::Fault(fault)))
+    }
+}
+
+/// Evaluates all quantities at one position after another.
+pub(crate) struct PositionEvaluator<'a> {
+    scene: &'a Scene,
+    pub(crate) forces: ForceEvaluator<'a>,
+    pub(crate) body_forces: FreeBodyForces,
+    /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
+    whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
+    pub(crate) wrenches: Vec<AppliedWrench>,
     /// The bodies at q̇ = 1 of a single actuator.
     unit_speed_states: BodyStates,
     /// Size of the mechanism, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
@@ -37,7 +90,6 @@ pub(crate) struct PositionEvaluator<'a> {
     joint_forces: Vec<Vec2>,
     shaking_wrench: Wrench,
     pub(crate) power_balance: PowerBalance,
-    monitor: TrajectoryMonitor<'a>,
 }
 
 impl<'a> PositionEvaluator<'a> {
@@ -52,65 +104,36 @@ impl<'a> PositionEvaluator<'a> {
         Ok(Self {
             body_forces: FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?,
             scene,
-            model,
-            analysis,
+            forces: ForceEvaluator::new(scene, model, analysis),
             whole_mechanism: checks_whole.then(|| (whole_plan, whole_plan.pose())),
             size: scene.mechanism.size(),
             speed_scales: [SpeedScale::default(); 2],
-            workspace: model.workspace(),
-            inverse_dynamics: model.result_buffer(),
             wrenches: Vec::new(),
-            motion_buffer: model.plan().motion(),
-            body_states: BodyStates::new(model.plan()),
             unit_speed_states: BodyStates::new(model.plan()),
             load_powers: vec![0.0; scene.loads.len()],
             joint_forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
             shaking_wrench: Wrench::default(),
             power_balance: PowerBalance::default(),
-            monitor: TrajectoryMonitor::new(scene),
         })
     }
 
     /// Evaluates the position of a sample, with the loads at time `t`.
     pub(crate) fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
-        let plan = self.model.plan();
-        let TrajectorySample {
-            q, q_dot, q_ddot, ..
-        } = sample;
         if let Some((whole_plan, pose)) = &mut self.whole_mechanism {
-            whole_plan.positions(q, pose)?;
+            whole_plan.positions(&sample.q, pose)?;
         }
-        let (workspace, results) = (&mut self.workspace, &mut self.inverse_dynamics);
-        match self.analysis {
-            Analysis::Kinematics => plan.positions(q, &mut workspace.pose)?,
-            Analysis::Statics => self.model.statics(t, q, workspace, results)?,
-            Analysis::Kinetostatics | Analysis::FreeMotion => {
-                for &(load, magnitude) in &sample.drive_magnitudes {
-                    workspace.set_magnitude(load, magnitude);
-                }
-                self.model
-                    .kinetostatics(t, q, q_dot, q_ddot, workspace, results)?;
-            }
-        }
-        if self.analysis != Analysis::Kinematics
-            && let Some(fault) = self.monitor.off_table(t, workspace.states())
-        {
-            return Err(StopCause::Fault(fault));
-        }
-        let (pose, motion) = (&workspace.pose, &mut self.motion_buffer);
+        let forces = &mut self.forces;
+        forces.evaluate(sample, t)?;
+        let plan = forces.model.plan();
         if plan.actuators() == 1 {
+            let (pose, motion) = (&forces.workspace.pose, &mut forces.motion_buffer);
             plan.velocities(pose, &[1.0], motion);
             self.unit_speed_states.fill(plan, pose, motion);
         }
-        plan.velocities(pose, q_dot, motion);
-        plan.accelerations(pose, q_ddot, motion);
-        self.body_states.fill(plan, pose, motion);
-        self.speed_scales = [&self.unit_speed_states, &self.body_states]
+        forces.fill_states(sample)?;
+        self.speed_scales = [&self.unit_speed_states, &forces.body_states]
             .map(|states| SpeedScale::new(states, self.size));
-        if let Some(fault) = self.monitor.discontinuity(&self.body_states) {
-            return Err(StopCause::Fault(fault));
-        }
-        if self.analysis != Analysis::Kinematics {
+        if forces.analysis != Analysis::Kinematics {
             self.compute_forces();
         }
         Ok(())
@@ -118,7 +141,8 @@ impl<'a> PositionEvaluator<'a> {
 
     /// Computes joint forces, shaking force and power balance.
     fn compute_forces(&mut self) {
-        let (model, workspace, results) = (self.model, &self.workspace, &self.inverse_dynamics);
+        let of = &self.forces;
+        let (model, workspace, results) = (of.model, &of.workspace, &of.results);
         let wrenches = &mut self.wrenches;
         self.body_forces
             .wrenches(model, workspace, results, wrenches);
@@ -141,7 +165,8 @@ impl<'a> PositionEvaluator<'a> {
     }
 
     pub(crate) fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
-        let (states, unit_speed) = (&self.body_states, &self.unit_speed_states);
+        let (forces, states) = (&self.forces.results, &self.forces.body_states);
+        let unit_speed = &self.unit_speed_states;
         let component = |v: Vec2, axis: usize| if axis == 0 { v.x } else { v.y };
         match quantity {
             Quantity::Time => sample.t,
@@ -149,7 +174,7 @@ impl<'a> PositionEvaluator<'a> {
                 Some(actuator_coordinate) => actuator_coordinate[order],
                 None => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
             },
-            Quantity::ActuatorForce(i) => self.inverse_dynamics.tau[i],
+            Quantity::ActuatorForce(i) => forces.tau[i],
             Quantity::Measured(measured, order) => states.coordinate(measured)[order],
             // As couplings and loads count revolutions, so that columns of one angle agree.
             Quantity::BodyAngle(body, 0) => {
@@ -165,7 +190,9 @@ impl<'a> PositionEvaluator<'a> {
                 let [at_unit_speed, scale] = &self.speed_scales;
                 let pole = match order {
                     // At rest of a single actuator the body still has its pole.
-                    1 if self.model.plan().actuators() == 1 => at_unit_speed.pole(unit_speed, body),
+                    1 if self.forces.model.plan().actuators() == 1 => {
+                        at_unit_speed.pole(unit_speed, body)
+                    }
                     1 => scale.pole(states, body),
                     _ => scale.acceleration_pole(states, body),
                 };
@@ -179,7 +206,7 @@ impl<'a> PositionEvaluator<'a> {
                 )
             }
             Quantity::TransmissionAngle(dyad) => dyad.angle(states),
-            Quantity::Reaction(k) => self.inverse_dynamics.reactions[k],
+            Quantity::Reaction(k) => forces.reactions[k],
             Quantity::BodyFrameForce(joint, body, axis) => {
                 let rotation = states.body(body).rotation;
                 component(self.joint_forces[joint.0].rotate_inverse(rotation), axis)
@@ -203,16 +230,17 @@ impl<'a> PositionEvaluator<'a> {
     pub(crate) fn angular_velocity(&self, angle: Quantity) -> f64 {
         match angle {
             Quantity::Measured(measured @ CoordinateFunction::Angle(_), _) => {
-                self.body_states.coordinate(measured)[1]
+                self.forces.body_states.coordinate(measured)[1]
             }
-            Quantity::BodyAngle(body, _) => self.body_states.body(body).angular_velocity,
+            Quantity::BodyAngle(body, _) => self.forces.body_states.body(body).angular_velocity,
             _ => 0.0,
         }
     }
 
     /// The force of a load along its direction or line, or its moment on its second body.
     fn load_force(&self, k: usize) -> f64 {
-        let states = self.workspace.states();
+        let workspace = &self.forces.workspace;
+        let states = workspace.states();
         let on = |body: BodyId| {
             let mut wrenches = self.wrenches.iter();
             wrenches.find(|w| w.source == ForceSource::Load(k) && w.body == body)
@@ -221,7 +249,7 @@ impl<'a> PositionEvaluator<'a> {
             LoadKind::Gravity { .. }
             | LoadKind::Force { .. }
             | LoadKind::Torque { .. }
-            | LoadKind::PointToPointForce { .. } => self.workspace.loads().magnitude[k],
+            | LoadKind::PointToPointForce { .. } => workspace.loads().magnitude[k],
             LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
                 let line = states.separation(bodies, points).direction;
                 let force_and_line = on(bodies[1]).zip(line);
@@ -239,10 +267,11 @@ impl<'a> PositionEvaluator<'a> {
     }
 
     pub(crate) fn body_poses(&self) -> Vec<BodyPose> {
+        let states = &self.forces.body_states;
         let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
         let body_pose = |b| {
-            let origin = self.body_states.point(b, Vec2::ZERO).position;
-            (origin, self.body_states.body(b).rotation)
+            let origin = states.point(b, Vec2::ZERO).position;
+            (origin, states.body(b).rotation)
         };
         bodies.map(body_pose).collect()
     }

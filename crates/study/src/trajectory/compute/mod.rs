@@ -23,7 +23,7 @@ pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
-pub(crate) use evaluator::PositionEvaluator;
+pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryFault, TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::peak_forces;

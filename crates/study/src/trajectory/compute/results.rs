@@ -36,6 +36,26 @@ pub struct TrajectoryResults {
 }
 
 impl TrajectoryResults {
+    fn new(scene: &Scene, model: &Model, columns: Vec<Column>, analysis: Analysis) -> Self {
+        let sections = match analysis {
+            Analysis::Kinematics => &[],
+            _ => scene.requests.sections.as_slice(),
+        };
+        let reactions = model.reactions().iter().enumerate();
+        let indeterminate = reactions.filter(|&(k, _)| !model.plan().is_determinate(k));
+        let names = indeterminate.map(|(_, r)| scene.mechanism.reaction_name(*r));
+        Self {
+            columns,
+            rows: Vec::new(),
+            body_poses: Vec::new(),
+            sectioned_links: sections.iter().map(SectionedLink::new).collect(),
+            power_residual: 0.0,
+            rounding_error: None,
+            indeterminate: names.collect(),
+            modelled: model.plan().placed_bodies(),
+        }
+    }
+
     /// Name, unit and meaning of every column of the analysis.
     pub fn columns(&self) -> impl Iterator<Item = (&str, &str, &str)> {
         let columns = self.columns.iter();
@@ -205,24 +225,7 @@ fn evaluate(
     let mut unwrapper = AngleUnwrapper {
         last: vec![None; columns.len()],
     };
-    let sections = match analysis {
-        Analysis::Kinematics => &[],
-        _ => scene.requests.sections.as_slice(),
-    };
-    let reactions = model.reactions().iter().enumerate();
-    let indeterminate = reactions.filter(|&(k, _)| !model.plan().is_determinate(k));
-    let mut results = TrajectoryResults {
-        columns,
-        rows: Vec::with_capacity(trajectory.points),
-        body_poses: Vec::with_capacity(trajectory.points),
-        sectioned_links: sections.iter().map(SectionedLink::new).collect(),
-        power_residual: 0.0,
-        rounding_error: None,
-        indeterminate: indeterminate
-            .map(|(_, r)| scene.mechanism.reaction_name(*r))
-            .collect(),
-        modelled: model.plan().placed_bodies(),
-    };
+    let mut results = TrajectoryResults::new(scene, model, columns, analysis);
     let mut rounding_error = matches!(analysis, Analysis::Statics | Analysis::Kinetostatics)
         .then(|| RoundingError::new(scene, model, trajectory.points));
     let early_stop = trajectory.follow(plan, |k, sample| {
@@ -236,7 +239,7 @@ fn evaluate(
                 Analysis::Statics => [sample.q.as_slice(), &rest, &rest],
                 _ => [&sample.q, &sample.q_dot, &sample.q_ddot].map(Vec::as_slice),
             };
-            rounding_error.add_position(k, model, t, at, &evaluator.inverse_dynamics);
+            rounding_error.add_position(k, model, t, at, &evaluator.forces.results);
         }
         if k.is_multiple_of(POSITIONS_PER_STEP) {
             progress(Step {

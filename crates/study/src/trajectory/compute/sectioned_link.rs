@@ -37,9 +37,9 @@ impl SectionedLink {
     /// Adds the internal forces at the `k`th position.
     pub(crate) fn add_position(&mut self, k: usize, at: &PositionEvaluator<'_>) {
         let Request { body, points, .. } = self.request;
-        let (workspace, wrenches) = (&at.workspace, &at.wrenches);
-        let forces = &at.body_forces;
-        let Some(forces) = forces.link_forces(at.model, body, points, workspace, wrenches) else {
+        let (model, workspace) = (at.forces.model, &at.forces.workspace);
+        let (forces, wrenches) = (&at.body_forces, &at.wrenches);
+        let Some(forces) = forces.link_forces(model, body, points, workspace, wrenches) else {
             return;
         };
         self.distribution = forces.distribution;
