@@ -94,10 +94,9 @@ fn describe_freedom(scene: &Scene, plan: &Plan) -> String {
             1 => "one constraint is redundant".to_owned(),
             n => format!("{n} constraints are redundant"),
         };
+        let (counted, by_rank) = (found.grubler_count(), found.degrees_of_freedom());
         text = format!(
-            "  {} degrees of freedom by counting (Grübler), {} by rank: {redundant}, consistently\n",
-            found.grubler_count(),
-            found.degrees_of_freedom(),
+            "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, consistently\n"
         );
     }
     let names = names.join(", ");
@@ -150,10 +149,7 @@ fn describe_limit(mechanism: &Mechanism, plan: &Plan, limit: RangeLimit) -> Stri
     };
     let bodies = match plan.group_methods().is_empty() {
         true => String::new(),
-        false => format!(
-            " of {}",
-            body_names(mechanism, &plan.group_bodies(limit.group))
-        ),
+        false => " of ".to_owned() + &body_names(mechanism, &plan.group_bodies(limit.group)),
     };
     let unit = coordinate_unit(plan.is_angle(0));
     format!("    {:.12} {unit}: {what}{bodies}\n", limit.q)

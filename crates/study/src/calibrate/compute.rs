@@ -64,20 +64,17 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
         return Ok(result(current));
     }
     if current == 0.0 {
-        return Err(refuse(
-            format!("`{path}` is zero, and the search multiplies the present value by factors"),
-            "give an approximate value in the scene first",
-        ));
+        let message = "is zero, and the search multiplies the present value by factors";
+        let help = "give an approximate value in the scene first";
+        return Err(refuse(format!("`{path}` {message}"), help));
     }
     let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
     let search = BracketSearch::outwards(current, current_period, period, &period_with);
     let (a, b) = search.bracket.ok_or_else(|| {
         let (found, help) = search.describe(&unit);
         let required = number(period);
-        refuse(
-            format!("no value of `{path}` gives the period {required} s: {found}"),
-            help,
-        )
+        let message = format!("no value of `{path}` gives the period {required} s: {found}");
+        refuse(message, help)
     })?;
     let residual = |value: f64| -> Result<f64, StudyError> { Ok(period_with(value)? - period) };
     let value = root::find(residual, a, b)?.ok_or_else(|| {

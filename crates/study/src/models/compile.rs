@@ -93,11 +93,6 @@ pub fn build_machine(
         None => CoordinateMode::Free,
     };
     let modes = spec.laws.iter().map(mode).collect();
-    Machine::new(
-        compile_model(scene, reactions)?,
-        &scene.loads,
-        modes,
-        &scene.drives,
-    )
-    .map_err(|e| explain_machine(scene, e))
+    let model = compile_model(scene, reactions)?;
+    Machine::new(model, &scene.loads, modes, &scene.drives).map_err(|e| explain_machine(scene, e))
 }

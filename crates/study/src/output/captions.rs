@@ -94,10 +94,8 @@ pub fn scene_caption(scene: &Scene, text: &str) -> String {
 
 /// The provenance of the reduced model.
 pub(crate) fn reduced_provenance(positions: usize) -> String {
-    format!(
-        "reduced model by unit runs, at {}",
-        count(positions, "position")
-    )
+    let positions = count(positions, "position");
+    format!("reduced model by unit runs, at {positions}")
 }
 
 /// A coordinate's name as a symbol, where it is the name of a Greek letter.

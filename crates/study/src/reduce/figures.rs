@@ -148,10 +148,8 @@ pub(crate) fn unit_loads(
         let of_unit: Vec<usize> = of_unit.collect();
         for members in of_unit.chunks(MAX_CURVES) {
             let curve = |&l: &usize| {
-                line(
-                    &curves.loads[l].name,
-                    &mut curves.rows.iter().map(|row| row[l][0]),
-                )
+                let mut values = curves.rows.iter().map(|row| row[l][0]);
+                line(&curves.loads[l].name, &mut values)
             };
             let title = "w: generalised force per unit of each load";
             let unit = if unit.is_empty() { "1" } else { unit };

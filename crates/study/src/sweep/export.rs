@@ -109,20 +109,15 @@ fn summary(
     counts: Counts,
 ) -> String {
     let design = &prepared.design;
-    let mut text = format!(
-        "{}: {}",
-        prepared.scene.title,
-        count_u64(design.points, "point")
-    );
+    let points = count_u64(design.points, "point");
+    let mut text = format!("{}: {points}", prepared.scene.title);
     if design.is_random() {
         let samples = count_u64(design.samples, "sample");
         text += &format!(", {samples} with seed {}", design.seed);
     }
     if let Some(shard) = sweep.shard {
-        text += &format!(
-            ", of which shard {shard} has {}",
-            rows.len() + counts.missing
-        );
+        let points = rows.len() + counts.missing;
+        text += &format!(", of which shard {shard} has {points}");
     }
     text += &format!("\n  {}: {}", path.display(), count(rows.len(), "row"));
     let parts = [
@@ -174,10 +169,9 @@ fn failures(rows: &[Row]) -> String {
     if failed.is_empty() {
         return String::new();
     }
+    let (failures, points) = (failed.len(), rows.len());
     let mut text = format!(
-        "  {} of {} could not be computed completely; their rows hold the message\n",
-        failed.len(),
-        rows.len()
+        "  {failures} of {points} could not be computed completely; their rows hold the message\n"
     );
     for (index, message) in failed.iter().take(MAX_LISTED) {
         text += &format!("    point {index}: {message}\n");

@@ -222,11 +222,10 @@ fn compare(connection: &Connection, study: &StudyIdentity) -> Result<(), StoreFa
         if *key != SCENE_TEXT && found != expected {
             return Err(StoreFault::Differs(match *key {
                 "scene_sha256" => "the scene has changed since".to_owned(),
-                key => format!(
-                    "its {key}: {}, not {}",
-                    shortened(found),
-                    shortened(expected)
-                ),
+                key => {
+                    let [found, expected] = [found, expected].map(shortened);
+                    format!("its {key}: {found}, not {expected}")
+                }
             }));
         }
     }

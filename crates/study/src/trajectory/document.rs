@@ -69,10 +69,8 @@ impl<'a> Document<'a> {
         {
             let [at_min, at_max] = [min, max].map(|(_, row)| self.abscissa_values[*row]);
             // Names of a scene hold neither commas nor quotes.
-            text += &format!(
-                "{name},{unit},{:?},{at_min:?},{:?},{at_max:?}\n",
-                min.0, max.0
-            );
+            let (min, max) = (min.0, max.0);
+            text += &format!("{name},{unit},{min:?},{at_min:?},{max:?},{at_max:?}\n");
         }
         text
     }
@@ -260,10 +258,8 @@ impl<'a> Document<'a> {
             rows: self.selected.iter().map(row).collect(),
         });
         let provenance = provenance_line(self.scene);
-        blocks.push(Block::Text(format!(
-            "{provenance} · {}",
-            self.trajectory.method_text
-        )));
+        let method = &self.trajectory.method_text;
+        blocks.push(Block::Text(format!("{provenance} · {method}")));
         let title = format!("{}: {}", self.scene.title, self.analysis.name());
         Page { title, blocks }.markdown()
     }

@@ -135,10 +135,8 @@ impl FreeMotionProblem<'_> {
         let implicit = implicit()?;
         let by_implicit = self.equivalent_evaluations(&implicit.statistics)
             * (BDF_ERROR_RATIO * refinement_ratio).powf(1.0 / 6.0);
-        let reason = format!(
-            "{:.0} % of the steps of a coarse run are stiff",
-            100.0 * stiff_fraction
-        );
+        let percent = 100.0 * stiff_fraction;
+        let reason = format!("{percent:.0} % of the steps of a coarse run are stiff");
         Ok(if reached_end(explicit) && by_explicit <= by_implicit {
             (smooth, by_explicit, reason)
         } else {

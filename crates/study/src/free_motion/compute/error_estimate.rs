@@ -68,10 +68,8 @@ impl FreeMotionProblem<'_> {
                 [first.coordinate(i), last.coordinate(i)]
             });
             let unknown = self.initial_speed_error(i) * (end - start).abs();
-            let error = error_of(
-                &|s| s.coordinate(i),
-                4.0 * f64::EPSILON * end.abs() + unknown,
-            );
+            let rounding = 4.0 * f64::EPSILON * end.abs() + unknown;
+            let error = error_of(&|s| s.coordinate(i), rounding);
             let unit = coordinate_unit(self.output_model.plan().is_angle(i));
             let name = &self.loaded_scene.mechanism.actuators[i].name;
             texts.push(format!(" {error:.1e} {unit} in {name},"));

@@ -52,10 +52,8 @@ pub fn tabulate(
         reactions: reactions.map(|(name, _)| name).collect(),
         loads: scene.loads.iter().map(|load| load.name.clone()).collect(),
     };
-    let rows = format!(
-        "  accuracy {:e}: all rows evaluated exactly",
-        request.accuracy
-    );
+    let accuracy = request.accuracy;
+    let rows = format!("  accuracy {accuracy:e}: all rows evaluated exactly");
     let table = match TabulatedModel::new(&exact, request.accuracy, extent) {
         Ok(table) => table,
         Err(error) => {

@@ -154,10 +154,8 @@ fn random(variation: &str, number: Number<'_>, refuse: Refuse<'_>) -> Parsed {
     };
     let parts: Vec<&str> = inner.split(',').collect();
     let [first, second] = parts.as_slice() else {
-        return Err(refuse(
-            format!("`{variation}` does not have two numbers"),
-            FORMS,
-        ));
+        let reason = format!("`{variation}` does not have two numbers");
+        return Err(refuse(reason, FORMS));
     };
     let (from, to) = (number(first)?, number(second)?);
     if name.trim() == "normal" {

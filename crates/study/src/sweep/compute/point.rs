@@ -139,10 +139,8 @@ impl RequestedQuantities {
             && let Some(start) = initial_reduced_state(scene)
         {
             let orbit = orbit(scene, start, &model);
-            set(
-                ResultKind::Orbit,
-                orbit.map(|orbit| vec![orbit.period, orbit.energy]),
-            );
+            let values = orbit.map(|orbit| vec![orbit.period, orbit.energy]);
+            set(ResultKind::Orbit, values);
         }
         if (includes(ResultKind::Reaction) || includes(ResultKind::ActuatorForce))
             && let Some(analysis) = peak_analysis(scene)

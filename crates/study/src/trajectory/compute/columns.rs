@@ -72,12 +72,8 @@ impl Columns<'_> {
     ) {
         for (order, suffix) in DERIVATIVE_SUFFIXES.into_iter().enumerate() {
             let meaning = if order == 0 { meaning } else { "" };
-            self.add(
-                format!("{name}{suffix}"),
-                units[order],
-                quantity(order),
-                meaning,
-            );
+            let name = format!("{name}{suffix}");
+            self.add(name, units[order], quantity(order), meaning);
         }
     }
 
@@ -172,12 +168,8 @@ impl Columns<'_> {
             for (point, at) in &scene.points[b] {
                 for (k, part) in ["x", "y", "vx", "vy", "ax", "ay"].into_iter().enumerate() {
                     let quantity = Quantity::PointCoordinate(id, *at, k);
-                    self.add(
-                        format!("{name}.{point}.{part}"),
-                        LENGTH[k / 2],
-                        quantity,
-                        "",
-                    );
+                    let name = format!("{name}.{point}.{part}");
+                    self.add(name, LENGTH[k / 2], quantity, "");
                 }
             }
         }
@@ -197,12 +189,8 @@ impl Columns<'_> {
              loads; empty where {name} does not rotate"
         );
         let quantity = Quantity::MechanicalAdvantage(body, None);
-        self.add(
-            format!("{name}.mechanical_advantage"),
-            of_rotation,
-            quantity,
-            meaning,
-        );
+        let of_body = format!("{name}.mechanical_advantage");
+        self.add(of_body, of_rotation, quantity, meaning);
         for (point, at) in &scene.points[body.0] {
             let meaning = format!(
                 "mechanical advantage dq/ds: output force at {point} along its path per unit of {force}, statically \
@@ -238,12 +226,8 @@ impl Columns<'_> {
         let mechanism = &self.scene.mechanism;
         for (joint, dyad) in dyads(mechanism, self.plan) {
             let name = format!("{}.transmission_angle", mechanism.joints[joint.0].name);
-            self.add(
-                name,
-                "rad",
-                Quantity::TransmissionAngle(dyad),
-                dyad.meaning(),
-            );
+            let quantity = Quantity::TransmissionAngle(dyad);
+            self.add(name, "rad", quantity, dyad.meaning());
         }
     }
 
@@ -278,12 +262,8 @@ impl Columns<'_> {
                         let meaning =
                             format!("force of {one} on {two} along the {letter} axis of {of}");
                         let quantity = Quantity::BodyFrameForce(id, body, axis);
-                        self.add(
-                            format!("{}.{letter}@{of}", joint.name),
-                            "N",
-                            quantity,
-                            meaning,
-                        );
+                        let name = format!("{}.{letter}@{of}", joint.name);
+                        self.add(name, "N", quantity, meaning);
                     }
                 }
             }
@@ -332,12 +312,8 @@ impl Columns<'_> {
                 self.add(name, unit, Quantity::LoadForce(k), meaning);
             }
             let meaning = "power of the load on all bodies";
-            self.add(
-                format!("{}.power", load.name),
-                "W",
-                Quantity::LoadPower(k),
-                meaning,
-            );
+            let name = format!("{}.power", load.name);
+            self.add(name, "W", Quantity::LoadPower(k), meaning);
         }
     }
 
@@ -355,30 +331,28 @@ impl Columns<'_> {
         for (k, (name, unit)) in components.into_iter().enumerate() {
             self.add(name, unit, Quantity::ShakingForce(k), &*meaning);
         }
-        let mut power = |name, unit, term, meaning| {
-            self.add(name, unit, Quantity::Power(term), meaning);
-        };
-        power(
-            "power.actuators",
-            "W",
-            PowerTerm::Actuators,
-            "power of the actuators",
-        );
-        power("power.loads", "W", PowerTerm::Loads, "power of the loads");
-        power(
-            "power.kinetic",
-            "W",
-            PowerTerm::KineticRate,
-            "rate of the kinetic energy",
-        );
-        let residual = "actuators + loads − dE/dt: rounding error";
-        power("power.residual", "W", PowerTerm::Residual, residual);
-        let energy = "kinetic energy of the bodies";
-        power(
-            "energy.kinetic_bodies",
+        for (name, term, meaning) in [
+            ("actuators", PowerTerm::Actuators, "power of the actuators"),
+            ("loads", PowerTerm::Loads, "power of the loads"),
+            (
+                "kinetic",
+                PowerTerm::KineticRate,
+                "rate of the kinetic energy",
+            ),
+            (
+                "residual",
+                PowerTerm::Residual,
+                "actuators + loads − dE/dt: rounding error",
+            ),
+        ] {
+            self.add(format!("power.{name}"), "W", Quantity::Power(term), meaning);
+        }
+        let (name, meaning) = ("energy.kinetic_bodies", "kinetic energy of the bodies");
+        self.add(
+            name,
             "J",
-            PowerTerm::KineticEnergy,
-            energy,
+            Quantity::Power(PowerTerm::KineticEnergy),
+            meaning,
         );
     }
 }

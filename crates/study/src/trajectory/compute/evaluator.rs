@@ -200,10 +200,8 @@ impl<'a> PositionEvaluator<'a> {
             }
             Quantity::PointCoordinate(body, at, k) => {
                 let point = states.point(body, at);
-                component(
-                    [point.position, point.velocity, point.acceleration][k / 2],
-                    k % 2,
-                )
+                let vectors = [point.position, point.velocity, point.acceleration];
+                component(vectors[k / 2], k % 2)
             }
             Quantity::TransmissionAngle(dyad) => dyad.angle(states),
             Quantity::Reaction(k) => forces.reactions[k],

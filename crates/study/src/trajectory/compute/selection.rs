@@ -30,12 +30,8 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
         }
         let message = format!("there is no column `{name}`");
         let place = (SceneLocation::Variable(k), "unknown column");
-        return Err(scene_error(
-            scene,
-            message,
-            suggestion(name, &columns),
-            [place],
-        ));
+        let help = suggestion(name, &columns);
+        return Err(scene_error(scene, message, help, [place]));
     }
     Ok(notes)
 }

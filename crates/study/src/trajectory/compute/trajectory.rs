@@ -115,10 +115,8 @@ impl<'a> Trajectory<'a> {
             return Self::swept(scene, plan, analysis, points);
         };
         let points = points.unwrap_or(prescribed.points);
-        let description = format!(
-            "the prescribed motion of {} s",
-            digits(prescribed.duration, 6)
-        );
+        let duration = digits(prescribed.duration, 6);
+        let description = format!("the prescribed motion of {duration} s");
         let kind = TrajectoryKind::Prescribed(prescribed);
         Ok(Self::at_positions(
             kind,

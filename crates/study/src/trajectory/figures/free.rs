@@ -22,12 +22,8 @@ impl FigureContext<'_> {
                 panels.extend(curve.map(|curve| self.chart("", &label, &curve).into()));
             }
         }
-        self.figure_of_some(
-            "coordinates",
-            "Coordinates and their speeds",
-            "Over time.",
-            panels,
-        )
+        let title = "Coordinates and their speeds";
+        self.figure_of_some("coordinates", title, "Over time.", panels)
     }
 
     /// Kinetic and potential energy, work of nonconservative loads, and the error of the balance.
@@ -74,11 +70,7 @@ impl FigureContext<'_> {
             Some(chart("", coordinate_axis(&name, angle), y, vec![line]).into())
         };
         let panels: Vec<Panel> = actuators.take(4).filter_map(panel).collect();
-        self.figure_of_some(
-            "phase-portrait",
-            "Phase portrait",
-            "Speed over coordinate.",
-            panels,
-        )
+        let text = "Speed over coordinate.";
+        self.figure_of_some("phase-portrait", "Phase portrait", text, panels)
     }
 }
