@@ -3,7 +3,8 @@
 use crate::explain::SweepError;
 use crate::find_value;
 use crate::models::PreparedScene;
-use crate::sweep::compute::{Design, RequestedQuantities, Spread};
+use crate::sweep::compute::{Design, RequestedQuantities};
+use crate::sweep::spread::Spread;
 use dwell_scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
