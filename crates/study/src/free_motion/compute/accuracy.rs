@@ -271,7 +271,7 @@ mod tests {
     }
 
     /// The accuracy is reached for every case, with and without loads, compared with a method that was not
-    /// picked. The reference's own error is that of a tenth of its tolerance.
+    /// selected. The reference's own error is that of a tenth of its tolerance.
     #[test]
     fn val_what_is_promised_is_kept() {
         for case in CASES {
@@ -322,7 +322,7 @@ mod tests {
         }
     }
 
-    /// What is picked for `text` to an accuracy, which must be kept against a reference.
+    /// The method that is selected for `text`; its result must agree with a reference to the accuracy.
     fn picked_method(text: &str, accuracy: f64, duration: f64, reference: (Method, f64)) -> String {
         let scene = Scene::parse("scene", text).unwrap();
         let loaded_scene = with_drive_loads(&scene).unwrap();
