@@ -465,10 +465,10 @@ fn odd_motions_are_told_as_they_are() {
     assert!(out.contains("no body with mass moves"), "{out}");
 }
 
-/// Friction that brings a mechanism to rest is stiff there: an explicit method creeps through it, and is
-/// told of another.
+/// Friction that brings a mechanism to rest is stiff there: an explicit method needs many steps, and the summary
+/// suggests another.
 #[test]
-fn a_method_that_chokes_is_told_of_another() {
+fn a_method_that_needs_many_steps_is_advised_of_another() {
     let dir = TestDir::new();
     let friction = "[loads]\nweight = { gravity = [0, -9.81] }\n[friction.A]\ncoefficient = 0.3\n\
                radius = 0.05\nregularization-speed = 0.001\n[motion]";
