@@ -1,7 +1,7 @@
 //! Writes equilibria: table, figure and summary.
 
 use super::figures;
-use crate::equilibria::compute::{compute_equilibria, without_rounding};
+use crate::equilibria::compute::{EquilibriaResults, compute_equilibria, without_rounding};
 use crate::explain::StudyError;
 use crate::models::SceneMachine;
 use crate::number_format::{coordinate_unit, count, digits};
@@ -26,18 +26,15 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
         let figure = figures::equilibria(&results.prepared, curves, &results.found, marked);
         outcome.files.add(name("png"), signed_png(scene, &figure)?);
     }
-    outcome.summary = summary(&results.prepared, &results.found, results.interval);
+    outcome.summary = summary(&results);
     Ok(outcome)
 }
 
-pub(crate) fn summary(
-    prepared: &SceneMachine<'_>,
-    found: &[Equilibrium],
-    interval: Option<[f64; 2]>,
-) -> String {
+fn summary(results: &EquilibriaResults<'_>) -> String {
+    let (prepared, found) = (&results.prepared, &results.found);
     let (coordinate, is_angle) = prepared.first_free_coordinate();
     let title = &prepared.scene.title;
-    let mut text = match interval {
+    let mut text = match results.interval {
         Some([from, to]) => {
             let is_whole_period = is_angle && (to - from) >= TAU * (1.0 - 1e-12);
             let [from, to] = [from, to].map(|q| match is_angle {

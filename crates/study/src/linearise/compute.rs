@@ -78,7 +78,7 @@ pub struct LinearisedMotion<'a> {
     pub prepared: SceneMachine<'a>,
     /// The state about which it is linearised.
     pub state: Vec<f64>,
-    /// The equilibrium there, if it was asked for.
+    /// The equilibrium there, if it was requested.
     pub equilibrium: Option<Equilibrium>,
     /// The matrices.
     pub linear: StateSpace,

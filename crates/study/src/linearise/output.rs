@@ -7,7 +7,6 @@ use crate::linearise::compute::{
 };
 use crate::number_format::number;
 use crate::output::{Outcome, indeterminate_note, provenance_line};
-use dwell_dynamics::StateSpace;
 use dwell_report::{Array, Block, Column, Document, npz};
 use dwell_scene::Scene;
 
@@ -19,12 +18,9 @@ pub fn linearise(scene: &Scene, point: OperatingPoint) -> Result<Outcome, StudyE
     let motion = compute_linearisation(scene, point)?;
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-linear.{rest}", scene.name);
-    let (names, linear) = (&motion.names, &motion.linear);
-    let arrays = arrays(names, linear, &motion.state);
-    outcome.files.add(name("npz"), npz(&arrays)?);
-    outcome.files.add(name("csv"), csv(names, linear));
-    let page = document(names, scene, linear, &motion.state);
-    outcome.files.add(name("md"), page);
+    outcome.files.add(name("npz"), npz(&arrays(&motion))?);
+    outcome.files.add(name("csv"), csv(&motion));
+    outcome.files.add(name("md"), document(&motion));
     outcome.summary = summary(&motion);
     Ok(outcome)
 }
@@ -32,16 +28,24 @@ pub fn linearise(scene: &Scene, point: OperatingPoint) -> Result<Outcome, StudyE
 /// A matrix: its name, what its rows and its columns stand for, its rows.
 type NamedMatrix<'a> = (&'static str, &'a [Column], &'a [Column], &'a [Vec<f64>]);
 
-impl StateSpaceNames {
-    /// The four matrices with the names of their rows and columns.
-    fn matrices<'a>(&'a self, linear: &'a StateSpace) -> [NamedMatrix<'a>; 4] {
-        [
-            ("A", &self.states, &self.states, &linear.a),
-            ("B", &self.states, &self.inputs, &linear.b),
-            ("C", &self.outputs, &self.states, &linear.c),
-            ("D", &self.outputs, &self.inputs, &linear.d),
-        ]
-    }
+/// The four matrices with the names of their rows and columns.
+fn matrices<'a>(motion: &'a LinearisedMotion<'_>) -> [NamedMatrix<'a>; 4] {
+    let (names, linear) = (&motion.names, &motion.linear);
+    [
+        ("A", &names.states, &names.states, &linear.a),
+        ("B", &names.states, &names.inputs, &linear.b),
+        ("C", &names.outputs, &names.states, &linear.c),
+        ("D", &names.outputs, &names.inputs, &linear.d),
+    ]
+}
+
+/// States, inputs and outputs.
+fn signals(names: &StateSpaceNames) -> [(&'static str, &[Column]); 3] {
+    [
+        ("state", &names.states),
+        ("input", &names.inputs),
+        ("output", &names.outputs),
+    ]
 }
 
 fn column_list(columns: &[Column]) -> String {
@@ -62,7 +66,7 @@ fn row_name(matrix: &str, column: &Column) -> String {
 }
 
 /// The printed summary.
-pub(crate) fn summary(motion: &LinearisedMotion<'_>) -> String {
+fn summary(motion: &LinearisedMotion<'_>) -> String {
     let (scene, names) = (motion.prepared.scene, &motion.names);
     let mut summary = format!("{}: linearised about ", scene.title);
     match &motion.equilibrium {
@@ -79,28 +83,21 @@ pub(crate) fn summary(motion: &LinearisedMotion<'_>) -> String {
             summary += &describe_eigenvalues(&motion.eigenvalues);
         }
     }
-    for (what, columns) in [
-        ("states", &names.states),
-        ("inputs", &names.inputs),
-        ("outputs", &names.outputs),
-    ] {
-        summary += &format!("  {what}: {}\n", column_list(columns));
+    for (what, columns) in signals(names) {
+        summary += &format!("  {what}s: {}\n", column_list(columns));
     }
     let omitted = motion.omitted.iter();
     summary + &indeterminate_note(omitted.map(|&r| scene.mechanism.reaction_name(r)))
 }
 
-pub(crate) fn arrays(
-    names: &StateSpaceNames,
-    linear: &StateSpace,
-    state: &[f64],
-) -> Vec<(&'static str, Array)> {
+fn arrays(motion: &LinearisedMotion<'_>) -> Vec<(&'static str, Array)> {
+    let (names, linear) = (&motion.names, &motion.linear);
     let matrix = |columns: usize, rows: Vec<Vec<f64>>| Array::Matrix { columns, rows };
-    let matrices = names.matrices(linear);
-    let matrices = matrices.map(|(name, _, of, rows)| (name, matrix(of.len(), rows.to_vec())));
+    let matrices =
+        matrices(motion).map(|(name, _, of, rows)| (name, matrix(of.len(), rows.to_vec())));
     let row = |values: &[f64]| matrix(values.len(), vec![values.to_vec()]);
     let mut arrays = Vec::from(matrices);
-    arrays.push(("state", row(&state[..names.states.len()])));
+    arrays.push(("state", row(&motion.state[..names.states.len()])));
     arrays.push(("rates", row(&linear.state_derivative)));
     arrays.push(("output", row(&linear.outputs)));
     let text_array = |of: fn(&Column) -> &String, columns: &[Column]| {
@@ -118,9 +115,9 @@ pub(crate) fn arrays(
 }
 
 /// CSV with one line per row of each matrix.
-pub(crate) fn csv(names: &StateSpaceNames, linear: &StateSpace) -> String {
+fn csv(motion: &LinearisedMotion<'_>) -> String {
     let mut text = String::new();
-    for (name, rows, columns, matrix) in names.matrices(linear) {
+    for (name, rows, columns, matrix) in matrices(motion) {
         // Names of a scene hold neither commas nor quotes.
         text += "matrix,row";
         text.extend(columns.iter().map(|c| format!(",{} [{}]", c.name, c.unit)));
@@ -134,25 +131,22 @@ pub(crate) fn csv(names: &StateSpaceNames, linear: &StateSpace) -> String {
     text
 }
 
-pub(crate) fn document(
-    names: &StateSpaceNames,
-    scene: &Scene,
-    linear: &StateSpace,
-    state: &[f64],
-) -> String {
+fn document(motion: &LinearisedMotion<'_>) -> String {
+    let (scene, linear) = (motion.prepared.scene, &motion.linear);
     let mut blocks = vec![Block::Text(
         "δẋ = A δx + B δu and δz = C δx + D δu, of the states x, the inputs u and the outputs z, \
          about the state below."
             .to_owned(),
     )];
-    let states = names.states.iter().zip(state).zip(&linear.state_derivative);
+    let states = motion.names.states.iter().zip(&motion.state);
+    let states = states.zip(&linear.state_derivative);
     blocks.push(Block::Table {
         header: ["state", "unit", "x", "ẋ"].map(str::to_owned).into(),
         rows: states
             .map(|((c, x), rate)| vec![c.name.clone(), c.unit.clone(), number(*x), number(*rate)])
             .collect(),
     });
-    for (name, rows, columns, matrix) in names.matrices(linear) {
+    for (name, rows, columns, matrix) in matrices(motion) {
         blocks.push(Block::Heading(name.to_owned()));
         if columns.is_empty() {
             blocks.push(Block::Text("No inputs.".to_owned()));

@@ -8,6 +8,8 @@ use dwell_report::{Paint, Pen, Shape, TextPlacement};
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
+/// Reference length of the symbols, in sizes of the mechanism.
+const SYMBOL_RATIO: f64 = 0.6;
 /// Number of corners of a circle.
 const CIRCLE_POINTS: usize = 72;
 /// Number of coils of a spring.
@@ -54,7 +56,7 @@ impl<'a> MechanismDrawing<'a> {
         };
         Self {
             scene,
-            size: mean_body_length(scene),
+            size: SYMBOL_RATIO * scene.mechanism.size(),
             travels: scene.mechanism.joints.iter().map(travel).collect(),
             visible: vec![true; scene.mechanism.bodies.len()],
         }
@@ -424,21 +426,4 @@ fn spring_outline(a: Vec2, b: Vec2, half: f64) -> Vec<[f64; 2]> {
     points.extend((0..2 * SPRING_COILS).map(zigzag_point));
     points.extend([a + gap * 0.85, b]);
     points.into_iter().map(|p| [p.x, p.y]).collect()
-}
-
-/// The mean length of the bodies that have one, m.
-pub(crate) fn mean_body_length(scene: &Scene) -> f64 {
-    let extent = |points: &Vec<(String, Vec2)>| {
-        let all = points
-            .iter()
-            .flat_map(|(_, p)| points.iter().map(|(_, r)| (*p - *r).norm()));
-        all.fold(0.0, f64::max)
-    };
-    let lengths: Vec<f64> = scene
-        .points
-        .iter()
-        .map(extent)
-        .filter(|l| *l > 0.0)
-        .collect();
-    lengths.iter().sum::<f64>() / lengths.len().max(1) as f64
 }

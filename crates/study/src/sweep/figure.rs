@@ -294,3 +294,21 @@ fn histograms(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Vec<Option<Chart>> 
     let quantities = prepared.requested.quantities.iter().enumerate();
     quantities.map(one).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::compute::RequestedQuantities;
+    use dwell_scene::Scene;
+
+    #[test]
+    fn smallest_and_largest_values_share_a_chart() {
+        let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
+        let scene = Scene::read(format!("{cases}/single-dwell/scene.toml")).expect("a scene");
+        let requested = RequestedQuantities::new(&scene, &[]).expect("results");
+        let groups = chart_groups(&requested.quantities);
+        let names: Vec<&str> = groups.iter().map(|group| group.title).collect();
+        assert_eq!(names, ["m", "half_dm", "range", "period", "energy"]);
+        assert_eq!(groups[0].members, [(0, "min"), (1, "max")]);
+    }
+}

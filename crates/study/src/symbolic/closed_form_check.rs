@@ -20,7 +20,7 @@ const KINDS: [(&str, &str, &str); 5] = [
     (
         "symbolic-positions",
         "points, angles and travels by closed forms",
-        "the mechanism's largest length, or 1 rad",
+        "the size of the mechanism, or 1 rad",
     ),
     ("symbolic-m", "m(q) by closed forms", "the largest m"),
     (
@@ -46,8 +46,8 @@ struct LargestDifference {
     absolute: f64,
     relative: f64,
     rounding: f64,
+    /// Empty if nothing was compared.
     location: String,
-    compared: bool,
 }
 
 /// Compares closed forms with the numerical model at some positions.
@@ -181,7 +181,6 @@ impl<'a> ClosedFormCheck<'a> {
         location: &str,
     ) {
         let largest = &mut self.largest[kind];
-        largest.compared = true;
         let rounding = relative(rounding, scale);
         if rounding.is_finite() {
             largest.rounding = largest.rounding.max(rounding);
@@ -213,7 +212,7 @@ impl<'a> ClosedFormCheck<'a> {
             false => ["m or rad", "kg", "kg/m", "kg or kg m", "kg/m or kg"],
         };
         let kinds = KINDS.into_iter().zip(units).zip(self.largest);
-        let compared_kinds = kinds.filter(|(_, largest)| largest.compared);
+        let compared_kinds = kinds.filter(|(_, largest)| !largest.location.is_empty());
         compared_kinds.map(|(((key, compared, scale), unit), largest)| {
             // Rounded to a power of ten, so that it is the same on every machine.
             let widened = (10.0 * largest.rounding).min(MAX_TOLERANCE);

@@ -32,9 +32,9 @@ pub fn analyse_trajectory(
     points: Option<usize>,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let (computed, notes) = compute_trajectory(scene, analysis, points, progress)?;
+    let computed = compute_trajectory(scene, analysis, points, progress)?;
     let mut outcome = report(scene, &computed, analysis, progress)?;
-    outcome.summary += &notes;
+    outcome.summary += &computed.notes;
     let early_stop = computed.early_stop;
     Ok(TrajectoryOutcome {
         outcome,

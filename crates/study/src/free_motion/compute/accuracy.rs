@@ -26,8 +26,8 @@ use dwell_scene::Scene;
 const BDF_ERROR_RATIO: f64 = 50.0;
 /// Fraction of stiff steps above which stability, not accuracy, determines the cost.
 const MAX_STIFF_FRACTION: f64 = 0.05;
-/// Number of evaluations above which a table pays: building two to 1e-9 takes 2.4 to 9.4 ms under loads, which is up
-/// to 20 000 evaluations of the machine, and saves 80 to 90 % of each (docs/performance.md).
+/// Number of evaluations above which a table saves time: building two to 1e-9 takes 2.4 to 9.4 ms under loads, as long
+/// as up to 20 000 evaluations of the machine, and saves 80 to 90 % of each (docs/performance.md).
 const TABLE_BREAK_EVEN: f64 = 30_000.0;
 /// Maximum number of steps of a coarse run.
 const MAX_COARSE_STEPS: usize = 100_000;
@@ -262,8 +262,6 @@ fn two_digits(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
-
     use super::*;
     use crate::models::with_drive_loads;
 
@@ -272,8 +270,8 @@ mod tests {
         std::fs::read_to_string(format!("{cases}/{case}/scene.toml")).unwrap()
     }
 
-    /// What is promised is kept, for every case that moves under loads and for free ones, against a method
-    /// that was not picked. The reference's own error is that of a tenth of its tolerance.
+    /// The accuracy is reached for every case, with and without loads, compared with a method that was not
+    /// selected. The reference's own error is that of a tenth of its tolerance.
     #[test]
     fn val_what_is_promised_is_kept() {
         for case in CASES {
@@ -324,7 +322,7 @@ mod tests {
         }
     }
 
-    /// What is picked for `text` to an accuracy, which must be kept against a reference.
+    /// The method that is selected for `text`; its result must agree with a reference to the accuracy.
     fn picked_method(text: &str, accuracy: f64, duration: f64, reference: (Method, f64)) -> String {
         let scene = Scene::parse("scene", text).unwrap();
         let loaded_scene = with_drive_loads(&scene).unwrap();

@@ -7,7 +7,7 @@ use dwell_kinetostatics::TableDomain;
 
 /// Tolerance of the coarse run.
 pub(super) const COARSE_TOLERANCE: f64 = 1e-4;
-/// The finest tolerances: below them rounding is all that changes, and Newton's method cannot keep them.
+/// The finest tolerances: below them only rounding changes, and Newton's method cannot meet them.
 pub(super) const MIN_TOLERANCE: f64 = 1e-14;
 const MIN_IMPLICIT_TOLERANCE: f64 = 1e-13;
 /// First tolerance, relative to the required accuracy: an integrator's error is tens of times its tolerance.

@@ -18,7 +18,7 @@ pub struct ComputedSweep {
 }
 
 /// Computes all points of a sweep on all cores: `vary` and `requests` are those of
-/// [`ParameterSweep`](crate::ParameterSweep), `samples` the number of random samples.
+/// `dwell sweep`, `samples` the number of random samples.
 ///
 /// # Errors
 /// [`StudyError`] where the sweep is invalid or the unchanged scene cannot be assembled. A point that cannot be

@@ -100,12 +100,12 @@ impl Quantity {
 }
 
 impl Column {
-    /// Whether `request` asks for it: by its name, the first part of it, or its former name.
+    /// Whether `request` names it: by its name, the first part of it, or its former name.
     pub(crate) fn matches(&self, request: &str) -> bool {
         self.names_it(request, &self.name) || self.matches_former(request)
     }
 
-    /// Whether `request` asks for it by its former name.
+    /// Whether `request` names it by its former name.
     pub(crate) fn matches_former(&self, request: &str) -> bool {
         let former = self.former.as_deref();
         former.is_some_and(|former| self.names_it(request, former))

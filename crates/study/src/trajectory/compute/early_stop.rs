@@ -74,7 +74,10 @@ impl EarlyStop {
                 let unreachable =
                     plan.actuators() == 1 && unreachable_error(plan, start[0], q[0]).is_some();
                 let is_reached = !unreachable && plan.positions(&q, &mut pose).is_ok();
-                *(if is_reached { &mut low } else { &mut high }) = middle;
+                match is_reached {
+                    true => low = middle,
+                    false => high = middle,
+                }
             }
         }
         let failed = (high + CAUSE_OFFSET * (beyond - reached)).min(beyond);
@@ -100,29 +103,24 @@ impl EarlyStop {
         };
         match self.cause {
             StopCause::NoSolution(KinetostaticsError::Position(error)) => {
-                self.explain_limit(scene, plan, trajectory, &position, &error)
+                let location = trajectory.location;
+                self.explain_limit(scene, plan, location, &position, &error)
             }
             StopCause::NoSolution(error) => explain_load(scene, error, &when),
             StopCause::Fault(TrajectoryFault::OffTable { load, value }) => {
                 off_table_error(scene, load, value, &when)
             }
-            StopCause::Fault(TrajectoryFault::Discontinuity {
-                joint,
-                between: [a, b],
-            }) => {
+            StopCause::Fault(TrajectoryFault::Discontinuity { joint, between }) => {
                 let name = &scene.mechanism.joints[joint.0].name;
-                let x = jump_location(a, b);
-                scene_error(
-                    scene,
-                    format!(
-                        "the function of coupling `{name}` is discontinuous {when}, at x = {x}"
-                    ),
-                    CONTINUITY_HELP,
-                    [(
-                        SceneLocation::CouplingLaw(joint),
-                        format!("jumps at x = {x}"),
-                    )],
-                )
+                let x = jump_location(between[0], between[1]);
+                let message = format!(
+                    "the function of coupling `{name}` is discontinuous {when}, at x = {x}"
+                );
+                let place = (
+                    SceneLocation::CouplingLaw(joint),
+                    format!("jumps at x = {x}"),
+                );
+                scene_error(scene, message, CONTINUITY_HELP, [place])
             }
         }
     }
@@ -131,7 +129,7 @@ impl EarlyStop {
         &self,
         scene: &Scene,
         plan: &Plan,
-        trajectory: &Trajectory<'_>,
+        location: SceneLocation,
         position: &str,
         error: &PositionError,
     ) -> StudyError {
@@ -140,9 +138,9 @@ impl EarlyStop {
             return non_finite_coupling_error(scene, relation, &format!("{at} {position}"));
         }
         if !self.has_begun {
-            return explain_first_position(scene, plan, trajectory, position, error);
+            return explain_first_position(scene, plan, location, position, error);
         }
-        let beyond = (trajectory.location, "continues beyond it".to_owned());
+        let beyond = (location, "continues beyond it".to_owned());
         // Beyond the range on a side where no limit was found.
         if let PositionError::OutOfRange { q, to, .. } = *error
             && plan.range_limits()[usize::from(q > to)].is_none()
@@ -228,13 +226,13 @@ fn explain_load(scene: &Scene, error: KinetostaticsError, when: &str) -> StudyEr
 fn explain_first_position(
     scene: &Scene,
     plan: &Plan,
-    trajectory: &Trajectory<'_>,
+    location: SceneLocation,
     position: &str,
     error: &PositionError,
 ) -> StudyError {
     let joints = error.group().map(|g| plan.group_joints(g));
     let mut labels = joint_labels(&joints.unwrap_or_default(), "cannot be joined there");
-    labels.push((trajectory.location, "starts there".to_owned()));
+    labels.push((location, "starts there".to_owned()));
     let range = plan.range().limits().map(|(from, to)| {
         let unit = coordinate_unit(plan.is_angle(0));
         let [from, to] = [from, to].map(number);

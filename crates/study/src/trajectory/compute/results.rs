@@ -162,10 +162,12 @@ pub struct ComputedTrajectory<'a> {
     pub table: Table,
     /// Why the trajectory ended early, if it did.
     pub early_stop: Option<StudyError>,
+    /// A line for each requested column that is called by a former name.
+    pub notes: String,
 }
 
 /// Analyses a scene along its prescribed motion, its sweep, or the range of its only actuator, at `points` positions
-/// (two or more) if given. With a line for each requested column that is called by a former name.
+/// (two or more) if given.
 ///
 /// # Errors
 /// [`StudyError`] when the mechanism cannot be assembled, the scene defines no actuator
@@ -175,12 +177,12 @@ pub fn compute_trajectory<'a>(
     analysis: Analysis,
     points: Option<usize>,
     progress: Progress<'_>,
-) -> Result<(ComputedTrajectory<'a>, String), StudyError> {
+) -> Result<ComputedTrajectory<'a>, StudyError> {
     let model = loaded_model(scene)?;
     let notes = check_variables(scene, &model)?;
     let trajectory = Trajectory::new(scene, model.plan(), analysis, points)?;
     let computed = compute_along(scene, &model, trajectory, analysis, progress)?;
-    Ok((computed, notes))
+    Ok(ComputedTrajectory { notes, ..computed })
 }
 
 /// Evaluates a scene along a trajectory.
@@ -200,6 +202,7 @@ pub(crate) fn compute_along<'a>(
         early_stop: early_stop.map(|stop| stop.explain(scene, model.plan(), &trajectory)),
         trajectory,
         results,
+        notes: String::new(),
     })
 }
 
