@@ -80,6 +80,15 @@ pub(crate) struct Page<'a> {
     panels: Vec<PlacedPanel<'a>>,
 }
 
+fn prepared(panel: &Panel, width: f64) -> PreparedPanel<'_> {
+    match panel {
+        Panel::Chart(chart) => PreparedPanel::Chart(PreparedChart::new(chart)),
+        Panel::Drawing(drawing) => PreparedPanel::Drawing(drawing),
+        Panel::Stack(charts) => PreparedPanel::Stack(Stack::new(charts)),
+        Panel::Grid(grid) => PreparedPanel::Grid(Box::new(HeatMap::new(grid, width))),
+    }
+}
+
 impl<'a> Page<'a> {
     /// Lays everything out.
     pub(crate) fn new(figure: &'a Figure) -> Self {
@@ -105,20 +114,10 @@ impl<'a> Page<'a> {
                 .map(|panel| preferred_height(panel, width, columns == 1, stretched))
                 .fold(0.0, f64::max);
             for (column, panel) in chunk.iter().enumerate() {
-                let cell = Rect::sized(
-                    MARGIN + column as f64 * (width + COLUMN_GAP),
-                    y,
-                    width,
-                    height,
-                );
-                let panel = match panel {
-                    Panel::Chart(chart) => PreparedPanel::Chart(PreparedChart::new(chart)),
-                    Panel::Drawing(drawing) => PreparedPanel::Drawing(drawing),
-                    Panel::Stack(charts) => PreparedPanel::Stack(Stack::new(charts)),
-                    Panel::Grid(grid) => PreparedPanel::Grid(Box::new(HeatMap::new(grid, width))),
-                };
+                let x = MARGIN + column as f64 * (width + COLUMN_GAP);
+                let cell = Rect::sized(x, y, width, height);
                 panels.push(PlacedPanel {
-                    panel,
+                    panel: prepared(panel, width),
                     row,
                     column: (!stretched).then_some(column),
                     cell,

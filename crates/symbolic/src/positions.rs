@@ -337,7 +337,7 @@ impl<'a> PositionFormulas<'a> {
         })
     }
 
-    /// The ground, the bodies' roots and their centres of mass.
+    /// The bodies' joint origins and their centres of mass.
     fn body_positions(&mut self, masses: &[Mass]) {
         let tree = self.plan.tree();
         let frames = self.plan.frames();
@@ -349,21 +349,15 @@ impl<'a> PositionFormulas<'a> {
             let frame = frames.orientations[parent].frame;
             let from = match self.joint_origins[parent] {
                 Some(_) => tree.joint_origins[parent],
-                // The ground's own coordinates tell where its points are.
+                // The points of the ground are given by its own coordinates.
                 None => Vec2::ZERO,
             };
             let local = vector_between(frames, parent, from, point);
             let reached = tree.joint_of_body[parent].map(|p| tree.joints[p].pair);
             let start = reached.map(|b| pair_name(self.mechanism, self.plan, b));
             let start = start.unwrap_or_else(|| "the origin".to_owned());
-            let arm = self.frame_vector(
-                frame,
-                local,
-                &format!(
-                    "{}: from {start} to {joint}",
-                    self.body_or_joint_name(parent)
-                ),
-            );
+            let name = self.body_or_joint_name(parent);
+            let arm = self.frame_vector(frame, local, &format!("{name}: from {start} to {joint}"));
             let mut joint_origin = rotate(&arm, &self.angle(frame));
             if let Some(codes) = &self.joint_origins[parent] {
                 joint_origin = add(&[symbol(&codes[0]), symbol(&codes[1])], &joint_origin);
