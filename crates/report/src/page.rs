@@ -27,7 +27,7 @@ const LONE_HEIGHT: f64 = 0.56;
 const STRETCHED_HEIGHT: f64 = 0.36;
 const TITLE_LEADING: f64 = 1.25;
 const CAPTION_LEADING: f64 = 1.4;
-/// Between the caption and the line that says where the figure comes from.
+/// Between the caption and the line with the provenance of the figure.
 const FOOTER_GAP: f64 = 10.0;
 
 /// A panel whose labels have been measured.

@@ -230,7 +230,7 @@ impl Derivatives<'_> {
         [first, second, derivative(term, self.virtual_displacements)]
     }
 
-    /// The same of a body's angle, which a released couple turns beside its frame.
+    /// The same of a body's angle, which a released couple rotates from its frame.
     fn of_angle(&self, body: usize) -> [Term; 3] {
         let frame = self.positions.plan.frames().orientations[body].frame;
         let [first, second, virtual_rotation] = self.of_term(&self.positions.angle(frame));

@@ -210,7 +210,7 @@ impl PositionFormulas<'_> {
             } else {
                 self.varying_polar(closure, self.plan.class_frame(class), &reached)
             };
-            // What it reaches is what is known, the other way round.
+            // What it reaches is the known part, reversed.
             polar.sign = -polar.sign;
             self.orient_class(class, &d, &polar);
         } else {

@@ -20,20 +20,20 @@ pub(crate) struct LinkVector {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SlideTerm {
     pub(crate) slide: usize,
-    /// The first body of its bond, which holds its direction.
+    /// The first body of its pair, which holds its direction.
     pub(crate) body: usize,
     pub(crate) frame: usize,
     /// The direction along which it counts, in the frame.
     pub(crate) local: Vec2,
 }
 
-/// A loop: P₂ − P₁ of the bond that closes it, through the tree.
+/// A loop: P₂ − P₁ of the pair that closes it, through the tree.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LoopEquation {
     pub(crate) loop_joint: usize,
     pub(crate) link_vectors: Vec<LinkVector>,
     pub(crate) slide_terms: Vec<SlideTerm>,
-    /// The tree's bonds that it passes, each with the sign of what shifts its second point.
+    /// The pairs of the tree that it passes, each with the sign of a shift of its second point.
     pub(crate) tree_pairs: Vec<(usize, f64)>,
     /// Where only the normal part must vanish: the axis, with its body and frame.
     pub(crate) axis: Option<(usize, usize, Vec2)>,
@@ -80,10 +80,8 @@ impl LoopEquation {
             tree_pairs: Vec::new(),
             axis: None,
         };
-        let point_on = |pair: usize, body: usize| {
-            let pair = &plan.pairs()[pair];
-            pair.points[usize::from(pair.bodies[0] != body)]
-        };
+        let pairs = plan.pairs();
+        let point_on = |b: usize, body| pairs[b].points[usize::from(pairs[b].bodies[0] != body)];
         let mut ends = [0, 1].map(|i| (pair.bodies[i], pair.points[i], loop_joint));
         while ends[0].0 != ends[1].0 {
             let which = usize::from(tree.joint_of_body[ends[1].0] > tree.joint_of_body[ends[0].0]);

@@ -94,7 +94,7 @@ impl PositionFormulas<'_> {
         Ok(Released::Pair(pair, direction))
     }
 
-    /// By body: how much it turns beside its frame for each unit.
+    /// By body: its rotation from its frame for each unit.
     fn extra_rotations(&self, released: &Released) -> Vec<f64> {
         let mut extra_rotation = vec![0.0; self.plan.frames().orientations.len()];
         let Released::Moment(pair) = *released else {
@@ -102,7 +102,7 @@ impl PositionFormulas<'_> {
         };
         for constraint in &self.plan.frames().angular_constraints {
             let relative = if constraint.source == AngularConstraintSource::Pair(pair) {
-                // Its second body turns from its first.
+                // Its second body rotates from its first.
                 if constraint.body_is_first { -1.0 } else { 1.0 }
             } else {
                 0.0
