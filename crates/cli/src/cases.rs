@@ -29,9 +29,9 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
     for name in names {
         let case = find_one(name, folder, all.as_deref().unwrap_or(&[]))?;
         let canonical = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
-        if found
+        if !found
             .iter()
-            .all(|other| canonical(other) != canonical(&case))
+            .any(|other| canonical(other) == canonical(&case))
         {
             found.push(case);
         }
@@ -42,33 +42,20 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
 fn find_one(name: &str, folder: &Path, all: &[PathBuf]) -> Result<PathBuf, Report> {
     let given = Path::new(name);
     // The scene file itself stands for its folder.
-    let of_scene = given
-        .file_name()
-        .filter(|n| *n == SCENE)
-        .and(given.parent())
-        .map(|p| {
-            if p.as_os_str().is_empty() {
-                Path::new(".")
-            } else {
-                p
-            }
-        });
-    let candidates = [
-        Some(folder.join(name)),
-        of_scene.map(Path::to_owned),
-        Some(given.to_owned()),
-    ];
-    let case = candidates
-        .into_iter()
-        .flatten()
-        .find(|p| p.join(SCENE).is_file());
-    if let Some(case) = case {
+    let is_scene = given.file_name().is_some_and(|n| n == SCENE);
+    let of_scene = match given.parent() {
+        Some(parent) if is_scene && parent != Path::new("") => parent,
+        Some(_) if is_scene => Path::new("."),
+        _ => given,
+    };
+    let candidates = [folder.join(name), of_scene.to_owned(), given.to_owned()];
+    if let Some(case) = candidates.into_iter().find(|p| p.join(SCENE).is_file()) {
         return Ok(case);
     }
-    let known: Vec<String> = all
+    let known = all
         .iter()
-        .filter_map(|p| Some(p.file_name()?.to_string_lossy().into_owned()))
-        .collect();
+        .filter_map(|p| Some(p.file_name()?.to_string_lossy()));
+    let known: Vec<_> = known.collect();
     let help = if given.is_file() {
         format!("`{name}` is a file: a case is a folder with a {SCENE}")
     } else if given.is_dir() {

@@ -10,10 +10,11 @@ mod validate;
 
 use clap::Parser;
 use dwell_findings::all_pass;
+use dwell_report::Files;
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{
-    Analysis as Run, Outcome, ParameterSweep, Progress, SolverSettings, Step, StudyError,
-    TableRequest, TrajectoryOutcome,
+    Analysis, Outcome, ParameterSweep, Progress, SolverSettings, Step, StudyError, TableRequest,
+    TrajectoryOutcome,
 };
 use dwell_validation::ValidationError;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -26,17 +27,13 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     // clap itself exits with 2 on a bad argument, and with 0 for help.
     let (arguments, notes) = former::with_current_names(std::env::args_os());
-    for note in notes {
-        // A closed standard error is no reason to panic.
-        let _ = writeln!(std::io::stderr(), "{note}");
-    }
+    notes.iter().for_each(|note| print_note(note));
     let options = Options::parse_from(arguments);
     match run(options) {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::from(1),
         Err(report) => {
-            // A closed standard error is no reason to panic.
-            let _ = writeln!(std::io::stderr(), "{report:?}");
+            print_note(&format!("{report:?}"));
             ExitCode::from(2)
         }
     }
@@ -56,10 +53,73 @@ fn run(options: Options) -> Result<bool, Report> {
             out.display()
         ));
     }
-    let mut failures = None;
-    let mut early_stop = None;
-    let outcome = match &command {
-        Command::Check { scene } => report_errors(dwell_study::check(&read(scene)?))?,
+    let (
+        Done {
+            outcome,
+            early_stop,
+        },
+        failures,
+    ) = match &command {
+        Command::Validate {
+            cases,
+            folder,
+            slow,
+        } => {
+            let (outcome, failures) = validate::validate(cases, folder, *slow)?;
+            (outcome.into(), failures)
+        }
+        study => {
+            let done = run_study(study, &out);
+            (done.map_err(|e| Report::new(as_scene_error(e)))?, None)
+        }
+    };
+    print(&outcome.summary)?;
+    write_files(&outcome.files, &out)?;
+    let ended_early = early_stop.is_some();
+    if let Some(reason) = early_stop {
+        print_note(&format!("{:?}", Report::new(as_scene_error(reason))));
+    }
+    match failures {
+        // Printed last, so that it is not overlooked.
+        Some(report) => Err(report),
+        None => Ok(!ended_early && all_pass(&outcome.findings)),
+    }
+}
+
+/// A study's outcome, and why its motion or trajectory ended early, if it did.
+struct Done {
+    outcome: Outcome,
+    early_stop: Option<StudyError>,
+}
+
+impl From<Outcome> for Done {
+    fn from(outcome: Outcome) -> Self {
+        let early_stop = None;
+        Self {
+            outcome,
+            early_stop,
+        }
+    }
+}
+
+impl From<TrajectoryOutcome> for Done {
+    fn from(
+        TrajectoryOutcome {
+            outcome,
+            early_stop,
+        }: TrajectoryOutcome,
+    ) -> Self {
+        Self {
+            outcome,
+            early_stop,
+        }
+    }
+}
+
+/// Runs a study of one scene: one arm for each command, so longer than a screen.
+fn run_study(command: &Command, out: &Path) -> Result<Done, StudyError> {
+    Ok(match command {
+        Command::Check { scene } => dwell_study::check(&read(scene)?)?.into(),
         Command::Reduce {
             scene,
             table_accuracy,
@@ -72,7 +132,7 @@ fn run(options: Options) -> Result<bool, Report> {
                 interval: from.zip(*to),
                 required: table_accuracy.is_some(),
             });
-            report_errors(dwell_study::reduce(&read(scene)?, tabulation))?
+            dwell_study::reduce(&read(scene)?, tabulation)?.into()
         }
         Command::Simulate {
             scene,
@@ -91,13 +151,13 @@ fn run(options: Options) -> Result<bool, Report> {
                 sample_interval: *sample_interval,
             };
             let scene = read(scene)?;
-            let simulate = |progress: Progress<'_>| match *accuracy {
+            with_progress(|progress| match *accuracy {
                 Some(accuracy) => {
                     dwell_study::simulate_to_accuracy(&scene, accuracy, *sample_interval, progress)
                 }
                 None => dwell_study::simulate(&scene, &settings, progress),
-            };
-            run_until_stop(simulate, &mut early_stop)?
+            })?
+            .into()
         }
         Command::Cycle {
             scene,
@@ -111,33 +171,24 @@ fn run(options: Options) -> Result<bool, Report> {
                 atol: *rtol,
                 ..SolverSettings::default()
             };
-            report_errors(dwell_study::cycle(&read(scene)?, &settings, *fluctuation))?
+            dwell_study::cycle(&read(scene)?, &settings, *fluctuation)?.into()
         }
         Command::WorkPrecision { scene } => {
             let scene = read(scene)?;
-            report_errors(with_progress(|progress| {
-                dwell_validation::work_precision(&scene, progress)
-            }))?
+            with_progress(|progress| dwell_validation::work_precision(&scene, progress))?.into()
         }
-        Command::Equilibria { scene } => report_errors(dwell_study::equilibria(&read(scene)?))?,
+        Command::Equilibria { scene } => dwell_study::equilibria(&read(scene)?)?.into(),
         Command::Linearise { scene, about } => {
-            report_errors(dwell_study::linearise(&read(scene)?, *about))?
+            dwell_study::linearise(&read(scene)?, *about)?.into()
         }
         Command::Symbolic {
             scene,
             format,
             reaction,
-        } => {
-            let scene = read(scene)?;
-            report_errors(dwell_study::symbolic(&scene, *format, reaction.as_deref()))?
-        }
-        Command::Kinematics(trajectory) => {
-            run_trajectory(trajectory, Run::Kinematics, &mut early_stop)?
-        }
-        Command::Statics(trajectory) => run_trajectory(trajectory, Run::Statics, &mut early_stop)?,
-        Command::Kinetostatics(trajectory) => {
-            run_trajectory(trajectory, Run::Kinetostatics, &mut early_stop)?
-        }
+        } => dwell_study::symbolic(&read(scene)?, *format, reaction.as_deref())?.into(),
+        Command::Kinematics(arguments) => run_trajectory(arguments, Analysis::Kinematics)?,
+        Command::Statics(arguments) => run_trajectory(arguments, Analysis::Statics)?,
+        Command::Kinetostatics(arguments) => run_trajectory(arguments, Analysis::Kinetostatics)?,
         Command::Calibrate {
             scene,
             parameter,
@@ -147,11 +198,7 @@ fn run(options: Options) -> Result<bool, Report> {
             if let Some(path) = parameter {
                 note_former_path(&scene, path);
             }
-            report_errors(dwell_study::calibrate(
-                &scene,
-                parameter.as_deref(),
-                *period,
-            ))?
+            dwell_study::calibrate(&scene, parameter.as_deref(), *period)?.into()
         }
         Command::Sweep {
             scene,
@@ -174,74 +221,40 @@ fn run(options: Options) -> Result<bool, Report> {
                 requests: results,
                 shard: *shard,
                 export: *export,
-                folder: &out,
+                folder: out,
             };
-            report_errors(with_progress(|progress| {
-                dwell_study::sweep(&scene, &sweep, progress)
-            }))?
+            with_progress(|progress| dwell_study::sweep(&scene, &sweep, progress))?.into()
         }
-        Command::Validate {
-            cases,
-            folder,
-            slow,
-        } => {
-            let (outcome, failed) = validate::validate(cases, folder, *slow)?;
-            failures = failed;
-            outcome
-        }
-        // Printed above: it needs neither a scene nor a folder.
-        Command::Schema => Outcome::default(),
-    };
-    print(&outcome.summary)?;
-    if !outcome.files.is_empty() {
-        let written = outcome.files.write(&out).map_err(|e| {
-            miette!(
-                help = "no file was written; choose another folder with --out",
-                "{e}"
-            )
-        })?;
-        let shown = written.len().min(12);
-        for path in &written[..shown] {
-            print(&format!("  {}\n", path.display()))?;
-        }
-        if written.len() > shown {
-            let rest = written.len() - shown;
-            print(&format!("  and {rest} more below {}\n", out.display()))?;
-        }
-    }
-    if let Some(reason) = &early_stop {
-        // A closed standard error is no reason to panic.
-        let _ = writeln!(std::io::stderr(), "{reason:?}");
-    }
-    match failures {
-        // Printed last, so that it is not overlooked.
-        Some(report) => Err(report),
-        None => Ok(early_stop.is_none() && all_pass(&outcome.findings)),
-    }
+        // They are no studies of a scene.
+        Command::Validate { .. } | Command::Schema => Outcome::default().into(),
+    })
 }
 
-/// Analyses a scene along its trajectory; if that ends early, `early_stop` holds the reason.
-fn run_trajectory(
-    arguments: &TrajectoryArgs,
-    run: Run,
-    early_stop: &mut Option<Report>,
-) -> Result<Outcome, Report> {
+/// Analyses a scene along its trajectory.
+fn run_trajectory(arguments: &TrajectoryArgs, analysis: Analysis) -> Result<Done, StudyError> {
     let scene = read(&arguments.scene)?;
     let points = arguments.points.map(|n| n as usize);
-    run_until_stop(
-        |progress| dwell_study::analyse_trajectory(&scene, run, points, progress),
-        early_stop,
-    )
+    let analyse = |progress: Progress<'_>| {
+        dwell_study::analyse_trajectory(&scene, analysis, points, progress)
+    };
+    Ok(with_progress(analyse)?.into())
 }
 
-/// Runs a study of a trajectory with a progress bar; if the trajectory ends early, `early_stop` holds the reason.
-fn run_until_stop(
-    run: impl FnOnce(Progress<'_>) -> Result<TrajectoryOutcome, StudyError>,
-    early_stop: &mut Option<Report>,
-) -> Result<Outcome, Report> {
-    let done = report_errors(with_progress(run))?;
-    *early_stop = done.early_stop.map(|e| Report::new(as_scene_error(e)));
-    Ok(done.outcome)
+/// Writes the files, and prints the paths of the first.
+fn write_files(files: &Files, out: &Path) -> Result<(), Report> {
+    if files.is_empty() {
+        return Ok(());
+    }
+    let help = "no file was written; choose another folder with --out";
+    let written = files.write(out).map_err(|e| miette!(help = help, "{e}"))?;
+    let shown = written.len().min(12);
+    for path in &written[..shown] {
+        print(&format!("  {}\n", path.display()))?;
+    }
+    match written.len() - shown {
+        0 => Ok(()),
+        rest => print(&format!("  and {rest} more below {}\n", out.display())),
+    }
 }
 
 /// Runs a long study with a progress bar.
@@ -265,8 +278,8 @@ fn progress_bar() -> ProgressBar {
     bar
 }
 
-fn read(path: &Path) -> Result<Scene, Report> {
-    let scene = Scene::read(path).map_err(Report::new)?;
+fn read(path: &Path) -> Result<Scene, StudyError> {
+    let scene = Scene::read(path)?;
     print_warnings(&scene);
     Ok(scene)
 }
@@ -274,21 +287,21 @@ fn read(path: &Path) -> Result<Scene, Report> {
 /// Shows on standard error which former names the scene uses; the exit status does not change.
 fn print_warnings(scene: &Scene) {
     for warning in &scene.warnings {
-        // A closed standard error is no reason to panic.
-        let _ = writeln!(std::io::stderr(), "{:?}", Report::new(warning.clone()));
+        print_note(&format!("{:?}", Report::new(warning.clone())));
     }
 }
 
 /// Says on standard error that the path of a number has a former name of a key.
 fn note_former_path(scene: &Scene, path: &str) {
     if let Some(current) = scene.renamed_path(path) {
-        let _ = writeln!(std::io::stderr(), "note: {path} is now {current}");
+        print_note(&format!("note: {path} is now {current}"));
     }
 }
 
-/// A study's error as a report: an error of the scene shows the place in its text.
-fn report_errors<T>(result: Result<T, StudyError>) -> Result<T, Report> {
-    result.map_err(|e| Report::new(as_scene_error(e)))
+/// Prints a line on standard error.
+fn print_note(text: &str) {
+    // A closed standard error is no reason to panic.
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 fn validation_error(error: ValidationError) -> SceneError {
@@ -309,7 +322,7 @@ fn as_scene_error(error: StudyError) -> SceneError {
     }
 }
 
-/// An error that refers to no part of the scene.
+/// An error that refers to no part of a scene.
 fn error_without_location(message: String) -> SceneError {
     SceneError {
         message,

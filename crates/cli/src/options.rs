@@ -264,28 +264,28 @@ fn choice<T: Copy + Send + Sync>(choices: Choices<T>) -> impl TypedValueParser<V
         let former = FORMER_VALUES
             .iter()
             .filter(move |(current, _)| *current == name);
-        PossibleValue::new(name)
-            .help(help)
-            .aliases(former.map(|(_, former)| *former))
+        let value = PossibleValue::new(name).help(help);
+        value.aliases(former.map(|(_, former)| *former))
     };
     PossibleValuesParser::new(choices.iter().map(value)).try_map(move |given| {
         let former = FORMER_VALUES.iter().find(|(_, former)| *former == given);
         let name = former.map_or(given.as_str(), |(current, _)| current);
         let found = choices.iter().find(|(known, ..)| *known == name);
-        found
-            .map(|(_, value, _)| *value)
-            .ok_or_else(|| format!("unknown value `{given}`"))
+        let value = found.map(|(_, value, _)| *value);
+        value.ok_or_else(|| format!("unknown value `{given}`"))
     })
 }
 
-/// A coefficient of fluctuation: above 2 the machine would turn back.
-fn parse_fluctuation(text: &str) -> Result<f64, String> {
+fn parse_number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| "not a number".to_owned())
+}
+
+/// A number that satisfies a condition, or else a message.
+fn parse_checked(text: &str, is_valid: impl Fn(f64) -> bool, message: &str) -> Result<f64, String> {
     let value = parse_number(text)?;
-    if value > 0.0 && value < 2.0 {
-        Ok(value)
-    } else {
-        Err("expected a number between 0 and 2".to_owned())
-    }
+    is_valid(value)
+        .then_some(value)
+        .ok_or_else(|| message.to_owned())
 }
 
 fn parse_count(text: &str) -> Result<u64, String> {
@@ -293,62 +293,47 @@ fn parse_count(text: &str) -> Result<u64, String> {
         .map_err(|_| "expected a whole number, 0 or more".to_owned())
 }
 
-fn parse_number(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "not a number".to_owned())
+fn parse_finite(text: &str) -> Result<f64, String> {
+    parse_checked(text, f64::is_finite, "not a finite number")
 }
 
-fn parse_finite(text: &str) -> Result<f64, String> {
-    let value = parse_number(text)?;
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err("not a finite number".to_owned())
-    }
+/// A coefficient of fluctuation: above 2 the machine would reverse.
+fn parse_fluctuation(text: &str) -> Result<f64, String> {
+    parse_checked(
+        text,
+        |v| v > 0.0 && v < 2.0,
+        "expected a number between 0 and 2",
+    )
 }
 
 /// A tolerance of an integrator: below 1e-14 none can meet it in double precision, and above 1e-3 the energy of a
 /// motion is wrong by a quarter within two revolutions.
 fn parse_tolerance(text: &str) -> Result<f64, String> {
-    let value = parse_number(text)?;
-    if (1e-14..=1e-3).contains(&value) {
-        Ok(value)
-    } else {
-        Err("a tolerance must be between 1e-14 and 1e-3".to_owned())
-    }
+    let message = "a tolerance must be between 1e-14 and 1e-3";
+    parse_checked(text, |v| (1e-14..=1e-3).contains(&v), message)
 }
 
 /// An accuracy: a number, or the name of a preset.
 fn parse_accuracy(text: &str) -> Result<f64, String> {
     let preset = dwell_study::PRESETS.iter().find(|(name, _)| *name == text);
-    let value = match preset {
-        Some((_, value)) => *value,
-        None => parse_number(text).map_err(|_| {
-            let names = dwell_study::PRESETS.map(|(name, _)| name).join(", ");
-            format!("expected a number such as 1e-6, or one of {names}")
-        })?,
-    };
-    if (1e-13..=1e-2).contains(&value) {
-        Ok(value)
-    } else {
-        Err("an accuracy must be between 1e-13 and 1e-2".to_owned())
+    if let Some((_, value)) = preset {
+        return Ok(*value);
     }
+    parse_number(text).map_err(|_| {
+        let names = dwell_study::PRESETS.map(|(name, _)| name).join(", ");
+        format!("expected a number such as 1e-6, or one of {names}")
+    })?;
+    let message = "an accuracy must be between 1e-13 and 1e-2";
+    parse_checked(text, |v| (1e-13..=1e-2).contains(&v), message)
 }
 
 /// The accuracy of a table: double precision allows 1e-14, and above 1e-2 a table is useless.
 fn parse_table_accuracy(text: &str) -> Result<f64, String> {
-    let value = parse_number(text)?;
-    if (1e-14..=1e-2).contains(&value) {
-        Ok(value)
-    } else {
-        Err("the accuracy of a table must be between 1e-14 and 1e-2".to_owned())
-    }
+    let message = "the accuracy of a table must be between 1e-14 and 1e-2";
+    parse_checked(text, |v| (1e-14..=1e-2).contains(&v), message)
 }
 
 fn parse_time(text: &str) -> Result<f64, String> {
-    let value = parse_number(text)?;
-    if value.is_finite() && value > 0.0 {
-        Ok(value)
-    } else {
-        Err("expected a positive time in seconds".to_owned())
-    }
+    let message = "expected a positive time in seconds";
+    parse_checked(text, |v| v.is_finite() && v > 0.0, message)
 }

@@ -20,10 +20,10 @@ pub(crate) fn validate(
     slow: bool,
 ) -> Result<(Outcome, Option<Report>), Report> {
     let cases = cases::find(names, folder)?;
-    let scenes: Vec<_> = cases
+    let scenes = cases
         .iter()
-        .map(|case| Scene::read(case.join("scene.toml")))
-        .collect();
+        .map(|case| Scene::read(case.join("scene.toml")));
+    let scenes: Vec<_> = scenes.collect();
     reject_duplicate_names(&cases, &scenes)?;
     scenes.iter().flatten().for_each(print_warnings);
     let bar = progress_bar();
@@ -85,22 +85,15 @@ fn collect_reports(
     results: Vec<Result<Validation, SceneError>>,
 ) -> (Outcome, Option<Report>) {
     let mut all = Outcome::default();
-    let names: Vec<_> = cases
+    let names: Vec<String> = cases
         .iter()
         .map(|case| case.display().to_string())
         .collect();
-    let case_results: Vec<_> = names
-        .iter()
-        .zip(scenes)
-        .zip(&results)
-        .map(|((name, scene), result)| {
-            let outcome = match (scene, result) {
-                (Ok(scene), Ok(done)) => Ok((scene, done)),
-                (Err(error), _) | (_, Err(error)) => Err(error.message.clone()),
-            };
-            (name.as_str(), outcome)
-        })
-        .collect();
+    let results_of = scenes.iter().zip(&results).map(|of_case| match of_case {
+        (Ok(scene), Ok(done)) => Ok((scene, done)),
+        (Err(error), _) | (_, Err(error)) => Err(error.message.clone()),
+    });
+    let case_results: Vec<_> = names.iter().map(String::as_str).zip(results_of).collect();
     let mut failures = Vec::new();
     let mut files = Files::new();
     if cases.len() > 1 && results.iter().any(Result::is_ok) {

@@ -5,9 +5,10 @@ use crate::mechanism::Mechanism;
 use dwell_dynamics::{Method, Orbit};
 use dwell_findings::Column;
 use dwell_study::free_motion::compute::FreeMotionProblem;
-use dwell_study::free_motion::{MotionSolver, compute_free_motion};
-use dwell_study::trajectory::compute_trajectory;
-use dwell_study::{Analysis, SolverSettings};
+use dwell_study::trajectory::compute::ComputedTrajectory;
+use dwell_study::{
+    Analysis, MotionSolver, SolverSettings, compute_free_motion, compute_trajectory, no_progress,
+};
 
 impl Mechanism {
     /// Positions, velocities, accelerations, actuator forces and reactions along the prescribed motion or the coordinate
@@ -25,14 +26,9 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn kinetostatics(&self) -> Result<MotionResults, Error> {
-        let computed = compute_trajectory(self.scene.inner(), Analysis::Kinetostatics, None)?;
-        Ok(MotionResults {
-            columns: computed.table.columns,
-            rows: computed.table.rows,
-            events: Vec::new(),
-            estimated_error: None,
-            early_stop: computed.early_stop.map(Error::from),
-        })
+        let (scene, analysis) = (self.scene.inner(), Analysis::Kinetostatics);
+        let (computed, _) = compute_trajectory(scene, analysis, None, &no_progress)?;
+        Ok(MotionResults::new(computed))
     }
 
     /// The free motion of the scene under its loads, drives and friction: every column that `dwell simulate` writes, all
@@ -59,13 +55,11 @@ impl Mechanism {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn simulate(&self, solver: &Solver) -> Result<MotionResults, Error> {
-        let computed = compute_free_motion(self.scene.inner(), &solver.0)?;
+        let motion = compute_free_motion(self.scene.inner(), &solver.0, &no_progress)?;
         Ok(MotionResults {
-            columns: computed.motion.table.columns,
-            rows: computed.motion.table.rows,
-            events: computed.events,
-            estimated_error: computed.estimated_error,
-            early_stop: computed.motion.early_stop.map(Error::from),
+            events: motion.events,
+            estimated_error: motion.estimated_error,
+            ..MotionResults::new(motion.computed)
         })
     }
 
@@ -205,6 +199,16 @@ pub struct MotionResults {
 }
 
 impl MotionResults {
+    fn new(computed: ComputedTrajectory<'_>) -> Self {
+        Self {
+            columns: computed.table.columns,
+            rows: computed.table.rows,
+            events: Vec::new(),
+            estimated_error: None,
+            early_stop: computed.early_stop.map(Error::from),
+        }
+    }
+
     /// Names and units of the columns.
     ///
     /// ```

@@ -1,17 +1,16 @@
 //! `dwell check`: mobility, range, groups and assembly modes of a scene, before anything moves.
 
 use crate::explain::StudyError;
-use crate::number_format::{count, digits, number};
+use crate::models::{loaded_model, requested_reaction_bodies};
+use crate::number_format::{coordinate_unit, count, digits, number};
 #[cfg(feature = "output")]
 use crate::output::Outcome;
+use crate::trajectory::compute::{check_variables, requested_bodies};
 use dwell_geometry::mobility::mobility;
 use dwell_geometry::plan::GroupModes;
-use dwell_geometry::{
-    AssemblyConfiguration, BodyId, BranchHint, JointId, Mechanism, Plan, Range, RangeLimit,
-};
+use dwell_geometry::{BodyId, BranchHint, JointId, Mechanism, Plan, Range, RangeLimit};
 use dwell_kinetostatics::{Load, Mesh, Model};
 use dwell_scene::Scene;
-use std::fmt::Write as _;
 
 /// Describes a scene: degrees of freedom, groups, assembly modes, range, pruning and requests. It writes
 /// no file.
@@ -32,111 +31,98 @@ pub fn check(scene: &Scene) -> Result<Outcome, StudyError> {
 /// [`StudyError::Scene`] when the mechanism cannot be assembled, or a requested column does not exist.
 pub fn describe_scene(scene: &Scene) -> Result<String, StudyError> {
     let mechanism = &scene.mechanism;
-    let configuration = scene.assembly.to_configuration();
-    let model = crate::models::loaded_model(scene)?;
-    let notes = crate::trajectory::compute::check_variables(scene, &model)?;
+    let model = loaded_model(scene)?;
+    let notes = check_variables(scene, &model)?;
     let plan = model.plan();
-    let mut text = format!("{}\n", scene.title);
-    // Writing to a string cannot fail.
-    let _ = writeln!(
-        text,
-        "  {}, {}, {}, driven by {}",
+    let mut text = format!(
+        "{}\n  {}, {}, {}, driven by {}\n",
+        scene.title,
         count(mechanism.bodies.len() - 1, "moving body"),
         count(mechanism.joints.len(), "joint"),
         count(plan.actuators(), "degree of freedom"),
         list(mechanism.actuators.iter().map(|a| a.name.as_str())),
     );
-    describe_freedom(mechanism, &configuration, plan, &mut text);
-    describe_range(mechanism, plan, &mut text);
-    describe_groups(mechanism, plan, &mut text);
-    describe_branch(mechanism, plan, &mut text);
-    describe_pruning(scene, &model, &mut text);
-    describe_teeth(scene, &mut text);
-    describe_requests(scene, &mut text);
+    text += &describe_freedom(scene, plan);
+    text += &describe_range(mechanism, plan);
+    text += &describe_groups(mechanism, plan);
+    text += &describe_branch(mechanism, plan);
+    text += &describe_pruning(scene, &model);
+    text += &describe_teeth(scene);
+    text += &describe_requests(scene);
     if let Some(note) = &scene.note {
-        let _ = writeln!(text, "  note: {note}");
+        text += &format!("  note: {note}\n");
     }
-    text += &notes;
-    Ok(text)
+    Ok(text + &notes)
+}
+
+/// Names separated by commas; `none` if there are none.
+fn list_or<'a>(names: impl IntoIterator<Item = &'a str>, none: &'a str) -> String {
+    match names.into_iter().collect::<Vec<_>>().as_slice() {
+        [] => none.to_owned(),
+        names => names.join(", "),
+    }
 }
 
 /// Names separated by commas.
 fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    names.into_iter().collect::<Vec<_>>().join(", ")
+    list_or(names, "")
 }
 
-pub(crate) fn body_names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
+fn body_names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
     list(bodies.iter().map(|&b| mechanism.body_name(b)))
 }
 
+/// The bodies that a group places.
+fn group_bodies(mechanism: &Mechanism, plan: &Plan, g: usize) -> String {
+    let bodies = plan.group_bodies(g);
+    list_or(bodies.iter().map(|&b| mechanism.body_name(b)), "a line")
+}
+
 /// Redundant constraints, which counting does not show.
-fn describe_freedom(
-    mechanism: &Mechanism,
-    configuration: &AssemblyConfiguration,
-    plan: &Plan,
-    text: &mut String,
-) {
-    let reactions = mechanism.reactions();
-    let indeterminate: Vec<String> = (0..reactions.len())
-        .filter(|&k| !plan.is_determinate(k))
-        .map(|k| mechanism.reaction_name(reactions[k]))
+fn describe_freedom(scene: &Scene, plan: &Plan) -> String {
+    let mechanism = &scene.mechanism;
+    let reactions = mechanism.reactions().into_iter().enumerate();
+    let indeterminate = reactions.filter(|&(k, _)| !plan.is_determinate(k));
+    let names: Vec<_> = indeterminate
+        .map(|(_, r)| mechanism.reaction_name(r))
         .collect();
-    if indeterminate.is_empty() {
-        return;
+    if names.is_empty() {
+        return String::new();
     }
-    if let Some(found) = mobility(mechanism, configuration) {
-        let _ = writeln!(
-            text,
-            "  {} degrees of freedom by counting (Grübler), {} by rank: {}, consistently",
-            found.grubler_count(),
-            found.degrees_of_freedom(),
-            if found.redundant_count == 1 {
-                "one constraint is redundant".to_owned()
-            } else {
-                format!("{} constraints are redundant", found.redundant_count)
-            },
+    let mut text = String::new();
+    if let Some(found) = mobility(mechanism, &scene.assembly.to_configuration()) {
+        let redundant = match found.redundant_count {
+            1 => "one constraint is redundant".to_owned(),
+            n => format!("{n} constraints are redundant"),
+        };
+        let (counted, by_rank) = (found.grubler_count(), found.degrees_of_freedom());
+        text = format!(
+            "  {counted} degrees of freedom by counting (Grübler), {by_rank} by rank: {redundant}, consistently\n"
         );
     }
-    let _ = writeln!(
-        text,
-        "  statically indeterminate, because redundant constraints share the load: {}",
-        indeterminate.join(", ")
-    );
+    let names = names.join(", ");
+    text + &format!(
+        "  statically indeterminate, because redundant constraints share the load: {names}\n"
+    )
 }
 
 /// The range of the actuator.
-fn describe_range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
+fn describe_range(mechanism: &Mechanism, plan: &Plan) -> String {
     let [actuator] = mechanism.actuators.as_slice() else {
-        let _ = writeln!(
-            text,
-            "  several actuators: limit positions are found along a motion or a sweep only"
-        );
-        return;
+        return "  several actuators: limit positions are found along a motion or a sweep only\n"
+            .to_owned();
     };
     let name = &actuator.name;
     let angle = plan.is_angle(0);
-    let interval_text = |from: f64, to: f64| {
-        if angle {
-            format!(
-                "from {from:.6} to {to:.6} rad ({:.2}° to {:.2}°)",
-                from.to_degrees(),
-                to.to_degrees()
-            )
-        } else {
-            format!("from {from:.6} to {to:.6} m")
+    let text = match plan.range() {
+        Range::Full => "rotates fully".to_owned(),
+        Range::Revolutions(revolutions) => {
+            format!("rotates fully; the mechanism is periodic after {revolutions} revolutions")
         }
-    };
-    let _ = match plan.range() {
-        Range::Full => writeln!(text, "  {name} rotates fully"),
-        Range::Revolutions(turns) => writeln!(
-            text,
-            "  {name} rotates fully; the mechanism is periodic after {turns} revolutions"
-        ),
-        Range::Unbounded if angle => writeln!(
-            text,
-            "  {name} is unlimited; the mechanism is not periodic within 8 revolutions"
-        ),
-        Range::Unbounded => writeln!(text, "  no limit of {name} was found"),
+        Range::Unbounded if angle => {
+            "is unlimited; the mechanism is not periodic within 8 revolutions".to_owned()
+        }
+        Range::Unbounded => return format!("  no limit of {name} was found\n"),
         Range::Limited(from, to) | Range::Stroke(from, to) | Range::Unresolved(from, to) => {
             let note = match plan.range_limits() {
                 [Some(_), Some(_)] => "",
@@ -144,269 +130,226 @@ fn describe_range(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
                 [None, Some(_)] => "; no lower limit was found down to there",
                 [None, None] => "; no limit was found up to there",
             };
-            writeln!(text, "  {name} ranges {}{note}", interval_text(from, to))
+            let unit = match angle {
+                true => format!("rad ({:.2}° to {:.2}°)", from.to_degrees(), to.to_degrees()),
+                false => "m".to_owned(),
+            };
+            format!("ranges from {from:.6} to {to:.6} {unit}{note}")
         }
     };
-    for end in plan.range_limits().into_iter().flatten() {
-        let _ = writeln!(text, "    {}", describe_limit(mechanism, plan, end));
-    }
+    let limits = plan.range_limits().into_iter().flatten();
+    let limits = limits.map(|limit| describe_limit(mechanism, plan, limit));
+    format!("  {name} {text}\n{}", limits.collect::<String>())
 }
 
 /// The cause of a limit.
-fn describe_limit(mechanism: &Mechanism, plan: &Plan, end: RangeLimit) -> String {
-    let unit = if plan.is_angle(0) { "rad" } else { "m" };
-    let bodies_text = if plan.group_methods().is_empty() {
-        String::new()
-    } else {
-        format!(
-            " of {}",
-            body_names(mechanism, &plan.group_bodies(end.group))
-        )
+fn describe_limit(mechanism: &Mechanism, plan: &Plan, limit: RangeLimit) -> String {
+    let what = match limit.change_point {
+        true => "change point (another assembly mode begins)",
+        false => "limit position",
     };
-    let what = if end.change_point {
-        "change point (another assembly mode begins)"
-    } else {
-        "limit position"
+    let bodies = match plan.group_methods().is_empty() {
+        true => String::new(),
+        false => " of ".to_owned() + &body_names(mechanism, &plan.group_bodies(limit.group)),
     };
-    format!("{:.12} {unit}: {what}{bodies_text}", end.q)
+    let unit = coordinate_unit(plan.is_angle(0));
+    format!("    {:.12} {unit}: {what}{bodies}\n", limit.q)
 }
 
-fn describe_groups(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
+fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {
     let groups = plan.group_methods();
-    if !groups.is_empty() {
-        let _ = writeln!(text, "  groups, in the order of solution:");
+    if groups.is_empty() {
+        return String::new();
     }
+    let mut text = "  groups, in the order of solution:\n".to_owned();
     for (g, (size, kind)) in groups.into_iter().enumerate() {
         let joints = plan.group_joints(g);
         let joints = joints.iter().map(|j| mechanism.joints[j.0].name.as_str());
-        let placed_bodies = body_names(mechanism, &plan.group_bodies(g));
-        let placed_bodies = if placed_bodies.is_empty() {
-            "a line".to_owned()
-        } else {
-            placed_bodies
-        };
-        let joints = list(joints);
-        let closed_by = if joints.is_empty() {
-            "its actuator".to_owned()
-        } else {
-            joints
-        };
-        let _ = writeln!(
-            text,
-            "    {}. {placed_bodies} closed by {closed_by}: {}, {kind}",
+        text += &format!(
+            "    {}. {} closed by {}: {}, {kind}\n",
             g + 1,
+            group_bodies(mechanism, plan, g),
+            list_or(joints, "its actuator"),
             count(size, "unknown"),
         );
-        let branches = &plan.group_modes()[g];
-        if branches.modes.len() > 1 {
-            for (k, mode) in branches.modes.iter().enumerate() {
-                let label = if k == 0 {
-                    "assembly mode in use:"
-                } else {
-                    "other assembly mode:"
-                };
-                let _ = writeln!(
-                    text,
-                    "       {label} {}",
-                    describe_mode(mechanism, branches, mode)
-                );
-            }
+        let found = &plan.group_modes()[g];
+        for (k, mode) in found
+            .modes
+            .iter()
+            .enumerate()
+            .filter(|_| found.modes.len() > 1)
+        {
+            let label = match k {
+                0 => "assembly mode in use:",
+                _ => "other assembly mode:",
+            };
+            text += &format!("       {label} {}\n", describe_mode(mechanism, found, mode));
         }
     }
+    text
 }
 
 /// The angles and travels that distinguish an assembly mode of a group.
-fn describe_mode(mechanism: &Mechanism, branches: &GroupModes, mode: &[f64]) -> String {
-    let angles = branches.bodies.iter().zip(mode);
-    let angles: Vec<_> = angles
-        .map(|(b, angle)| format!("{} = {:.4}", mechanism.body_name(*b), angle + 0.0))
-        .collect();
-    let mut texts = Vec::new();
-    if !angles.is_empty() {
-        texts.push(format!("{} rad", angles.join(", ")));
-    }
-    let values = mode.iter().skip(branches.bodies.len());
-    for (joint, value) in branches.joints.iter().zip(values) {
+fn describe_mode(mechanism: &Mechanism, found: &GroupModes, mode: &[f64]) -> String {
+    let (angles, values) = mode.split_at(found.bodies.len().min(mode.len()));
+    let angles = found.bodies.iter().zip(angles);
+    let angles = angles.map(|(b, a)| format!("{} = {:.4}", mechanism.body_name(*b), a + 0.0));
+    let angles = angles.collect::<Vec<_>>().join(", ");
+    let values = found.joints.iter().zip(values).map(|(joint, value)| {
         let joint = &mechanism.joints[joint.0];
-        let unit = match joint.kind.branch_hint() {
-            Some(BranchHint::Direction) => "rad",
-            _ => "m",
-        };
-        texts.push(format!("{} = {:.4} {unit}", joint.name, value + 0.0));
-    }
-    texts.join(", ")
+        let unit = coordinate_unit(joint.kind.branch_hint() == Some(BranchHint::Direction));
+        format!("{} = {:.4} {unit}", joint.name, value + 0.0)
+    });
+    let angles = (!angles.is_empty()).then(|| format!("{angles} rad"));
+    angles
+        .into_iter()
+        .chain(values)
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// The angles of all bodies at the start.
-fn describe_branch(mechanism: &Mechanism, plan: &Plan, text: &mut String) {
+fn describe_branch(mechanism: &Mechanism, plan: &Plan) -> String {
     let mut pose = plan.pose();
-    if plan
-        .positions(plan.assembly_coordinates(), &mut pose)
-        .is_err()
-    {
-        return;
+    let start = plan.assembly_coordinates();
+    if plan.positions(start, &mut pose).is_err() {
+        return String::new();
     }
-    let at: Vec<_> = mechanism
-        .actuators
-        .iter()
-        .enumerate()
-        .map(|(i, a)| {
-            let unit = if plan.is_angle(i) { "rad" } else { "m" };
-            format!(
-                "{} = {} {unit}",
-                a.name,
-                number(plan.assembly_coordinates()[i])
-            )
-        })
-        .collect();
-    let _ = writeln!(text, "  body angles at {}:", at.join(", "));
-    let named = || {
-        let carried = plan.moving_bodies().iter().map(|c| c.body);
-        carried.filter(|&b| b < mechanism.bodies.len()).map(BodyId)
-    };
-    let widths = named().map(|b| mechanism.body_name(b).chars().count());
+    let at = mechanism.actuators.iter().zip(start).enumerate();
+    let at = at.map(|(i, (a, &q))| {
+        let unit = coordinate_unit(plan.is_angle(i));
+        format!("{} = {} {unit}", a.name, number(q))
+    });
+    let mut text = format!("  body angles at {}:\n", at.collect::<Vec<_>>().join(", "));
+    let bodies = plan.moving_bodies().iter().map(|c| c.body);
+    let bodies = bodies.filter(|&b| b < mechanism.bodies.len()).map(BodyId);
+    let widths = bodies
+        .clone()
+        .map(|b| mechanism.body_name(b).chars().count());
     let width = widths.max().unwrap_or(0);
-    for body in named() {
-        let angle = plan.body_rotation(body, &pose).angle();
+    for body in bodies {
+        let (name, angle) = (
+            mechanism.body_name(body),
+            plan.body_rotation(body, &pose).angle(),
+        );
         // Rounded first, so that no zero keeps a minus sign.
         let [radians, degrees] = [(angle, 1e6), (angle.to_degrees(), 1e3)]
             .map(|(value, parts)| (value * parts).round() / parts + 0.0);
-        let _ = writeln!(
-            text,
-            "    {:<width$}  {radians:9.6} rad  {degrees:8.3}°",
-            mechanism.body_name(body),
-        );
+        text += &format!("    {name:<width$}  {radians:9.6} rad  {degrees:8.3}°\n");
     }
+    text
 }
 
 /// The groups that trajectory analyses model, and why; and those that they and the reduced model skip.
-fn describe_pruning(scene: &Scene, model: &Model, text: &mut String) {
-    let mechanism = &scene.mechanism;
-    let plan = model.plan();
-    let group = |g: usize| match body_names(mechanism, &plan.group_bodies(g)) {
-        none if none.is_empty() => format!("{}. a line", g + 1),
-        named => format!("{}. {named}", g + 1),
-    };
-    let count = plan.group_methods().len();
-    match crate::trajectory::compute::requested_bodies(scene, model) {
-        _ if count == 0 => {}
-        None => {
-            let _ = writeln!(
-                text,
-                "  modelled along a trajectory: every group, since no `variables` are requested"
-            );
-        }
-        Some(requested) => {
-            let massive = scene.masses.iter().enumerate();
-            let massive = massive.filter(|(_, m)| m.mass > 0.0 || m.inertia > 0.0);
-            let loaded = scene.loads.iter().flat_map(|load| load.bodies(mechanism));
-            let needs = [
-                ("inertia", plan.groups_needed_by(massive.map(|(b, _)| b))),
-                ("loads", plan.groups_needed_by(loaded.map(|b| b.0))),
-                (
-                    "requests",
-                    plan.groups_needed_by(requested.iter().map(|b| b.0)),
-                ),
-            ];
-            let _ = writeln!(text, "  modelled along a trajectory, because of:");
-            for g in 0..count {
-                let needs = needs.iter().filter(|(_, needed)| needed[g]);
-                let needs = list(needs.map(|(what, _)| *what));
-                let why = match needs.is_empty() {
-                    true => "skipped, it affects no inertia, load or requested result",
-                    false => &needs,
-                };
-                let _ = writeln!(text, "    {}: {why}", group(g));
-            }
-        }
-    }
+fn describe_pruning(scene: &Scene, model: &Model) -> String {
+    let (mechanism, plan) = (&scene.mechanism, model.plan());
+    let group = |g: usize| format!("{}. {}", g + 1, group_bodies(mechanism, plan, g));
+    let mut text = describe_needs(scene, model, &group);
     if plan.actuators() == 1 {
-        let requested_bodies = crate::models::requested_reaction_bodies(scene);
+        let requested = requested_reaction_bodies(scene);
         let unloaded = Model::clone(model).with_loads(Vec::new());
-        let pruned = unloaded.map(|unloaded| {
-            unloaded
-                .pruned_for(&requested_bodies)
-                .plan()
-                .pruned_groups()
-        });
+        let pruned =
+            unloaded.map(|unloaded| unloaded.pruned_for(&requested).plan().pruned_groups());
         let pruned = pruned.unwrap_or_default().into_iter().enumerate();
         let pruned: Vec<String> = pruned.filter(|s| s.1).map(|(g, _)| group(g)).collect();
         if !pruned.is_empty() {
-            let _ = writeln!(
-                text,
-                "  skipped by `reduce` and `simulate`, as they affect no inertia or requested reaction: {}",
-                pruned.join("; ")
+            let pruned = pruned.join("; ");
+            text += &format!(
+                "  skipped by `reduce` and `simulate`, as they affect no inertia or requested reaction: {pruned}\n"
             );
         }
     }
-    let massless: Vec<_> = plan
+    let is_massless = |&b: &usize| {
+        let mass = scene.masses.get(b);
+        mass.is_some_and(|mass| mass.mass == 0.0 && mass.inertia == 0.0)
+    };
+    let massless = plan
         .moving_bodies()
         .iter()
-        .filter_map(|c| scene.masses.get(c.body).map(|mass| (c.body, mass)))
-        .filter(|(_, mass)| mass.mass == 0.0 && mass.inertia == 0.0)
-        .map(|(b, _)| mechanism.body_name(BodyId(b)))
-        .collect();
+        .map(|c| c.body)
+        .filter(is_massless);
+    let massless = list(massless.map(|b| mechanism.body_name(BodyId(b))));
     if !massless.is_empty() {
-        let _ = writeln!(
-            text,
-            "  massless, so without inertia forces: {}",
-            massless.join(", ")
-        );
+        text += &format!("  massless, so without inertia forces: {massless}\n");
     }
+    text
+}
+
+/// Why each group is modelled along a trajectory.
+fn describe_needs(scene: &Scene, model: &Model, group: &dyn Fn(usize) -> String) -> String {
+    let plan = model.plan();
+    let groups = plan.group_methods().len();
+    let Some(requested) = requested_bodies(scene, model).filter(|_| groups > 0) else {
+        return match groups {
+            0 => String::new(),
+            _ => "  modelled along a trajectory: every group, since no `variables` are requested\n"
+                .to_owned(),
+        };
+    };
+    let massive = scene.masses.iter().enumerate();
+    let massive = massive.filter(|(_, m)| m.mass > 0.0 || m.inertia > 0.0);
+    let loaded = scene
+        .loads
+        .iter()
+        .flat_map(|load| load.bodies(&scene.mechanism));
+    let needs = [
+        ("inertia", plan.groups_needed_by(massive.map(|(b, _)| b))),
+        ("loads", plan.groups_needed_by(loaded.map(|b| b.0))),
+        (
+            "requests",
+            plan.groups_needed_by(requested.iter().map(|b| b.0)),
+        ),
+    ];
+    let mut text = "  modelled along a trajectory, because of:\n".to_owned();
+    for g in 0..groups {
+        let needs = needs.iter().filter(|(_, needed)| needed[g]);
+        let skipped = "skipped, it affects no inertia, load or requested result";
+        let why = list_or(needs.map(|(what, _)| *what), skipped);
+        text += &format!("    {}: {why}\n", group(g));
+    }
+    text
 }
 
 /// The teeth that have a separating force, and those that have none.
-fn describe_teeth(scene: &Scene, text: &mut String) {
+fn describe_teeth(scene: &Scene) -> String {
     let joints = scene.mechanism.joints.iter().enumerate();
-    let toothed = joints.filter(|(_, joint)| Mesh::of(joint).is_some());
     let (mut with, mut without) = (Vec::new(), Vec::new());
-    for (j, joint) in toothed {
+    for (j, joint) in joints.filter(|(_, joint)| Mesh::of(joint).is_some()) {
         let mut teeth = scene.loads.iter().filter_map(Load::pressure_angle);
         match teeth.find(|teeth| teeth.joint == JointId(j)) {
-            Some(teeth) => with.push(format!(
-                "{} (pressure angle {}°)",
-                joint.name,
-                digits(teeth.angle.to_degrees(), 6)
-            )),
+            Some(teeth) => {
+                let angle = digits(teeth.angle.to_degrees(), 6);
+                with.push(format!("{} (pressure angle {angle}°)", joint.name));
+            }
             None => without.push(joint.name.as_str()),
         }
     }
+    let mut text = String::new();
     if !with.is_empty() {
-        let _ = writeln!(text, "  separating forces: {}", with.join(", "));
+        text += &format!("  separating forces: {}\n", with.join(", "));
     }
     if !without.is_empty() {
-        let _ = writeln!(
-            text,
-            "  no separating force is modelled, as no `pressure-angle` is given: {}",
-            list(without)
+        let without = list(without);
+        text += &format!(
+            "  no separating force is modelled, as no `pressure-angle` is given: {without}\n"
         );
     }
+    text
 }
 
-fn describe_requests(scene: &Scene, text: &mut String) {
+fn describe_requests(scene: &Scene) -> String {
     let mechanism = &scene.mechanism;
-    let requested = &scene.requests.reactions;
-    let names: Vec<_> = requested
-        .iter()
-        .map(|&r| mechanism.reaction_name(r))
-        .collect();
-    let others = mechanism.reactions().len() - names.len();
-    let _ = writeln!(
-        text,
-        "  reactions requested: {}{}",
-        if names.is_empty() {
-            "none".to_owned()
-        } else {
-            names.join(", ")
-        },
-        if others > 0 {
-            format!(" ({others} others are not computed: not requested)")
-        } else {
-            String::new()
-        }
-    );
+    let requested = scene.requests.reactions.iter();
+    let names: Vec<_> = requested.map(|&r| mechanism.reaction_name(r)).collect();
+    let others = match mechanism.reactions().len() - names.len() {
+        0 => String::new(),
+        others => format!(" ({others} others are not computed: not requested)"),
+    };
+    let names = list_or(names.iter().map(String::as_str), "none");
+    let mut text = format!("  reactions requested: {names}{others}\n");
     if !scene.loads.is_empty() {
         let loads = list(scene.loads.iter().map(|l| l.name.as_str()));
-        let _ = writeln!(text, "  loads: {loads}");
+        text += &format!("  loads: {loads}\n");
     }
+    text
 }

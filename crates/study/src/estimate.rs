@@ -40,11 +40,8 @@ pub fn comparison_options(options: &Options) -> Options {
 /// second run cannot show, in the quantity's unit.
 pub fn of_motion(first: &[f64], second: &[f64], rounding: f64) -> f64 {
     let recent = (first.len() - first.len() / 8).saturating_sub(1);
-    let differences = first
-        .iter()
-        .zip(second)
-        .skip(recent)
-        .map(|(a, b)| (a - b).abs());
+    let pairs = first.iter().zip(second).skip(recent);
+    let differences = pairs.map(|(a, b)| (a - b).abs());
     SAFETY_FACTOR * differences.fold(0.0, f64::max) + rounding
 }
 
@@ -52,6 +49,11 @@ pub fn of_motion(first: &[f64], second: &[f64], rounding: f64) -> f64 {
 pub fn of_value(value: f64, finer: DoubleDouble, size: f64) -> f64 {
     (DoubleDouble::from_f64(value) - finer).hi.abs()
         + COMPILED_ROUNDINGS * f64::EPSILON * value.abs().max(size)
+}
+
+/// An error relative to a scale; 0 if there is no error, whatever the scale.
+pub(crate) fn relative(error: f64, scale: f64) -> f64 {
+    if error == 0.0 { 0.0 } else { error / scale }
 }
 
 /// The reduced coefficients at `q` (rad or m), and the estimated rounding error of each.
@@ -62,16 +64,11 @@ pub fn coefficients_with_errors(
     model: &Model,
     q: f64,
 ) -> Result<(Coefficients, Coefficients), PositionError> {
-    let (mut values, mut finer) = (
-        model.coefficient_buffer::<f64>(),
-        model.coefficient_buffer::<DoubleDouble>(),
-    );
+    let mut values = model.coefficient_buffer::<f64>();
+    let mut finer = model.coefficient_buffer::<DoubleDouble>();
     model.reduce(q, &mut model.workspace(), &mut values)?;
-    model.reduce(
-        DoubleDouble::from_f64(q),
-        &mut model.workspace(),
-        &mut finer,
-    )?;
+    let exact_q = DoubleDouble::from_f64(q);
+    model.reduce(exact_q, &mut model.workspace(), &mut finer)?;
     let list = |of: &[f64], finer: &[DoubleDouble]| {
         let size = of.iter().fold(0.0_f64, |size, v| size.max(v.abs()));
         let pairs = of.iter().zip(finer);

@@ -36,6 +36,7 @@ pub mod number_format;
 #[cfg(feature = "output")]
 pub mod output;
 mod progress;
+mod ranges;
 
 mod calibrate;
 mod check;
@@ -54,13 +55,14 @@ pub use cycle::compute_cycle;
 pub use dwell_symbolic::Language;
 pub use equilibria::compute_equilibria;
 pub use explain::{StudyError, SweepError};
+pub use free_motion::{MotionSolver, compute_free_motion};
 pub use linearise::{OperatingPoint, compute_linearisation};
 pub use models::{PRESETS, PreparedScene, SolverSettings};
 pub use progress::{Progress, Step, no_progress};
 pub use reduce::{TableRequest, compute_reduction};
-pub use sweep::Shard;
+pub use sweep::{Shard, compute_sweep};
 pub use symbolic::{compute_closed_form, symbolic_findings};
-pub use trajectory::Analysis;
+pub use trajectory::{Analysis, compute_trajectory};
 
 #[cfg(feature = "output")]
 pub use {

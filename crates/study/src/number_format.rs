@@ -29,6 +29,16 @@ pub fn number(value: f64) -> String {
     digits(value, 6)
 }
 
+/// Unit of a coordinate: an angle or a length.
+pub fn coordinate_unit(is_angle: bool) -> &'static str {
+    if is_angle { "rad" } else { "m" }
+}
+
+/// Unit of the force along a coordinate.
+pub fn force_unit(is_angle: bool) -> &'static str {
+    if is_angle { "N m" } else { "N" }
+}
+
 /// `1 actuator`, `2 actuators`, `3 degrees of freedom`, `0 bodies`.
 pub fn count(number: usize, thing: &str) -> String {
     if number == 1 {

@@ -1,4 +1,4 @@
-//! What a careless user is told: the words are reviewed in the snapshots. Each of these inputs ends
+//! Messages for invalid input, which are reviewed in the snapshots. Each of these inputs ends
 //! with exit status 2, nothing on standard output but what was found before, and no file touched.
 
 use crate::test_dir::{LIMITED, TestDir, four_bar_with};

@@ -28,7 +28,7 @@ fn check_describes_the_single_dwell_and_writes_nothing() {
     settings.bind(|| insta::assert_snapshot!("check-single-dwell", run.out));
 }
 
-/// Also of a mechanism without ends, over the turn that is shown.
+/// Also of a mechanism without ends, over the revolution that is shown.
 #[test]
 fn reduce_makes_a_table_that_needs_no_mechanism() {
     let dir = TestDir::new();
@@ -53,7 +53,7 @@ fn reduce_makes_a_table_that_needs_no_mechanism() {
     }
 }
 
-/// Over a part of the turn, in the scene's unit: degrees here.
+/// Over a part of the revolution, in the scene's unit: degrees here.
 #[test]
 fn reduce_makes_a_table_of_a_part_of_the_turn() {
     let dir = TestDir::new();
@@ -239,7 +239,7 @@ fn calibrate_finds_the_inertia_of_the_single_dwell() {
         "Single-dwell mechanism: crank.inertia = 0.626326641678 kg m2 gives the period 5.42 s\n  \
          the scene has 0.626 kg m2, which gives 5.419662677064 s\n"
     );
-    // The other way round, with a value of another kind.
+    // The reverse, with a value of another kind.
     let arguments = ["--parameter", "coupler.mass", "--period", "5.42"];
     let run = dir.run(&[&["calibrate", &case("single-dwell")], &arguments[..]].concat());
     assert_eq!(run.status, Some(0));
@@ -439,12 +439,12 @@ fn odd_motions_are_told_as_they_are() {
     );
     assert!(out.contains("at its dead point"), "{out}");
     assert!(out.contains("  2 s by Tsit45"), "{out}");
-    // A hundred thousand turns on, the same motion.
-    let turned = [(
+    // The same motion, a hundred thousand revolutions later.
+    let rotated = [(
         "initial-coordinate = 1.0",
         "initial-coordinate = 628319.5307179587",
     )];
-    let out = output(four_bar_with(&turned), &["simulate", "scene.toml"]);
+    let out = output(four_bar_with(&rotated), &["simulate", "scene.toml"]);
     assert!(out.contains("period 0.75506323"), "{out}");
     let fast = [("initial-velocity = 10.0", "initial-velocity = 1e30")];
     let out = output(four_bar_with(&fast), &["simulate", "scene.toml"]);
@@ -465,10 +465,10 @@ fn odd_motions_are_told_as_they_are() {
     assert!(out.contains("no body with mass moves"), "{out}");
 }
 
-/// Friction that brings a mechanism to rest is stiff there: an explicit method creeps through it, and is
-/// told of another.
+/// Friction that brings a mechanism to rest is stiff there: an explicit method needs many steps, and the summary
+/// suggests another.
 #[test]
-fn a_method_that_chokes_is_told_of_another() {
+fn a_method_that_needs_many_steps_is_advised_of_another() {
     let dir = TestDir::new();
     let friction = "[loads]\nweight = { gravity = [0, -9.81] }\n[friction.A]\ncoefficient = 0.3\n\
                radius = 0.05\nregularization-speed = 0.001\n[motion]";

@@ -1,4 +1,4 @@
-//! What a careless user of tables and sweeps is told, as in `messages`.
+//! Messages for invalid tables and sweeps, as in `messages`.
 
 use crate::messages::Group;
 use crate::test_dir::{LIMITED, four_bar_with};

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 /// A mechanism without anything special about it.
 pub(crate) const FOUR_BAR: &str = include_str!("four-bar.toml");
-/// The same whose crank is too long to turn fully.
+/// The same whose crank is too long to rotate fully.
 pub(crate) const LIMITED: [(&str, &str); 4] = [
     ("B = [0.1, 0]", "B = [0.3, 0]"),
     ("C = [0.35, 0]", "C = [0.2, 0]"),

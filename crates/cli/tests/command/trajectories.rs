@@ -52,7 +52,7 @@ fn kinematics_writes_positions_speeds_and_accelerations() {
     }
     assert!(!header.iter().any(|h| h.contains("[N")), "{header:?}");
     assert!(
-        run.out.contains("361 positions over one turn of phi"),
+        run.out.contains("361 positions over one revolution of phi"),
         "{}",
         run.out
     );

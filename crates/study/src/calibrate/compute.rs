@@ -1,7 +1,7 @@
 //! Finds a scene value by the period of the free motion.
 
-use crate::explain::{StudyError, explain_motion};
-use crate::models::reduced_model;
+use crate::explain::{StudyError, explain_motion, missing_section_label, scene_error};
+use crate::models::{initial_reduced_state, reduced_model};
 use crate::number_format::{digits, number};
 use dwell_dynamics::Orbit;
 use dwell_numerics::root;
@@ -39,75 +39,54 @@ const BISECTIONS: usize = 12;
 pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationResult, StudyError> {
     let current = scene.value(path)?;
     let unit = scene.unit_of(path).to_owned();
-    let refuse = |message: String, help: &str| -> StudyError {
-        let at = [(scene.location_of(path), "the value to calibrate".to_owned())];
-        scene.error(message, Some(help.to_owned()), &at).into()
+    let refuse = |message: String, help: &str| {
+        let place = (scene.location_of(path), "the value to calibrate");
+        scene_error(scene, message, help, [place])
     };
     if !(period.is_finite() && period > 0.0) {
-        return Err(scene
-            .error(
-                format!("the required period {period} s is not a positive time"),
-                Some("give a time in seconds, such as 5.42".to_owned()),
-                &[(
-                    SceneLocation::Calibration,
-                    "the period of this motion".to_owned(),
-                )],
-            )
-            .into());
+        return Err(scene_error(
+            scene,
+            format!("the required period {period} s is not a positive time"),
+            "give a time in seconds, such as 5.42",
+            [(SceneLocation::Calibration, "the period of this motion")],
+        ));
     }
     let current_period = period_of(scene)?;
-    let result = |calibrated_value: f64| CalibrationResult {
+    let result = |value: f64| CalibrationResult {
         path: path.to_owned(),
         unit: unit.clone(),
         current,
         current_period,
-        value: calibrated_value,
+        value,
         period,
     };
     if current_period == period {
         return Ok(result(current));
     }
     if current == 0.0 {
-        return Err(refuse(
-            format!("`{path}` is zero, and the search multiplies the present value by factors"),
-            "give an approximate value in the scene first",
-        ));
+        let message = "is zero, and the search multiplies the present value by factors";
+        let help = "give an approximate value in the scene first";
+        return Err(refuse(format!("`{path}` {message}"), help));
     }
     let period_with = |value: f64| period_of(&scene.with_value(path, value)?);
     let search = BracketSearch::outwards(current, current_period, period, &period_with);
-    let Some((a, b)) = search.bracket else {
-        let [from, to] = search.values.map(|v| digits(v, 3));
-        let [shortest, longest] = search.periods.map(number);
-        let periods_text = if shortest == longest {
-            format!("the period stays {shortest} s")
-        } else {
-            format!("it gives periods from {shortest} to {longest} s")
-        };
-        return Err(refuse(
-            format!(
-                "no value of `{path}` gives the period {} s: from {from} to {to} {unit} {periods_text}",
-                number(period)
-            ),
-            if search.left_range {
-                "beyond these values the motion has no period"
-            } else {
-                "calibrate another value, or require a period within this interval"
-            },
-        ));
-    };
+    let (a, b) = search.bracket.ok_or_else(|| {
+        let (found, help) = search.describe(&unit);
+        let required = number(period);
+        let message = format!("no value of `{path}` gives the period {required} s: {found}");
+        refuse(message, help)
+    })?;
     let residual = |value: f64| -> Result<f64, StudyError> { Ok(period_with(value)? - period) };
-    let calibrated_value = root::find(residual, a, b)?.ok_or_else(|| {
+    let value = root::find(residual, a, b)?.ok_or_else(|| {
+        let [period, a, b] = [period, a, b].map(number);
         refuse(
             format!(
-                "the period is discontinuous at {} s, between {} and {} {unit} of `{path}`",
-                number(period),
-                number(a),
-                number(b)
+                "the period is discontinuous at {period} s, between {a} and {b} {unit} of `{path}`"
             ),
             "the mechanism changes its assembly mode there",
         )
     })?;
-    Ok(result(calibrated_value))
+    Ok(result(value))
 }
 
 /// The search for a bracket of the required period.
@@ -123,6 +102,20 @@ struct BracketSearch {
 }
 
 impl BracketSearch {
+    /// The values tried and their periods, and what to try instead.
+    fn describe(&self, unit: &str) -> (String, &'static str) {
+        let [from, to] = self.values.map(|v| digits(v, 3));
+        let periods = match self.periods.map(number) {
+            [shortest, longest] if shortest == longest => format!("the period stays {shortest} s"),
+            [shortest, longest] => format!("it gives periods from {shortest} to {longest} s"),
+        };
+        let help = match self.left_range {
+            true => "beyond these values the motion has no period",
+            false => "calibrate another value, or require a period within this interval",
+        };
+        (format!("from {from} to {to} {unit} {periods}"), help)
+    }
+
     /// Searches outwards from a value in both directions, squaring the factor each time. Before a value
     /// without a period it bisects, so that the values near that limit are tried as well.
     fn outwards(
@@ -153,10 +146,8 @@ impl BracketSearch {
         let mut outermost = [Some(current), Some(current)];
         let mut factor = FIRST_FACTOR;
         loop {
-            for (outer, next) in outermost
-                .iter_mut()
-                .zip([current * factor, current / factor])
-            {
+            let next = [current * factor, current / factor];
+            for (outer, next) in outermost.iter_mut().zip(next) {
                 let Some(last) = *outer else { continue };
                 *outer = try_value(&mut search, last, next).then_some(next);
                 if outer.is_none() {
@@ -186,24 +177,15 @@ impl BracketSearch {
 
 fn period_of(scene: &Scene) -> Result<f64, StudyError> {
     let exact = reduced_model(scene, &[])?;
-    let Some(spec) = &scene.motion else {
-        return Err(scene
-            .error(
-                "a period needs a [motion]".to_owned(),
-                Some("add [motion] with `speed` and `periods`".to_owned()),
-                &[(
-                    SceneLocation::Whole,
-                    "there is no [motion] in this file".to_owned(),
-                )],
-            )
-            .into());
+    let Some(start) = initial_reduced_state(scene) else {
+        return Err(scene_error(
+            scene,
+            "a period needs a [motion]",
+            "add [motion] with `speed` and `periods`",
+            missing_section_label("motion"),
+        ));
     };
-    let start = dwell_dynamics::ReducedState {
-        t: 0.0,
-        q: spec.initial_coordinates[0],
-        q_dot: spec.initial_velocities[0],
-    };
-    let orbit =
-        Orbit::new(&exact, start).map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
+    let orbit = Orbit::new(&exact, start);
+    let orbit = orbit.map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
     Ok(orbit.period)
 }

@@ -1,11 +1,11 @@
 //! Writes a calibration: its summary.
 
 use crate::calibrate::compute::find_value;
-use crate::explain::StudyError;
+use crate::explain::{StudyError, missing_section_label, scene_error};
 use crate::models::PreparedScene;
 use crate::number_format::digits;
 use crate::output::Outcome;
-use dwell_scene::{Scene, SceneLocation};
+use dwell_scene::Scene;
 
 /// `dwell calibrate`, with the path and the period of the scene's `[calibration]` where none is given.
 ///
@@ -22,19 +22,12 @@ pub fn calibrate(
     let path = path.or(section.map(|c| c.path.as_str()));
     let period = period.or(section.map(|c| c.period));
     let (Some(path), Some(period)) = (path, period) else {
-        return Err(scene
-            .error(
-                "the value to calibrate or the required period is not given".to_owned(),
-                Some(
-                    "give --parameter BODY.inertia and --period SECONDS, or a [calibration] in the scene"
-                        .to_owned(),
-                ),
-                &[(
-                    SceneLocation::Whole,
-                    "there is no [calibration] in this file".to_owned(),
-                )],
-            )
-            .into());
+        return Err(scene_error(
+            scene,
+            "the value to calibrate or the required period is not given",
+            "give --parameter BODY.inertia and --period SECONDS, or a [calibration] in the scene",
+            missing_section_label("calibration"),
+        ));
     };
     let result = find_value(scene, path, period)?;
     Ok(Outcome {

@@ -1,10 +1,10 @@
 //! Computes the steady cycle, its tables, and the flywheel.
 
-use crate::explain::StudyError;
+use crate::explain::{StudyError, labels};
 use crate::models::{SceneMachine, SolverSettings};
-use crate::number_format::{count, digits};
+use crate::number_format::{coordinate_unit, count, digits};
 use dwell_dynamics::{
-    Cycle, DynamicsError, Flywheel, Machine, Options, initial_transient, size_flywheel,
+    Cycle, DynamicsError, Flywheel, Machine, OdeState, Options, initial_transient, size_flywheel,
     steady_cycle,
 };
 use dwell_findings::{Column, Table};
@@ -32,110 +32,95 @@ fn in_first_revolution(mut cycle: Cycle) -> Cycle {
 }
 
 /// Rejects a machine whose free coordinate does not rotate fully.
-fn require_rotating(scene_machine: &SceneMachine<'_>) -> Result<(), StudyError> {
-    let free = scene_machine.machine.free();
-    if scene_machine.machine.nonconservative_sources().is_empty() {
-        return Err(scene_machine.error(
-            "no unique steady cycle: without a drive or losses the machine cycles at any speed"
-                .to_owned(),
+fn require_rotating(prepared: &SceneMachine<'_>) -> Result<(), StudyError> {
+    let free = prepared.machine.free();
+    if prepared.machine.nonconservative_sources().is_empty() {
+        return Err(prepared.error(
+            "no unique steady cycle: without a drive or losses the machine cycles at any speed",
             "add a drive, as in `[drives]`; `dwell simulate` shows the free motion and its period",
-            &[scene_machine.initial_state_label("of this motion")],
+            prepared.initial_state_label("of this motion"),
         ));
     }
-    let label = |i: usize, words: &str| (SceneLocation::Actuator(ActuatorId(i)), words.to_owned());
+    let actuators = free.iter().map(|&i| SceneLocation::Actuator(ActuatorId(i)));
     if free.len() != 1 {
-        let labels: Vec<_> = free.iter().take(8).map(|&i| label(i, "free")).collect();
-        return Err(scene_machine.error(
-            format!(
-                "a steady cycle needs exactly one free coordinate; {} are free",
-                free.len()
-            ),
+        let count = free.len();
+        return Err(prepared.error(
+            format!("a steady cycle needs exactly one free coordinate; {count} are free"),
             "prescribe the others by constant laws in [motion]",
-            &labels,
+            labels(actuators.take(8), "free"),
         ));
     }
-    let (coordinate, is_angle) = scene_machine.first_free_coordinate();
-    let range = scene_machine.machine.model().plan().range();
-    let extent_text = match range.limits() {
+    let (coordinate, is_angle) = prepared.first_free_coordinate();
+    let range = prepared.machine.model().plan().range();
+    let fault = match range.limits() {
         None if is_angle => return Ok(()),
         None => "is a length".to_owned(),
         Some((from, to)) => {
-            let unit = if is_angle { "rad" } else { "m" };
             let [from, to] = [from, to].map(|end| digits(end, 6));
-            format!("is limited to {from} to {to} {unit}")
+            format!("is limited to {from} to {to} {}", coordinate_unit(is_angle))
         }
     };
-    Err(scene_machine.error(
-        format!(
-            "`{}` {extent_text}, so there is no steady cycle",
-            scene_machine.coordinate_name(coordinate)
-        ),
+    let name = prepared.coordinate_name(coordinate);
+    Err(prepared.error(
+        format!("`{name}` {fault}, so there is no steady cycle"),
         "use the angle of a body that rotates fully as the actuator",
-        &[label(coordinate, "does not rotate fully")],
+        labels(actuators, "does not rotate fully"),
     ))
 }
 
 /// Explains a machine that does not complete the first revolutions.
-fn run_up_error(scene_machine: &SceneMachine<'_>, error: &DynamicsError) -> StudyError {
-    let DynamicsError::MaxStepsReached {
-        t,
-        max_steps: steps,
-    } = *error
-    else {
-        return scene_machine.explain(error);
+fn run_up_error(prepared: &SceneMachine<'_>, error: &DynamicsError) -> StudyError {
+    let DynamicsError::MaxStepsReached { t, max_steps } = *error else {
+        return prepared.explain(error);
     };
-    scene_machine.error(
+    prepared.error(
         format!(
             "the machine does not complete its revolutions: after {}, at t = {} s, it has not made {} from \
              its initial state",
-            count(steps, "step"),
+            count(max_steps, "step"),
             digits(t, 2),
             count(RUN_UP_REVOLUTIONS as usize, "revolution")
         ),
         "increase the drive or the initial speed so that it passes the position of largest resistance; \
          `dwell simulate` shows the motion",
-        &[scene_machine.initial_state_label("from here")],
+        prepared.initial_state_label("from here"),
     )
+}
+
+/// A column for the work of each load and drive.
+fn work_columns(prepared: &SceneMachine<'_>) -> impl Iterator<Item = Column> {
+    let sources = prepared.machine.nonconservative_sources().iter();
+    sources.map(|&source| Column::new(format!("{}.work", prepared.source_name(source)), "J"))
 }
 
 /// One cycle: time, states, acceleration and works since its start.
 fn cycle_table(
-    scene_machine: &SceneMachine<'_>,
+    prepared: &SceneMachine<'_>,
     machine: &Machine,
     cycle: &Cycle,
 ) -> Result<Table, StudyError> {
+    let (coordinate, _) = prepared.first_free_coordinate();
+    let name = format!("{}.acceleration", prepared.coordinate_name(coordinate));
     let mut columns = vec![Column::new("t", "s")];
-    let mut states = scene_machine.state_columns().into_iter();
-    columns.extend(states.by_ref().take(2));
-    let (coordinate, _) = scene_machine.first_free_coordinate();
-    let name = scene_machine.coordinate_name(coordinate);
-    columns.push(Column::new(format!("{name}.acceleration"), "rad/s2"));
-    columns.extend(states);
-    for source in machine.nonconservative_sources() {
-        let name = format!("{}.work", scene_machine.source_name(*source));
-        columns.push(Column::new(name, "J"));
-    }
+    columns.extend(prepared.state_columns());
+    columns.insert(3, Column::new(name, "rad/s2"));
+    columns.extend(work_columns(prepared));
     let mut workspace = machine.workspace();
-    let mut rows = Vec::with_capacity(cycle.samples.len());
-    for point in &cycle.samples {
+    let row = |point: &OdeState| -> Result<Vec<f64>, StudyError> {
         let state = machine.evaluate(point.t, &point.y, &mut workspace);
-        let state = state.map_err(|e| scene_machine.explain(&e))?;
-        let mut row = vec![point.t, point.y[0], point.y[1], state.q_ddot()[coordinate]];
-        row.extend(&point.y[2..]);
-        rows.push(row);
-    }
+        let state = state.map_err(|e| prepared.explain(&e))?;
+        let mut row = vec![point.t];
+        row.extend(&point.y);
+        row.insert(3, state.q_ddot()[coordinate]);
+        Ok(row)
+    };
+    let rows = cycle.samples.iter().map(row).collect::<Result<_, _>>()?;
     Ok(Table { columns, rows })
 }
 
 /// The work of each load and drive over the cycle, and their sum.
-fn work_table(scene_machine: &SceneMachine<'_>, cycle: &Cycle) -> Table {
-    let sources = scene_machine.machine.nonconservative_sources().iter();
-    let mut columns: Vec<Column> = sources
-        .map(|source| {
-            let name = format!("{}.work", scene_machine.source_name(*source));
-            Column::new(name, "J")
-        })
-        .collect();
+fn work_table(prepared: &SceneMachine<'_>, cycle: &Cycle) -> Table {
+    let mut columns: Vec<Column> = work_columns(prepared).collect();
     let mut row = cycle.works.clone();
     columns.push(Column::new("work_sum", "J"));
     row.push(cycle.works.iter().sum());
@@ -147,7 +132,8 @@ fn work_table(scene_machine: &SceneMachine<'_>, cycle: &Cycle) -> Table {
 
 /// A steady cycle with its tables, and with the flywheel if a fluctuation was required.
 pub struct CycleResults<'a> {
-    pub(crate) scene_machine: SceneMachine<'a>,
+    /// The scene with its machine.
+    pub prepared: SceneMachine<'a>,
     /// The cycle.
     pub steady: Cycle,
     /// One cycle: time, states, acceleration and works since its start.
@@ -169,30 +155,26 @@ pub fn compute_cycle<'a>(
     settings: &SolverSettings,
     fluctuation: Option<f64>,
 ) -> Result<CycleResults<'a>, StudyError> {
-    let scene_machine = SceneMachine::new(scene)?;
-    require_rotating(&scene_machine)?;
-    scene_machine.require_autonomous("a steady cycle")?;
+    let prepared = SceneMachine::new(scene)?;
+    require_rotating(&prepared)?;
+    prepared.require_autonomous("a steady cycle")?;
     let options = Options {
         atol: settings.atol,
         max_steps: MAX_STEPS,
         max_step: settings.max_step,
         ..Options::new(settings.method, settings.rtol)
     };
-    let machine = &scene_machine.machine;
+    let machine = &prepared.machine;
     // The guess need not be exact, and a coarse integration starts more easily from rest.
     let coarse = Options {
         atol: options.atol.max(GUESS_TOLERANCE),
         rtol: options.rtol.max(GUESS_TOLERANCE),
         ..options
     };
-    let guess = initial_transient(
-        machine,
-        &scene_machine.initial_state(),
-        RUN_UP_REVOLUTIONS,
-        &coarse,
-    );
-    let guess = guess.map_err(|e| run_up_error(&scene_machine, &e))?;
-    let explain = |e: DynamicsError| scene_machine.explain(&e);
+    let start = prepared.initial_state();
+    let guess = initial_transient(machine, &start, RUN_UP_REVOLUTIONS, &coarse);
+    let guess = guess.map_err(|e| run_up_error(&prepared, &e))?;
+    let explain = |e: DynamicsError| prepared.explain(&e);
     let steady = in_first_revolution(steady_cycle(machine, &guess, &options).map_err(explain)?);
     let flywheel = match fluctuation {
         None => None,
@@ -203,18 +185,18 @@ pub fn compute_cycle<'a>(
             Some((target, Flywheel { cycle, ..sized }))
         }
     };
-    let samples = cycle_table(&scene_machine, machine, &steady)?;
-    let works = work_table(&scene_machine, &steady);
+    let samples = cycle_table(&prepared, machine, &steady)?;
+    let works = work_table(&prepared, &steady);
     let flywheel_samples = match &flywheel {
         Some((_, sized)) if sized.inertia > 0.0 => {
-            let heavier = machine.clone();
-            let heavier = heavier.with_flywheel(0, machine.flywheel(0) + sized.inertia);
-            Some(cycle_table(&scene_machine, &heavier, &sized.cycle)?)
+            let inertia = machine.flywheel(0) + sized.inertia;
+            let heavier = machine.clone().with_flywheel(0, inertia);
+            Some(cycle_table(&prepared, &heavier, &sized.cycle)?)
         }
         _ => None,
     };
     Ok(CycleResults {
-        scene_machine,
+        prepared,
         steady,
         samples,
         works,

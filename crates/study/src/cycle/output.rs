@@ -1,12 +1,15 @@
 //! Writes a steady cycle: tables, figure and summary.
 
-use super::{document, figures};
+use super::figures;
 use crate::cycle::compute::compute_cycle;
 use crate::explain::StudyError;
-use crate::models::SolverSettings;
+use crate::models::{SceneMachine, SolverSettings};
+use crate::number_format::{count, digits};
 use crate::output::{Outcome, signed_png};
+use dwell_dynamics::{Cycle, Flywheel};
 use dwell_report::TableFormat;
 use dwell_scene::Scene;
+use std::f64::consts::{PI, TAU};
 
 /// The steady cycle of a scene, and the flywheel for a target coefficient of speed fluctuation if given.
 ///
@@ -28,9 +31,89 @@ pub fn cycle(
     }
     let figure = figures::cycle(&results, settings);
     outcome.files.add(name(".png"), signed_png(scene, &figure)?);
-    outcome.summary = document::summary(&results.scene_machine, &results.steady);
+    outcome.summary = summary(&results.prepared, &results.steady);
     if let Some((target, flywheel)) = &results.flywheel {
-        outcome.summary += &document::flywheel_text(&results.scene_machine, *target, flywheel);
+        outcome.summary += &flywheel_text(&results.prepared, *target, flywheel);
     }
     Ok(outcome)
+}
+
+/// An angular velocity in rad/s and revolutions per minute.
+fn speed_text(value: f64) -> String {
+    let minute = digits(value * 30.0 / PI, 6);
+    format!("{} rad/s ({minute} 1/min)", digits(value, 9))
+}
+
+pub(crate) fn summary(prepared: &SceneMachine<'_>, cycle: &Cycle) -> String {
+    let (coordinate, _) = prepared.first_free_coordinate();
+    let revolutions = count((cycle.cycle_angle / TAU).round() as usize, "revolution");
+    let position = |[q, _]: [f64; 2]| prepared.describe_coordinate(coordinate, q);
+    let mut text = format!(
+        "{}: steady cycle of {}, {revolutions} in {} s\n  mean speed {}\n  slowest {} at {}\n  fastest {} \
+         at {}\n  coefficient of fluctuation {}\n",
+        prepared.scene.title,
+        prepared.coordinate_name(coordinate),
+        digits(cycle.period, 9),
+        speed_text(cycle.mean_speed),
+        speed_text(cycle.slowest[1]),
+        position(cycle.slowest),
+        speed_text(cycle.fastest[1]),
+        position(cycle.fastest),
+        digits(cycle.fluctuation, 9),
+    );
+    let multipliers = cycle.floquet_multipliers.iter();
+    let multipliers: Vec<String> = multipliers.map(|&z| complex_text(z, 6)).collect();
+    let multipliers = multipliers.join(", ");
+    text += match cycle.is_stable() {
+        true => "  stable",
+        false => "  unstable",
+    };
+    text += &format!(
+        ": a disturbance changes by these factors per cycle (Floquet multipliers): {multipliers}\n"
+    );
+    let sources = prepared.machine.nonconservative_sources().iter();
+    for (&source, &work) in sources.zip(&cycle.works) {
+        let name = prepared.source_name(source);
+        text += &format!("  work of {name} per cycle {} J\n", digits(work, 9));
+    }
+    let sum: f64 = cycle.works.iter().sum();
+    let size: f64 = cycle.works.iter().map(|work| work.abs()).sum();
+    if size > 0.0 {
+        let relative = (sum / size).abs();
+        text +=
+            &format!("  sum of these works: {relative:.1e} of the sum of their absolute values\n");
+    }
+    text
+}
+
+/// The flywheel and its effect.
+pub(crate) fn flywheel_text(
+    prepared: &SceneMachine<'_>,
+    target: f64,
+    flywheel: &Flywheel,
+) -> String {
+    let target = digits(target, 6);
+    if flywheel.inertia == 0.0 {
+        return format!("  no flywheel is needed for a coefficient of fluctuation of {target}\n");
+    }
+    let (coordinate, _) = prepared.first_free_coordinate();
+    format!(
+        "  for a coefficient of fluctuation of {target}: flywheel of {} kg m² on {}\n  with it: mean speed {}, \
+         from {} to {}\n",
+        digits(flywheel.inertia, 9),
+        prepared.coordinate_name(coordinate),
+        speed_text(flywheel.cycle.mean_speed),
+        speed_text(flywheel.cycle.slowest[1]),
+        speed_text(flywheel.cycle.fastest[1]),
+    )
+}
+
+/// A complex number.
+fn complex_text([re, im]: [f64; 2], count: usize) -> String {
+    if im == 0.0 {
+        digits(re, count)
+    } else {
+        let sign = if im < 0.0 { '−' } else { '+' };
+        format!("{} {sign} {}i", digits(re, count), digits(im.abs(), count))
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::explain::StudyError;
 use crate::models::SceneMachine;
+use crate::ranges::equally_spaced;
 use dwell_dynamics::{
     Equilibrium, Stability, equilibria as equilibria_over, equilibrium_near,
     static_force_and_potential,
@@ -12,8 +13,10 @@ use std::f64::consts::TAU;
 
 /// Static force (N·m or N) and potential (J) over the coordinate.
 pub struct StaticCurves {
-    pub(crate) q: Vec<f64>,
-    pub(crate) force_and_potential: Vec<[f64; 2]>,
+    /// Coordinates, rad or m.
+    pub q: Vec<f64>,
+    /// Force and potential at each.
+    pub force_and_potential: Vec<[f64; 2]>,
 }
 
 /// Fraction of a range left out at each end, where the configuration is singular.
@@ -30,22 +33,19 @@ const ROUNDING: f64 = 1e-9;
 pub(crate) type FoundEquilibria = (Vec<Equilibrium>, Option<[f64; 2]>);
 
 /// Finds the equilibria.
-pub(crate) fn find_equilibria(
-    scene_machine: &SceneMachine<'_>,
-) -> Result<FoundEquilibria, StudyError> {
-    scene_machine.require_autonomous("an equilibrium")?;
-    let interval = search_interval(scene_machine);
+pub(crate) fn find_equilibria(prepared: &SceneMachine<'_>) -> Result<FoundEquilibria, StudyError> {
+    prepared.require_autonomous("an equilibrium")?;
+    let interval = search_interval(prepared);
     let found = match interval {
-        Some(interval) => equilibria_over(&scene_machine.machine, interval),
-        None => equilibrium_near(&scene_machine.machine, &scene_machine.initial_state())
-            .map(|only| vec![only]),
+        Some(interval) => equilibria_over(&prepared.machine, interval),
+        None => equilibrium_near(&prepared.machine, &prepared.initial_state()).map(|e| vec![e]),
     };
-    Ok((found.map_err(|e| scene_machine.explain(&e))?, interval))
+    Ok((found.map_err(|e| prepared.explain(&e))?, interval))
 }
 
 /// The range of the only coordinate of the mechanism; if it is unlimited, one period around the start.
-fn search_interval(scene_machine: &SceneMachine<'_>) -> Option<[f64; 2]> {
-    let plan = scene_machine.machine.model().plan();
+fn search_interval(prepared: &SceneMachine<'_>) -> Option<[f64; 2]> {
+    let plan = prepared.machine.model().plan();
     if plan.actuators() != 1 {
         return None;
     }
@@ -59,15 +59,15 @@ fn search_interval(scene_machine: &SceneMachine<'_>) -> Option<[f64; 2]> {
         None if plan.is_angle(0) => TAU,
         None => return None,
     };
-    let from = scene_machine.initial_state()[0] - CUT_FRACTION * period;
+    let from = prepared.initial_state()[0] - CUT_FRACTION * period;
     Some([from, from + period])
 }
 
 /// One row per equilibrium.
-fn equilibrium_table(scene_machine: &SceneMachine<'_>, found: &[Equilibrium]) -> Table {
-    let start = scene_machine.initial_state();
-    let free = scene_machine.machine.free().len();
-    let states: Vec<Column> = scene_machine.state_columns();
+fn equilibrium_table(prepared: &SceneMachine<'_>, found: &[Equilibrium]) -> Table {
+    let start = prepared.initial_state();
+    let free = prepared.machine.free().len();
+    let states: Vec<Column> = prepared.state_columns();
     let mut columns: Vec<Column> = states[..free].to_vec();
     let deflection = |c: &Column| Column::new(format!("{}.deflection", c.name), c.unit.clone());
     columns.extend(states[..free].iter().map(deflection));
@@ -76,32 +76,29 @@ fn equilibrium_table(scene_machine: &SceneMachine<'_>, found: &[Equilibrium]) ->
     columns.push(Column::new("max_real_eigenvalue", "1/s"));
     let modes = found.iter().map(|e| e.modes().len()).max().unwrap_or(0);
     for k in 1..=modes {
-        columns.push(Column::new(format!("mode{k}.angular_frequency"), "rad/s"));
-        columns.push(Column::new(format!("mode{k}.frequency"), "Hz"));
-        columns.push(Column::new(format!("mode{k}.damping_ratio"), ""));
+        let parts = [
+            ("angular_frequency", "rad/s"),
+            ("frequency", "Hz"),
+            ("damping_ratio", ""),
+        ];
+        columns.extend(parts.map(|(part, unit)| Column::new(format!("mode{k}.{part}"), unit)));
     }
     let row = |e: &Equilibrium| {
         let mut row = e.y[..free].to_vec();
         row.extend(e.y[..free].iter().zip(&start).map(|(q, start)| q - start));
-        row.extend_from_slice(&e.y[2 * free..scene_machine.machine.work_offset()]);
+        row.extend_from_slice(&e.y[2 * free..prepared.machine.work_offset()]);
         row.push(match e.stability {
             Stability::Asymptotic => 1.0,
             Stability::Centre => 0.0,
             Stability::Unstable => -1.0,
             Stability::Undecided => f64::NAN,
         });
-        row.push(
-            e.eigenvalues
-                .first()
-                .map_or(f64::NAN, |z| without_rounding(*z)[0]),
-        );
+        let first = e.eigenvalues.first();
+        row.push(first.map_or(f64::NAN, |z| without_rounding(*z)[0]));
         for mode in e.modes() {
-            let damping = without_rounding([mode.damping_ratio, 1.0])[0];
-            row.extend([
-                mode.angular_frequency,
-                mode.angular_frequency / TAU,
-                damping,
-            ]);
+            let [damping, _] = without_rounding([mode.damping_ratio, 1.0]);
+            let frequency = mode.angular_frequency;
+            row.extend([frequency, frequency / TAU, damping]);
         }
         row.resize(columns.len(), f64::NAN);
         row
@@ -118,7 +115,8 @@ pub(crate) fn without_rounding([re, im]: [f64; 2]) -> [f64; 2] {
 
 /// The equilibria of a scene with their table, and the static force around them.
 pub struct EquilibriaResults<'a> {
-    pub(crate) scene_machine: SceneMachine<'a>,
+    /// The scene with its machine.
+    pub prepared: SceneMachine<'a>,
     /// The equilibria.
     pub found: Vec<Equilibrium>,
     /// The interval that was searched for all equilibria, if there is a single coordinate.
@@ -134,28 +132,27 @@ pub struct EquilibriaResults<'a> {
 /// # Errors
 /// As [`equilibria`](crate::equilibria()).
 pub fn compute_equilibria(scene: &Scene) -> Result<EquilibriaResults<'_>, StudyError> {
-    let scene_machine = SceneMachine::new(scene)?;
-    let (found, interval) = find_equilibria(&scene_machine)?;
-    let table = equilibrium_table(&scene_machine, &found);
+    let prepared = SceneMachine::new(scene)?;
+    let (found, interval) = find_equilibria(&prepared)?;
+    let table = equilibrium_table(&prepared, &found);
+    let force_and_potential = |q: &[f64]| {
+        let values = static_force_and_potential(&prepared.machine, q);
+        values.map_err(|e| prepared.explain(&e))
+    };
     let curves = match interval {
         None => None,
-        Some([from, to]) => {
-            let at = |k: usize| from + (to - from) * k as f64 / POSITIONS as f64;
-            let q: Vec<f64> = (0..=POSITIONS).map(at).collect();
-            let force_and_potential = static_force_and_potential(&scene_machine.machine, &q)
-                .map_err(|e| scene_machine.explain(&e))?;
+        Some(interval) => {
+            let q = equally_spaced(interval, POSITIONS);
             let marked: Vec<f64> = found.iter().map(|e| e.y[0]).collect();
-            let marked = static_force_and_potential(&scene_machine.machine, &marked)
-                .map_err(|e| scene_machine.explain(&e))?;
             let curves = StaticCurves {
+                force_and_potential: force_and_potential(&q)?,
                 q,
-                force_and_potential,
             };
-            Some((curves, marked))
+            Some((curves, force_and_potential(&marked)?))
         }
     };
     Ok(EquilibriaResults {
-        scene_machine,
+        prepared,
         found,
         interval,
         table,

@@ -2,11 +2,9 @@
 
 pub mod compute;
 #[cfg(feature = "output")]
-pub(crate) mod document;
-#[cfg(feature = "output")]
 mod figures;
 #[cfg(feature = "output")]
-mod output;
+pub(crate) mod output;
 
 pub use compute::compute_equilibria;
 #[cfg(feature = "output")]

@@ -1,9 +1,11 @@
 //! Several assembly modes: which initial guesses in the scene select one of them.
 
-use crate::explain::{body_labels, body_names_or_mechanism, joint_labels, start_labels};
+use crate::explain::{
+    StudyError, body_labels, body_names_or_mechanism, joint_labels, scene_error, start_labels,
+};
 use crate::number_format::number;
 use dwell_geometry::{BodyId, BranchHint, JointId, Mechanism};
-use dwell_scene::{Scene, SceneError};
+use dwell_scene::Scene;
 
 /// Maximum number of assembly modes in a message.
 const MAX_LISTED: usize = 6;
@@ -15,48 +17,31 @@ pub(crate) fn explain_ambiguous(
     bodies: &[BodyId],
     joints: &[JointId],
     modes: &[Vec<f64>],
-) -> SceneError {
+) -> StudyError {
     let mechanism = &scene.mechanism;
-    let (labels, help) = match (bodies, joints) {
-        ([], []) => (
-            start_labels(scene),
-            "no body angle and no joint travel distinguishes them: drive another joint".to_owned(),
+    let mut labels = body_labels(bodies, "its angle is ambiguous");
+    labels.extend(joint_labels(joints, "its position is ambiguous"));
+    let by_angles = describe_by_angles(mechanism, bodies, modes);
+    let help = match (bodies, joints) {
+        ([], []) => {
+            labels = start_labels(scene);
+            "no body angle and no joint travel distinguishes them: drive another joint".to_owned()
+        }
+        (_, []) => format!(
+            "give an approximate angle of one of them in [assembly]; the assembly modes are: {by_angles}"
         ),
-        (bodies, []) => (
-            body_labels(bodies, "its angle is ambiguous"),
-            format!(
-                "give an approximate angle of one of them in [assembly]; the assembly modes are: {}",
-                describe_by_angles(mechanism, bodies, modes)
-            ),
-        ),
-        ([], joints) => (
-            joint_labels(joints, "its position is ambiguous"),
-            suggested_hints(scene, joints, modes),
-        ),
-        (bodies, joints) => {
-            let mut labels = body_labels(bodies, "its angle is ambiguous");
-            labels.extend(joint_labels(joints, "its position is ambiguous"));
+        ([], _) => suggested_hints(scene, joints, modes),
+        _ => {
             let after = |mode: &Vec<f64>| mode.get(bodies.len()..).unwrap_or_default().to_vec();
             let travels: Vec<_> = modes.iter().map(after).collect();
-            (
-                labels,
-                format!(
-                    "body angles do not distinguish all of them: they are {}; {}",
-                    describe_by_angles(mechanism, bodies, modes),
-                    suggested_hints(scene, joints, &travels)
-                ),
-            )
+            let hints = suggested_hints(scene, joints, &travels);
+            format!("body angles do not distinguish all of them: they are {by_angles}; {hints}")
         }
     };
-    scene.error(
-        format!(
-            "{} has {} assembly modes, and no initial guess selects one",
-            body_names_or_mechanism(mechanism, bodies),
-            modes.len()
-        ),
-        Some(help),
-        &labels,
-    )
+    let names = body_names_or_mechanism(mechanism, bodies);
+    let count = modes.len();
+    let message = format!("{names} has {count} assembly modes, and no initial guess selects one");
+    scene_error(scene, message, help, labels)
 }
 
 fn describe_by_angles(mechanism: &Mechanism, bodies: &[BodyId], modes: &[Vec<f64>]) -> String {
@@ -75,19 +60,18 @@ fn describe_by_angles(mechanism: &Mechanism, bodies: &[BodyId], modes: &[Vec<f64
 /// Entries for [assembly]: of one joint if it differs in every mode, else of all.
 fn suggested_hints(scene: &Scene, joints: &[JointId], modes: &[Vec<f64>]) -> String {
     let mechanism = &scene.mechanism;
+    let joint = |k: usize| &mechanism.joints[joints[k].0];
     let hint_text = |k: usize, mode: &[f64]| {
-        let joint = &mechanism.joints[joints[k].0];
-        let is_angle = joint.kind.branch_hint() == Some(BranchHint::Direction);
+        let is_angle = joint(k).kind.branch_hint() == Some(BranchHint::Direction);
         let si = mode.get(k).copied().unwrap_or(f64::NAN);
         let (value, _) = scene.to_scene_unit(si, is_angle);
-        format!("{} = {}", joint.name, number(value))
+        format!("{} = {}", joint(k).name, number(value))
     };
     // In [assembly] the name of a body or an actuator takes precedence.
     let is_taken = |k: usize| {
-        let name = &mechanism.joints[joints[k].0].name;
-        let mut bodies = mechanism.bodies.iter().map(|b| &b.name);
-        let mut actuators = mechanism.actuators.iter().map(|a| &a.name);
-        bodies.any(|other| other == name) || actuators.any(|other| other == name)
+        let bodies = mechanism.bodies.iter().map(|b| &b.name);
+        let mut names = bodies.chain(mechanism.actuators.iter().map(|a| &a.name));
+        names.any(|other| *other == joint(k).name)
     };
     let distinguishes = |k: usize| {
         let mut texts: Vec<_> = modes.iter().map(|mode| hint_text(k, mode)).collect();
@@ -96,20 +80,18 @@ fn suggested_hints(scene: &Scene, joints: &[JointId], modes: &[Vec<f64>]) -> Str
     };
     let free: Vec<usize> = (0..joints.len()).filter(|&k| !is_taken(k)).collect();
     let one = free.iter().copied().find(|&k| distinguishes(k));
-    let (listed, rename) = match (one, free.is_empty()) {
-        (Some(one), _) => (vec![one], ""),
-        (None, false) => (free, ""),
-        (None, true) => (
-            (0..joints.len()).collect(),
-            "give the joint a name that no body or actuator has, and ",
-        ),
+    let rename = match free.is_empty() {
+        true => "give the joint a name that no body or actuator has, and ",
+        false => "",
+    };
+    let listed = match one {
+        Some(one) => vec![one],
+        None if free.is_empty() => (0..joints.len()).collect(),
+        None => free,
     };
     let mode = |mode: &Vec<f64>| {
-        let each: Vec<_> = listed
-            .iter()
-            .map(|&k| format!("`{}`", hint_text(k, mode)))
-            .collect();
-        each.join(" and ")
+        let each = listed.iter().map(|&k| format!("`{}`", hint_text(k, mode)));
+        each.collect::<Vec<_>>().join(" and ")
     };
     let modes: Vec<_> = modes.iter().take(MAX_LISTED).map(mode).collect();
     format!("{rename}add {} to [assembly]", modes.join(" or "))

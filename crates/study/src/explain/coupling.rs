@@ -1,15 +1,15 @@
 //! Coupling functions that are not finite.
 
-use crate::explain::StudyError;
+use crate::explain::{StudyError, scene_error};
 use crate::number_format::number;
-use dwell_geometry::{JointId, JointKind, Mechanism};
+use dwell_geometry::{Coordinate, JointId, JointKind, Mechanism};
 use dwell_laws::Law;
 use dwell_scene::{Scene, SceneLocation};
 
 /// The couplings of a mechanism: joint, function, and the independent coordinate.
 pub(crate) fn couplings(
     mechanism: &Mechanism,
-) -> impl Iterator<Item = (JointId, &Law, dwell_geometry::Coordinate)> {
+) -> impl Iterator<Item = (JointId, &Law, Coordinate)> {
     let joints = mechanism.joints.iter().enumerate();
     joints.filter_map(|(j, joint)| {
         let JointKind::Coupling(k) = joint.kind else {
@@ -27,11 +27,8 @@ pub(crate) fn non_finite_coupling(
     q: &[f64],
 ) -> Option<(JointId, f64, &'static str)> {
     couplings(mechanism).find_map(|(joint, law, variable)| {
-        let actuator = mechanism
-            .actuators
-            .iter()
-            .position(|a| a.coordinate() == variable);
-        let x = *q.get(actuator?)?;
+        let mut actuators = mechanism.actuators.iter();
+        let x = *q.get(actuators.position(|a| a.coordinate() == variable)?)?;
         let order = law.eval(x)[..3].iter().position(|d| !d.is_finite())?;
         Some((joint, x, ["value", "slope", "curvature"][order]))
     })
@@ -43,19 +40,12 @@ pub(crate) fn non_finite_coupling_error(
     (joint, x, what): (JointId, f64, &str),
     position: &str,
 ) -> StudyError {
-    let label = format!("no finite {what} at x = {}", number(x));
-    scene
-        .error(
-            format!(
-                "the function of coupling `{}` has no finite {what} at x = {}, {position}",
-                scene.mechanism.joints[joint.0].name,
-                number(x)
-            ),
-            Some(
-                "a coupling function needs a finite value and two finite derivatives everywhere"
-                    .to_owned(),
-            ),
-            &[(SceneLocation::CouplingLaw(joint), label)],
-        )
-        .into()
+    let fault = format!("no finite {what} at x = {}", number(x));
+    let name = &scene.mechanism.joints[joint.0].name;
+    scene_error(
+        scene,
+        format!("the function of coupling `{name}` has {fault}, {position}"),
+        "a coupling function needs a finite value and two finite derivatives everywhere",
+        [(SceneLocation::CouplingLaw(joint), fault)],
+    )
 }

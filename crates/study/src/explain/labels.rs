@@ -1,50 +1,86 @@
-//! Labels that point into the scene file, and names of bodies and joints.
+//! Errors with their places in the scene file, and names of bodies and joints.
 
+use crate::explain::StudyError;
 use dwell_geometry::{ActuatorId, BodyId, JointId, Mechanism};
 use dwell_scene::{Scene, SceneLocation};
 
+/// Places in the scene file, each with its remark.
 pub(crate) type Labels = Vec<(SceneLocation, String)>;
 
+/// Bodies or joints that a message marks.
+const MAX_MARKED: usize = 8;
+
+/// An error of a scene, what to try (nothing if that is empty), and its places in the file.
+pub fn scene_error<L: Into<String>>(
+    scene: &Scene,
+    message: impl Into<String>,
+    help: impl Into<String>,
+    labels: impl IntoIterator<Item = (SceneLocation, L)>,
+) -> StudyError {
+    let labels = labels.into_iter().map(|(at, text)| (at, text.into()));
+    let help = Some(help.into()).filter(|help| !help.is_empty());
+    let error = scene.error(message.into(), help, &labels.collect::<Labels>());
+    error.into()
+}
+
+/// One remark at several places.
+pub(crate) fn labels(places: impl Iterator<Item = SceneLocation>, text: &str) -> Labels {
+    places.map(|at| (at, text.to_owned())).collect()
+}
+
 pub(crate) fn body_labels(bodies: &[BodyId], text: &str) -> Labels {
-    let label = |&b: &BodyId| (SceneLocation::Body(b), text.to_owned());
-    bodies.iter().take(8).map(label).collect()
+    let places = bodies.iter().map(|&b| SceneLocation::Body(b));
+    labels(places.take(MAX_MARKED), text)
+}
+
+pub(crate) fn joint_labels(joints: &[JointId], text: &str) -> Labels {
+    let places = joints.iter().map(|&j| SceneLocation::Joint(j));
+    labels(places.take(MAX_MARKED), text)
+}
+
+/// Labels of all actuators; of the whole file if there are none.
+pub(crate) fn actuator_labels(scene: &Scene, text: &str) -> Labels {
+    let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
+    match labels(actuators.map(SceneLocation::Actuator), text) {
+        none if none.is_empty() => missing_section_label("actuators"),
+        labels => labels,
+    }
+}
+
+/// The label of a section that the file does not have.
+pub(crate) fn missing_section_label(section: &str) -> Labels {
+    let verb = if section.ends_with('s') { "are" } else { "is" };
+    let text = format!("there {verb} no [{section}] in this file");
+    vec![(SceneLocation::Whole, text)]
 }
 
 /// Labels of the assembly coordinates.
 pub(crate) fn start_labels(scene: &Scene) -> Labels {
-    let is_written = |&a: &ActuatorId| {
-        // A coordinate that is not written has the location of the initial state.
-        scene.span(SceneLocation::AssemblyCoordinate(a))
-            != scene.span(SceneLocation::InitialCoordinate(a))
-    };
     let actuators = (0..scene.mechanism.actuators.len()).map(ActuatorId);
-    let mut labels: Labels = actuators
-        .filter(is_written)
-        .take(8)
-        .map(|a| {
-            (
-                SceneLocation::AssemblyCoordinate(a),
-                "at this start".to_owned(),
-            )
-        })
-        .collect();
-    if labels.is_empty() {
-        labels.push((SceneLocation::Assembly, "at this start".to_owned()));
+    // A coordinate that is not written has the location of the initial state.
+    let written = actuators.filter(|&a| {
+        let [at, initial] = [
+            SceneLocation::AssemblyCoordinate(a),
+            SceneLocation::InitialCoordinate(a),
+        ];
+        scene.span(at) != scene.span(initial)
+    });
+    let written = written
+        .take(MAX_MARKED)
+        .map(SceneLocation::AssemblyCoordinate);
+    match labels(written, "at this start") {
+        none if none.is_empty() => labels([SceneLocation::Assembly].into_iter(), "at this start"),
+        labels => labels,
     }
-    labels
 }
 
-pub(crate) fn joint_labels(joints: &[JointId], text: &str) -> Labels {
-    let label = |&j: &JointId| (SceneLocation::Joint(j), text.to_owned());
-    joints.iter().take(8).map(label).collect()
+fn quoted<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<_> = names.map(|name| format!("`{name}`")).collect();
+    names.join(", ")
 }
 
 pub(crate) fn body_names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
-    let list: Vec<_> = bodies
-        .iter()
-        .map(|&b| format!("`{}`", mechanism.body_name(b)))
-        .collect();
-    list.join(", ")
+    quoted(bodies.iter().map(|&b| mechanism.body_name(b)))
 }
 
 /// The same; "the mechanism" if there are none.
@@ -56,11 +92,7 @@ pub(crate) fn body_names_or_mechanism(mechanism: &Mechanism, bodies: &[BodyId]) 
 }
 
 pub(crate) fn joint_names(mechanism: &Mechanism, joints: &[JointId]) -> String {
-    let list: Vec<_> = joints
-        .iter()
-        .map(|j| format!("`{}`", mechanism.joints[j.0].name))
-        .collect();
-    list.join(", ")
+    quoted(joints.iter().map(|j| mechanism.joints[j.0].name.as_str()))
 }
 
 /// Where a scene gives its initial state: without `[motion]`, in its assembly.

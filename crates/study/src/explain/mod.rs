@@ -5,6 +5,7 @@ mod assembly_modes;
 mod coupling;
 mod labels;
 mod motion;
+mod position;
 mod study_error;
 mod sweep_error;
 
@@ -12,10 +13,13 @@ pub(crate) use assembly::not_one_actuator;
 pub use assembly::{explain_machine, explain_model};
 pub(crate) use assembly_modes::explain_ambiguous;
 pub(crate) use coupling::{couplings, non_finite_coupling, non_finite_coupling_error};
+pub use labels::scene_error;
 pub(crate) use labels::{
-    Labels, body_labels, body_names, body_names_or_mechanism, initial_state_location, joint_labels,
-    joint_names, start_labels,
+    Labels, actuator_labels, body_labels, body_names, body_names_or_mechanism,
+    initial_state_location, joint_labels, joint_names, labels, missing_section_label, start_labels,
 };
-pub use motion::{explain_motion, explain_position};
+pub use motion::explain_motion;
+pub use position::explain_position;
+pub(crate) use position::quoted_coordinate;
 pub use study_error::StudyError;
 pub use sweep_error::SweepError;

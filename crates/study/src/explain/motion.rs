@@ -1,97 +1,56 @@
-//! Explains failures of motions and positions, with their locations in the scene.
+//! Explains motions that fail, with their locations in the scene.
 
-use crate::explain::{Labels, StudyError, body_names, initial_state_location, joint_labels};
+use crate::explain::{
+    StudyError, explain_position, initial_state_location, labels, quoted_coordinate, scene_error,
+};
 use crate::number_format::{digits, number};
 use dwell_dynamics::DynamicsError;
-use dwell_geometry::{ActuatorId, BodyId, Plan, PositionError};
+use dwell_geometry::{ActuatorId, BodyId, Plan};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
 
-/// The name of the coordinate, quoted.
-fn coordinate_name(scene: &Scene) -> String {
-    let first = scene.mechanism.actuators.first();
-    first.map_or_else(|| "the coordinate".to_owned(), |a| format!("`{}`", a.name))
-}
-
 /// Explains a motion that failed.
 pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> StudyError {
-    let phi = coordinate_name(scene);
-    let motion_error = |message: String, help: &str, at: SceneLocation, label: &str| {
-        let labels = [(at, label.to_owned())];
-        scene.error(message, Some(help.to_owned()), &labels).into()
-    };
-    let speed = SceneLocation::InitialVelocity(ActuatorId(0));
     match error {
         DynamicsError::Position(position) => explain_position(scene, plan, position),
-        DynamicsError::LimitPosition { t, q } => {
-            let limit = match plan.range().limits() {
-                None => String::new(),
-                Some((from, to)) => {
-                    // In the turn in which the motion is.
-                    let revolutions = TAU * ((q - from) / TAU).floor();
-                    let nearest = if q - revolutions - from < to + revolutions - q {
-                        from
-                    } else {
-                        to
-                    };
-                    format!(", {} rad,", number(nearest + revolutions))
-                }
-            };
-            motion_error(
-                format!(
-                    "the motion reaches a limit position of {phi}{limit} soon after t = {} s, and \
-                     enters another assembly mode there, which {phi} does not distinguish from this one",
-                    digits(*t, 3)
-                ),
-                &match rounded_down(*t) {
-                    Some(t) => format!(
-                        "end it earlier: `duration = {t}` (s); or drive a joint that rotates fully"
-                    ),
-                    None => "start farther from it, or drive a joint that rotates fully".to_owned(),
-                },
-                SceneLocation::Duration,
-                "too long",
-            )
+        DynamicsError::Load(load) => explain_load(scene, *load),
+        DynamicsError::LimitPosition { t, q } => explain_limit_position(scene, plan, *t, *q),
+        DynamicsError::NoInertia { q, .. } => explain_no_inertia(scene, *q),
+        other => {
+            let (message, help, at, label) = describe(scene, other);
+            scene_error(scene, message, help, [(at, label)])
         }
-        DynamicsError::NoInertia { q, .. } => {
-            let label = |b| {
-                (
-                    SceneLocation::Body(BodyId(b)),
-                    "no mass or inertia".to_owned(),
-                )
-            };
-            let moving = (0..scene.mechanism.bodies.len()).filter(|&b| b != scene.mechanism.ground);
-            let labels: Labels = moving.take(8).map(label).collect();
-            scene
-                .error(
-                    format!(
-                        "the generalised inertia m is zero at {phi} = {} rad: no body with mass moves there, so the \
-                         acceleration is undefined",
-                        number(*q)
-                    ),
-                    Some("give mass and inertia to the moving bodies".to_owned()),
-                    &labels,
-                )
-                .into()
-        }
-        DynamicsError::AtRest => motion_error(
+    }
+}
+
+/// Message, help, location and its label of an error that needs no more than its own numbers. One arm for each error,
+/// so longer than a screen.
+fn describe(
+    scene: &Scene,
+    error: &DynamicsError,
+) -> (String, &'static str, SceneLocation, &'static str) {
+    let phi = quoted_coordinate(scene);
+    let speed = SceneLocation::InitialVelocity(ActuatorId(0));
+    let start = initial_state_location(scene);
+    match error {
+        DynamicsError::AtRest => (
             "the free motion starts at rest, and no force moves the mechanism".to_owned(),
             "give a `speed` in [motion]",
             speed,
             "no speed",
         ),
-        DynamicsError::EnergyOutOfRange { q_dot, energy } => motion_error(
+        DynamicsError::EnergyOutOfRange { q_dot, energy } => (
             format!(
-                "the kinetic energy {1} J at {0} rad/s is outside the computable range",
-                number(*q_dot),
-                number(*energy)
+                "the kinetic energy {} J at {} rad/s is outside the computable range",
+                number(*energy),
+                number(*q_dot)
             ),
             "choose a realistic speed; without loads it only scales time and reactions",
             speed,
             "this speed",
         ),
-        DynamicsError::NoFullRevolution { from, to } => motion_error(
+        DynamicsError::NoFullRevolution { from, to } => (
             format!(
                 "{phi} is limited to {} to {} rad, so the motion has no period of rotation",
                 number(*from),
@@ -101,30 +60,27 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
             SceneLocation::Duration,
             "no full revolution",
         ),
-        DynamicsError::NotResolved { points, tail: left } => motion_error(
+        DynamicsError::NotResolved { points, tail } => (
             format!(
                 "the quadrature of the period does not converge: the relative error after {points} points \
                  is {}",
-                digits(*left, 2)
+                digits(*tail, 2)
             ),
             "a change point may be near: `dwell reduce` shows where; a motion with a `duration` needs no \
              period",
             SceneLocation::Duration,
             "a period is needed",
         ),
-        DynamicsError::MaxStepsReached {
-            t,
-            max_steps: steps,
-        } => motion_error(
+        DynamicsError::MaxStepsReached { t, max_steps } => (
             format!(
-                "the maximum of {steps} steps is reached at t = {} s",
+                "the maximum of {max_steps} steps is reached at t = {} s",
                 digits(*t, 2)
             ),
             "end the motion earlier, or use a larger --rtol",
             SceneLocation::Duration,
             "too long",
         ),
-        DynamicsError::StepTooSmall { t } => motion_error(
+        DynamicsError::StepTooSmall { t } => (
             format!(
                 "the integrator's step becomes too small at t = {} s: the motion changes too fast there",
                 number(*t)
@@ -133,55 +89,98 @@ pub fn explain_motion(scene: &Scene, plan: &Plan, error: &DynamicsError) -> Stud
             SceneLocation::Duration,
             "beyond that time",
         ),
-        DynamicsError::Load(load) => explain_load(scene, *load),
-        DynamicsError::DurationTooShort => motion_error(
+        DynamicsError::DurationTooShort => (
             "the duration is too short: the motion ends where it starts, up to rounding".to_owned(),
             "give a longer duration",
             SceneLocation::Duration,
             "too short",
         ),
-        DynamicsError::NotFinite { t } => motion_error(
+        DynamicsError::NotFinite { t } => (
             format!("the motion is no longer finite after t = {} s", number(*t)),
             "check the speed and the inertias",
             SceneLocation::Motion,
             "this motion",
         ),
-        DynamicsError::NoCycle { what } => motion_error(
+        DynamicsError::NoCycle { what } => (
             format!("there is no steady cycle of {phi}: {what}"),
             "a cycle needs a drive and loads that are periodic in the coordinate; \
              `dwell simulate` shows the motion",
-            initial_state_location(scene),
+            start,
             "of this motion",
         ),
-        DynamicsError::ComesToRest { q } => motion_error(
+        DynamicsError::ComesToRest { q } => (
             format!(
                 "the mechanism comes to rest at {phi} = {} rad and does not complete the revolution",
                 number(*q)
             ),
             "use a stronger drive or a larger flywheel, so that it passes the position of largest resistance",
-            initial_state_location(scene),
+            start,
             "of this motion",
         ),
-        DynamicsError::NoEquilibrium { what } => motion_error(
+        DynamicsError::NoEquilibrium { what } => (
             format!("no equilibrium found: {what}"),
             "the loads must balance near the start; `dwell linearise --about initial` needs no equilibrium",
-            initial_state_location(scene),
+            start,
             "near this start",
         ),
-        DynamicsError::NoEigenvalues => motion_error(
+        DynamicsError::NoEigenvalues => (
             "the coefficients of the linearised motion are not finite, so it has no eigenvalues"
                 .to_owned(),
             "an expression of a load or a drive may have an infinite slope there, such as a square root at zero",
-            initial_state_location(scene),
+            start,
             "near this start",
         ),
-        other => motion_error(
+        other => (
             other.to_string(),
             "check the numbers of the motion",
             SceneLocation::Motion,
             "this motion",
         ),
     }
+}
+
+/// The motion leaves its assembly mode at a limit position.
+fn explain_limit_position(scene: &Scene, plan: &Plan, t: f64, q: f64) -> StudyError {
+    let phi = quoted_coordinate(scene);
+    let limit = plan.range().limits().map(|(from, to)| {
+        // In the revolution in which the motion is.
+        let revolutions = TAU * ((q - from) / TAU).floor();
+        let is_lower = q - revolutions - from < to + revolutions - q;
+        let nearest = if is_lower { from } else { to };
+        format!(", {} rad,", number(nearest + revolutions))
+    });
+    let message = format!(
+        "the motion reaches a limit position of {phi}{} soon after t = {} s, and enters another assembly mode \
+         there, which {phi} does not distinguish from this one",
+        limit.unwrap_or_default(),
+        digits(t, 3)
+    );
+    let help = match rounded_down(t) {
+        Some(t) => {
+            format!("end it earlier: `duration = {t}` (s); or drive a joint that rotates fully")
+        }
+        None => "start farther from it, or drive a joint that rotates fully".to_owned(),
+    };
+    scene_error(
+        scene,
+        message,
+        help,
+        [(SceneLocation::Duration, "too long")],
+    )
+}
+
+fn explain_no_inertia(scene: &Scene, q: f64) -> StudyError {
+    let mechanism = &scene.mechanism;
+    let message = format!(
+        "the generalised inertia m is zero at {} = {} rad: no body with mass moves there, so the acceleration is \
+         undefined",
+        quoted_coordinate(scene),
+        number(q)
+    );
+    let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
+    let bodies = moving.take(8).map(|b| SceneLocation::Body(BodyId(b)));
+    let help = "give mass and inertia to the moving bodies";
+    scene_error(scene, message, help, labels(bodies, "no mass or inertia"))
 }
 
 /// Explains a load that is undefined.
@@ -207,8 +206,7 @@ fn explain_load(scene: &Scene, error: KinetostaticsError) -> StudyError {
             "not a finite number",
         ),
     };
-    let labels = [(SceneLocation::Load(load), label.to_owned())];
-    scene.error(message, Some(help.to_owned()), &labels).into()
+    scene_error(scene, message, help, [(SceneLocation::Load(load), label)])
 }
 
 /// `t` rounded down to two digits, if that is positive.
@@ -216,78 +214,4 @@ fn rounded_down(t: f64) -> Option<String> {
     let unit = 10_f64.powf(t.log10().floor() - 1.0);
     let time = (t / unit).floor() * unit;
     (time.is_normal() && time > 0.0).then(|| digits(time, 2))
-}
-
-/// Explains a position that cannot be computed.
-pub fn explain_position(scene: &Scene, plan: &Plan, error: &PositionError) -> StudyError {
-    let phi = coordinate_name(scene);
-    let joints = error.group().map(|g| plan.group_joints(g));
-    let unit = if plan.is_angle(0) { "rad" } else { "m" };
-    let bodies_text = error.group().map_or_else(String::new, |g| {
-        body_names(&scene.mechanism, &plan.group_bodies(g))
-    });
-    let range_ends = "this is outside the range; `dwell check` shows the range";
-    let (message, help) = match *error {
-        PositionError::NoAssembly { q, gap, .. } => (
-            format!(
-                "{bodies_text} cannot reach each other at {phi} = {} {unit}: gap of {} m",
-                number(q),
-                digits(gap, 3)
-            ),
-            range_ends,
-        ),
-        PositionError::Singular { q, .. } => (
-            format!(
-                "{bodies_text} are in a singular configuration at {phi} = {} {unit}: {phi} does not determine their motion there",
-                number(q)
-            ),
-            match plan.range().limits() {
-                None => "it is a change point: change a length, or drive another joint",
-                Some(_) => range_ends,
-            },
-        ),
-        PositionError::OtherBranch { q, .. } => (
-            format!(
-                "{bodies_text} can only be assembled in another assembly mode at {phi} = {} {unit}",
-                number(q)
-            ),
-            "two assembly modes are close to each other there",
-        ),
-        PositionError::NotConverged { q, residual, .. } => (
-            format!(
-                "the positions of {bodies_text} could not be computed at {phi} = {} {unit}: residual {} m",
-                number(q),
-                digits(residual, 3)
-            ),
-            range_ends,
-        ),
-        PositionError::OutOfRange { q, from, to } => (
-            format!(
-                "{phi} = {} {unit} is outside its range, {} to {} {unit}",
-                number(q),
-                number(from),
-                number(to)
-            ),
-            "start within the range; `dwell check` shows it",
-        ),
-        PositionError::LanesDiverge { q } => (
-            format!(
-                "the poses near {phi} = {} {unit} cannot be evaluated together in SIMD lanes",
-                number(q)
-            ),
-            "evaluate them one by one",
-        ),
-        PositionError::NotFinite { q } => (
-            format!("{phi} = {q} {unit} is not a finite number"),
-            "check the numbers of the motion",
-        ),
-    };
-    let labels = match joints {
-        Some(joints) if !joints.is_empty() => joint_labels(&joints, "cannot stay joined there"),
-        _ => vec![(
-            SceneLocation::InitialCoordinate(ActuatorId(0)),
-            "this coordinate".into(),
-        )],
-    };
-    scene.error(message, Some(help.to_owned()), &labels).into()
 }

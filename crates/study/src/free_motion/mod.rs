@@ -2,10 +2,8 @@
 
 pub mod compute;
 #[cfg(feature = "output")]
-mod document;
-#[cfg(feature = "output")]
 mod output;
 
-pub use compute::{MotionSolver, MotionTable, compute_free_motion};
+pub use compute::{FreeMotion, MotionSolver, compute_free_motion};
 #[cfg(feature = "output")]
 pub use output::{simulate, simulate_to_accuracy};

@@ -1,11 +1,11 @@
 //! Writes a free motion: everything that is written of a trajectory, events and summary.
 
 use crate::explain::StudyError;
-use crate::free_motion::compute::{FreeMotionProblem, MotionSolver, motion_and_drives};
+use crate::free_motion::compute::{MotionSolver, compute_free_motion};
 use crate::models::SolverSettings;
 use crate::progress::Progress;
 use crate::trajectory::compute::Analysis;
-use crate::trajectory::{TrajectoryOutcome, evaluate_and_report};
+use crate::trajectory::{TrajectoryOutcome, report};
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
 
@@ -46,27 +46,16 @@ fn simulate_with(
     solver: &MotionSolver,
     progress: Progress<'_>,
 ) -> Result<TrajectoryOutcome, StudyError> {
-    let (spec, loaded_scene) = motion_and_drives(scene)?;
-    let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
-    let computed = problem.compute(scene, solver)?;
-    let trajectory = problem.trajectory(&computed)?;
-    let mut result = evaluate_and_report(
-        &loaded_scene,
-        &problem.output_model,
-        &trajectory,
-        Analysis::FreeMotion,
-        progress,
-    )?;
-    let (outcome, motion) = (&mut result.outcome, &computed.motion);
-    if motion.occurrences().next().is_some() {
+    let motion = compute_free_motion(scene, solver, progress)?;
+    let (scene, computed) = (&motion.loaded_scene, motion.computed);
+    let mut outcome = report(scene, &computed, Analysis::FreeMotion, progress)?;
+    if !motion.events.is_empty() {
         let name = format!("{}-motion-events.csv", scene.name);
-        outcome.files.add(name, problem.event_table(motion).csv()?);
+        outcome.files.add(name, motion.event_table.csv()?);
     }
-    outcome.summary += &problem.summary(motion, &computed.method_text, problem.duration()?);
-    outcome.summary += &problem.notes;
-    outcome.summary += &computed.remarks;
-    if let Some(error) = problem.shortfall(scene, &computed) {
-        result.early_stop = Some(error);
-    }
-    Ok(result)
+    outcome.summary += &motion.summary;
+    Ok(TrajectoryOutcome {
+        outcome,
+        early_stop: computed.early_stop,
+    })
 }

@@ -3,12 +3,13 @@
 use crate::equilibria::compute::find_equilibria;
 use crate::explain::StudyError;
 use crate::models::{SceneMachine, indeterminate_reactions};
+use crate::number_format::force_unit;
 use dwell_dynamics::{
     DynamicsError, Equilibrium, Machine, StateSpace, linearise as linearise_about,
 };
 use dwell_findings::Column;
 use dwell_geometry::Reaction;
-use dwell_kinetostatics::DriveKind;
+use dwell_kinetostatics::{Drive, DriveKind};
 use dwell_scene::Scene;
 
 /// The operating point of a linearisation.
@@ -21,22 +22,16 @@ pub enum OperatingPoint {
 }
 
 /// The equilibrium nearest to the start.
-fn nearest_equilibrium(scene_machine: &SceneMachine<'_>) -> Result<Equilibrium, StudyError> {
-    let (found, _) = find_equilibria(scene_machine)?;
-    let start = scene_machine.initial_state()[0];
+fn nearest_equilibrium(prepared: &SceneMachine<'_>) -> Result<Equilibrium, StudyError> {
+    let (found, _) = find_equilibria(prepared)?;
+    let start = prepared.initial_state()[0];
     let distance = |e: &Equilibrium| (e.y[0] - start).abs();
     let nearest = found
         .into_iter()
         .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-    nearest.ok_or_else(|| {
-        scene_machine.explain(&DynamicsError::NoEquilibrium {
-            what: "the static force has no zero in the range",
-        })
-    })
+    let what = "the static force has no zero in the range";
+    nearest.ok_or_else(|| prepared.explain(&DynamicsError::NoEquilibrium { what }))
 }
-
-/// A matrix: its name, what its rows and its columns stand for, its rows.
-type NamedMatrix<'a> = (&'static str, &'a [Column], &'a [Column], &'a [Vec<f64>]);
 
 /// Names and units of states, inputs and outputs.
 pub struct StateSpaceNames {
@@ -49,14 +44,13 @@ pub struct StateSpaceNames {
 }
 
 impl StateSpaceNames {
-    pub(crate) fn new(scene_machine: &SceneMachine<'_>, machine: &Machine) -> Self {
-        let scene = scene_machine.scene;
-        let states = scene_machine.state_columns();
-        let force = |angle: bool| if angle { "N m" } else { "N" };
-        let input = |drive: &dwell_kinetostatics::Drive| {
+    pub(crate) fn new(prepared: &SceneMachine<'_>, machine: &Machine) -> Self {
+        let scene = prepared.scene;
+        let states = prepared.state_columns();
+        let input = |drive: &Drive| {
             let angle = drive.coordinate.is_angle();
             let (what, unit) = match drive.kind {
-                DriveKind::AppliedForce(_) => ("applied_force", force(angle)),
+                DriveKind::AppliedForce(_) => ("applied_force", force_unit(angle)),
                 DriveKind::Motor(_) => ("voltage", "V"),
                 DriveKind::SpeedController(_) => ("set_speed", if angle { "rad/s" } else { "m/s" }),
             };
@@ -66,35 +60,25 @@ impl StateSpaceNames {
         let reaction =
             |&r: &Reaction| Column::new(scene.mechanism.reaction_name(r), r.component.unit());
         outputs.extend(machine.model().reactions().iter().map(reaction));
-        let drive_force = |drive: &dwell_kinetostatics::Drive| {
-            let unit = force(drive.coordinate.is_angle());
+        outputs.extend(scene.drives.iter().map(|drive| {
+            let unit = force_unit(drive.coordinate.is_angle());
             Column::new(format!("{}.actuator_force", drive.name), unit)
-        };
-        outputs.extend(scene.drives.iter().map(drive_force));
+        }));
         Self {
             inputs: scene.drives.iter().map(input).collect(),
             states,
             outputs,
         }
     }
-
-    /// The four matrices with the names of their rows and columns.
-    pub(crate) fn matrices<'a>(&'a self, linear: &'a StateSpace) -> [NamedMatrix<'a>; 4] {
-        [
-            ("A", &self.states, &self.states, &linear.a),
-            ("B", &self.states, &self.inputs, &linear.b),
-            ("C", &self.outputs, &self.states, &linear.c),
-            ("D", &self.outputs, &self.inputs, &linear.d),
-        ]
-    }
 }
 
 /// The linearised motion of a scene.
 pub struct LinearisedMotion<'a> {
-    pub(crate) scene_machine: SceneMachine<'a>,
+    /// The scene with its machine.
+    pub prepared: SceneMachine<'a>,
     /// The state about which it is linearised.
     pub state: Vec<f64>,
-    /// The equilibrium there, if it was asked for.
+    /// The equilibrium there, if it was requested.
     pub equilibrium: Option<Equilibrium>,
     /// The matrices.
     pub linear: StateSpace,
@@ -114,25 +98,25 @@ pub fn compute_linearisation(
     scene: &Scene,
     point: OperatingPoint,
 ) -> Result<LinearisedMotion<'_>, StudyError> {
-    let scene_machine = SceneMachine::new(scene)?;
-    let indeterminate = indeterminate_reactions(scene, scene_machine.machine.model().plan());
+    let prepared = SceneMachine::new(scene)?;
+    let indeterminate = indeterminate_reactions(scene, prepared.machine.model().plan());
     let requested = scene.requests.reactions.iter().copied();
     let (omitted, reactions): (Vec<Reaction>, Vec<Reaction>) =
         requested.partition(|reaction| indeterminate.contains(reaction));
-    let machine = scene_machine.machine_with_reactions(&reactions)?;
+    let machine = prepared.machine_with_reactions(&reactions)?;
     let (state, equilibrium) = match point {
-        OperatingPoint::InitialState => (scene_machine.initial_state(), None),
+        OperatingPoint::InitialState => (prepared.initial_state(), None),
         OperatingPoint::Equilibrium => {
-            let equilibrium = nearest_equilibrium(&scene_machine)?;
+            let equilibrium = nearest_equilibrium(&prepared)?;
             (equilibrium.y.clone(), Some(equilibrium))
         }
     };
-    let explain = |e: DynamicsError| scene_machine.explain(&e);
+    let explain = |e: DynamicsError| prepared.explain(&e);
     let linear = linearise_about(&machine, 0.0, &state).map_err(explain)?;
     let eigenvalues = linear.eigenvalues().map_err(explain)?;
-    let names = StateSpaceNames::new(&scene_machine, &machine);
+    let names = StateSpaceNames::new(&prepared, &machine);
     Ok(LinearisedMotion {
-        scene_machine,
+        prepared,
         state,
         equilibrium,
         linear,

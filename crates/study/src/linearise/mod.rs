@@ -2,8 +2,6 @@
 
 pub mod compute;
 #[cfg(feature = "output")]
-mod document;
-#[cfg(feature = "output")]
 mod output;
 
 pub use compute::{OperatingPoint, compute_linearisation};

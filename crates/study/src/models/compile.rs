@@ -1,10 +1,11 @@
 //! Compiled models of a scene: for which reactions, with which loads.
 
 use crate::explain::{StudyError, explain_machine, explain_model, not_one_actuator};
-use dwell_dynamics::{CoordinateMode, Machine};
+use dwell_dynamics::{CoordinateMode, Machine, loads_with_drives};
 use dwell_geometry::{BodyId, Plan, Reaction};
 use dwell_kinetostatics::{ExactModel, Model};
-use dwell_scene::{FreeMotionSpec, Scene, SceneLocation};
+use dwell_laws::Law;
+use dwell_scene::{FreeMotionSpec, Scene};
 use std::collections::HashSet;
 
 /// A model of a scene for some reactions.
@@ -22,7 +23,8 @@ pub fn reduced_model(scene: &Scene, reactions: &[Reaction]) -> Result<ExactModel
 /// The requested reactions that are statically indeterminate: no analysis returns them.
 pub fn indeterminate_reactions(scene: &Scene, plan: &Plan) -> HashSet<Reaction> {
     let all = scene.mechanism.reactions().into_iter().enumerate();
-    all.filter(|&(k, _)| !plan.is_determinate(k))
+    let indeterminate = all.filter(|&(k, _)| !plan.is_determinate(k));
+    indeterminate
         .map(|(_, reaction)| reaction)
         .filter(|reaction| scene.requests.reactions.contains(reaction))
         .collect()
@@ -30,13 +32,12 @@ pub fn indeterminate_reactions(scene: &Scene, plan: &Plan) -> HashSet<Reaction> 
 
 /// The model of a scene with the requested reactions that are statically determinate.
 pub(crate) fn determinate_model(scene: &Scene) -> Result<Model, StudyError> {
-    let requested = &scene.requests.reactions;
-    let model = compile_model(scene, requested)?;
+    let model = compile_model(scene, &scene.requests.reactions)?;
     let indeterminate = indeterminate_reactions(scene, model.plan());
     if indeterminate.is_empty() {
         return Ok(model);
     }
-    let mut determinate = requested.clone();
+    let mut determinate = scene.requests.reactions.clone();
     determinate.retain(|reaction| !indeterminate.contains(reaction));
     model
         .with_reactions(&determinate)
@@ -63,22 +64,22 @@ pub fn loaded_model(scene: &Scene) -> Result<Model, StudyError> {
 /// # Errors
 /// [`StudyError::Scene`] where a load does not fit it.
 pub(crate) fn with_loads(scene: &Scene, model: Model) -> Result<Model, StudyError> {
-    let loads = scene.loads.clone();
-    model.with_loads(loads).map_err(|e| {
-        let labels = [(SceneLocation::Load(e.load), "this load".to_owned())];
-        let name = scene
-            .loads
-            .get(e.load)
-            .map_or("", |load| load.name.as_str());
-        scene
-            .error(format!("load `{name}`: {}", e.what), None, &labels)
-            .into()
-    })
+    model
+        .with_loads(scene.loads.clone())
+        .map_err(|e| explain_machine(scene, e.into()))
 }
 
 /// The model of what a scene requests, with its loads: they may need groups that the inertia does not.
 pub(crate) fn loaded_determinate_model(scene: &Scene) -> Result<Model, StudyError> {
     with_loads(scene, determinate_model(scene)?)
+}
+
+/// A scene whose loads include those through which its drives act.
+pub(crate) fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
+    let loads = loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives);
+    let mut loaded = scene.clone();
+    loaded.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
+    Ok(loaded)
 }
 
 /// The machine of a scene, with some reactions and those that friction needs.
@@ -87,11 +88,11 @@ pub fn build_machine(
     spec: &FreeMotionSpec,
     reactions: &[Reaction],
 ) -> Result<Machine, StudyError> {
-    let model = compile_model(scene, reactions)?;
-    let mode = |law: &Option<dwell_laws::Law>| {
-        law.clone()
-            .map_or(CoordinateMode::Free, CoordinateMode::Prescribed)
+    let mode = |law: &Option<Law>| match law {
+        Some(law) => CoordinateMode::Prescribed(law.clone()),
+        None => CoordinateMode::Free,
     };
     let modes = spec.laws.iter().map(mode).collect();
+    let model = compile_model(scene, reactions)?;
     Machine::new(model, &scene.loads, modes, &scene.drives).map_err(|e| explain_machine(scene, e))
 }

@@ -1,6 +1,7 @@
 //! The compiled models of a scene, which the analyses share.
 
 mod compile;
+mod drives;
 mod prepared_scene;
 mod scene_machine;
 mod solver_settings;
@@ -9,9 +10,11 @@ pub use compile::{
     build_machine, compile_model, indeterminate_reactions, loaded_model, reduced_model,
 };
 pub(crate) use compile::{
-    determinate_model, loaded_determinate_model, requested_reaction_bodies, with_loads,
+    determinate_model, loaded_determinate_model, requested_reaction_bodies, with_drive_loads,
+    with_loads,
 };
+pub(crate) use drives::{drive_states, source_name};
 pub use prepared_scene::PreparedScene;
-pub(crate) use prepared_scene::{indeterminate_note, separating_note};
-pub(crate) use scene_machine::SceneMachine;
+pub(crate) use prepared_scene::initial_reduced_state;
+pub use scene_machine::SceneMachine;
 pub use solver_settings::{PRESETS, SolverSettings};

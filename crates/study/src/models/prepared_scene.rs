@@ -1,10 +1,11 @@
 //! A scene with the exact reduced model of what it requests.
 
-use crate::explain::{StudyError, not_one_actuator};
-use crate::models::{determinate_model, indeterminate_reactions, requested_reaction_bodies};
+use crate::explain::{StudyError, not_one_actuator, scene_error};
+use crate::models::{determinate_model, requested_reaction_bodies};
+use crate::ranges::equally_spaced;
 use dwell_dynamics::ReducedState;
 use dwell_geometry::{ActuatorId, Reaction};
-use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
+use dwell_kinetostatics::{ExactModel, Load, Model, ReducedModel};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
 
@@ -42,28 +43,23 @@ impl<'a> PreparedScene<'a> {
         let model = determinate_model(scene)?;
         let pruned = model.pruned_for(&requested_reaction_bodies(scene));
         let prepared_scene = Self::from_model(scene, pruned)?;
-        let label = |place, word: &str| [(place, word.to_owned())];
         if !prepared_scene.model.model().plan().is_angle(0) {
-            return Err(scene
-                .error(
-                    "the reduced model is available for driven angles only".to_owned(),
-                    Some(
-                        "use `dwell simulate` or `dwell kinetostatics`, which support driven lengths, or drive an angle".to_owned(),
-                    ),
-                    &label(SceneLocation::Actuator(ActuatorId(0)), "drives a length"),
-                )
-                .into());
+            return Err(scene_error(
+                scene,
+                "the reduced model is available for driven angles only",
+                "use `dwell simulate` or `dwell kinetostatics`, which support driven lengths, or drive an angle",
+                [(SceneLocation::Actuator(ActuatorId(0)), "drives a length")],
+            ));
         }
         // A separating force changes no motion.
-        let ignored = scene.loads.iter().position(|load| load.does_work());
+        let ignored = scene.loads.iter().position(Load::does_work);
         if let Some(load) = ignored.filter(|_| for_period) {
-            return Err(scene
-                .error(
-                    "calibration needs the period of a motion without loads".to_owned(),
-                    Some("remove the loads, or try values with `dwell simulate`".to_owned()),
-                    &label(SceneLocation::Load(load), "this load would be ignored"),
-                )
-                .into());
+            return Err(scene_error(
+                scene,
+                "calibration needs the period of a motion without loads",
+                "remove the loads, or try values with `dwell simulate`",
+                [(SceneLocation::Load(load), "this load would be ignored")],
+            ));
         }
         Ok(prepared_scene)
     }
@@ -81,25 +77,12 @@ impl<'a> PreparedScene<'a> {
         reactions.iter().map(named).collect()
     }
 
-    /// The summary's line about the requested reactions that are statically indeterminate.
-    pub(crate) fn indeterminate_text(&self) -> String {
-        let indeterminate = indeterminate_reactions(self.scene, self.model.model().plan());
-        let requested = self.scene.requests.reactions.iter();
-        let names = requested.filter(|r| indeterminate.contains(r));
-        indeterminate_note(names.map(|&r| self.scene.mechanism.reaction_name(r)))
-    }
-
     /// The initial state of the free motion, if the scene has one.
     pub fn initial_state(&self) -> Option<ReducedState> {
-        let spec = self.scene.motion.as_ref()?;
-        Some(ReducedState {
-            t: 0.0,
-            q: spec.initial_coordinates[0],
-            q_dot: spec.initial_velocities[0],
-        })
+        initial_reduced_state(self.scene)
     }
 
-    /// `count` + 1 equally spaced coordinates over the range, rad: over a turn from 0, or between
+    /// `count` + 1 equally spaced coordinates over the range, rad: over a revolution from 0, or between
     /// the limit positions, of which a thousandth is left out where everything grows.
     pub fn range_positions(&self, count: usize) -> Vec<f64> {
         let (from, to) = match self.model.range().limits() {
@@ -109,32 +92,16 @@ impl<'a> PreparedScene<'a> {
                 (from + margin, to - margin)
             }
         };
-        let at = |i: usize| from + (to - from) * i as f64 / count as f64;
-        (0..=count).map(at).collect()
+        equally_spaced([from, to], count)
     }
 }
 
-/// The line of a summary that names the statically indeterminate reactions; empty if there are none.
-pub(crate) fn indeterminate_note(names: impl Iterator<Item = String>) -> String {
-    let names: Vec<String> = names.collect();
-    if names.is_empty() {
-        return String::new();
-    }
-    format!(
-        "  statically indeterminate (redundant constraints share the load), so in no table: {}\n",
-        names.join(", ")
-    )
-}
-
-/// The line of a summary about separating forces, which a and b cannot hold; empty if there are none.
-pub(crate) fn separating_note(scene: &Scene) -> String {
-    let separating = scene.loads.iter().filter(|load| !load.does_work());
-    let names: Vec<&str> = separating.map(|load| load.name.as_str()).collect();
-    if names.is_empty() {
-        return String::new();
-    }
-    format!(
-        "  a and b are without the separating forces {}: each is |tooth force| × tan(pressure angle) at one state, and adds c times itself to a reaction\n",
-        names.join(", ")
-    )
+/// The initial state of the free motion of one degree of freedom, if the scene has one.
+pub(crate) fn initial_reduced_state(scene: &Scene) -> Option<ReducedState> {
+    let spec = scene.motion.as_ref()?;
+    Some(ReducedState {
+        t: 0.0,
+        q: *spec.initial_coordinates.first()?,
+        q_dot: *spec.initial_velocities.first()?,
+    })
 }

@@ -1,49 +1,47 @@
 //! The machine of a scene, as `cycle`, `equilibria` and `linearise` use it.
 
-use crate::explain::{StudyError, explain_machine, explain_motion, initial_state_location};
-use crate::models::build_machine;
-use crate::number_format::digits;
-use dwell_dynamics::{DynamicsError, Machine, NonconservativeSource, loads_with_drives};
+use crate::explain::{
+    Labels, StudyError, explain_motion, initial_state_location, labels, scene_error,
+};
+use crate::models::{build_machine, drive_states, source_name, with_drive_loads};
+use crate::number_format::{coordinate_unit, digits};
+use dwell_dynamics::{DynamicsError, Machine, NonconservativeSource};
 use dwell_findings::Column;
 use dwell_geometry::{ActuatorId, Reaction};
-use dwell_kinetostatics::{DriveKind, Signal};
+use dwell_kinetostatics::Signal;
 use dwell_scene::{FreeMotionSpec, MotionDuration, Scene, SceneLocation};
 
 /// A scene with its machine and its initial state.
-pub(crate) struct SceneMachine<'a> {
-    pub(crate) scene: &'a Scene,
+pub struct SceneMachine<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
     /// The scene with the loads of its drives added.
     loaded_scene: Scene,
     spec: FreeMotionSpec,
-    pub(crate) machine: Machine,
+    /// Its machine without reactions.
+    pub machine: Machine,
 }
 
 impl<'a> SceneMachine<'a> {
     pub(crate) fn new(scene: &'a Scene) -> Result<Self, StudyError> {
-        let loads = loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives);
-        let mut loaded_scene = scene.clone();
-        loaded_scene.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
-        let spec = scene
-            .motion
-            .clone()
-            .unwrap_or_else(|| motion_from_rest(scene));
+        let loaded_scene = with_drive_loads(scene)?;
+        let spec = scene.motion.clone();
+        let spec = spec.unwrap_or_else(|| motion_from_rest(scene));
         let machine = build_machine(scene, &spec, &[])?;
-        let scene_machine = Self {
+        if machine.free().is_empty() {
+            return Err(scene_error(
+                scene,
+                "the scene has no free coordinate",
+                "declare the coordinate that moves, as in `[actuators.phi]`",
+                [(SceneLocation::Whole, "none")],
+            ));
+        }
+        Ok(Self {
             scene,
             loaded_scene,
             spec,
             machine,
-        };
-        if scene_machine.machine.free().is_empty() {
-            let help = "declare the coordinate that moves, as in `[actuators.phi]`";
-            let message = "the scene has no free coordinate".to_owned();
-            return Err(scene_machine.error(
-                message,
-                help,
-                &[(SceneLocation::Whole, "none".to_owned())],
-            ));
-        }
-        Ok(scene_machine)
+        })
     }
 
     /// The machine with some reactions.
@@ -56,10 +54,9 @@ impl<'a> SceneMachine<'a> {
 
     /// The initial state of `[motion]`, or else the assembly configuration at rest.
     pub(crate) fn initial_state(&self) -> Vec<f64> {
-        self.machine.initial_state(
-            &self.spec.initial_coordinates,
-            &self.spec.initial_velocities,
-        )
+        let spec = &self.spec;
+        self.machine
+            .initial_state(&spec.initial_coordinates, &spec.initial_velocities)
     }
 
     pub(crate) fn explain(&self, error: &DynamicsError) -> StudyError {
@@ -68,17 +65,16 @@ impl<'a> SceneMachine<'a> {
 
     pub(crate) fn error(
         &self,
-        message: String,
+        message: impl Into<String>,
         help: &str,
-        labels: &[(SceneLocation, String)],
+        labels: Labels,
     ) -> StudyError {
-        let error = self.scene.error(message, Some(help.to_owned()), labels);
-        error.into()
+        scene_error(self.scene, message, help, labels)
     }
 
     /// The label of the scene's initial state.
-    pub(crate) fn initial_state_label(&self, text: &str) -> (SceneLocation, String) {
-        (initial_state_location(self.scene), text.to_owned())
+    pub(crate) fn initial_state_label(&self, text: &str) -> Labels {
+        labels([initial_state_location(self.scene)].into_iter(), text)
     }
 
     /// Rejects a machine that depends explicitly on time.
@@ -88,22 +84,17 @@ impl<'a> SceneMachine<'a> {
         }
         let loads = self.loaded_scene.loads.iter().enumerate();
         let loads = loads.filter(|(_, load)| load.magnitude.signals().contains(&Signal::Time));
-        let mut labels: Vec<(SceneLocation, String)> = loads
-            .map(|(k, _)| (SceneLocation::Magnitude(k), "depends on time".to_owned()))
-            .collect();
+        let loads = loads.map(|(k, _)| SceneLocation::Magnitude(k));
         let laws = self.spec.laws.iter().enumerate();
-        let prescribed = laws.filter(|(_, law)| law.is_some());
-        labels.extend(prescribed.map(|(k, _)| {
-            (
-                SceneLocation::MotionLaw(ActuatorId(k)),
-                "prescribed in time".to_owned(),
-            )
-        }));
+        let laws = laws.filter(|(_, law)| law.is_some());
+        let laws = laws.map(|(k, _)| SceneLocation::MotionLaw(ActuatorId(k)));
+        let mut places = labels(loads, "depends on time");
+        places.extend(labels(laws, "prescribed in time"));
         Err(self.error(
             format!("{subject} needs an autonomous system: no load, drive or prescribed motion may depend on time"),
             "remove `t` from expressions and tables, and prescribe constant coordinates only; \
              `dwell simulate` integrates time-dependent motions",
-            &labels,
+            places,
         ))
     }
 
@@ -122,55 +113,31 @@ impl<'a> SceneMachine<'a> {
     }
 
     /// A coordinate as text.
-    pub(crate) fn describe_coordinate(&self, actuator: usize, value: f64) -> String {
-        let name = self.coordinate_name(actuator);
-        if self.is_angle(actuator) {
-            let degrees = digits(value.to_degrees(), 9);
-            format!("{name} = {} rad ({degrees}°)", digits(value, 9))
-        } else {
-            format!("{name} = {} m", digits(value, 9))
+    pub fn describe_coordinate(&self, actuator: usize, value: f64) -> String {
+        let (name, text) = (self.coordinate_name(actuator), digits(value, 9));
+        match self.is_angle(actuator) {
+            true => format!("{name} = {text} rad ({}°)", digits(value.to_degrees(), 9)),
+            false => format!("{name} = {text} m"),
         }
     }
 
     /// Names and units of the states: coordinates, speeds, states of drives.
     pub(crate) fn state_columns(&self) -> Vec<Column> {
-        let unit = |i: usize| if self.is_angle(i) { "rad" } else { "m" };
-        let free = self.machine.free();
-        let coordinates = free
-            .iter()
-            .map(|&i| Column::new(self.coordinate_name(i), unit(i)));
+        let free = self.machine.free().iter();
+        let unit = |i: usize| coordinate_unit(self.is_angle(i));
+        let coordinate = |&i: &usize| Column::new(self.coordinate_name(i), unit(i));
         let speed = |&i: &usize| {
             let name = format!("{}.velocity", self.coordinate_name(i));
             Column::new(name, format!("{}/s", unit(i)))
         };
-        let mut states: Vec<Column> = coordinates.chain(free.iter().map(speed)).collect();
-        for drive in &self.scene.drives {
-            match &drive.kind {
-                DriveKind::Motor(motor) if motor.inductance > 0.0 => {
-                    states.push(Column::new(format!("{}.current", drive.name), "A"));
-                }
-                DriveKind::SpeedController(regulator) if regulator.integral_gain > 0.0 => {
-                    let unit = if drive.coordinate.is_angle() {
-                        "rad"
-                    } else {
-                        "m"
-                    };
-                    states.push(Column::new(format!("{}.integral", drive.name), unit));
-                }
-                _ => {}
-            }
-        }
-        states
+        let states = drive_states(self.scene).into_iter();
+        let states = states.map(|(name, unit, _)| Column::new(name, unit));
+        let coordinates = free.clone().map(coordinate).chain(free.map(speed));
+        coordinates.chain(states).collect()
     }
 
-    pub(crate) fn source_name(&self, source: NonconservativeSource) -> String {
-        match source {
-            NonconservativeSource::Load(load) => self.scene.loads[load].name.clone(),
-            NonconservativeSource::Drive(drive) => self.scene.drives[drive].name.clone(),
-            NonconservativeSource::Prescribed(actuator) => {
-                self.coordinate_name(actuator).to_owned()
-            }
-        }
+    pub(crate) fn source_name(&self, source: NonconservativeSource) -> &str {
+        source_name(self.scene, source)
     }
 }
 

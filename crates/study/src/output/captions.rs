@@ -1,10 +1,11 @@
-//! Captions, labels and limits that figures share.
+//! Captions, labels, limits and axes that figures share.
 
 use crate::models::PreparedScene;
 use crate::number_format::count;
+use crate::ranges::extent;
 use dwell_geometry::Range;
 use dwell_kinetostatics::ReducedModel;
-use dwell_report::{Figure, Series};
+use dwell_report::{Axis, Chart, Figure, Panel, Series};
 use dwell_scene::Scene;
 
 /// Maximum number of reaction figures if none is requested by name.
@@ -31,7 +32,45 @@ pub(crate) fn add_note(figures: &mut [Figure], note: Option<&str>) {
     }
 }
 
-/// The caption of a figure over the range, which explains why curves may leave it.
+/// A figure of a scene with its caption, one panel below another.
+pub(crate) fn figure(
+    scene: &Scene,
+    name: impl Into<String>,
+    title: impl Into<String>,
+    text: &str,
+    panels: Vec<Panel>,
+    provenance: impl Into<String>,
+) -> Figure {
+    Figure {
+        name: name.into(),
+        title: title.into(),
+        caption: scene_caption(scene, text),
+        columns: 1,
+        panels,
+        provenance: provenance.into(),
+    }
+}
+
+/// Curves over two axes.
+pub(crate) fn chart(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Chart {
+    Chart {
+        title: title.into(),
+        x,
+        y,
+        series,
+        ..Chart::default()
+    }
+}
+
+/// The axis of a coordinate: in degrees, or in m.
+pub(crate) fn coordinate_axis(label: &str, is_angle: bool) -> Axis {
+    match is_angle {
+        true => Axis::degrees(label),
+        false => Axis::new(label, "m"),
+    }
+}
+
+/// The text of a caption of a figure over the range, which explains why curves may leave it.
 pub(crate) fn range_caption(prepared: &PreparedScene<'_>, text: &str) -> String {
     let limits = match prepared.model.model().plan().range_limits() {
         [None, None] => "",
@@ -40,7 +79,7 @@ pub(crate) fn range_caption(prepared: &PreparedScene<'_>, text: &str) -> String 
         }
         _ => " Towards the limit position all quantities grow without bound.",
     };
-    caption(prepared, &format!("{text}{limits}"))
+    format!("{text}{limits}")
 }
 
 /// The caption of a figure: the scene's title and the text. The provenance is added when it is drawn.
@@ -55,10 +94,8 @@ pub fn scene_caption(scene: &Scene, text: &str) -> String {
 
 /// The provenance of the reduced model.
 pub(crate) fn reduced_provenance(positions: usize) -> String {
-    format!(
-        "reduced model by unit runs, at {}",
-        count(positions, "position")
-    )
+    let positions = count(positions, "position");
+    format!("reduced model by unit runs, at {positions}")
 }
 
 /// A coordinate's name as a symbol, where it is the name of a Greek letter.
@@ -79,18 +116,15 @@ pub fn symbol(name: &str) -> String {
 
 /// The label of the axis of the independent coordinate.
 pub fn coordinate_label(prepared: &PreparedScene<'_>) -> String {
-    let bodies = prepared.scene.mechanism.actuators[0].bodies;
     let mechanism = &prepared.scene.mechanism;
-    // The angle of the body that turns; from another than the ground, both are named.
-    let body = mechanism.body_name(bodies[1]);
+    let bodies = mechanism.actuators[0].bodies;
     let symbol = symbol(prepared.coordinate_name());
+    // The angle of the second body; from another than the ground, both are named.
+    let [from, body] = bodies.map(|b| mechanism.body_name(b));
     if bodies[0].0 == mechanism.ground {
         format!("{body} angle {symbol}")
     } else {
-        format!(
-            "angle {symbol} of {body} from {}",
-            mechanism.body_name(bodies[0])
-        )
+        format!("angle {symbol} of {body} from {from}")
     }
 }
 
@@ -104,12 +138,34 @@ pub(crate) fn inner_range(prepared: &PreparedScene<'_>, curves: &[Series]) -> Op
         let n = c.points.len();
         c.points[n / 20..n - n / 20].to_vec()
     };
-    let (low, high) = curves
-        .iter()
-        .flat_map(inner)
-        .fold((f64::MAX, f64::MIN), |(a, b), [_, v]| (a.min(v), b.max(v)));
+    let [low, high] = extent(curves.iter().flat_map(inner).map(|[_, v]| v));
     let margin = 0.08 * (high - low);
     (high > low).then_some([low - margin, high + margin])
+}
+
+/// The line of a summary that names the statically indeterminate reactions; empty if there are none.
+pub(crate) fn indeterminate_note(names: impl Iterator<Item = String>) -> String {
+    let names: Vec<String> = names.collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    let names = names.join(", ");
+    format!(
+        "  statically indeterminate (redundant constraints share the load), so in no table: {names}\n"
+    )
+}
+
+/// The line of a summary about separating forces, which a and b cannot hold; empty if there are none.
+pub(crate) fn separating_note(scene: &Scene) -> String {
+    let separating = scene.loads.iter().filter(|load| !load.does_work());
+    let names: Vec<&str> = separating.map(|load| load.name.as_str()).collect();
+    if names.is_empty() {
+        return String::new();
+    }
+    let names = names.join(", ");
+    format!(
+        "  a and b are without the separating forces {names}: each is |tooth force| × tan(pressure angle) at one state, and adds c times itself to a reaction\n"
+    )
 }
 
 #[cfg(test)]

@@ -1,12 +1,15 @@
 //! Drawing of a mechanism in one position: bodies as bars, plates and blocks, joints and springs.
 
-use crate::bodies::{BodyPose, mean_body_length, point_position};
+use crate::bodies::{BodyPose, point_position};
+use crate::ranges::extent;
 use dwell_geometry::{ActuatorKind, BodyId, Joint, JointId, JointKind, Vec2, vec2};
 use dwell_kinetostatics::LoadKind;
 use dwell_report::{Paint, Pen, Shape, TextPlacement};
 use dwell_scene::Scene;
 use std::f64::consts::TAU;
 
+/// Reference length of the symbols, in sizes of the mechanism.
+const SYMBOL_RATIO: f64 = 0.6;
 /// Number of corners of a circle.
 const CIRCLE_POINTS: usize = 72;
 /// Number of coils of a spring.
@@ -26,7 +29,7 @@ pub struct MechanismDrawing<'a> {
 /// The outline of a body.
 enum Outline {
     /// A small block that slides.
-    Block([Vec2; 4]),
+    Block(Vec<Vec2>),
     /// A plate through three or more points.
     Plate(Vec<Vec2>),
     /// A bar through points of one line.
@@ -48,13 +51,12 @@ impl<'a> MechanismDrawing<'a> {
                     .map(|(body, at)| vector(point_position(body_poses, body, at)));
                 axis.rotate(body_poses[one].1).dot(b - a)
             };
-            let all = positions.iter().map(travel_along);
-            let limits = all.fold([f64::MAX, f64::MIN], |[l, h], s| [l.min(s), h.max(s)]);
+            let limits = extent(positions.iter().map(travel_along));
             (limits[0] <= limits[1]).then_some(limits)
         };
         Self {
             scene,
-            size: mean_body_length(scene),
+            size: SYMBOL_RATIO * scene.mechanism.size(),
             travels: scene.mechanism.joints.iter().map(travel).collect(),
             visible: vec![true; scene.mechanism.bodies.len()],
         }
@@ -74,93 +76,32 @@ impl<'a> MechanismDrawing<'a> {
 
     /// Draws all bodies, then all joints, in one position; labels only at `lightness` 0.
     pub fn draw(&self, body_poses: &[BodyPose], lightness: f64, shapes: &mut Vec<Shape>) {
-        self.draw_background(body_poses, lightness, shapes);
-        self.draw_bodies(body_poses, lightness, shapes);
-        self.draw_loads(body_poses, lightness, shapes);
-        self.draw_joints(body_poses, lightness, shapes);
+        let mut position = DrawnPosition {
+            drawing: self,
+            body_poses,
+            lightness,
+            shapes,
+        };
+        position.draw_background();
+        position.draw_bodies();
+        if lightness == 0.0 {
+            position.draw_loads();
+        }
+        position.draw_joints();
+    }
+
+    fn is_ground(&self, body: BodyId) -> bool {
+        body.0 == self.scene.mechanism.ground
     }
 
     /// Grey for the ground; six palette colours, then ink, then the colours again.
     fn color(&self, body: BodyId) -> Paint {
-        let ground = self.scene.mechanism.ground;
-        if body.0 == ground {
+        if self.is_ground(body) {
             return Paint::Grey;
         }
-        match (body.0 - usize::from(body.0 > ground)) % 7 {
+        match (body.0 - usize::from(body.0 > self.scene.mechanism.ground)) % 7 {
             6 => Paint::Ink,
             k => Paint::Palette(k),
-        }
-    }
-
-    /// Draws what lies behind the bodies: pitch circles, tracks, slots and cylinders.
-    fn draw_background(&self, body_poses: &[BodyPose], lightness: f64, shapes: &mut Vec<Shape>) {
-        let mechanism = &self.scene.mechanism;
-        for (j, (joint, travel)) in mechanism.joints.iter().zip(&self.travels).enumerate() {
-            if !self.is_visible(joint.bodies) {
-                continue;
-            }
-            let [one, two] = joint.bodies;
-            let pen = |body, width| Pen::new(self.color(body), width).lightness(lightness);
-            let at = [0, 1].map(|i| point_position(body_poses, joint.bodies[i].0, joint.points[i]));
-            match joint.kind {
-                JointKind::Gear { radii, .. } => {
-                    for i in 0..2 {
-                        let body = joint.bodies[i];
-                        // Wheels are drawn in the first position only.
-                        if lightness == 0.0 {
-                            shapes.push(circle(at[i], radii[i], pen(body, 2.5)));
-                            shapes.extend(self.spoke(body_poses, body, at[i], radii[i], lightness));
-                        }
-                    }
-                }
-                JointKind::Rack { axis, radius } | JointKind::Rolling { axis, radius } => {
-                    self.track(body_poses, joint, axis, travel.as_ref(), lightness, shapes);
-                    shapes.push(circle(at[1], radius.abs(), pen(two, 2.5)));
-                    shapes.extend(self.spoke(body_poses, two, at[1], radius.abs(), lightness));
-                }
-                JointKind::Slot { axis } if lightness == 0.0 => {
-                    self.track(body_poses, joint, axis, travel.as_ref(), lightness, shapes);
-                }
-                JointKind::Prismatic { axes } => {
-                    let on_ground = joint.bodies.iter().any(|b| b.0 == mechanism.ground);
-                    if self.is_cylinder(j) {
-                        let a = vector(at[0]);
-                        let min_travel = travel.map_or(0.0, |[low, _]| 0.85 * low);
-                        let end = a + axes[0].rotate(body_poses[one.0].1) * min_travel;
-                        shapes.push(Shape::line(at.to_vec(), pen(two, 5.0)));
-                        shapes.push(Shape::line(
-                            vec![[a.x, a.y], [end.x, end.y]],
-                            pen(one, 12.0),
-                        ));
-                    } else if !on_ground || lightness == 0.0 {
-                        self.track(
-                            body_poses,
-                            joint,
-                            axes[0],
-                            travel.as_ref(),
-                            lightness,
-                            shapes,
-                        );
-                    }
-                }
-                JointKind::Distance { .. } => {
-                    let link = Pen::new(Paint::Grey, 4.0).lightness(lightness);
-                    shapes.push(Shape::line(at.to_vec(), link));
-                }
-                _ => {}
-            }
-        }
-        for actuator in &mechanism.actuators {
-            if let (ActuatorKind::Length(points), true) =
-                (actuator.kind, self.is_visible(actuator.bodies))
-            {
-                let [a, b] =
-                    [0, 1].map(|i| point_position(body_poses, actuator.bodies[i].0, points[i]));
-                let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-                let pen = |width| Pen::new(Paint::Grey, width).lightness(lightness);
-                shapes.push(Shape::line(vec![a, b], pen(4.0)));
-                shapes.push(Shape::line(vec![a, middle], pen(11.0)));
-            }
         }
     }
 
@@ -169,153 +110,8 @@ impl<'a> MechanismDrawing<'a> {
         let mechanism = &self.scene.mechanism;
         let drives = ActuatorKind::Travel(JointId(joint));
         let bodies = mechanism.joints[joint].bodies;
-        let moving = bodies.iter().all(|b| b.0 != mechanism.ground);
-        moving && mechanism.actuators.iter().any(|a| a.kind == drives)
-    }
-
-    /// A line on a disc that shows how it turns.
-    fn spoke(
-        &self,
-        body_poses: &[BodyPose],
-        body: BodyId,
-        at: [f64; 2],
-        radius: f64,
-        lightness: f64,
-    ) -> Option<Shape> {
-        if body.0 == self.scene.mechanism.ground {
-            return None;
-        }
-        let rim = vector(at) + body_poses[body.0].1 * radius;
-        let pen = Pen::new(self.color(body), 2.0).lightness(lightness);
-        Some(Shape::line(vec![at, [rim.x, rim.y]], pen))
-    }
-
-    /// The straight line on the first body along which the joint's second point goes.
-    fn track(
-        &self,
-        body_poses: &[BodyPose],
-        joint: &Joint,
-        axis: Vec2,
-        travel: Option<&[f64; 2]>,
-        lightness: f64,
-        shapes: &mut Vec<Shape>,
-    ) {
-        let one = joint.bodies[0];
-        let start = vector(point_position(body_poses, one.0, joint.points[0]));
-        let direction = axis.rotate(body_poses[one.0].1);
-        let [low, high] = travel.copied().unwrap_or([0.0; 2]);
-        let margin = 0.25 * self.size;
-        let [from, to] = [low - margin, high + margin]
-            .map(|s| start + direction * s)
-            .map(|p| [p.x, p.y]);
-        let fixed = one.0 == self.scene.mechanism.ground;
-        let solid = matches!(
-            joint.kind,
-            JointKind::Rack { .. } | JointKind::Rolling { .. }
-        );
-        if fixed && solid && lightness == 0.0 {
-            // The hatching is on the right of the track: away from the disc.
-            let radius = match joint.kind {
-                JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => radius,
-                _ => 0.0,
-            };
-            let (from, to) = if radius < 0.0 { (to, from) } else { (from, to) };
-            shapes.push(Shape::GroundLine { from, to });
-        } else if fixed && lightness == 0.0 {
-            shapes.push(Shape::GroundLine { from, to });
-        } else if !fixed {
-            let color = self.color(one);
-            let wide = Pen::new(color, if solid { 3.0 } else { 17.0 });
-            shapes.push(Shape::line(
-                vec![from, to],
-                wide.lightness(lightness.max(0.55)),
-            ));
-            if !solid {
-                let inner = Pen::new(color, 11.0).lightness(1.0);
-                shapes.push(Shape::line(vec![from, to], inner));
-            }
-        }
-    }
-
-    fn draw_bodies(&self, body_poses: &[BodyPose], lightness: f64, shapes: &mut Vec<Shape>) {
-        let mechanism = &self.scene.mechanism;
-        let moving = (0..mechanism.bodies.len()).filter(|&b| b != mechanism.ground);
-        for body in moving.filter(|&b| self.visible[b]) {
-            let pen = Pen::new(self.color(BodyId(body)), 6.0).lightness(lightness);
-            let at = |points: &[Vec2]| {
-                points
-                    .iter()
-                    .map(|p| point_position(body_poses, body, *p))
-                    .collect()
-            };
-            let shape = match self.outline(body) {
-                Outline::Block(corners) => {
-                    Shape::area(at(&corners), Pen { width: 3.0, ..pen }, 0.35)
-                }
-                Outline::Plate(corners) => {
-                    Shape::area(at(&corners), Pen { width: 4.0, ..pen }, 0.15)
-                }
-                Outline::Bar(ends) => Shape::line(at(&ends), pen),
-            };
-            shapes.push(match lightness == 0.0 {
-                true => shape.named(mechanism.bodies[body].name.clone()),
-                false => shape,
-            });
-        }
-    }
-
-    fn draw_joints(&self, body_poses: &[BodyPose], lightness: f64, shapes: &mut Vec<Shape>) {
-        let mechanism = &self.scene.mechanism;
-        let named = lightness == 0.0;
-        // Joints at one point share a label.
-        let mut labels: Vec<([f64; 2], Vec<&Joint>, TextPlacement)> = Vec::new();
-        let mut label = |at: [f64; 2], joint, side: TextPlacement| {
-            let near = |l: &&mut ([f64; 2], Vec<&Joint>, TextPlacement)| {
-                (vector(l.0) - vector(at)).norm() < 0.02 * self.size
-            };
-            match labels.iter_mut().find(near) {
-                Some((_, joints, _)) => joints.push(joint),
-                None => labels.push((at, vec![joint], side)),
-            }
-        };
-        for joint in mechanism
-            .joints
-            .iter()
-            .filter(|j| self.is_visible(j.bodies))
-        {
-            let on_ground = joint.bodies.iter().any(|b| b.0 == mechanism.ground);
-            let ends =
-                [0, 1].map(|i| point_position(body_poses, joint.bodies[i].0, joint.points[i]));
-            match joint.kind {
-                JointKind::Revolute if on_ground && named => {
-                    shapes.push(Shape::GroundPin { at: ends[0] });
-                    label(ends[0], joint, TextPlacement::AboveLeft);
-                }
-                JointKind::Revolute if on_ground => {}
-                JointKind::Revolute => {
-                    shapes.push(Shape::pin(ends[0], Paint::Ink, lightness));
-                    if named {
-                        label(ends[0], joint, TextPlacement::AboveRight);
-                    }
-                }
-                JointKind::Slot { .. } => shapes.push(Shape::pin(ends[1], Paint::Ink, lightness)),
-                JointKind::Distance { .. } => {
-                    shapes.extend(ends.map(|at| Shape::pin(at, Paint::Ink, lightness)));
-                }
-                JointKind::Weld { .. } => shapes.push(Shape::Disc {
-                    at: ends[0],
-                    radius_px: 6.0,
-                    pen: Pen::new(Paint::Ink, 2.0).lightness(lightness),
-                    filled: true,
-                    name: None,
-                }),
-                _ => {}
-            }
-        }
-        let grouped = labels.into_iter();
-        shapes.extend(
-            grouped.map(|(at, joints, side)| Shape::text(at, self.common_name(&joints), side)),
-        );
+        let is_driven = mechanism.actuators.iter().any(|a| a.kind == drives);
+        is_driven && !bodies.iter().any(|b| self.is_ground(*b))
     }
 
     /// The common label of joints at one point: for a pin of several bodies, whose joints are named `pin-body`, the pin.
@@ -327,9 +123,7 @@ impl<'a> MechanismDrawing<'a> {
         };
         let pins: Option<Vec<String>> = joints.iter().map(pin).collect();
         match pins.as_deref() {
-            Some([first, second, rest @ ..])
-                if [second].into_iter().chain(rest).all(|p| p == first) =>
-            {
+            Some([first, rest @ ..]) if !rest.is_empty() && rest.iter().all(|p| p == first) => {
                 first.clone()
             }
             _ => {
@@ -339,35 +133,9 @@ impl<'a> MechanismDrawing<'a> {
         }
     }
 
-    /// Springs and dampers between points, at `lightness` 0 only.
-    fn draw_loads(&self, body_poses: &[BodyPose], lightness: f64, shapes: &mut Vec<Shape>) {
-        if lightness > 0.0 {
-            return;
-        }
-        let pen = Pen::new(Paint::Ink, 2.0).lightness(0.35);
-        for load in &self.scene.loads {
-            let (LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points }) =
-                load.kind
-            else {
-                continue;
-            };
-            let [a, b] = [0, 1].map(|i| vector(point_position(body_poses, bodies[i].0, points[i])));
-            let outline = match load.kind {
-                LoadKind::Spring { .. } => spring_outline(a, b, 0.05 * self.size),
-                _ => vec![[a.x, a.y], [b.x, b.y]],
-            };
-            let pen = match load.kind {
-                LoadKind::Spring { .. } => pen,
-                _ => pen.dashed(),
-            };
-            shapes.push(Shape::line(outline, pen));
-        }
-    }
-
     fn outline(&self, body: usize) -> Outline {
-        let named = self.scene.points[body].iter();
         let mut points: Vec<Vec2> = Vec::new();
-        for (_, p) in named {
+        for (_, p) in &self.scene.points[body] {
             if !points.contains(p) {
                 points.push(*p);
             }
@@ -375,28 +143,25 @@ impl<'a> MechanismDrawing<'a> {
         if let (&[at], Some(axis)) = (points.as_slice(), self.slide_axis(body)) {
             let half = 0.045 * self.size;
             let (along, across) = (axis * (1.6 * half), axis.perp() * half);
-            return Outline::Block([
-                at - along - across,
-                at + along - across,
-                at + along + across,
-                at - along + across,
+            let [behind, before] = [at - along, at + along];
+            return Outline::Block(vec![
+                behind - across,
+                before - across,
+                before + across,
+                behind + across,
             ]);
         }
-        let middle =
-            points.iter().fold(Vec2::ZERO, |sum, p| sum + *p) * (1.0 / points.len().max(1) as f64);
-        let farthest_offset = points
-            .iter()
-            .map(|p| *p - middle)
-            .max_by(|a, b| a.norm().total_cmp(&b.norm()))
-            .unwrap_or(Vec2::ZERO);
-        let off_line = |p: &Vec2| {
-            farthest_offset.cross(*p - middle).abs() > 1e-6 * farthest_offset.norm().powi(2)
-        };
+        let sum = points.iter().fold(Vec2::ZERO, |sum, p| sum + *p);
+        let middle = sum * (1.0 / points.len().max(1) as f64);
+        let offsets = points.iter().map(|p| *p - middle);
+        let farthest = offsets.max_by(|a, b| a.norm().total_cmp(&b.norm()));
+        let line = farthest.unwrap_or(Vec2::ZERO);
+        let off_line = |p: &Vec2| line.cross(*p - middle).abs() > 1e-6 * line.norm().powi(2);
         if points.len() > 2 && points.iter().any(off_line) {
             points.sort_by(|a, b| (*a - middle).angle().total_cmp(&(*b - middle).angle()));
             Outline::Plate(points)
         } else {
-            points.sort_by(|a, b| farthest_offset.dot(*a).total_cmp(&farthest_offset.dot(*b)));
+            points.sort_by(|a, b| line.dot(*a).total_cmp(&line.dot(*b)));
             Outline::Bar(points)
         }
     }
@@ -404,16 +169,226 @@ impl<'a> MechanismDrawing<'a> {
     /// The axis of a body's prismatic joint, in its frame.
     fn slide_axis(&self, body: usize) -> Option<Vec2> {
         let joints = self.scene.mechanism.joints.iter().enumerate();
-        joints.into_iter().find_map(|(j, joint)| {
-            let JointKind::Prismatic { axes } = joint.kind else {
-                return None;
-            };
-            if self.is_cylinder(j) {
-                return None;
+        let mut joints = joints.filter(|(j, _)| !self.is_cylinder(*j));
+        joints.find_map(|(_, joint)| match joint.kind {
+            JointKind::Prismatic { axes } => {
+                let end = joint.bodies.iter().position(|b| b.0 == body)?;
+                Some(axes[end])
             }
-            let end = joint.bodies.iter().position(|b| b.0 == body)?;
-            Some(axes[end])
+            _ => None,
         })
+    }
+}
+
+/// One position of a mechanism, with the shapes drawn so far.
+struct DrawnPosition<'a> {
+    drawing: &'a MechanismDrawing<'a>,
+    body_poses: &'a [BodyPose],
+    lightness: f64,
+    shapes: &'a mut Vec<Shape>,
+}
+
+impl DrawnPosition<'_> {
+    fn point(&self, body: BodyId, at: Vec2) -> [f64; 2] {
+        point_position(self.body_poses, body.0, at)
+    }
+
+    fn points(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> [[f64; 2]; 2] {
+        [0, 1].map(|i| self.point(bodies[i], points[i]))
+    }
+
+    fn rotation(&self, body: BodyId) -> Vec2 {
+        self.body_poses[body.0].1
+    }
+
+    fn pen(&self, color: Paint, width: f64) -> Pen {
+        Pen::new(color, width).lightness(self.lightness)
+    }
+
+    fn line(&mut self, points: &[[f64; 2]], pen: Pen) {
+        self.shapes.push(Shape::line(points.to_vec(), pen));
+    }
+
+    /// Draws what lies behind the bodies: pitch circles, tracks, slots and cylinders.
+    fn draw_background(&mut self) {
+        let (drawing, is_first) = (self.drawing, self.lightness == 0.0);
+        let mechanism = &drawing.scene.mechanism;
+        for (j, (joint, travel)) in mechanism.joints.iter().zip(&drawing.travels).enumerate() {
+            if !drawing.is_visible(joint.bodies) {
+                continue;
+            }
+            let [one, two] = joint.bodies;
+            let at = self.points(joint.bodies, joint.points);
+            match joint.kind {
+                // Wheels are drawn in the first position only.
+                JointKind::Gear { radii, .. } if is_first => {
+                    for i in 0..2 {
+                        self.disc(joint.bodies[i], at[i], radii[i]);
+                    }
+                }
+                JointKind::Rack { axis, radius } | JointKind::Rolling { axis, radius } => {
+                    self.track(joint, axis, *travel);
+                    self.disc(two, at[1], radius.abs());
+                }
+                JointKind::Slot { axis } if is_first => self.track(joint, axis, *travel),
+                JointKind::Prismatic { axes } if drawing.is_cylinder(j) => {
+                    let min_travel = travel.map_or(0.0, |[low, _]| 0.85 * low);
+                    let end = vector(at[0]) + axes[0].rotate(self.rotation(one)) * min_travel;
+                    self.line(&at, self.pen(drawing.color(two), 5.0));
+                    self.line(&[at[0], [end.x, end.y]], self.pen(drawing.color(one), 12.0));
+                }
+                JointKind::Prismatic { axes } => {
+                    if is_first || !joint.bodies.iter().any(|b| drawing.is_ground(*b)) {
+                        self.track(joint, axes[0], *travel);
+                    }
+                }
+                JointKind::Distance { .. } => self.line(&at, self.pen(Paint::Grey, 4.0)),
+                _ => {}
+            }
+        }
+        for actuator in mechanism
+            .actuators
+            .iter()
+            .filter(|a| drawing.is_visible(a.bodies))
+        {
+            if let ActuatorKind::Length(points) = actuator.kind {
+                let [a, b] = self.points(actuator.bodies, points);
+                let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
+                self.line(&[a, b], self.pen(Paint::Grey, 4.0));
+                self.line(&[a, middle], self.pen(Paint::Grey, 11.0));
+            }
+        }
+    }
+
+    /// A disc, with a line that shows how it rotates unless it is fixed.
+    fn disc(&mut self, body: BodyId, at: [f64; 2], radius: f64) {
+        let color = self.drawing.color(body);
+        self.shapes.push(circle(at, radius, self.pen(color, 2.5)));
+        if !self.drawing.is_ground(body) {
+            let rim = vector(at) + self.rotation(body) * radius;
+            self.line(&[at, [rim.x, rim.y]], self.pen(color, 2.0));
+        }
+    }
+
+    /// The straight line on the first body along which the joint's second point goes.
+    fn track(&mut self, joint: &Joint, axis: Vec2, travel: Option<[f64; 2]>) {
+        let one = joint.bodies[0];
+        let start = vector(self.point(one, joint.points[0]));
+        let direction = axis.rotate(self.rotation(one));
+        let [low, high] = travel.unwrap_or([0.0; 2]);
+        let margin = 0.25 * self.drawing.size;
+        let [from, to] = [low - margin, high + margin]
+            .map(|s| start + direction * s)
+            .map(|p| [p.x, p.y]);
+        let radius = match joint.kind {
+            JointKind::Rack { radius, .. } | JointKind::Rolling { radius, .. } => Some(radius),
+            _ => None,
+        };
+        if !self.drawing.is_ground(one) {
+            let color = self.drawing.color(one);
+            let wide = Pen::new(color, if radius.is_some() { 3.0 } else { 17.0 });
+            self.line(&[from, to], wide.lightness(self.lightness.max(0.55)));
+            if radius.is_none() {
+                self.line(&[from, to], Pen::new(color, 11.0).lightness(1.0));
+            }
+        } else if self.lightness == 0.0 {
+            // The hatching is on the right of the track: away from the disc.
+            let is_left = radius.is_some_and(|radius| radius < 0.0);
+            let (from, to) = if is_left { (to, from) } else { (from, to) };
+            self.shapes.push(Shape::GroundLine { from, to });
+        }
+    }
+
+    fn draw_bodies(&mut self) {
+        let mechanism = &self.drawing.scene.mechanism;
+        for (b, body) in mechanism.bodies.iter().enumerate() {
+            if self.drawing.is_ground(BodyId(b)) || !self.drawing.visible[b] {
+                continue;
+            }
+            let pen = |width| self.pen(self.drawing.color(BodyId(b)), width);
+            let at = |points: Vec<Vec2>| points.iter().map(|p| self.point(BodyId(b), *p)).collect();
+            let shape = match self.drawing.outline(b) {
+                Outline::Block(corners) => Shape::area(at(corners), pen(3.0), 0.35),
+                Outline::Plate(corners) => Shape::area(at(corners), pen(4.0), 0.15),
+                Outline::Bar(ends) => Shape::line(at(ends), pen(6.0)),
+            };
+            self.shapes.push(match self.lightness == 0.0 {
+                true => shape.named(body.name.clone()),
+                false => shape,
+            });
+        }
+    }
+
+    fn draw_joints(&mut self) {
+        let (drawing, lightness) = (self.drawing, self.lightness);
+        let named = lightness == 0.0;
+        // Joints at one point share a label.
+        let mut labels: Vec<([f64; 2], Vec<&Joint>, TextPlacement)> = Vec::new();
+        let mut label = |at: [f64; 2], joint, side: TextPlacement| {
+            let distance = |other: [f64; 2]| (vector(other) - vector(at)).norm();
+            match labels
+                .iter_mut()
+                .find(|l| distance(l.0) < 0.02 * drawing.size)
+            {
+                Some((_, joints, _)) => joints.push(joint),
+                None => labels.push((at, vec![joint], side)),
+            }
+        };
+        let joints = drawing.scene.mechanism.joints.iter();
+        for joint in joints.filter(|j| drawing.is_visible(j.bodies)) {
+            let on_ground = joint.bodies.iter().any(|b| drawing.is_ground(*b));
+            let ends = self.points(joint.bodies, joint.points);
+            match joint.kind {
+                JointKind::Revolute if on_ground && named => {
+                    self.shapes.push(Shape::GroundPin { at: ends[0] });
+                    label(ends[0], joint, TextPlacement::AboveLeft);
+                }
+                JointKind::Revolute if on_ground => {}
+                JointKind::Revolute => {
+                    self.shapes.push(Shape::pin(ends[0], Paint::Ink, lightness));
+                    if named {
+                        label(ends[0], joint, TextPlacement::AboveRight);
+                    }
+                }
+                JointKind::Slot { .. } => {
+                    self.shapes.push(Shape::pin(ends[1], Paint::Ink, lightness));
+                }
+                JointKind::Distance { .. } => {
+                    let pins = ends.map(|at| Shape::pin(at, Paint::Ink, lightness));
+                    self.shapes.extend(pins);
+                }
+                JointKind::Weld { .. } => self.shapes.push(Shape::Disc {
+                    at: ends[0],
+                    radius_px: 6.0,
+                    pen: self.pen(Paint::Ink, 2.0),
+                    filled: true,
+                    name: None,
+                }),
+                _ => {}
+            }
+        }
+        let texts = labels.into_iter();
+        let texts =
+            texts.map(|(at, joints, side)| Shape::text(at, drawing.common_name(&joints), side));
+        self.shapes.extend(texts);
+    }
+
+    /// Springs and dampers between points.
+    fn draw_loads(&mut self) {
+        let pen = Pen::new(Paint::Ink, 2.0).lightness(0.35);
+        let half_width = 0.05 * self.drawing.size;
+        for load in &self.drawing.scene.loads {
+            match load.kind {
+                LoadKind::Spring { bodies, points, .. } => {
+                    let [a, b] = self.points(bodies, points).map(vector);
+                    self.line(&spring_outline(a, b, half_width), pen);
+                }
+                LoadKind::Damper { bodies, points } => {
+                    self.line(&self.points(bodies, points), pen.dashed());
+                }
+                _ => {}
+            }
+        }
     }
 }
 

@@ -1,11 +1,16 @@
 //! Writes the reduced parameters: table, figures, summary and interpolation table.
 
-use super::{document, figures};
+use super::figures;
 use crate::explain::StudyError;
-use crate::output::{Outcome, signed_png};
-use crate::reduce::compute::{Reduction, TableRequest, compute_reduction, tabulate};
-use dwell_kinetostatics::Load;
-use dwell_report::{Figure, TableFormat};
+use crate::models::indeterminate_reactions;
+use crate::number_format::digits;
+use crate::output::{Outcome, indeterminate_note, separating_note, signed_png};
+use crate::ranges::extent;
+use crate::reduce::compute::{
+    Reduction, RoundingErrors, TableRequest, compute_reduction, tabulate,
+};
+use dwell_kinetostatics::Coefficients;
+use dwell_report::{Figure, Files, TableFormat};
 use dwell_scene::Scene;
 
 /// The reduced parameters of a scene over its range, and an interpolation table if requested.
@@ -25,28 +30,69 @@ pub fn reduce(scene: &Scene, table: Option<TableRequest>) -> Result<Outcome, Stu
     let (coefficients, note) = figures::coefficients(prepared, curves);
     figures.extend(coefficients);
     if let Some(unit_loads) = unit_loads
-        && unit_loads.loads.iter().any(Load::does_work)
+        && unit_loads.working().next().is_some()
     {
         figures.push(figures::unit_loads(unit_loads, prepared, &curves.q));
     }
-    let mut outcome = Outcome::default();
+    let mut files = Files::new();
     let stem = format!("{}-reduced", scene.name);
-    outcome
-        .files
-        .add_table(&stem, &reduction.table(), &TableFormat::ALL)?;
+    files.add_table(&stem, &reduction.table(), &TableFormat::ALL)?;
     for figure in &figures {
         let name = format!("{}-{}.png", scene.name, figure.name);
-        outcome.files.add(name, signed_png(scene, figure)?);
+        files.add(name, signed_png(scene, figure)?);
     }
-    outcome.summary = document::summary(&reduction, note.as_deref());
+    let mut summary = summary(&reduction, note.as_deref());
     if let Some(request) = table {
         let tabulation = tabulate(prepared, &request)?;
-        outcome.summary += &tabulation.summary;
+        summary += &tabulation.summary;
         if let Some(text) = tabulation.text {
-            outcome
-                .files
-                .add(format!("{}.table", scene.name), text.into_bytes());
+            files.add(format!("{}.table", scene.name), text);
         }
     }
-    Ok(outcome)
+    Ok(Outcome {
+        summary,
+        files,
+        findings: Vec::new(),
+    })
+}
+
+/// The rounding errors, rounded up to powers of ten.
+fn describe_rounding(errors: &RoundingErrors) -> String {
+    let [m, half_dm, rest] = errors.max_errors.map(|error| match error {
+        0.0 => "0".to_owned(),
+        error => format!("{:.0e}", 10_f64.powf(error.log10().ceil())),
+    });
+    format!(
+        "  estimated rounding errors, compared with 32-digit arithmetic: below {m} of the largest m, {half_dm} of ½m′, {rest} of any a or b\n"
+    )
+}
+
+/// The printed summary.
+pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
+    let Reduction {
+        prepared, curves, ..
+    } = reduction;
+    let extent_of = |pick: fn(&Coefficients) -> f64| extent(curves.coefficients.iter().map(pick));
+    let m = extent_of(|c| c.m);
+    let [m_min, m_max] = m.map(|m| digits(m, 9));
+    let [h_min, h_max] = extent_of(|c| c.half_dm).map(|h| digits(h, 9));
+    let (title, count) = (&prepared.scene.title, curves.q.len());
+    let name = prepared.coordinate_name();
+    let mut summary = format!(
+        "{title}: {count} positions of {name}\n  m    from {m_min} to {m_max} kg m²\n  ½m′  from {h_min} to {h_max} \
+         kg m²/rad\n"
+    );
+    summary += &describe_rounding(&reduction.errors);
+    if let Some(note) = note {
+        summary += &format!("  {note}\n");
+    }
+    if m[1] == 0.0 {
+        summary += "  no body with mass moves: there is no equation of motion, and every inertial reaction is zero\n";
+    }
+    let scene = prepared.scene;
+    summary += &separating_note(scene);
+    let indeterminate = indeterminate_reactions(scene, prepared.model.model().plan());
+    let requested = scene.requests.reactions.iter();
+    let names = requested.filter(|r| indeterminate.contains(r));
+    summary + &indeterminate_note(names.map(|&r| scene.mechanism.reaction_name(r)))
 }

@@ -3,13 +3,12 @@
 use crate::explain::StudyError;
 use crate::number_format::{count, digits, number};
 use crate::output::{Outcome, signed_png};
-use crate::sweep::compute::Spread;
 use crate::sweep::figure::figure;
 use crate::sweep::output::{ParameterSweep, PreparedSweep};
+use crate::sweep::spread::Spread;
 use crate::sweep::store::Row;
 use dwell_report::TableExport as _;
 use dwell_report::{Column, Table, TableFormat};
-use std::fmt::Write as _;
 use std::path::Path;
 
 /// Maximum number of messages in a summary.
@@ -25,34 +24,35 @@ pub(crate) struct Counts {
 }
 
 pub(crate) fn report_sweep(
-    prepared_sweep: &PreparedSweep<'_>,
+    prepared: &PreparedSweep<'_>,
     sweep: &ParameterSweep<'_>,
     path: &Path,
     rows: &[Row],
     counts: Counts,
 ) -> Result<Outcome, StudyError> {
     let mut outcome = Outcome {
-        summary: summary(prepared_sweep, sweep, path, rows, counts),
+        summary: summary(prepared, sweep, path, rows, counts),
         ..Outcome::default()
     };
     // A shard is incomplete: tables and figures are written when all shards are together.
     if sweep.shard.is_some() {
         return Ok(outcome);
     }
-    let scene = prepared_sweep.scene;
+    let scene = prepared.scene;
     let name = |rest: &str| format!("{}-sweep{rest}", scene.name);
-    let wants = |form| sweep.export.is_none_or(|only| only == form);
-    for format in TableFormat::ALL.into_iter().filter(|format| wants(*format)) {
+    let formats = sweep
+        .export
+        .map_or(TableFormat::ALL.to_vec(), |only| vec![only]);
+    for format in formats {
         let bytes = match format {
-            TableFormat::Csv => csv(prepared_sweep, rows)?.into_bytes(),
-            TableFormat::Npz => npz(prepared_sweep, rows)?,
+            TableFormat::Csv => csv(prepared, rows)?.into_bytes(),
+            TableFormat::Npz => npz(prepared, rows)?,
         };
-        outcome
-            .files
-            .add(name(&format!(".{}", format.extension())), bytes);
+        let path = name(&format!(".{}", format.extension()));
+        outcome.files.add(path, bytes);
     }
     if sweep.export.is_none() {
-        match figure(prepared_sweep, rows) {
+        match figure(prepared, rows) {
             Ok((figure, note)) => {
                 outcome.files.add(name(".png"), signed_png(scene, &figure)?);
                 outcome.summary += &note.map_or(String::new(), |note| format!("  {note}\n"));
@@ -64,21 +64,17 @@ pub(crate) fn report_sweep(
 }
 
 /// Inputs and results.
-pub(crate) fn table(prepared_sweep: &PreparedSweep<'_>, rows: &[Row]) -> Table {
-    let axes = prepared_sweep.design.axes.iter();
-    let results = prepared_sweep.requested.quantities.iter();
-    let mut columns: Vec<Column> = axes.map(|a| Column::new(&a.path, &a.unit)).collect();
-    columns.extend(results.map(|q| Column::new(&q.name, q.unit)));
+fn table(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Table {
     let row = |row: &Row| [row.inputs.as_slice(), &row.result.values].concat();
     Table {
-        columns,
+        columns: prepared.requested.columns(&prepared.design),
         rows: rows.iter().map(row).collect(),
     }
 }
 
 /// The table as arrays, with the index of each row and whether it has a message.
-fn npz(prepared_sweep: &PreparedSweep<'_>, rows: &[Row]) -> Result<Vec<u8>, StudyError> {
-    let mut table = table(prepared_sweep, rows);
+fn npz(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<Vec<u8>, StudyError> {
+    let mut table = table(prepared, rows);
     table.columns.insert(0, Column::new("index", ""));
     table.columns.push(Column::new("has_message", ""));
     for (cells, row) in table.rows.iter_mut().zip(rows) {
@@ -89,121 +85,101 @@ fn npz(prepared_sweep: &PreparedSweep<'_>, rows: &[Row]) -> Result<Vec<u8>, Stud
 }
 
 /// The table with the index of each row before it and its message behind it.
-pub(crate) fn csv(prepared_sweep: &PreparedSweep<'_>, rows: &[Row]) -> Result<String, StudyError> {
-    let numbers = table(prepared_sweep, rows).csv()?;
+fn csv(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Result<String, StudyError> {
+    let numbers = table(prepared, rows).csv()?;
     let mut lines = numbers.lines();
     let mut text = format!("index,{},message\n", lines.next().unwrap_or_default());
     // One line per row.
     for (line, row) in lines.zip(rows) {
-        let _ = write!(text, "{},{line},", row.index);
+        text += &format!("{},{line},", row.index);
         if let Some(message) = &row.result.message {
-            let _ = write!(text, "\"{}\"", message.replace('"', "\"\""));
+            text += &format!("\"{}\"", message.replace('"', "\"\""));
         }
         text.push('\n');
     }
     Ok(text)
 }
 
-pub(crate) fn summary(
-    prepared_sweep: &PreparedSweep<'_>,
+/// The printed summary.
+fn summary(
+    prepared: &PreparedSweep<'_>,
     sweep: &ParameterSweep<'_>,
     path: &Path,
     rows: &[Row],
     counts: Counts,
 ) -> String {
-    let design = &prepared_sweep.design;
-    let mut text = format!(
-        "{}: {}",
-        prepared_sweep.scene.title,
-        points_text(design.points)
-    );
+    let design = &prepared.design;
+    let points = count_u64(design.points, "point");
+    let mut text = format!("{}: {points}", prepared.scene.title);
     if design.is_random() {
-        let _ = write!(
-            text,
-            ", {} with seed {}",
-            count_u64(design.samples, "sample"),
-            design.seed
-        );
+        let samples = count_u64(design.samples, "sample");
+        text += &format!(", {samples} with seed {}", design.seed);
     }
     if let Some(shard) = sweep.shard {
-        let _ = write!(
-            text,
-            ", of which shard {shard} has {}",
-            rows.len() + counts.missing
-        );
+        let points = rows.len() + counts.missing;
+        text += &format!(", of which shard {shard} has {points}");
     }
-    let _ = write!(text, "\n  {}: {}", path.display(), count(rows.len(), "row"));
+    text += &format!("\n  {}: {}", path.display(), count(rows.len(), "row"));
     let parts = [
         (counts.existing, "already stored"),
         (counts.imported, "imported from shards"),
         (counts.computed, "computed"),
     ];
-    let parts: Vec<String> = parts
-        .iter()
-        .filter(|(n, _)| *n > 0)
-        .map(|(n, words)| format!("{n} {words}"))
-        .collect();
+    let parts = parts.iter().filter(|(n, _)| *n > 0);
+    let parts: Vec<String> = parts.map(|(n, words)| format!("{n} {words}")).collect();
     if !parts.is_empty() {
-        let _ = write!(text, " ({})", parts.join(", "));
+        text += &format!(" ({})", parts.join(", "));
     }
     text.push('\n');
     if counts.missing > 0 {
-        let _ = writeln!(
-            text,
-            "  {} not computed yet",
-            points_text(counts.missing as u64)
-        );
+        text += &format!("  {} not computed yet\n", count(counts.missing, "point"));
     }
-    for (k, heading) in prepared_sweep.results.iter().enumerate() {
+    for (k, heading) in prepared.results.iter().enumerate() {
         let values = rows.iter().map(|row| row.result.values[k]);
-        let Some(spread) = Spread::of(values) else {
-            continue;
-        };
-        let _ = write!(
-            text,
-            "  {heading}: from {} to {}",
-            number(spread.min),
-            number(spread.max)
-        );
-        if let Some(deviation) = spread.deviation.filter(|_| design.is_random()) {
-            let [low, high] = spread.quantiles.map(number);
-            let _ = write!(
-                text,
-                ", mean {}, standard deviation {}, 95 % between {low} and {high}",
-                digits(spread.mean, 9),
-                digits(deviation, 4)
-            );
-        }
-        text.push('\n');
+        let spread = Spread::of(values);
+        text += &spread.map_or(String::new(), |s| {
+            spread_text(heading, &s, design.is_random())
+        });
     }
-    text + &failures(rows) + &prepared_sweep.requested.notes
+    text + &failures(rows) + &prepared.requested.notes
+}
+
+/// The line about a result.
+fn spread_text(heading: &str, spread: &Spread, random: bool) -> String {
+    let [min, max] = [spread.min, spread.max].map(number);
+    let text = format!("  {heading}: from {min} to {max}");
+    match spread.deviation.filter(|_| random) {
+        None => text + "\n",
+        Some(deviation) => {
+            let [low, high] = spread.quantiles.map(number);
+            let (mean, deviation) = (digits(spread.mean, 9), digits(deviation, 4));
+            format!(
+                "{text}, mean {mean}, standard deviation {deviation}, 95 % between {low} and {high}\n"
+            )
+        }
+    }
 }
 
 /// The number of failed points, and the first messages.
 fn failures(rows: &[Row]) -> String {
-    let failed: Vec<(u64, &str)> = rows
+    let failed = rows
         .iter()
-        .filter_map(|row| Some((row.index, row.result.message.as_deref()?)))
-        .collect();
+        .filter_map(|r| Some((r.index, r.result.message.as_deref()?)));
+    let failed: Vec<(u64, &str)> = failed.collect();
     if failed.is_empty() {
         return String::new();
     }
+    let (failures, points) = (failed.len(), rows.len());
     let mut text = format!(
-        "  {} of {} could not be computed completely; their rows hold the message\n",
-        failed.len(),
-        rows.len()
+        "  {failures} of {points} could not be computed completely; their rows hold the message\n"
     );
     for (index, message) in failed.iter().take(MAX_LISTED) {
-        let _ = writeln!(text, "    point {index}: {message}");
+        text += &format!("    point {index}: {message}\n");
     }
     if failed.len() > MAX_LISTED {
-        let _ = writeln!(text, "    and {} more", failed.len() - MAX_LISTED);
+        text += &format!("    and {} more\n", failed.len() - MAX_LISTED);
     }
     text
-}
-
-fn points_text(points: u64) -> String {
-    count_u64(points, "point")
 }
 
 fn count_u64(number: u64, thing: &str) -> String {

@@ -1,9 +1,10 @@
 //! The figure of a sweep: results over the varied parameters, or their distribution.
 
 use crate::number_format::{count, number};
-use crate::output::scene_caption;
-use crate::sweep::compute::{Axis as SweepAxis, Spread, SweepQuantity};
+use crate::output::{self, scene_caption};
+use crate::sweep::compute::{Axis as SweepAxis, SweepQuantity};
 use crate::sweep::output::PreparedSweep;
+use crate::sweep::spread::Spread;
 use crate::sweep::store::Row;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke};
 
@@ -30,9 +31,8 @@ pub(crate) fn figure(
     rows: &[Row],
 ) -> Result<(Figure, Option<String>), &'static str> {
     let design = &prepared.design;
-    let listed: Vec<usize> = (0..design.axes.len())
-        .filter(|&k| !design.axes[k].is_random() && design.axes[k].count() > 1)
-        .collect();
+    let is_listed = |k: &usize| !design.axes[*k].is_random() && design.axes[*k].count() > 1;
+    let listed: Vec<usize> = (0..design.axes.len()).filter(is_listed).collect();
     let (charts, caption) = match (listed.as_slice(), design.is_random()) {
         ([], false) => return Err("a single point has no curve"),
         ([], true) => (histograms(prepared, rows), HISTOGRAM),
@@ -45,18 +45,15 @@ pub(crate) fn figure(
     if charts.is_empty() {
         return Err("no result has a value");
     }
+    let all = count(charts.len(), "chart");
     let note = (charts.len() > MAX_CHARTS).then(|| {
-        format!(
-            "of {} only the first {MAX_CHARTS} are drawn: select results with --result",
-            count(charts.len(), "chart")
-        )
+        format!("of {all} only the first {MAX_CHARTS} are drawn: select results with --result")
     });
     let charts = charts.into_iter().take(MAX_CHARTS);
-    let scene = prepared.scene;
     let figure = Figure {
         name: "sweep".to_owned(),
         title: format!("Sweep over {}", axis_names(&design.axes)),
-        caption: scene_caption(scene, caption),
+        caption: scene_caption(prepared.scene, caption),
         provenance: method_text(prepared, rows),
         columns: 2,
         panels: charts.map(Into::into).collect(),
@@ -84,15 +81,10 @@ fn method_text(prepared: &PreparedSweep<'_>, rows: &[Row]) -> String {
 
 fn axis_names(axes: &[SweepAxis]) -> String {
     const MAX_NAMES: usize = 4;
-    let mut names: Vec<&str> = axes
-        .iter()
-        .take(MAX_NAMES)
-        .map(|a| a.path.as_str())
-        .collect();
-    let more = axes.len().saturating_sub(MAX_NAMES);
-    let rest = format!("{more} more");
-    if more > 0 {
-        names.push(&rest);
+    let names = axes.iter().take(MAX_NAMES).map(|a| a.path.clone());
+    let mut names: Vec<String> = names.collect();
+    if axes.len() > MAX_NAMES {
+        names.push(format!("{} more", axes.len() - MAX_NAMES));
     }
     names.join(", ")
 }
@@ -102,7 +94,7 @@ fn chart_groups(quantities: &[SweepQuantity]) -> Vec<ChartGroup<'_>> {
     let mut all: Vec<ChartGroup<'_>> = Vec::new();
     for (index, quantity) in quantities.iter().enumerate() {
         let split = quantity.name.rsplit_once('.');
-        let pair = split.filter(|(_, last)| matches!(*last, "least" | "most" | "from" | "to"));
+        let pair = split.filter(|(_, last)| matches!(*last, "min" | "max" | "lower" | "upper"));
         let (title, member) = pair.unwrap_or((&quantity.name, ""));
         match all.last_mut().filter(|last| last.title == title) {
             Some(last) => last.members.push((index, member)),
@@ -116,36 +108,28 @@ fn chart_groups(quantities: &[SweepQuantity]) -> Vec<ChartGroup<'_>> {
     all
 }
 
-fn chart_title(name: &str) -> String {
-    let plain = match name {
-        "m" => "Generalised inertia m",
-        "m.min" => "Least m",
-        "m.max" => "Largest m",
-        "half_dm" => "½m′",
-        "half_dm.min" => "Least ½m′",
-        "half_dm.max" => "Largest ½m′",
-        "range" => "Range of the coordinate",
-        "range.lower" => "Lower end of the range",
-        "range.upper" => "Upper end of the range",
-        "period" => "Period of the free motion",
-        "energy" => "Energy of the free motion",
-        other => match other.strip_suffix(".max_abs") {
-            Some(what) => return format!("Largest |{what}|"),
-            None => other,
-        },
+/// Title and axis label of a result, or of results that share a chart.
+fn title_and_label(name: &str) -> (String, &str) {
+    let (title, label) = match name {
+        "m" => ("Generalised inertia m", "m"),
+        "m.min" => ("Smallest m", "m"),
+        "m.max" => ("Largest m", "m"),
+        "half_dm" => ("½m′", "½m′"),
+        "half_dm.min" => ("Smallest ½m′", "½m′"),
+        "half_dm.max" => ("Largest ½m′", "½m′"),
+        "range" => ("Range of the coordinate", "q"),
+        "range.lower" => ("Lower end of the range", "q"),
+        "range.upper" => ("Upper end of the range", "q"),
+        "period" => ("Period of the free motion", "T"),
+        "energy" => ("Energy of the free motion", "E"),
+        other => {
+            return match other.strip_suffix(".max_abs") {
+                Some(what) => (format!("Largest |{what}|"), what),
+                None => (other.to_owned(), other),
+            };
+        }
     };
-    plain.to_owned()
-}
-
-fn axis_label(name: &str) -> &str {
-    match name {
-        "m.min" | "m.max" => "m",
-        "half_dm" | "half_dm.min" | "half_dm.max" => "½m′",
-        "period" => "T",
-        "energy" => "E",
-        "range" | "range.lower" | "range.upper" => "q",
-        other => other.strip_suffix(".max_abs").unwrap_or(other),
-    }
+    (title.to_owned(), label)
 }
 
 /// A unit as a reader writes it.
@@ -157,19 +141,30 @@ fn axis_of(varied: &SweepAxis) -> Axis {
     Axis::new(&varied.path, unit_text(&varied.unit))
 }
 
-fn chart(chart_group: &ChartGroup<'_>, x: Axis, series: Vec<Series>) -> Option<Chart> {
-    let has_values = |s: &Series| {
-        s.points
-            .iter()
-            .any(|p| p[0].is_finite() && p[1].is_finite())
-    };
-    series.iter().any(has_values).then(|| Chart {
-        title: chart_title(chart_group.title),
-        x,
-        y: Axis::new(axis_label(chart_group.title), unit_text(chart_group.unit)),
-        series,
-        ..Chart::default()
-    })
+fn chart(name: &str, unit: &str, x: Axis, series: Vec<Series>) -> Option<Chart> {
+    let has_value = |p: &[f64; 2]| p[0].is_finite() && p[1].is_finite();
+    let (title, label) = title_and_label(name);
+    let mut points = series.iter().flat_map(|s| &s.points);
+    points
+        .any(has_value)
+        .then(|| output::chart(title, x, Axis::new(label, unit_text(unit)), series))
+}
+
+/// The values of an axis that get curves: the first, the last, and some between them.
+fn chosen_values(rows: &[Row], axis: usize) -> Vec<f64> {
+    let mut values: Vec<f64> = rows.iter().map(|row| row.inputs[axis]).collect();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let step = values
+        .len()
+        .saturating_sub(1)
+        .div_ceil(MAX_CURVES - 1)
+        .max(1);
+    let mut chosen: Vec<f64> = values.iter().copied().step_by(step).collect();
+    if (values.len().saturating_sub(1)) % step != 0 {
+        chosen.extend(values.last());
+    }
+    chosen
 }
 
 /// Curves over one axis; of another, a few of its values.
@@ -179,62 +174,44 @@ fn curves(
     abscissa: usize,
     parameter: Option<usize>,
 ) -> Vec<Option<Chart>> {
-    let axis = &prepared.design.axes[abscissa];
-    let mut values: Vec<f64> = parameter.map_or(vec![f64::NAN], |parameter| {
-        rows.iter().map(|row| row.inputs[parameter]).collect()
-    });
-    values.sort_by(f64::total_cmp);
-    values.dedup();
-    // The first, the last, and some between them.
-    let step = (values.len().saturating_sub(1))
-        .div_ceil(MAX_CURVES - 1)
-        .max(1);
-    let last = values.last().copied();
-    let mut chosen: Vec<f64> = values.iter().copied().step_by(step).collect();
-    if chosen.last().copied().map(f64::to_bits) != last.map(f64::to_bits) {
-        chosen.extend(last);
-    }
-    let one = |chart_group: &ChartGroup<'_>| {
+    let axes = &prepared.design.axes;
+    let line = |index: usize, of: &dyn Fn(&Row) -> bool| {
+        let points = rows.iter().filter(|row| of(row));
+        sorted(points.map(|row| [row.inputs[abscissa], row.result.values[index]]))
+    };
+    let one = |group: &ChartGroup<'_>| {
         let mut series = Vec::new();
-        for (number_of, &value) in chosen.iter().enumerate() {
-            for &(index, member) in &chart_group.members {
-                let of = rows
+        match parameter {
+            None => series.extend(
+                group
+                    .members
                     .iter()
-                    .filter(|row| parameter.is_none_or(|parameter| row.inputs[parameter] == value));
-                let points = sorted(of.map(|row| [row.inputs[abscissa], row.result.values[index]]));
-                let name = match parameter {
-                    None => member.to_owned(),
-                    Some(parameter) => {
-                        let varied = &prepared.design.axes[parameter];
-                        let named =
-                            format!("{} {} {member}", number(value), unit_text(&varied.unit));
-                        named.trim_end().to_owned()
-                    }
-                };
-                let dashed = parameter.is_some() && matches!(member, "least" | "from");
-                let stroke = if dashed {
-                    Stroke::Dashed
-                } else {
-                    Stroke::Solid
-                };
-                let mut line = Series::line(name, points).stroke(stroke);
-                if parameter.is_some() {
-                    line = line.color(Paint::Palette(number_of));
+                    .map(|&(index, member)| Series::line(member, line(index, &|_| true))),
+            ),
+            Some(parameter) => {
+                let unit = unit_text(&axes[parameter].unit);
+                for (k, value) in chosen_values(rows, parameter).into_iter().enumerate() {
+                    series.extend(group.members.iter().map(|&(index, member)| {
+                        let name = format!("{} {unit} {member}", number(value));
+                        let points = line(index, &|row| row.inputs[parameter] == value);
+                        let stroke = match member {
+                            "min" | "lower" => Stroke::Dashed,
+                            _ => Stroke::Solid,
+                        };
+                        let line = Series::line(name.trim_end(), points).stroke(stroke);
+                        line.color(Paint::Palette(k))
+                    }));
                 }
-                series.push(line);
             }
         }
-        let mut chart = chart(chart_group, axis_of(axis), series)?;
+        let mut chart = chart(group.title, group.unit, axis_of(&axes[abscissa]), series)?;
         if let Some(parameter) = parameter {
-            let varied = &prepared.design.axes[parameter];
-            chart.title += &format!(", by {}", varied.path);
+            chart.title += &format!(", by {}", axes[parameter].path);
         }
         Some(chart)
     };
-    chart_groups(&prepared.requested.quantities)
-        .iter()
-        .map(one)
-        .collect()
+    let groups = chart_groups(&prepared.requested.quantities);
+    groups.iter().map(one).collect()
 }
 
 fn sorted(points: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
@@ -259,17 +236,12 @@ fn bands(prepared: &PreparedSweep<'_>, rows: &[Row], abscissa: usize) -> Vec<Opt
             let points = spreads.iter().map(|(x, spread)| [*x, of(spread)]);
             Series::line(name, points.collect()).color(Paint::Palette(0))
         };
-        let chart_group = ChartGroup {
-            title: &quantity.name,
-            unit: quantity.unit,
-            members: Vec::new(),
-        };
         let series = vec![
             line("mean", &|s| s.mean),
             line("97.5 %", &|s| s.quantiles[1]).stroke(Stroke::Dashed),
             line("2.5 %", &|s| s.quantiles[0]).stroke(Stroke::Dashed),
         ];
-        chart(&chart_group, axis_of(axis), series)
+        chart(&quantity.name, quantity.unit, axis_of(axis), series)
     };
     let quantities = prepared.requested.quantities.iter().enumerate();
     quantities.map(one).collect()
@@ -302,25 +274,41 @@ fn histograms(prepared: &PreparedSweep<'_>, rows: &[Row]) -> Vec<Option<Chart>> 
         }
         points.push([edge(bins), 0.0]);
         let [from, to] = spread.quantiles;
-        Some(Chart {
-            title: chart_title(&quantity.name),
-            x: Axis::new(axis_label(&quantity.name), unit_text(quantity.unit)),
-            y: Axis::new("samples", "%"),
-            series: vec![Series::line("", points).stroke(Stroke::Filled)],
-            marks: vec![
-                Mark::Band {
-                    from,
-                    to,
-                    label: String::new(),
-                },
-                Mark::Vertical {
-                    at: spread.mean,
-                    label: format!("mean {}", number(spread.mean).replace('-', "−")),
-                },
-            ],
-            ..Chart::default()
-        })
+        let (title, label) = title_and_label(&quantity.name);
+        let x = Axis::new(label, unit_text(quantity.unit));
+        let bars = Series::line("", points).stroke(Stroke::Filled);
+        let mut chart = output::chart(title, x, Axis::new("samples", "%"), vec![bars]);
+        chart.marks = vec![
+            Mark::Band {
+                from,
+                to,
+                label: String::new(),
+            },
+            Mark::Vertical {
+                at: spread.mean,
+                label: format!("mean {}", number(spread.mean).replace('-', "−")),
+            },
+        ];
+        Some(chart)
     };
     let quantities = prepared.requested.quantities.iter().enumerate();
     quantities.map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::compute::RequestedQuantities;
+    use dwell_scene::Scene;
+
+    #[test]
+    fn smallest_and_largest_values_share_a_chart() {
+        let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
+        let scene = Scene::read(format!("{cases}/single-dwell/scene.toml")).expect("a scene");
+        let requested = RequestedQuantities::new(&scene, &[]).expect("results");
+        let groups = chart_groups(&requested.quantities);
+        let names: Vec<&str> = groups.iter().map(|group| group.title).collect();
+        assert_eq!(names, ["m", "half_dm", "range", "period", "energy"]);
+        assert_eq!(groups[0].members, [(0, "min"), (1, "max")]);
+    }
 }

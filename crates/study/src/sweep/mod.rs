@@ -8,11 +8,13 @@ mod figure;
 #[cfg(feature = "output")]
 mod output;
 #[cfg(feature = "output")]
+mod spread;
+#[cfg(feature = "output")]
 mod store;
 #[cfg(test)]
 #[cfg(feature = "output")]
 mod tests;
 
-pub use compute::{Shard, SweepTable, compute_sweep};
+pub use compute::{Shard, compute_sweep};
 #[cfg(feature = "output")]
 pub use output::{ParameterSweep, sweep};

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! --vary … ── Axis ── Design: point k → values ─┐            (rayon, any order)
-//! scene, --result ── Wanted ──────────────────────┴→ Found ── channel ── Store (one writer)
+//! scene, --result ── RequestedQuantities ─────────┴→ PointResult ── channel ── Store (one writer)
 //!                                                                        └→ Table, figures, summary
 //! ```
 
@@ -10,9 +10,9 @@ use super::export;
 use crate::explain::{StudyError, SweepError};
 use crate::output::Outcome;
 use crate::progress::{Progress, Step};
-use crate::sweep::compute::{Axis, Design, RequestedQuantities, Shard};
+use crate::sweep::compute::{Axis, Design, RequestedQuantities, Shard, VariationKind};
 use crate::sweep::store::{Row, SCENE_TEXT, SHARD, Store, StudyIdentity};
-use dwell_report::TableFormat;
+use dwell_report::{Column, TableFormat};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -61,24 +61,22 @@ impl<'a> PreparedSweep<'a> {
     fn new(scene: &'a Scene, sweep: &ParameterSweep<'_>) -> Result<Self, StudyError> {
         let design = Design::new(scene, sweep.vary, sweep.samples, sweep.seed)?;
         let requested = RequestedQuantities::new(scene, sweep.requests)?;
-        let inputs: Vec<String> = design.axes.iter().map(Axis::heading).collect();
-        let results: Vec<String> = requested.quantities.iter().map(|q| q.heading()).collect();
-        let columns = inputs.len() + results.len();
+        let headings = |columns: &[Column]| columns.iter().map(heading).collect::<Vec<String>>();
+        let columns = requested.columns(&design);
+        let (inputs, results) = columns.split_at(design.axes.len());
+        let (inputs, results) = (headings(inputs), headings(results));
+        let columns = columns.len();
+        let refuse = |message: String| Err(SweepError::Design(message).into());
         if columns > MAX_COLUMNS {
-            return Err(SweepError::Design(format!(
-                "{columns} columns exceed what a file can hold: select results with --result"
-            ))
-            .into());
+            let fault = "exceed what a file can hold: select results with --result";
+            return refuse(format!("{columns} columns {fault}"));
         }
-        if let Some(shard) = sweep.shard
-            && sweep.export.is_some()
-        {
-            return Err(SweepError::Design(format!(
+        if let (Some(shard), Some(_)) = (sweep.shard, sweep.export) {
+            return refuse(format!(
                 "an export gathers all shards: leave --shard {shard} out"
-            ))
-            .into());
+            ));
         }
-        let exact: Vec<String> = design.axes.iter().map(Axis::to_exact_text).collect();
+        let exact: Vec<String> = design.axes.iter().map(exact_text).collect();
         let shard = sweep
             .shard
             .map_or(WHOLE_STUDY.to_owned(), |s| s.to_string());
@@ -120,10 +118,7 @@ impl<'a> PreparedSweep<'a> {
 
     /// Computes one point.
     fn row(&self, index: u64) -> Row {
-        let inputs = self.design.values(index);
-        let paths = self.design.axes.iter().map(|axis| axis.path.as_str());
-        let values: Vec<(&str, f64)> = paths.zip(inputs.iter().copied()).collect();
-        let result = self.requested.evaluate(self.scene, &values);
+        let (inputs, result) = self.requested.point(self.scene, &self.design, index);
         Row {
             index,
             inputs,
@@ -143,7 +138,7 @@ pub fn sweep(
     sweep: &ParameterSweep<'_>,
     progress: Progress<'_>,
 ) -> Result<Outcome, StudyError> {
-    let prepared_sweep = PreparedSweep::new(scene, sweep)?;
+    let prepared = PreparedSweep::new(scene, sweep)?;
     fs::create_dir_all(sweep.folder).map_err(|e| SweepError::Store {
         path: sweep.folder.to_owned(),
         reason: format!("the folder cannot be created: {e}"),
@@ -153,12 +148,12 @@ pub fn sweep(
         Some(Shard { part, of }) => format!("{}-sweep-{part}-of-{of}.sqlite", scene.name),
     };
     let path = sweep.folder.join(name);
-    let mut store = prepared_sweep.open(&path, None)?;
+    let mut store = prepared.open(&path, None)?;
     let mut existing: BTreeSet<u64> = store.indices()?.into_iter().collect();
     let existing_count = existing.len();
     if sweep.shard.is_none() {
         for (path, shard) in shard_files(scene, sweep.folder) {
-            let rows = prepared_sweep.open(&path, Some(&shard))?.rows()?;
+            let rows = prepared.open(&path, Some(&shard))?.rows()?;
             let new = rows.into_iter().filter(|row| existing.insert(row.index));
             let new: Vec<Row> = new.collect();
             write_from(&mut store, |sender| {
@@ -167,12 +162,12 @@ pub fn sweep(
         }
     }
     let is_in_shard = |k: &u64| sweep.shard.is_none_or(|shard| shard.contains(*k));
-    let all = || (0..prepared_sweep.design.points).filter(is_in_shard);
+    let all = || (0..prepared.design.points).filter(is_in_shard);
     let imported = existing.len() - existing_count;
     let mut computed = 0;
     if sweep.export.is_none() {
         let pending: Vec<u64> = all().filter(|k| !existing.contains(k)).collect();
-        compute(&prepared_sweep, &mut store, &pending, progress)?;
+        compute(&prepared, &mut store, &pending, progress)?;
         computed = pending.len();
     }
     let rows = store.rows()?;
@@ -182,7 +177,7 @@ pub fn sweep(
         computed,
         missing: all().count().saturating_sub(rows.len()),
     };
-    export::report_sweep(&prepared_sweep, sweep, &path, &rows, counts)
+    export::report_sweep(&prepared, sweep, &path, &rows, counts)
 }
 
 /// Computes points on all cores; a single writer stores them as they arrive.
@@ -233,9 +228,32 @@ fn shard_files(scene: &Scene, folder: &Path) -> Vec<(PathBuf, String)> {
         Some(shard.to_string())
     };
     let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-    let mut files: Vec<(PathBuf, String)> = paths
-        .filter_map(|path| part(&path).map(|shard| (path, shard)))
-        .collect();
+    let files = paths.filter_map(|path| part(&path).map(|shard| (path, shard)));
+    let mut files: Vec<(PathBuf, String)> = files.collect();
     files.sort();
     files
+}
+
+/// `name [unit]`.
+fn heading(column: &Column) -> String {
+    match column.unit.as_str() {
+        "" => column.name.clone(),
+        unit => format!("{} [{unit}]", column.name),
+    }
+}
+
+/// An axis with all digits, as the store records it.
+fn exact_text(axis: &Axis) -> String {
+    let path = &axis.path;
+    match &axis.kind {
+        VariationKind::Grid { from, to, count } => format!("{path}={from:?}:{to:?}:{count}"),
+        VariationKind::Listed(values) => {
+            let values: Vec<String> = values.iter().map(|v| format!("{v:?}")).collect();
+            format!("{path}={}", values.join(","))
+        }
+        VariationKind::Normal { mean, deviation } => {
+            format!("{path}~normal({mean:?},{deviation:?})")
+        }
+        VariationKind::Uniform { from, to } => format!("{path}~uniform({from:?},{to:?})"),
+    }
 }

@@ -99,42 +99,42 @@ impl Store {
 
     /// The indices of the stored points.
     pub(crate) fn indices(&self) -> Result<Vec<u64>, SweepError> {
-        let read = || -> Result<Vec<u64>, StoreFault> {
-            let mut statement = self
-                .connection
-                .prepare("SELECT \"index\" FROM points ORDER BY 1")?;
-            let rows = statement.query_map((), |row| row.get::<_, i64>(0))?;
-            Ok(rows
-                .map(|row| row.map(|k| k as u64))
-                .collect::<Result<_, _>>()?)
-        };
-        read().map_err(|e| e.with_path(&self.path))
+        self.query("SELECT \"index\" FROM points ORDER BY 1", |row| {
+            Ok(row.get::<_, i64>(0)? as u64)
+        })
     }
 
     /// All finished points, by index.
     pub(crate) fn rows(&self) -> Result<Vec<Row>, SweepError> {
-        let real = |value: Option<f64>| value.unwrap_or(f64::NAN);
-        let read = || -> Result<Vec<Row>, StoreFault> {
-            let mut statement = self
-                .connection
-                .prepare("SELECT * FROM points ORDER BY \"index\"")?;
-            let rows = statement.query_map((), |row| {
-                let some = |from: usize, count: usize| {
-                    let cells = (from..from + count).map(|k| row.get(k).map(real));
-                    cells.collect::<Result<Vec<f64>, _>>()
-                };
-                Ok(Row {
-                    index: row.get::<_, i64>(0)? as u64,
-                    inputs: some(1, self.inputs)?,
-                    result: PointResult {
-                        values: some(1 + self.inputs, self.results)?,
-                        message: row.get(1 + self.inputs + self.results)?,
-                    },
-                })
-            })?;
-            Ok(rows.collect::<Result<_, _>>()?)
+        let numbers = |row: &rusqlite::Row<'_>, from: usize, count: usize| {
+            let cells = (from..from + count).map(|k| row.get::<_, Option<f64>>(k));
+            let numbers = cells.map(|cell| Ok(cell?.unwrap_or(f64::NAN)));
+            numbers.collect::<rusqlite::Result<Vec<f64>>>()
         };
-        read().map_err(|e| e.with_path(&self.path))
+        self.query("SELECT * FROM points ORDER BY \"index\"", |row| {
+            Ok(Row {
+                index: row.get::<_, i64>(0)? as u64,
+                inputs: numbers(row, 1, self.inputs)?,
+                result: PointResult {
+                    values: numbers(row, 1 + self.inputs, self.results)?,
+                    message: row.get(1 + self.inputs + self.results)?,
+                },
+            })
+        })
+    }
+
+    fn query<T>(
+        &self,
+        text: &str,
+        read: impl FnMut(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
+    ) -> Result<Vec<T>, SweepError> {
+        let all = || -> rusqlite::Result<Vec<T>> {
+            self.connection
+                .prepare(text)?
+                .query_map((), read)?
+                .collect()
+        };
+        all().map_err(|e| StoreFault::from(e).with_path(&self.path))
     }
 
     /// Writes rows as they arrive, until the channel closes; each is on disk after at most 0.2 s.
@@ -155,10 +155,9 @@ impl Store {
                 statement.execute(params_from_iter(cells(row)))?;
                 let remaining = until.saturating_duration_since(Instant::now());
                 // Every row taken from the channel is written.
-                next = if remaining.is_zero() {
-                    None
-                } else {
-                    rows.recv_timeout(remaining).ok()
+                next = match remaining.is_zero() {
+                    true => None,
+                    false => rows.recv_timeout(remaining).ok(),
                 };
             }
             drop(statement);
@@ -168,7 +167,7 @@ impl Store {
     }
 }
 
-pub(crate) fn cells(row: Row) -> Vec<Value> {
+fn cells(row: Row) -> Vec<Value> {
     // SQLite has no NaN: it is stored as NULL.
     let real = |v: f64| {
         if v.is_nan() {
@@ -198,14 +197,14 @@ fn create(
     for (key, value) in study {
         transaction.execute("INSERT INTO study VALUES (?, ?)", (key, value))?;
     }
-    let columns: Vec<String> = headings
-        .concat()
+    let columns = headings.concat();
+    let columns: Vec<String> = columns
         .iter()
         .map(|name| format!("{} REAL", quoted(name)))
         .collect();
+    let columns = columns.join(", ");
     transaction.execute_batch(&format!(
-        "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {}, \"message\" TEXT);",
-        columns.join(", ")
+        "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {columns}, \"message\" TEXT);"
     ))?;
     transaction.pragma_update(None, "application_id", APPLICATION)?;
     transaction.pragma_update(None, "user_version", VERSION)?;
@@ -223,11 +222,10 @@ fn compare(connection: &Connection, study: &StudyIdentity) -> Result<(), StoreFa
         if *key != SCENE_TEXT && found != expected {
             return Err(StoreFault::Differs(match *key {
                 "scene_sha256" => "the scene has changed since".to_owned(),
-                key => format!(
-                    "its {key}: {}, not {}",
-                    shortened(found),
-                    shortened(expected)
-                ),
+                key => {
+                    let [found, expected] = [found, expected].map(shortened);
+                    format!("its {key}: {found}, not {expected}")
+                }
             }));
         }
     }

@@ -3,7 +3,8 @@
 use crate::explain::SweepError;
 use crate::find_value;
 use crate::models::PreparedScene;
-use crate::sweep::compute::{Design, RequestedQuantities, Spread};
+use crate::sweep::compute::{Design, RequestedQuantities};
+use crate::sweep::spread::Spread;
 use dwell_scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -124,8 +125,8 @@ fn sections_decide_what_there_is() {
 
 #[test]
 fn a_pendulums_energy_is_its_height() {
-    // Level at rest: E = m g y with y = 0, where the potential of a weight is zero at the origin. T of a quarter
-    // turn's release is 4 √(l/g) K(sin 45°), with K(½) = 1.85407467730137 (the parameter is m = k²).
+    // Level at rest: E = m g y with y = 0, where the potential of a weight is zero at the origin. T of a release at a quarter of a
+    // revolution is 4 √(l/g) K(sin 45°), with K(½) = 1.85407467730137 (the parameter is m = k²).
     let result = at(
         &case("pendulum-a01"),
         &["period", "energy"],

@@ -1,6 +1,6 @@
 //! Comparison of closed forms with the exact numerical model.
 
-use crate::bodies::max_point_coordinate;
+use crate::estimate::relative;
 use crate::number_format::number;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Reaction, Vec2};
@@ -20,7 +20,7 @@ const KINDS: [(&str, &str, &str); 5] = [
     (
         "symbolic-positions",
         "points, angles and travels by closed forms",
-        "the mechanism's largest length, or 1 rad",
+        "the size of the mechanism, or 1 rad",
     ),
     ("symbolic-m", "m(q) by closed forms", "the largest m"),
     (
@@ -46,8 +46,8 @@ struct LargestDifference {
     absolute: f64,
     relative: f64,
     rounding: f64,
+    /// Empty if nothing was compared.
     location: String,
-    compared: bool,
 }
 
 /// Compares closed forms with the numerical model at some positions.
@@ -71,7 +71,7 @@ impl<'a> ClosedFormCheck<'a> {
             exact,
             exact_values: Vec::new(),
             workspace: exact.workspace(),
-            size: max_point_coordinate(scene),
+            size: scene.mechanism.size(),
             scales: [0.0; 2],
             reaction_scales: [[0.0; 2]; 2],
             largest: Default::default(),
@@ -90,11 +90,9 @@ impl<'a> ClosedFormCheck<'a> {
 
     /// The largest quantities of each kind; one that may be zero throughout is scaled by a related one.
     fn compute_scales(&mut self) {
-        let length = if self.size > 0.0 { self.size } else { 1.0 };
-        let per = if self.exact.model().plan().is_angle(0) {
-            1.0
-        } else {
-            length
+        let per = match self.exact.model().plan().is_angle(0) {
+            true => 1.0,
+            false => self.size,
         };
         for (_, out) in &self.exact_values {
             self.scales[0] = self.scales[0].max(out.m.abs());
@@ -108,7 +106,7 @@ impl<'a> ClosedFormCheck<'a> {
         self.scales[1] = self.scales[1].max(self.scales[0] / per);
         let [forces, moments] = &mut self.reaction_scales;
         for j in 0..2 {
-            moments[j] = moments[j].max(forces[j] * length);
+            moments[j] = moments[j].max(forces[j] * self.size);
         }
         for kind in &mut self.reaction_scales {
             kind[1] = kind[1].max(kind[0] / per);
@@ -136,13 +134,8 @@ impl<'a> ClosedFormCheck<'a> {
                     (Some(name), 2..) => format!(", {name}"),
                     _ => String::new(),
                 };
-                self.add_difference(
-                    1 + j,
-                    (difference, rounding[results + j]),
-                    scale,
-                    q,
-                    &location,
-                );
+                let difference = (difference, rounding[results + j]);
+                self.add_difference(1 + j, difference, scale, q, &location);
             }
         }
     }
@@ -157,7 +150,7 @@ impl<'a> ClosedFormCheck<'a> {
         let mut joint_origins = Vec::new();
         plan.joint_origins(&pose, &mut joint_origins);
         let axis = |v: Vec2, k: usize| if k == 0 { v.x } else { v.y };
-        let length = if self.size > 0.0 { self.size } else { 1.0 };
+        let length = self.size;
         for (k, quantity) in form.quantities.iter().enumerate() {
             let (difference, scale) = match quantity.origin {
                 QuantityOrigin::Frame(frame) => {
@@ -187,23 +180,20 @@ impl<'a> ClosedFormCheck<'a> {
         q: f64,
         location: &str,
     ) {
-        let absolute = difference.abs();
-        let of = |x: f64| if x == 0.0 { 0.0 } else { x / scale };
-        let relative = of(absolute);
         let largest = &mut self.largest[kind];
-        largest.compared = true;
-        let rounding = of(rounding);
-        largest.rounding = largest
-            .rounding
-            .max(if rounding.is_finite() { rounding } else { 0.0 });
+        let rounding = relative(rounding, scale);
+        if rounding.is_finite() {
+            largest.rounding = largest.rounding.max(rounding);
+        }
+        let absolute = difference.abs();
         // NaN counts as the worst.
-        if largest.location.is_empty() || relative > largest.relative || relative.is_nan() {
+        let relative = match relative(absolute, scale) {
+            relative if relative.is_nan() => f64::INFINITY,
+            relative => relative,
+        };
+        if largest.location.is_empty() || relative > largest.relative || absolute.is_nan() {
             largest.absolute = absolute;
-            largest.relative = if relative.is_nan() {
-                f64::INFINITY
-            } else {
-                relative
-            };
+            largest.relative = relative;
             let name = &self.scene.mechanism.actuators[0].name;
             largest.location = format!("{name} = {}{location}", number(q));
         }
@@ -211,19 +201,18 @@ impl<'a> ClosedFormCheck<'a> {
 
     pub(crate) fn findings(self) -> Vec<Finding> {
         let angle = self.exact.model().plan().is_angle(0);
-        let units = if angle {
-            [
+        let units = match angle {
+            true => [
                 "m or rad",
                 "kg m²",
                 "kg m²",
                 "kg m or kg m²",
                 "kg m or kg m²",
-            ]
-        } else {
-            ["m or rad", "kg", "kg/m", "kg or kg m", "kg/m or kg"]
+            ],
+            false => ["m or rad", "kg", "kg/m", "kg or kg m", "kg/m or kg"],
         };
         let kinds = KINDS.into_iter().zip(units).zip(self.largest);
-        let compared_kinds = kinds.filter(|(_, largest)| largest.compared);
+        let compared_kinds = kinds.filter(|(_, largest)| !largest.location.is_empty());
         compared_kinds.map(|(((key, compared, scale), unit), largest)| {
             // Rounded to a power of ten, so that it is the same on every machine.
             let widened = (10.0 * largest.rounding).min(MAX_TOLERANCE);
@@ -232,12 +221,12 @@ impl<'a> ClosedFormCheck<'a> {
             } else {
                 TOLERANCE
             };
-            let mut why = "both are computed from closed forms: thousands of roundings".to_owned();
-            if tolerance > TOLERANCE {
-                why = "ten times what a unit of rounding in the lengths does to the closed forms, \
-                       to a power of ten"
-                    .to_owned();
-            }
+            let why = match tolerance > TOLERANCE {
+                false => "both are computed from closed forms: thousands of roundings",
+                true => {
+                    "ten times what a unit of rounding in the lengths does to the closed forms, to a power of ten"
+                }
+            };
             Finding {
                 key: key.to_owned(),
                 check: Check::ClosedForms,
@@ -250,7 +239,7 @@ impl<'a> ClosedFormCheck<'a> {
                 pass: self.failure.is_none() && largest.relative <= tolerance,
                 worst_at: self.failure.clone().unwrap_or(largest.location),
                 tolerance,
-                tolerance_reason: why,
+                tolerance_reason: why.to_owned(),
                 condition_number: (largest.rounding / f64::EPSILON).max(1.0),
                 integrated: false,
             }

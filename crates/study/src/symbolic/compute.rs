@@ -1,6 +1,8 @@
 //! Closed forms of a scene, and their comparison with the exact model.
 
-use crate::explain::{StudyError, body_names_or_mechanism, joint_labels, not_one_actuator};
+use crate::explain::{
+    Labels, StudyError, body_names_or_mechanism, joint_labels, not_one_actuator, scene_error,
+};
 use crate::models::{indeterminate_reactions, reduced_model};
 use crate::symbolic::closed_form_check::ClosedFormCheck;
 use dwell_findings::Finding;
@@ -44,16 +46,16 @@ fn full_reduced_model(scene: &Scene) -> Result<ExactModel, StudyError> {
 
 fn find_reaction(scene: &Scene, name: &str) -> Result<Reaction, StudyError> {
     let all = scene.mechanism.reactions();
-    let names = |r: &Reaction| scene.mechanism.reaction_name(*r);
-    all.iter()
-        .find(|r| names(r) == name)
-        .copied()
-        .ok_or_else(|| {
-            let list: Vec<String> = all.iter().map(names).collect();
-            let help = format!("the reactions are {}", list.join(", "));
-            let message = format!("there is no reaction `{name}`");
-            scene.error(message, Some(help), &[]).into()
-        })
+    let names: Vec<String> = all
+        .iter()
+        .map(|&r| scene.mechanism.reaction_name(r))
+        .collect();
+    let found = names.iter().position(|other| other == name);
+    found.map(|k| all[k]).ok_or_else(|| {
+        let message = format!("there is no reaction `{name}`");
+        let help = format!("the reactions are {}", names.join(", "));
+        scene_error(scene, message, help, Labels::new())
+    })
 }
 
 fn explain_symbolic(scene: &Scene, error: &SymbolicError) -> StudyError {
@@ -64,31 +66,26 @@ fn explain_symbolic(scene: &Scene, error: &SymbolicError) -> StudyError {
             joints,
             what,
             ..
-        } => scene
-            .error(
-                format!(
-                    "there is no closed form for the position of {}: {what}",
-                    body_names_or_mechanism(&scene.mechanism, bodies)
-                ),
-                Some(
-                    "closed forms exist for mechanisms made of dyads only; `dwell reduce` computes the \
-                     same quantities of any mechanism with one degree of freedom"
-                        .to_owned(),
-                ),
-                &joint_labels(joints, "closes the group"),
-            )
-            .into(),
-        SymbolicError::Reaction(reaction) => scene
-            .error(
-                format!(
-                    "`{}` is statically indeterminate",
-                    scene.mechanism.reaction_name(*reaction)
-                ),
-                Some("redundant constraints share the load: name another reaction".to_owned()),
-                &joint_labels(&[reaction.joint], "redundant"),
-            )
-            .into(),
-        SymbolicError::Position(place) => scene.error(place.to_string(), None, &[]).into(),
+        } => scene_error(
+            scene,
+            format!(
+                "there is no closed form for the position of {}: {what}",
+                body_names_or_mechanism(&scene.mechanism, bodies)
+            ),
+            "closed forms exist for mechanisms made of dyads only; `dwell reduce` computes the same quantities \
+             of any mechanism with one degree of freedom",
+            joint_labels(joints, "closes the group"),
+        ),
+        SymbolicError::Reaction(reaction) => scene_error(
+            scene,
+            format!(
+                "`{}` is statically indeterminate",
+                scene.mechanism.reaction_name(*reaction)
+            ),
+            "redundant constraints share the load: name another reaction",
+            joint_labels(&[reaction.joint], "redundant"),
+        ),
+        SymbolicError::Position(error) => scene_error(scene, error.to_string(), "", Labels::new()),
     }
 }
 

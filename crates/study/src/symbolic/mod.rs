@@ -3,8 +3,6 @@
 mod closed_form_check;
 mod compute;
 #[cfg(feature = "output")]
-mod document;
-#[cfg(feature = "output")]
 mod output;
 
 pub use compute::{compute_closed_form, symbolic_findings};

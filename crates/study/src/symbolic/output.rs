@@ -1,11 +1,13 @@
 //! Writes closed forms: document or code, and summary.
 
-use super::document;
 use crate::explain::StudyError;
-use crate::output::Outcome;
+use crate::number_format::{count, digits};
+use crate::output::{Outcome, separating_note};
 use crate::symbolic::compute::compute_closed_form;
+use dwell_findings::Finding;
+use dwell_report::{Block, Document};
 use dwell_scene::Scene;
-use dwell_symbolic::Language;
+use dwell_symbolic::{ClosedForm, Constant, FormulaSection, Language};
 
 /// The output format of closed forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,14 +30,14 @@ pub fn symbolic(
 ) -> Result<Outcome, StudyError> {
     let (form, findings) = compute_closed_form(scene, reaction)?;
     let mut outcome = Outcome {
-        summary: document::summary(scene, &form, &findings),
+        summary: summary(scene, &form, &findings),
         findings,
         ..Outcome::default()
     };
     let about = format!("{}: closed forms, written by dwell", scene.title);
-    let name = document::function_name(&scene.name);
+    let name = function_name(&scene.name);
     let (extension, text) = match output {
-        FormulaFormat::Latex => ("md", document::document(scene, &form)),
+        FormulaFormat::Latex => ("md", document(scene, &form)),
         FormulaFormat::Code(language) => {
             let extension = match language {
                 Language::Rust => "rs",
@@ -49,4 +51,109 @@ pub fn symbolic(
         .files
         .add(format!("{}-symbolic.{extension}", scene.name), text);
     Ok(outcome)
+}
+
+/// The name of the generated function; the prefix keeps it from being a reserved word.
+pub(crate) fn function_name(scene: &str) -> String {
+    let plain = |c: char| match c {
+        c if c.is_ascii_alphanumeric() => c.to_ascii_lowercase(),
+        _ => '_',
+    };
+    format!("reduced_{}", scene.chars().map(plain).collect::<String>())
+}
+
+pub(crate) fn summary(scene: &Scene, form: &ClosedForm, findings: &[Finding]) -> String {
+    let reaction = form.reaction.as_ref();
+    let reaction = reaction.map_or_else(String::new, |r| format!("; a and b of {r}"));
+    let mut text = format!(
+        "{}: closed forms in {}\n  positions, m and ½m′ as functions of {}{reaction}\n",
+        scene.title,
+        count(form.assignment_count(), "step"),
+        scene.mechanism.actuators[0].name,
+    );
+    if form.reaction.is_some() {
+        text += &separating_note(scene);
+    }
+    for f in findings {
+        let result = if f.pass { "pass" } else { "FAIL" };
+        text += &format!(
+            "  {result}  {}: differs by {:.1e} from the numerical model at {} (tolerance {:.0e})\n",
+            f.key, f.relative_difference, f.domain, f.tolerance
+        );
+    }
+    text
+}
+
+/// Markdown with LaTeX.
+pub(crate) fn document(scene: &Scene, form: &ClosedForm) -> String {
+    let of = &form.coordinate;
+    let constant = |c: &Constant| {
+        let latex = format!("${}$", c.latex);
+        vec![
+            latex,
+            digits(c.value, 12),
+            c.unit.to_owned(),
+            c.meaning.clone(),
+        ]
+    };
+    let mut blocks = vec![
+        Block::Text(format!(
+            "The coordinate is ${}$ ({}), in {}. Each line uses those above it. A prime is the derivative with respect to the \
+             coordinate. All quantities are in SI units.",
+            of.latex, scene.mechanism.actuators[0].name, of.unit
+        )),
+        Block::Heading("Constants".to_owned()),
+        Block::Table {
+            header: ["", "value", "unit", "meaning"].map(str::to_owned).into(),
+            rows: form.constants.iter().map(constant).collect(),
+        },
+    ];
+    for (part, lines) in form.latex() {
+        let (heading, text_below) = part_heading(part, form);
+        blocks.push(Block::Heading(heading.to_owned()));
+        if !text_below.is_empty() {
+            blocks.push(Block::Text(text_below));
+        }
+        blocks.push(Block::Text(format!(
+            "```math\n\\begin{{aligned}}\n{lines}\n\\end{{aligned}}\n```"
+        )));
+    }
+    let title = format!("{}: closed forms", scene.title);
+    Document { title, blocks }.markdown()
+}
+
+/// The heading of a part and the words under it.
+fn part_heading(part: FormulaSection, form: &ClosedForm) -> (&'static str, String) {
+    let reaction = form.reaction.as_deref().unwrap_or_default();
+    match part {
+        FormulaSection::Positions => (
+            "Positions",
+            "Dyad by dyad, each by the joint that closes it: $d$ is the part of the loop that is known, $D$ its \
+             square. The first arm of a pinned dyad is $f$ times $d$ and $h$ times $d$ rotated by +90°, the second \
+             arm closes the loop. At a guide, $\\kappa$ or $k$ and $g$ are the parts across and along it. The sign \
+             $\\sigma$ is the branch. Points then follow, and the centres of mass $G$."
+                .to_owned(),
+        ),
+        FormulaSection::FirstDerivatives => ("First derivatives", String::new()),
+        FormulaSection::SecondDerivatives => ("Second derivatives", String::new()),
+        FormulaSection::VirtualDisplacements => (
+            "Virtual displacements",
+            format!(
+                "The joint is released along {reaction}: its second body is displaced against its first by a second \
+                 coordinate $q_2$ (rotated, for a couple). $\\delta$ is the derivative by $q_2$, at $q_2 = 0$."
+            ),
+        ),
+        FormulaSection::Results if form.reaction.is_some() => (
+            "Inertia and reaction",
+            format!(
+                "$m \\ddot q + \\tfrac{{1}}{{2}} m' \\dot q^2$ is the generalised inertia force, and \
+                 $a \\ddot q + b \\dot q^2$ the inertia's part of {reaction} (Jordi, Zayas and Cardona 2008): \
+                 $a = m_{{12}}$, $b = \\partial m_{{12}}/\\partial q - \\tfrac{{1}}{{2}} \\partial m_{{11}}/\\partial q_2$."
+            ),
+        ),
+        FormulaSection::Results => (
+            "Inertia",
+            "$m \\ddot q + \\tfrac{1}{2} m' \\dot q^2$ is the generalised inertia force.".to_owned(),
+        ),
+    }
 }

@@ -1,65 +1,14 @@
 //! The text of a trajectory analysis: the printed summary, and the Markdown page with extrema, column meanings and figures.
 
-use crate::models::indeterminate_note;
-use crate::number_format::{count, digits, number};
-use crate::output::provenance_line;
+use crate::number_format::{count, number};
+use crate::output::{indeterminate_note, provenance_line};
 use crate::trajectory::compute::{
-    Analysis, ColumnExtrema, ColumnQuantity, Trajectory, TrajectoryResults, extrema,
+    Analysis, Quantity, SectionedLink, Trajectory, TrajectoryResults,
 };
+use crate::trajectory::extrema::{ColumnExtrema, extrema};
 use dwell_kinetostatics::Distribution;
 use dwell_report::{Block, Document as Page, Figure};
 use dwell_scene::Scene;
-use std::fmt::Write as _;
-
-/// The extrema as CSV, each with the value of the abscissa (name, unit) where it occurs.
-fn extrema_table_csv(
-    extrema: &[ColumnExtrema],
-    (abscissa, unit): (&str, &str),
-    abscissa_values: &[f64],
-) -> String {
-    let mut text =
-        format!("quantity,unit,min,min at {abscissa} [{unit}],max,max at {abscissa} [{unit}]\n");
-    for entry in extrema {
-        let ColumnExtrema { name, unit, .. } = entry;
-        let [(min, l), (max, h)] = [entry.min, entry.max];
-        // Names of a scene hold neither commas nor quotes.
-        text += &format!(
-            "{name},{unit},{min:?},{:?},{max:?},{:?}\n",
-            abscissa_values[l], abscissa_values[h]
-        );
-    }
-    text
-}
-
-/// Header and cells of the extrema as a text table.
-fn extrema_cells(
-    extrema: &[ColumnExtrema],
-    (abscissa, unit): (&str, &str),
-    abscissa_values: &[f64],
-) -> (Vec<String>, Vec<Vec<String>>) {
-    let header = [
-        "quantity",
-        "unit",
-        "min",
-        &format!("at {abscissa} [{unit}]"),
-        "max",
-        &format!("at {abscissa} [{unit}]"),
-    ];
-    let row = |entry: &ColumnExtrema| {
-        vec![
-            entry.name.clone(),
-            entry.unit.to_owned(),
-            number(entry.min.0),
-            number(abscissa_values[entry.min.1]),
-            number(entry.max.0),
-            number(abscissa_values[entry.max.1]),
-        ]
-    };
-    (
-        header.map(str::to_owned).to_vec(),
-        extrema.iter().map(row).collect(),
-    )
-}
 
 /// Extrema of one unit that the summary lists.
 const MAX_LISTED: usize = 3;
@@ -77,7 +26,7 @@ pub(crate) struct Document<'a> {
     selected: &'a [usize],
     extrema: Vec<ColumnExtrema>,
     /// Name and unit of the abscissa: time, or the swept coordinate.
-    abscissa: (String, &'static str),
+    abscissa: (&'a str, &'static str),
     abscissa_values: Vec<f64>,
 }
 
@@ -89,58 +38,70 @@ impl<'a> Document<'a> {
         analysis: Analysis,
         selected: &'a [usize],
     ) -> Self {
-        let abscissa = results
-            .columns
-            .iter()
-            .position(|c| match trajectory.swept_actuator() {
-                None => c.quantity == ColumnQuantity::Time,
-                Some(actuator) => c.quantity == ColumnQuantity::ActuatorCoordinate(actuator, 0),
-            });
-        let abscissa = abscissa.unwrap_or(0);
-        // The abscissa itself is not a result.
-        let listed: Vec<usize> = selected
-            .iter()
-            .copied()
-            .filter(|&k| k != abscissa)
-            .collect();
-        let listed: Vec<usize> = listed
-            .into_iter()
-            .filter(|&k| results.columns[k].quantity != ColumnQuantity::Time)
-            .collect();
+        let columns = &results.columns;
+        let abscissa = results.abscissa(trajectory);
+        // The abscissa itself is not a result, nor is the time.
+        let is_result = |&k: &usize| k != abscissa && columns[k].quantity != Quantity::Time;
+        let listed: Vec<usize> = selected.iter().copied().filter(is_result).collect();
         Self {
             scene,
             results,
             trajectory,
             analysis,
             selected,
-            extrema: extrema(&results.columns, &listed, &results.rows),
-            abscissa: (
-                results.columns[abscissa].name.clone(),
-                results.columns[abscissa].unit,
-            ),
+            extrema: extrema(columns, &listed, &results.rows),
+            abscissa: (&columns[abscissa].name, columns[abscissa].unit),
             abscissa_values: results.rows.iter().map(|row| row[abscissa]).collect(),
         }
     }
 
-    fn abscissa(&self) -> (&str, &str) {
-        (&self.abscissa.0, self.abscissa.1)
+    /// The extrema as CSV, each with the value of the abscissa where it occurs.
+    pub(crate) fn extrema_csv(&self) -> String {
+        let (abscissa, unit) = self.abscissa;
+        let at = format!("at {abscissa} [{unit}]");
+        let mut text = format!("quantity,unit,min,min {at},max,max {at}\n");
+        for ColumnExtrema {
+            name,
+            unit,
+            min,
+            max,
+        } in &self.extrema
+        {
+            let [at_min, at_max] = [min, max].map(|(_, row)| self.abscissa_values[*row]);
+            // Names of a scene hold neither commas nor quotes.
+            let (min, max) = (min.0, max.0);
+            text += &format!("{name},{unit},{min:?},{at_min:?},{max:?},{at_max:?}\n");
+        }
+        text
     }
 
-    pub(crate) fn extrema_csv(&self) -> String {
-        extrema_table_csv(&self.extrema, self.abscissa(), &self.abscissa_values)
+    /// The extrema as a text table.
+    fn extrema_table(&self) -> Block {
+        let (abscissa, unit) = self.abscissa;
+        let at = format!("at {abscissa} [{unit}]");
+        let row = |of: &ColumnExtrema| {
+            let cells = [of.min, of.max].map(|(v, row)| [v, self.abscissa_values[row]].map(number));
+            let mut row = vec![of.name.clone(), of.unit.to_owned()];
+            row.extend(cells.into_iter().flatten());
+            row
+        };
+        Block::Table {
+            header: ["quantity", "unit", "min", &at, "max", &at]
+                .map(str::to_owned)
+                .into(),
+            rows: self.extrema.iter().map(row).collect(),
+        }
     }
 
     fn first_line(&self) -> String {
-        let reached = self.results.rows.len();
-        let all = if reached == self.trajectory.points {
-            count(reached, "position")
-        } else {
-            format!("{reached} of {}", count(self.trajectory.points, "position"))
-        };
+        let (reached, points) = (self.results.rows.len(), self.trajectory.points);
+        let mut all = count(points, "position");
+        if reached != points {
+            all = format!("{reached} of {all}");
+        }
+        let (title, analysis) = (&self.scene.title, self.analysis.name());
         format!(
-            "{}: {}, {all} over {}",
-            self.scene.title,
-            self.analysis.name(),
+            "{title}: {analysis}, {all} over {}",
             self.trajectory.description
         )
     }
@@ -148,86 +109,107 @@ impl<'a> Document<'a> {
     /// What is printed.
     pub(crate) fn summary(&self) -> String {
         let mut text = format!("{}\n", self.first_line());
-        let interesting = |unit: &str| match self.analysis {
-            Analysis::Kinematics => matches!(unit, "rad/s" | "m/s" | "rad/s2" | "m/s2"),
-            _ => matches!(unit, "N" | "N m" | "W"),
-        };
-        let mut listed: Vec<(&str, f64)> = Vec::new();
-        let (abscissa, abscissa_unit) = self.abscissa();
-        for extrema in self.extrema.iter().filter(|p| interesting(p.unit)) {
-            let (value, row) = if extrema.min.0.abs() > extrema.max.0.abs() {
-                extrema.min
-            } else {
-                extrema.max
-            };
-            let enough = listed.iter().filter(|t| t.0 == extrema.unit).count() == MAX_LISTED;
-            // The same under another name: a pin belongs to two bodies.
-            let repeated = listed.iter().any(|t| {
-                t.0 == extrema.unit && (t.1.abs() - value.abs()).abs() <= SAME_WITHIN * value.abs()
-            });
-            let largest_of_unit = listed.iter().find(|t| t.0 == extrema.unit);
-            let negligible =
-                value.abs() <= SAME_WITHIN * largest_of_unit.map_or(0.0, |t| t.1.abs());
-            if enough || repeated || negligible || extrema.name.contains('@') {
-                continue;
-            }
-            listed.push((extrema.unit, value));
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "  {} reaches {} {} at {abscissa} = {} {abscissa_unit}",
-                extrema.name,
-                number(value),
-                extrema.unit,
-                number(self.abscissa_values[row]),
+        text += &self.largest_values();
+        let (abscissa, unit) = self.abscissa;
+        for (link, row, section) in self.bending_moments() {
+            let body = self.scene.mechanism.body_name(link.request.body);
+            let [from, to] = &link.request.names;
+            let [bending, station, at] =
+                [section.bending, section.station, self.abscissa_values[row]].map(number);
+            text += &format!(
+                "  bending moment of {body} from {from} to {to}: {bending} N m, {station} m from {from}, at \
+                 {abscissa} = {at} {unit}\n"
             );
         }
-        for link in &self.results.sectioned_links {
-            if let (Some(extrema), Some((row, _))) =
-                (link.max_bending_section(), &link.max_bending_sections)
-            {
-                let body = self.scene.mechanism.body_name(link.request.body);
-                let [from, to] = &link.request.names;
-                let _ = writeln!(
-                    text,
-                    "  bending moment of {body} from {from} to {to}: {} N m, {} m from {from}, at {abscissa} = {} {abscissa_unit}",
-                    number(extrema.bending),
-                    number(extrema.station),
-                    number(self.abscissa_values[*row]),
-                );
-            }
-        }
         text += &self.power_balance_text();
-        text += &self.rounding_text();
-        text += &self.indeterminate_text();
-        text += &self.unmodelled_text();
+        text += &self.remarks().concat();
         text
     }
 
-    /// The statically indeterminate reactions, which are omitted from the tables.
-    fn indeterminate_text(&self) -> String {
-        if self.analysis == Analysis::Kinematics {
-            return String::new();
+    /// The lines about the largest values of each unit.
+    fn largest_values(&self) -> String {
+        let mut text = String::new();
+        let is_interesting = |unit: &str| match self.analysis {
+            Analysis::Kinematics => matches!(unit, "rad/s" | "m/s" | "rad/s2" | "m/s2"),
+            _ => matches!(unit, "N" | "N m" | "W"),
+        };
+        let (abscissa, abscissa_unit) = self.abscissa;
+        let mut listed: Vec<(&str, f64)> = Vec::new();
+        for ColumnExtrema {
+            name,
+            unit,
+            min,
+            max,
+        } in &self.extrema
+        {
+            let is_lower = min.0.abs() > max.0.abs();
+            let (value, row) = if is_lower { *min } else { *max };
+            let size = value.abs();
+            let mut of_unit = listed
+                .iter()
+                .filter(|(u, _)| u == unit)
+                .map(|(_, v)| v.abs());
+            let is_enough = of_unit.clone().count() == MAX_LISTED;
+            let largest = of_unit.clone().next().unwrap_or(0.0);
+            // The same under another name: a pin belongs to two bodies.
+            let is_repeated = of_unit.any(|v| (v - size).abs() <= SAME_WITHIN * size);
+            let is_negligible = size <= SAME_WITHIN * largest;
+            if !is_interesting(unit)
+                || is_enough
+                || is_repeated
+                || is_negligible
+                || name.contains('@')
+            {
+                continue;
+            }
+            listed.push((unit, value));
+            let [value, at] = [value, self.abscissa_values[row]].map(number);
+            text +=
+                &format!("  {name} reaches {value} {unit} at {abscissa} = {at} {abscissa_unit}\n");
         }
-        indeterminate_note(self.results.indeterminate.iter().cloned())
+        text
     }
 
-    /// The bodies that are not modelled.
-    fn unmodelled_text(&self) -> String {
-        match self.results.unmodelled_bodies(self.scene) {
+    /// The links whose internal forces are computed, with the position and the section of the largest bending moment.
+    fn bending_moments(
+        &self,
+    ) -> impl Iterator<Item = (&SectionedLink, usize, dwell_kinetostatics::Section)> {
+        let links = self.results.sectioned_links.iter();
+        links.filter_map(|link| {
+            let (row, _) = link.max_bending_sections.as_ref()?;
+            Some((link, *row, link.max_bending_section()?))
+        })
+    }
+
+    /// The rounding error, the reactions that no table has, and the bodies that are not modelled; empty where there is
+    /// nothing to say.
+    fn remarks(&self) -> [String; 3] {
+        // Rounded up to a power of ten.
+        let rounding = match self.results.rounding_error {
+            Some(error) if error > 0.0 => format!(
+                "  estimated rounding error below {:.0e} of the largest value of each unit, compared with 32-digit \
+                 arithmetic\n",
+                10_f64.powf(error.log10().ceil())
+            ),
+            _ => String::new(),
+        };
+        let indeterminate = match self.analysis {
+            Analysis::Kinematics => String::new(),
+            _ => indeterminate_note(self.results.indeterminate.iter().cloned()),
+        };
+        let unmodelled = match self.results.unmodelled_bodies(self.scene) {
             none if none.is_empty() => String::new(),
             bodies => format!(
                 "  not modelled, because they affect no inertia, load or requested result: {}\n",
                 bodies.join(", ")
             ),
-        }
+        };
+        [rounding, indeterminate, unmodelled]
     }
 
     fn power_balance_text(&self) -> String {
-        if !matches!(
-            self.analysis,
-            Analysis::Kinetostatics | Analysis::FreeMotion
-        ) {
+        use Analysis::{FreeMotion, Kinetostatics};
+        if !matches!(self.analysis, Kinetostatics | FreeMotion) {
             return String::new();
         }
         let residual = self.results.power_residual;
@@ -239,50 +221,25 @@ impl<'a> Document<'a> {
         text
     }
 
-    /// The rounding error, rounded up to a power of ten.
-    fn rounding_text(&self) -> String {
-        let Some(error) = self.results.rounding_error.filter(|error| *error > 0.0) else {
-            return String::new();
-        };
-        format!(
-            "  estimated rounding error below {:.0e} of the largest value of each unit, compared with 32-digit arithmetic\n",
-            10_f64.powf(error.log10().ceil())
-        )
-    }
-
     /// The Markdown page.
     pub(crate) fn markdown(&self, figures: &[Figure], file: &dyn Fn(&Figure) -> String) -> String {
         let mut blocks = vec![Block::Text(format!("{}.", self.first_line()))];
-        if let Some(note) = &self.scene.note {
-            blocks.push(Block::Text(note.clone()));
+        blocks.extend(self.scene.note.clone().map(Block::Text));
+        let balance = self.power_balance_text();
+        if !balance.is_empty() {
+            blocks.push(Block::Text(format!("{}.", balance.trim())));
         }
-        if !self.power_balance_text().is_empty() {
-            blocks.push(Block::Text(format!(
-                "{}.",
-                self.power_balance_text().trim()
-            )));
+        for remark in self.remarks().iter().filter(|remark| !remark.is_empty()) {
+            let (first, rest) = remark.trim().split_at(1);
+            blocks.push(Block::Text(format!("{}{rest}.", first.to_uppercase())));
         }
-        for remark in [
-            self.rounding_text(),
-            self.indeterminate_text(),
-            self.unmodelled_text(),
-        ] {
-            if !remark.is_empty() {
-                let remark = remark.trim();
-                let (first, rest) = remark.split_at(1);
-                blocks.push(Block::Text(format!("{}{rest}.", first.to_uppercase())));
-            }
-        }
-        for figure in figures {
-            blocks.push(Block::Figure {
-                file: file(figure),
-                alt: figure.title.clone(),
-                caption: String::new(),
-            });
-        }
+        blocks.extend(figures.iter().map(|figure| Block::Figure {
+            file: file(figure),
+            alt: figure.title.clone(),
+            caption: String::new(),
+        }));
         blocks.push(Block::Heading("Peaks".to_owned()));
-        let (header, rows) = extrema_cells(&self.extrema, self.abscissa(), &self.abscissa_values);
-        blocks.push(Block::Table { header, rows });
+        blocks.push(self.extrema_table());
         blocks.extend(self.internal_forces());
         blocks.push(Block::Heading("Columns".to_owned()));
         blocks.push(Block::Text(
@@ -292,51 +249,47 @@ impl<'a> Document<'a> {
         ));
         let row = |&k: &usize| {
             let column = &self.results.columns[k];
-            let cells = [&column.name, column.unit, &column.meaning];
-            cells.map(str::to_owned).to_vec()
+            [&column.name, column.unit, &column.meaning]
+                .map(str::to_owned)
+                .into()
         };
         blocks.push(Block::Table {
-            header: ["column", "unit", "meaning"].map(str::to_owned).to_vec(),
+            header: ["column", "unit", "meaning"].map(str::to_owned).into(),
             rows: self.selected.iter().map(row).collect(),
         });
-        blocks.push(Block::Text(format!(
-            "{} · {}",
-            provenance_line(self.scene),
-            self.trajectory.method_text
-        )));
-        Page {
-            title: format!("{}: {}", self.scene.title, self.analysis.name()),
-            blocks,
-        }
-        .markdown()
+        let provenance = provenance_line(self.scene);
+        let method = &self.trajectory.method_text;
+        blocks.push(Block::Text(format!("{provenance} · {method}")));
+        let title = format!("{}: {}", self.scene.title, self.analysis.name());
+        Page { title, blocks }.markdown()
     }
 
     fn internal_forces(&self) -> Vec<Block> {
         if self.results.sectioned_links.is_empty() {
             return Vec::new();
         }
-        let (abscissa, unit) = self.abscissa();
-        let row = |link: &crate::trajectory::compute::SectionedLink| {
-            let (row, _) = link.max_bending_sections.as_ref()?;
-            let peak = link.max_bending_section()?;
+        let (abscissa, unit) = self.abscissa;
+        let row = |(link, row, peak): (&SectionedLink, usize, dwell_kinetostatics::Section)| {
             let [from, to] = &link.request.names;
             let body = self.scene.mechanism.body_name(link.request.body);
-            Some(vec![
+            let distribution = match link.distribution {
+                Distribution::UniformBar => "uniform bar",
+                Distribution::Lumped => "lumped at the centre of mass",
+            };
+            vec![
                 format!("{body} from {from} to {to}"),
                 number(peak.bending),
                 number(peak.station),
-                digits(self.abscissa_values[*row], 6),
-                match link.distribution {
-                    Distribution::UniformBar => "uniform bar".to_owned(),
-                    Distribution::Lumped => "lumped at the centre of mass".to_owned(),
-                },
-            ])
+                number(self.abscissa_values[row]),
+                distribution.to_owned(),
+            ]
         };
+        let at = format!("at {abscissa} [{unit}]");
         let header = [
             "link",
             "bending moment [N m]",
             "station [m]",
-            &format!("at {abscissa} [{unit}]"),
+            &at,
             "mass distribution",
         ];
         vec![
@@ -347,8 +300,8 @@ impl<'a> Document<'a> {
                     .to_owned(),
             ),
             Block::Table {
-                header: header.map(str::to_owned).to_vec(),
-                rows: self.results.sectioned_links.iter().filter_map(row).collect(),
+                header: header.map(str::to_owned).into(),
+                rows: self.bending_moments().map(row).collect(),
             },
         ]
     }

@@ -5,12 +5,16 @@ pub mod compute;
 #[cfg(feature = "output")]
 mod document;
 #[cfg(feature = "output")]
+mod extrema;
+#[cfg(feature = "output")]
 mod figures;
 #[cfg(feature = "output")]
 mod output;
-
-pub use compute::{Analysis, TrajectoryTable, compute_trajectory};
 #[cfg(feature = "output")]
-pub(crate) use output::evaluate_and_report;
+mod written_results;
+
+pub use compute::{Analysis, compute_trajectory};
+#[cfg(feature = "output")]
+pub(crate) use output::report;
 #[cfg(feature = "output")]
 pub use output::{TrajectoryOutcome, analyse_trajectory};

@@ -1,4 +1,4 @@
-//! What a scene is told that can be put together in several ways, and that saying it is enough.
+//! Which hints a scene with several assembly modes is asked for, and that giving them is enough.
 
 use crate::table::scene;
 use dwell_study::{StudyError, check};
@@ -71,7 +71,7 @@ fn a_travel_is_asked_for_in_the_units_of_the_scene() {
     }
 }
 
-/// The first distance has the name of a body, which means the body: the other is asked for.
+/// The first distance has the name of a body, which takes precedence: the hint for the other is asked for.
 #[test]
 fn a_direction_is_asked_for_in_the_units_of_the_scene() {
     let help = help(HUNG);
@@ -84,7 +84,7 @@ fn a_direction_is_asked_for_in_the_units_of_the_scene() {
     assert!(summary.contains("right = -2.2143 rad\n"), "{summary}");
 }
 
-/// A pin has nothing that could be told.
+/// A revolute joint takes no hint.
 #[test]
 fn nothing_can_be_told_of_a_pin() {
     let text = HUNG.replace(

@@ -1,4 +1,4 @@
-//! Ways that end early, and scenes that do not say their way.
+//! Trajectories that end early, and scenes that define no trajectory.
 
 use crate::table::{Table, WEIGHTS, analyse, case, file, scene};
 use dwell_study::{Analysis, StudyError, analyse_trajectory, check, no_progress};
@@ -36,7 +36,7 @@ fn a_sweep_stops_at_a_limit_position_and_keeps_what_it_found() {
         };
         let stated = stop_error.message.split("phi = ").nth(1).unwrap();
         let stated: f64 = stated.split(' ').next().unwrap().parse().unwrap();
-        // Eight digits are told.
+        // Eight digits are printed.
         assert!((stated - limit()).abs() < 1e-7, "{stated} {}", limit());
         assert!(
             stop_error.message.contains("`coupler`, `rocker`"),
@@ -289,7 +289,7 @@ fn a_scene_that_does_not_say_its_way_is_told_what_to_add() {
     ] {
         let Err(StudyError::Scene(error)) = analyse_trajectory(scene, command, None, &no_progress)
         else {
-            panic!("there is no way to take");
+            panic!("there is no trajectory");
         };
         let help = error.help.unwrap();
         assert!(

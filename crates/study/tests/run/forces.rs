@@ -125,7 +125,7 @@ fn the_frame_gets_what_the_momentum_does_not() {
     }
 }
 
-/// The actuator and the load of the planetary gear both turn a body from the ground: at rest, the
+/// The actuator and the load of the planetary gear both rotate a body from the ground: at rest, the
 /// ground feels nothing of what it does itself.
 #[test]
 fn loads_from_the_ground_act_on_the_frame_too() {
@@ -153,7 +153,7 @@ fn a_force_is_one_in_all_axes() {
         .map(|name| table.column(&name));
         for i in 0..x.len() {
             let (s, c) = angle[i].sin_cos();
-            // Rounding of a turned vector.
+            // Rounding of a rotated vector.
             let small = 1e-14 * (1.0 + size[i]);
             assert!((u[i] - (x[i] * c + y[i] * s)).abs() < small);
             assert!((v[i] - (y[i] * c - x[i] * s)).abs() < small);

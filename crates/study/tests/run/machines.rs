@@ -196,7 +196,7 @@ fn what_has_no_cycle_or_equilibrium_says_where() {
     let in_time = MOTOR.replace("voltage = 24", "voltage = \"24 + t\"");
     assert!(refused(&in_time).contains("autonomous"));
     let weak = MOTOR.replace("voltage = 24", "voltage = 3");
-    // It turns backwards, driven by its load: a cycle all the same.
+    // It rotates backwards, driven by its load: this is a cycle as well.
     let outcome = cycle(&scene(&weak), &SolverSettings::default(), None).unwrap();
     assert!(
         outcome.summary.contains("mean speed -1.2 rad/s"),

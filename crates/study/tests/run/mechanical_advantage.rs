@@ -93,11 +93,11 @@ fn a_toggle_has_no_advantage() {
         assert!(values[0].is_nan(), "{name}: {values:?}");
         assert!(values[1..].iter().all(|v| v.is_finite()), "{name}");
     }
-    // The coupler turns about C there.
+    // The coupler rotates about C there.
     assert!(table.column("coupler.velocity_pole.x")[0].is_finite());
 }
 
-/// What slides turns about nothing, and a force on it is worth as much as virtual work says.
+/// A sliding body has no pole, and its mechanical advantage follows from virtual work.
 #[test]
 fn a_piston_has_no_pole_but_an_advantage() {
     let mut scene = case("slider-crank");
@@ -177,7 +177,7 @@ fn the_poles_of_a_four_bar_are_where_its_bars_meet() {
 }
 
 /// At the acceleration pole, reckoned from another point of the body, there is no acceleration; a
-/// crank that turns evenly has it at its pivot.
+/// crank at constant speed has it at its pivot.
 #[test]
 fn the_acceleration_pole_has_no_acceleration() {
     let names = r#""crank", "coupler", "rocker", "crank.acceleration_pole", "coupler.acceleration_pole", "rocker.acceleration_pole""#;

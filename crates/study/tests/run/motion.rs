@@ -60,7 +60,7 @@ fn speeds_and_accelerations_are_derivatives_by_time() {
         for (of, by_time) in pairs {
             let (values, derivative) = (table.column(&of), table.column(&by_time));
             let difference = derivative_error(&values, &derivative, step);
-            // Rounding of the values over a step. In ten turns of 400 positions each, harmonics up
+            // Rounding of the values over a step. In ten revolutions of 400 positions each, harmonics up
             // to the tenth: (2π·10/400)⁸/630 = 6e-10 of the largest.
             let allowed = 1e-9 * largest(&derivative) + 5e-15 * (1.0 + largest(&values)) / step;
             assert!(
@@ -71,7 +71,7 @@ fn speeds_and_accelerations_are_derivatives_by_time() {
     }
 }
 
-/// Ten turns in eleven positions: only their speeds tell how often the bodies turned in between.
+/// Ten revolutions in eleven positions: only the velocities show how often the bodies rotated in between.
 #[test]
 fn whole_turns_are_counted_between_far_positions() {
     let scene = case("slider-crank");
@@ -80,7 +80,7 @@ fn whole_turns_are_counted_between_far_positions() {
         let (angle, phi) = (table.column("crank.angle"), table.column("phi"));
         assert!(angle.last().unwrap() - angle[0] > 9.0 * TAU);
         for (angle, phi) in angle.iter().zip(phi) {
-            // A sum of ten turns.
+            // A sum of ten revolutions.
             assert!((angle - phi).abs() < 1e-12, "{angle} {phi}");
         }
     }
@@ -100,7 +100,7 @@ fn the_velocity_ratio_is_what_the_speeds_have() {
     }
 }
 
-/// By the law of cosines in the triangle of the coupler, the rocker and the way from B to D.
+/// By the law of cosines in the triangle of the coupler, the rocker and the distance from B to D.
 #[test]
 fn the_transmission_angle_closes_a_triangle() {
     let table = table(&scene(WEIGHTS), Analysis::Kinematics, 100);
@@ -124,7 +124,7 @@ fn the_transmission_angle_closes_a_triangle() {
     }
 }
 
-/// The angle of a body is that of the coordinate that drives it, with its whole turns.
+/// The angle of a body is that of the coordinate that drives it, with its whole revolutions.
 #[test]
 fn a_driven_body_counts_as_its_coordinate_does() {
     let mut scene = case("rolling-wheel");

@@ -128,11 +128,11 @@ fn a_part_that_is_not_modelled_still_ends_the_way() {
     let (message, _) = two("\"one\"");
     let stated = message.split("phi = ").nth(1).unwrap();
     let stated: f64 = stated.split(' ').next().unwrap().parse().unwrap();
-    // Eight digits are told.
+    // Eight digits are printed.
     assert!((stated - (-1.0_f64 / 7.0).acos()).abs() < 1e-7, "{message}");
 }
 
-/// Three cranks hold one coupler and share its forces in no unique way, but those of a dyad on it are
+/// Three cranks hold one coupler and share its forces in no unique proportion, but those of a dyad on it are
 /// determined: `reduce` gives these alone, and each under its own name.
 #[test]
 fn reduce_leaves_out_reactions_that_are_not_unique() {

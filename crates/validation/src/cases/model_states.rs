@@ -257,8 +257,8 @@ impl<'a> ModelStates<'a> {
 
     fn set_coordinates(&mut self, q: &[f64]) -> Result<(), StudyError> {
         let plan = self.model.plan();
-        plan.positions(q, &mut self.reached.pose)
-            .map_err(|e| explain_position(self.scene, plan, &e))
+        let done = plan.positions(q, &mut self.reached.pose);
+        done.map_err(|e| explain_position(self.scene, plan, &e))
     }
 
     fn body_poses(&self) -> Vec<[f64; 3]> {

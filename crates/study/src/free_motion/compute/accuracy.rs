@@ -9,46 +9,28 @@
 //!    kept.
 
 use crate::estimate;
-use crate::explain::{StudyError, explain_motion};
+use crate::explain::StudyError;
+use crate::free_motion::compute::refinement::{
+    COARSE_TOLERANCE, Candidate, FIRST_TOLERANCE_RATIO, MIN_TOLERANCE, Refinement,
+};
 use crate::free_motion::compute::{ComputedMotion, Difference, FreeMotionProblem, SegmentedMotion};
+use crate::ranges::extent;
 use dwell_dynamics::{
     DynamicsError, Method, ObservedMachine, OdeState, Options, Orbit, ReducedState, Solution,
-    Statistics, TabulatedMachine, solve_orbit, solve_system,
+    Statistics, solve_orbit,
 };
-use dwell_kinetostatics::TableDomain;
 use dwell_scene::Scene;
 
-/// Tolerance of the coarse run.
-const COARSE_TOLERANCE: f64 = 1e-4;
-/// The finest tolerances: below them rounding is all that changes, and Newton's method cannot keep them.
-const MIN_TOLERANCE: f64 = 1e-14;
-const MIN_IMPLICIT_TOLERANCE: f64 = 1e-13;
 /// Error of BDF relative to DOP853 at the same tolerance: 2 to 240 in ten revolutions of m = 2 + cos q, growing
 /// with finer tolerances.
 const BDF_ERROR_RATIO: f64 = 50.0;
-/// First tolerance, relative to the required accuracy: an integrator's error is tens of times its tolerance.
-const FIRST_TOLERANCE_RATIO: f64 = 1e-2;
-/// Error aimed at after an error that was too large, relative to the required accuracy.
-const TARGET_ERROR_RATIO: f64 = 0.2;
-/// Smallest and largest factor of one refinement of the tolerance.
-const TOLERANCE_FACTORS: [f64; 2] = [1e-4, 0.1];
-/// The error of the finer run is a tenth to a half of the difference from the run before; the worst ratio measured
-/// is 2.2 (nine cases, eleven accuracies each).
-const SAFETY_FACTOR: f64 = 2.5;
 /// Fraction of stiff steps above which stability, not accuracy, determines the cost.
 const MAX_STIFF_FRACTION: f64 = 0.05;
-/// Number of evaluations above which a table pays: building two to 1e-9 takes 2.4 to 9.4 ms under loads, which is up
-/// to 20 000 evaluations of the machine, and saves 80 to 90 % of each (docs/performance.md).
+/// Number of evaluations above which a table saves time: building two to 1e-9 takes 2.4 to 9.4 ms under loads, as long
+/// as up to 20 000 evaluations of the machine, and saves 80 to 90 % of each (docs/performance.md).
 const TABLE_BREAK_EVEN: f64 = 30_000.0;
-/// Accuracy of a table relative to the tolerance, and its finest value.
-const TABLE_TOLERANCE_RATIO: f64 = 0.1;
-const MIN_TABLE_TOLERANCE: f64 = 1e-13;
-/// Margin of a table of a limited range beyond the coarse run, relative to the range of that run.
-const TABLE_MARGIN: f64 = 0.05;
 /// Maximum number of steps of a coarse run.
 const MAX_COARSE_STEPS: usize = 100_000;
-/// Maximum number of runs.
-const MAX_RUNS: usize = 6;
 
 impl FreeMotionProblem<'_> {
     /// The motion to `accuracy`: rad (lengths: relative to the largest change), and relative to the largest kinetic
@@ -63,77 +45,73 @@ impl FreeMotionProblem<'_> {
         if let Some(found) = self.by_quadrature(accuracy, duration, sample_interval) {
             return Ok(found);
         }
-        let options_for = |method: Method, tolerance: f64| Options {
-            sample_interval: Some(sample_interval),
-            ..Options::new(method, tolerance)
-        };
         let coarse_run = |method: Method| {
             let options = Options {
                 max_steps: MAX_COARSE_STEPS,
-                ..options_for(method, COARSE_TOLERANCE)
+                sample_interval: Some(sample_interval),
+                ..Options::new(method, COARSE_TOLERANCE)
             };
             self.solve(scene, duration, &options)
         };
         let explicit = coarse_run(Method::Dop853)?;
         let (methods, expected_evaluations, reason) =
             self.rank_methods(&explicit, || coarse_run(Method::Bdf), accuracy)?;
-        let mut candidates: Vec<(Method, bool)> = methods.map(|method| (method, false)).to_vec();
+        let mut candidates: Vec<Candidate> = methods.map(|method| (method, None)).to_vec();
         if expected_evaluations > TABLE_BREAK_EVEN && self.stays_on_branch(&explicit) {
-            candidates.insert(0, (methods[0], true));
+            candidates.insert(0, (methods[0], Some(visited_range(&explicit))));
         }
-        let visited = visited_range(&explicit);
-        // If the first method cannot reach the accuracy, the next may.
-        let mut best: Option<(Refinement, Method, bool)> = None;
-        let mut last = (candidates[0] == (Method::Dop853, false) && reached_end(&explicit))
-            .then_some((COARSE_TOLERANCE, explicit));
-        for (method, tabled) in candidates {
-            let solve = |tolerance: f64| {
-                let options = options_for(method, tolerance);
-                if tabled {
-                    self.solve_on_table(visited, duration, &options)
-                } else {
-                    self.solve(scene, duration, &options).map(Some)
-                }
+        let is_comparable = candidates[0] == (Method::Dop853, None) && reached_end(&explicit);
+        let first = is_comparable.then_some((COARSE_TOLERANCE, explicit));
+        let solve = |(method, visited): Candidate, tolerance: f64| {
+            let options = Options {
+                sample_interval: Some(sample_interval),
+                ..Options::new(method, tolerance)
             };
-            let Some(refinement) = self.refine(accuracy, method, last.take(), &solve)? else {
-                continue;
-            };
+            match visited {
+                Some(visited) => self.solve_on_table(visited, duration, &options),
+                None => self.solve(scene, duration, &options).map(Some),
+            }
+        };
+        let best = self.best_of(&candidates, accuracy, first, &solve)?;
+        let ((method, visited), found) =
+            best.ok_or_else(|| self.explain(&DynamicsError::DurationTooShort))?;
+        let suffix = visited.map_or("", |_| " on a table");
+        let tolerance = two_digits(found.tolerance);
+        let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
+        let how = format!("{method_text}, {reason}; {} runs", found.runs);
+        let (motion, difference) = (found.motion, &found.difference);
+        Ok(ComputedMotion::to_accuracy(
+            motion,
+            method_text,
+            accuracy,
+            &how,
+            difference,
+        ))
+    }
+
+    /// The first candidate that reaches the accuracy, or else the one that comes nearest to it.
+    fn best_of(
+        &self,
+        candidates: &[Candidate],
+        accuracy: f64,
+        mut last: Option<(f64, SegmentedMotion)>,
+        solve: &dyn Fn(Candidate, f64) -> Result<Option<SegmentedMotion>, StudyError>,
+    ) -> Result<Option<(Candidate, Refinement)>, StudyError> {
+        let mut best: Option<(Candidate, Refinement)> = None;
+        for &candidate in candidates {
+            let by_candidate = |tolerance| solve(candidate, tolerance);
+            let refined = self.refine(accuracy, candidate.0, last.take(), &by_candidate)?;
+            let Some(refinement) = refined else { continue };
             let largest = refinement.difference.largest();
-            let is_better =
-                |(best, ..): &(Refinement, Method, bool)| largest < best.difference.largest();
+            let is_better = |(_, best): &(_, Refinement)| largest < best.difference.largest();
             if best.as_ref().is_none_or(is_better) {
-                best = Some((refinement, method, tabled));
+                best = Some((candidate, refinement));
             }
             if largest <= accuracy {
                 break;
             }
         }
-        let Some((refinement, method, tabled)) = best else {
-            let error = DynamicsError::DurationTooShort;
-            return Err(explain_motion(
-                self.loaded_scene,
-                self.output_model.plan(),
-                &error,
-            ));
-        };
-        let suffix = if tabled { " on a table" } else { "" };
-        let method_text = format!(
-            "{}{suffix}, tolerance {}",
-            method.name(),
-            two_digits(refinement.tolerance)
-        );
-        let remarks = format!(
-            "  accuracy {}: {method_text}, {reason}; {} runs\n{}",
-            two_digits(accuracy),
-            refinement.runs,
-            describe_difference(&refinement.difference)
-        );
-        Ok(ComputedMotion {
-            motion: refinement.motion,
-            method_text,
-            remarks,
-            accuracy: Some([accuracy, refinement.difference.largest()]),
-        })
+        Ok(best)
     }
 
     /// The methods to try, the cheaper first; the expected number of evaluations; and the reason.
@@ -157,10 +135,8 @@ impl FreeMotionProblem<'_> {
         let implicit = implicit()?;
         let by_implicit = self.equivalent_evaluations(&implicit.statistics)
             * (BDF_ERROR_RATIO * refinement_ratio).powf(1.0 / 6.0);
-        let reason = format!(
-            "{:.0} % of the steps of a coarse run are stiff",
-            100.0 * stiff_fraction
-        );
+        let percent = 100.0 * stiff_fraction;
+        let reason = format!("{percent:.0} % of the steps of a coarse run are stiff");
         Ok(if reached_end(explicit) && by_explicit <= by_implicit {
             (smooth, by_explicit, reason)
         } else {
@@ -178,96 +154,6 @@ impl FreeMotionProblem<'_> {
     fn stays_on_branch(&self, coarse: &SegmentedMotion) -> bool {
         let is_single_segment = coarse.segments.len() == 1 && coarse.charts.len() <= 1;
         is_single_segment && reached_end(coarse) && self.machine.free() == [0]
-    }
-
-    /// The motion on a table whose accuracy follows the tolerance, so that the difference of two runs contains both
-    /// errors. `None` if there is no such table, or the motion leaves it.
-    fn solve_on_table(
-        &self,
-        visited: [f64; 2],
-        duration: f64,
-        options: &Options,
-    ) -> Result<Option<SegmentedMotion>, StudyError> {
-        let extent = match self.machine.model().plan().range().limits() {
-            None => TableDomain::Full,
-            Some((from, to)) => {
-                let margin = TABLE_MARGIN * (visited[1] - visited[0]);
-                TableDomain::Between(
-                    (visited[0] - margin).max(from),
-                    (visited[1] + margin).min(to),
-                )
-            }
-        };
-        let accuracy = (TABLE_TOLERANCE_RATIO * options.rtol).max(MIN_TABLE_TOLERANCE);
-        let Ok(table) = TabulatedMachine::new(&self.machine, accuracy, extent) else {
-            return Ok(None);
-        };
-        let start = self.initial_state();
-        let explain =
-            |e: &DynamicsError| explain_motion(self.loaded_scene, self.output_model.plan(), e);
-        let mut ode = table.ode(start.t, &start.y).map_err(|e| explain(&e))?;
-        let outputs = ObservedMachine::new(&self.machine, &self.output_model);
-        let events = self.events();
-        let solution = solve_system(&mut ode, outputs, &start, Some(duration), options, &events);
-        let solution = solution.map_err(|e| explain(&e))?;
-        Ok(solution
-            .error
-            .is_none()
-            .then(|| SegmentedMotion::single_segment(solution)))
-    }
-
-    /// Repeats the motion at finer tolerances until two runs agree; keeps the last. `None` if a run cannot be made.
-    fn refine(
-        &self,
-        accuracy: f64,
-        method: Method,
-        last: Option<(f64, SegmentedMotion)>,
-        solve: &dyn Fn(f64) -> Result<Option<SegmentedMotion>, StudyError>,
-    ) -> Result<Option<Refinement>, StudyError> {
-        let explain =
-            |e: &DynamicsError| explain_motion(self.loaded_scene, self.output_model.plan(), e);
-        let min_tolerance = if method.is_implicit() {
-            MIN_IMPLICIT_TOLERANCE
-        } else {
-            MIN_TOLERANCE
-        };
-        let first =
-            (FIRST_TOLERANCE_RATIO * accuracy).clamp(10.0 * min_tolerance, COARSE_TOLERANCE);
-        // The coarse run serves as the first comparison.
-        let (mut tolerance, mut kept) = match last {
-            Some((tolerance, motion)) if 0.1 * tolerance <= first => (tolerance, motion),
-            _ => match solve(first)? {
-                Some(motion) => (first, motion),
-                None => return Ok(None),
-            },
-        };
-        let mut next = (0.1 * tolerance).min(first).max(min_tolerance);
-        let mut runs = 1;
-        loop {
-            let Some(motion) = solve(next)? else {
-                return Ok(None);
-            };
-            let difference = self.difference(&kept, &motion).map_err(|e| explain(&e))?;
-            let difference = difference.scaled(SAFETY_FACTOR);
-            (tolerance, kept) = (next, motion);
-            runs += 1;
-            let largest = difference.largest();
-            if largest <= accuracy || next <= 1.01 * min_tolerance || runs >= MAX_RUNS {
-                return Ok(Some(Refinement {
-                    tolerance,
-                    motion: kept,
-                    difference,
-                    runs,
-                }));
-            }
-            let [min_factor, max_factor] = TOLERANCE_FACTORS;
-            let factor = if largest.is_finite() {
-                TARGET_ERROR_RATIO * accuracy / largest
-            } else {
-                max_factor
-            };
-            next = (tolerance * factor.clamp(min_factor, max_factor)).max(min_tolerance);
-        }
     }
 
     /// The motion by quadrature, if it is conservative and periodic.
@@ -298,39 +184,51 @@ impl FreeMotionProblem<'_> {
         // The rounding of the initial state and the error of the rule act as a delay.
         let delay = estimate::of_period(&orbit, perturbed).ok()? / orbit.period;
         let motion = SegmentedMotion::single_segment(solution);
-        let difference = self
-            .difference(&motion, &time_scaled(&orbit, &motion, delay))
-            .ok()?;
+        let delayed = time_scaled(&orbit, &motion, delay);
+        let difference = self.difference(&motion, &delayed).ok()?;
         let method_text = "quadrature".to_owned();
+        let points = orbit.points;
+        let how =
+            format!("{method_text} (conservative, periodic motion), {points} quadrature points");
+        let computed =
+            ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
+        Some(computed)
+    }
+}
+
+impl ComputedMotion {
+    /// A motion to a required accuracy, how it was computed, and its estimated error.
+    fn to_accuracy(
+        motion: SegmentedMotion,
+        method_text: String,
+        accuracy: f64,
+        how: &str,
+        difference: &Difference,
+    ) -> Self {
         let remarks = format!(
-            "  accuracy {}: {method_text} (conservative, periodic motion), {} quadrature points\n{}",
+            "  accuracy {}: {how}\n  estimated errors over the whole motion: {:.1e} in the coordinates, {:.1e} of the \
+             largest kinetic energy, {:.1e} of the largest reaction\n",
             two_digits(accuracy),
-            orbit.points,
-            describe_difference(&difference)
+            difference.coordinate,
+            difference.energy,
+            difference.reactions
         );
-        Some(ComputedMotion {
+        Self {
             motion,
             method_text,
             remarks,
             accuracy: Some([accuracy, difference.largest()]),
-        })
+        }
     }
-}
-
-/// The result of a refinement.
-struct Refinement {
-    tolerance: f64,
-    motion: SegmentedMotion,
-    difference: Difference,
-    runs: usize,
 }
 
 /// The interval of the coordinate that a motion of one degree of freedom visits.
 fn visited_range(motion: &SegmentedMotion) -> [f64; 2] {
-    let steps = motion.steps().filter_map(|(_, point)| point.y.first());
-    steps.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &q| {
-        [a.min(q), b.max(q)]
-    })
+    extent(
+        motion
+            .steps()
+            .filter_map(|(_, point)| point.y.first().copied()),
+    )
 }
 
 /// Whether a motion reached its end.
@@ -348,29 +246,12 @@ fn time_scaled(orbit: &Orbit, motion: &SegmentedMotion, fraction: f64) -> Segmen
         }
     };
     let solutions = motion.segments.iter().map(|(_, solution)| solution);
+    let samples = solutions.clone().flat_map(|s| &s.samples);
     SegmentedMotion::single_segment(Solution {
-        steps: solutions
-            .clone()
-            .flat_map(|t| t.steps.last().cloned())
-            .collect(),
-        samples: solutions
-            .flat_map(|t| t.samples.iter().map(shifted))
-            .collect(),
+        steps: solutions.flat_map(|s| s.steps.last().cloned()).collect(),
+        samples: samples.map(shifted).collect(),
         ..Solution::default()
     })
-}
-
-fn describe_difference(difference: &Difference) -> String {
-    let Difference {
-        coordinate,
-        energy,
-        reactions,
-        ..
-    } = difference;
-    format!(
-        "  estimated errors over the whole motion: {coordinate:.1e} in the coordinates, {energy:.1e} of the largest \
-         kinetic energy, {reactions:.1e} of the largest reaction\n"
-    )
 }
 
 /// A number with two significant digits.
@@ -381,31 +262,21 @@ fn two_digits(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, clippy::panic, reason = "tests")]
-
     use super::*;
-    use dwell_dynamics::loads_with_drives;
+    use crate::models::with_drive_loads;
 
     fn text(case: &str) -> String {
         let cases = concat!(env!("CARGO_MANIFEST_DIR"), "/../../validation");
         std::fs::read_to_string(format!("{cases}/{case}/scene.toml")).unwrap()
     }
 
-    /// With the loads through which the drives act.
-    fn with_drive_loads(scene: &Scene) -> Scene {
-        let mut loaded_scene = scene.clone();
-        loaded_scene.loads =
-            loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives).unwrap();
-        loaded_scene
-    }
-
-    /// What is promised is kept, for every case that moves under loads and for free ones, against a method
-    /// that was not picked. The truth's own error is that of a tenth of its tolerance.
+    /// The accuracy is reached for every case, with and without loads, compared with a method that was not
+    /// selected. The reference's own error is that of a tenth of its tolerance.
     #[test]
     fn val_what_is_promised_is_kept() {
         for case in CASES {
             let scene = Scene::parse(case, &text(case)).unwrap();
-            let loaded_scene = with_drive_loads(&scene);
+            let loaded_scene = with_drive_loads(&scene).unwrap();
             let problem =
                 FreeMotionProblem::new(&scene, &loaded_scene, scene.motion.as_ref().unwrap())
                     .unwrap();
@@ -451,10 +322,10 @@ mod tests {
         }
     }
 
-    /// What is picked for `text` to an accuracy, which must be kept against `truth`.
+    /// The method that is selected for `text`; its result must agree with a reference to the accuracy.
     fn picked_method(text: &str, accuracy: f64, duration: f64, reference: (Method, f64)) -> String {
         let scene = Scene::parse("scene", text).unwrap();
-        let loaded_scene = with_drive_loads(&scene);
+        let loaded_scene = with_drive_loads(&scene).unwrap();
         let problem =
             FreeMotionProblem::new(&scene, &loaded_scene, scene.motion.as_ref().unwrap()).unwrap();
         let sample_interval = duration / 200.0;

@@ -1,9 +1,9 @@
 //! The difference of two computations of one motion.
 
+use crate::estimate::relative;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::trajectory::compute::TrajectorySample;
 use dwell_dynamics::DynamicsError;
-use dwell_kinetostatics::Model;
 
 /// Samples at which reactions are compared, along the whole motion.
 const COMPARED_SAMPLES: usize = 64;
@@ -61,30 +61,22 @@ impl FreeMotionProblem<'_> {
         };
         let mut coordinate = 0.0_f64;
         for &i in self.machine.free() {
-            let value = |s: &TrajectorySample| {
-                s.actuator_coordinate
-                    .map_or(s.q[i], |derivatives| derivatives[0])
-            };
+            let value = |s: &TrajectorySample| s.coordinate(i);
             let start = first.first().map_or(0.0, value);
             let scale = match self.output_model.plan().is_angle(i) {
                 true => 1.0,
                 false => max_abs(&|s| value(s) - start),
             };
-            coordinate = nan_max(coordinate, relative_to(max_difference(&value), scale));
+            coordinate = nan_max(coordinate, relative(max_difference(&value), scale));
         }
-        let balance_index = 2 + self.machine.nonconservative_sources().len();
-        let balance =
-            |s: &TrajectorySample| s.extra_values.get(balance_index).copied().unwrap_or(0.0);
-        let kinetic = max_abs(&|s| s.extra_values.first().copied().unwrap_or(0.0));
-        let end_times = [one, two].map(SegmentedMotion::end_time);
+        let balance = |s: &TrajectorySample| self.energy_balance(s);
+        let kinetic = max_abs(&|s| s.extra_values[0]);
+        let [end_one, end_two] = [one, two].map(SegmentedMotion::end_time);
         Ok(Difference {
             coordinate,
-            energy: relative_to(max_difference(&balance), kinetic),
+            energy: relative(max_difference(&balance), kinetic),
             reactions: self.reaction_difference(one, two, &pairs)?,
-            end: relative_to(
-                (end_times[0] - end_times[1]).abs(),
-                end_times[0].max(end_times[1]),
-            ),
+            end: relative((end_one - end_two).abs(), end_one.max(end_two)),
         })
     }
 
@@ -94,44 +86,27 @@ impl FreeMotionProblem<'_> {
         two: &SegmentedMotion,
         pairs: &[(&TrajectorySample, &TrajectorySample)],
     ) -> Result<f64, DynamicsError> {
-        let units: Vec<&str> = self
-            .output_model
-            .reactions()
-            .iter()
-            .map(|r| r.component.unit())
-            .collect();
-        let mut max_differences = vec![0.0_f64; units.len()];
-        let mut max_values = max_differences.clone();
+        let reactions = self.output_model.reactions();
+        let mut differences = vec![0.0_f64; reactions.len()];
+        let mut sizes = differences.clone();
         let stride = pairs.len().div_ceil(COMPARED_SAMPLES).max(1);
         for (a, b) in pairs.iter().step_by(stride) {
-            let (values_one, values_two) = (self.reactions(one, a)?, self.reactions(two, b)?);
-            for (k, (values_one, values_two)) in values_one
-                .iter()
-                .zip(&values_two)
-                .take(units.len())
-                .enumerate()
-            {
+            let (first, second) = (self.reactions(one, a)?, self.reactions(two, b)?);
+            let cells = differences.iter_mut().zip(&mut sizes);
+            for ((difference, size), (v, w)) in cells.zip(first.iter().zip(&second)) {
                 // Next to a change point a reaction may be undefined in both.
-                if !(values_one.is_nan() && values_two.is_nan()) {
-                    max_differences[k] =
-                        nan_max(max_differences[k], (values_one - values_two).abs());
-                    max_values[k] = max_values[k].max(values_one.abs());
+                if !(v.is_nan() && w.is_nan()) {
+                    *difference = nan_max(*difference, (v - w).abs());
+                    *size = size.max(v.abs());
                 }
             }
         }
-        let parts = max_differences
-            .iter()
-            .zip(&units)
-            .map(|(&max_differences, unit)| {
-                let alike = max_values
-                    .iter()
-                    .zip(&units)
-                    .filter(|(_, other)| *other == unit);
-                relative_to(
-                    max_differences,
-                    alike.fold(0.0, |size, (value, _)| size.max(*value)),
-                )
-            });
+        let parts = differences.iter().zip(reactions).map(|(&difference, r)| {
+            let alike = sizes.iter().zip(reactions);
+            let alike = alike.filter(|(_, s)| s.component.unit() == r.component.unit());
+            let scale = alike.fold(0.0, |scale: f64, (size, _)| scale.max(*size));
+            relative(difference, scale)
+        });
         Ok(parts.fold(0.0, nan_max))
     }
 
@@ -141,19 +116,16 @@ impl FreeMotionProblem<'_> {
         motion: &SegmentedMotion,
         sample: &TrajectorySample,
     ) -> Result<Vec<f64>, DynamicsError> {
-        let output_model: &Model = motion
-            .charts
-            .get(sample.chart)
-            .map_or(&self.output_model, |chart| &chart.output_model);
-        let (mut workspace, mut inverse_dynamics) =
-            (output_model.workspace(), output_model.result_buffer());
-        let state = output_model.kinematic_state(&sample.q, &sample.q_dot, &mut workspace)?;
+        let chart = motion.charts.get(sample.chart);
+        let model = chart.map_or(&self.output_model, |chart| &chart.output_model);
+        let (mut workspace, mut results) = (model.workspace(), model.result_buffer());
+        let state = model.kinematic_state(&sample.q, &sample.q_dot, &mut workspace)?;
         let mut state = state.apply_loads(sample.t)?;
         for &(load, magnitude) in &sample.drive_magnitudes {
             state.set_magnitude(load, magnitude);
         }
-        state.evaluate(&sample.q_ddot, &mut inverse_dynamics)?;
-        Ok(inverse_dynamics.reactions)
+        state.evaluate(&sample.q_ddot, &mut results)?;
+        Ok(results.reactions)
     }
 }
 
@@ -173,13 +145,4 @@ fn pair_by_time<'s>(
 /// The larger of two numbers; NaN counts as larger.
 fn nan_max(a: f64, b: f64) -> f64 {
     if b <= a { a } else { b }
-}
-
-/// A difference relative to a scale; 0 if the difference is 0, whatever the scale.
-fn relative_to(difference: f64, scale: f64) -> f64 {
-    if difference == 0.0 {
-        0.0
-    } else {
-        difference / scale
-    }
 }

@@ -1,12 +1,15 @@
 //! The estimated error of a motion, from a second run at a tenth of the tolerance.
 
 use crate::estimate;
-use crate::explain::{StudyError, explain_motion};
+use crate::explain::StudyError;
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
+use crate::number_format::{coordinate_unit, digits};
 use crate::trajectory::compute::TrajectorySample;
-use dwell_dynamics::{DynamicsError, Options};
+use dwell_dynamics::Options;
 use dwell_scene::Scene;
-use std::fmt::Write as _;
+
+/// A sample of each of two runs at the same time.
+type SamplePair<'a> = (&'a TrajectorySample, &'a TrajectorySample);
 
 impl FreeMotionProblem<'_> {
     /// The line of the summary about the error at the end of a motion.
@@ -20,76 +23,63 @@ impl FreeMotionProblem<'_> {
         if duration == 0.0 {
             return Ok(String::new());
         }
-        let explain =
-            |e: &DynamicsError| explain_motion(self.loaded_scene, self.output_model.plan(), e);
-        let samples = &self.samples(motion).map_err(|e| explain(&e))?;
+        let samples = self.samples(motion).map_err(|e| self.explain(&e))?;
         let finer = estimate::comparison_options(options);
         let refinement = if finer.method == options.method {
             "a tenth of the tolerance".to_owned()
         } else {
             format!("the same tolerance by {}", finer.method.name())
         };
-        let second = self.solve(scene, duration, &finer);
-        let second = second
-            .ok()
-            .and_then(|motion: SegmentedMotion| self.samples(&motion).ok());
+        let second = self.solve(scene, duration, &finer).ok();
+        let second = second.and_then(|motion| self.samples(&motion).ok());
         // The last samples may be missing if an event ends one of the runs earlier.
-        let pairs: Vec<(&TrajectorySample, &TrajectorySample)> = match &second {
-            Some(second) => samples.iter().zip(second).collect(),
-            None => Vec::new(),
-        };
-        let common = pairs.iter().take_while(|(a, b)| a.t == b.t).count();
-        let pairs = &pairs[..common];
-        let Some(((first, _), (last, _))) = pairs.first().zip(pairs.last()) else {
-            let none = format!("  no error estimate: a second run, at {refinement}, fails\n");
-            return Ok(none);
-        };
-        let error_of = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
-            let [one, two] = [0, 1].map(|side| {
-                let pick = |&(a, b): &(&TrajectorySample, &TrajectorySample)| {
-                    of(if side == 0 { a } else { b })
-                };
-                pairs.iter().map(pick).collect::<Vec<f64>>()
-            });
-            estimate::of_motion(&one, &two, rounding)
+        let pairs = samples.iter().zip(second.iter().flatten());
+        let pairs: Vec<SamplePair<'_>> = pairs.take_while(|(a, b)| a.t == b.t).collect();
+        let Some((last, _)) = pairs.last() else {
+            return Ok(format!(
+                "  no error estimate: a second run, at {refinement}, fails\n"
+            ));
         };
         let at = if last.t < duration {
-            format!("at t = {} s", crate::number_format::digits(last.t, 6))
+            format!("at t = {} s", digits(last.t, 6))
         } else {
             "at the end".to_owned()
         };
-        // Writing to a string cannot fail.
-        let mut text = format!("  estimated error {at}:");
+        let kinetic = samples.iter().map(|s| s.extra_values[0]);
+        let errors = self
+            .error_texts(&pairs, kinetic.fold(0.0, f64::max))
+            .concat();
+        Ok(format!(
+            "  estimated error {at}:{errors} from a second run at {refinement}\n"
+        ))
+    }
+
+    /// The error of each free coordinate, and of the energy balance if anything moves.
+    fn error_texts(&self, pairs: &[SamplePair<'_>], max_kinetic: f64) -> Vec<String> {
+        let error_of = |of: &dyn Fn(&TrajectorySample) -> f64, rounding: f64| {
+            let (one, two): (Vec<f64>, Vec<f64>) =
+                pairs.iter().map(|(a, b)| (of(a), of(b))).unzip();
+            estimate::of_motion(&one, &two, rounding)
+        };
+        let ends = pairs.first().zip(pairs.last());
+        let mut texts = Vec::new();
         for &i in self.machine.free() {
-            let value = |s: &TrajectorySample| {
-                s.actuator_coordinate
-                    .map_or(s.q[i], |derivatives| derivatives[0])
-            };
-            let unknown = self.initial_speed_error(i) * (value(last) - value(first)).abs();
-            let rounding = 4.0 * f64::EPSILON * value(last).abs() + unknown;
-            let unit = if self.output_model.plan().is_angle(i) {
-                "rad"
-            } else {
-                "m"
-            };
+            let [start, end] = ends.map_or([0.0; 2], |((first, _), (last, _))| {
+                [first.coordinate(i), last.coordinate(i)]
+            });
+            let unknown = self.initial_speed_error(i) * (end - start).abs();
+            let rounding = 4.0 * f64::EPSILON * end.abs() + unknown;
+            let error = error_of(&|s| s.coordinate(i), rounding);
+            let unit = coordinate_unit(self.output_model.plan().is_angle(i));
             let name = &self.loaded_scene.mechanism.actuators[i].name;
-            let error = error_of(&value, rounding);
-            let _ = write!(text, " {error:.1e} {unit} in {name},");
+            texts.push(format!(" {error:.1e} {unit} in {name},"));
         }
-        let kinetic = |s: &TrajectorySample| s.extra_values.first().copied().unwrap_or(0.0);
-        let max_kinetic = samples.iter().map(kinetic).fold(0.0, f64::max);
         if max_kinetic > 0.0 {
-            let balance_index = 2 + self.machine.nonconservative_sources().len();
-            let balance = |s: &TrajectorySample| {
-                s.extra_values
-                    .get(balance_index)
-                    .copied()
-                    .unwrap_or(f64::NAN)
-            };
-            let error = error_of(&balance, 4.0 * f64::EPSILON * max_kinetic) / max_kinetic;
-            let _ = write!(text, " {error:.1e} of the largest kinetic energy,");
+            let rounding = 4.0 * f64::EPSILON * max_kinetic;
+            let error = error_of(&|s| self.energy_balance(s), rounding) / max_kinetic;
+            texts.push(format!(" {error:.1e} of the largest kinetic energy,"));
         }
-        Ok(text + &format!(" from a second run at {refinement}\n"))
+        texts
     }
 
     /// The relative rounding error of the initial speed, from that of the only coordinate's inertia.

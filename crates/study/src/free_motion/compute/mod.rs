@@ -1,17 +1,17 @@
 //! Computes the free motion of a scene.
 
 mod accuracy;
+mod description;
 mod difference;
 mod error_estimate;
-mod motion_table;
 mod problem;
+mod refinement;
 mod segmented_motion;
+mod simulation;
 mod tables;
 
 pub(crate) use difference::Difference;
-#[cfg(feature = "output")]
-pub(crate) use motion_table::motion_and_drives;
-pub use motion_table::{MotionSolver, MotionTable, compute_free_motion};
 pub use problem::FreeMotionProblem;
 pub(crate) use segmented_motion::ComputedMotion;
 pub use segmented_motion::SegmentedMotion;
+pub use simulation::{FreeMotion, MotionSolver, compute_free_motion};

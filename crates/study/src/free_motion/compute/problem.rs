@@ -1,6 +1,6 @@
 //! The initial value problem of a scene's free motion, and its integration.
 
-use crate::explain::{StudyError, explain_machine, explain_model, explain_motion};
+use crate::explain::{StudyError, explain_machine, explain_model, explain_motion, scene_error};
 use crate::free_motion::compute::SegmentedMotion;
 use crate::models::{build_machine, loaded_model};
 use crate::number_format::digits;
@@ -14,7 +14,7 @@ use dwell_dynamics::{
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{Coordinate, Reaction};
 use dwell_kinetostatics::Model;
-use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, Scene, SceneLocation};
+use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, NamedEvent, Scene, SceneLocation};
 use std::num::NonZeroUsize;
 
 /// Maximum number of chart changes that a summary lists.
@@ -55,6 +55,10 @@ impl<'a> FreeMotionProblem<'a> {
         })
     }
 
+    pub(crate) fn explain(&self, error: &DynamicsError) -> StudyError {
+        explain_motion(self.loaded_scene, self.output_model.plan(), error)
+    }
+
     /// Integrates the motion: with one degree of freedom across charts, else in its own coordinates.
     pub fn solve(
         &self,
@@ -62,19 +66,11 @@ impl<'a> FreeMotionProblem<'a> {
         duration: f64,
         options: &Options,
     ) -> Result<SegmentedMotion, StudyError> {
-        let explain =
-            |e: &DynamicsError| explain_motion(self.loaded_scene, self.output_model.plan(), e);
         let (start, events) = (self.initial_state(), self.events());
         if self.spec.laws.len() != 1 || self.machine.free().len() != 1 {
-            let solution = solve(
-                &self.machine,
-                &self.output_model,
-                &start,
-                duration,
-                options,
-                &events,
-            );
-            let solution = solution.map_err(|e| explain(&e))?;
+            let (machine, output) = (&self.machine, &self.output_model);
+            let solution = solve(machine, output, &start, duration, options, &events);
+            let solution = solution.map_err(|e| self.explain(&e))?;
             return Ok(SegmentedMotion::single_segment(solution));
         }
         let configuration = scene.assembly.to_configuration();
@@ -91,64 +87,50 @@ impl<'a> FreeMotionProblem<'a> {
             AtlasError::Machine(machine) => explain_machine(scene, machine),
         })?;
         let continued = atlas.solve(&start, duration, options, &events);
-        let continued = continued.map_err(|e| explain(&e))?;
-        let actuator_coordinates =
-            atlas.coordinate_history(&continued, atlas.actuator_coordinate());
-        let actuator_coordinates = actuator_coordinates.map_err(|e| explain(&e))?.samples;
+        let continued = continued.map_err(|e| self.explain(&e))?;
+        let history = atlas.coordinate_history(&continued, atlas.actuator_coordinate());
         let statistics = continued.statistics();
+        let chart_changes = self.describe_changes(&atlas, &continued);
+        let segments = continued.segments.into_iter();
         Ok(SegmentedMotion {
-            chart_changes: self.describe_changes(&atlas, &continued),
+            chart_changes,
             charts: atlas.charts().to_vec(),
-            actuator_coordinates,
+            actuator_coordinates: history.map_err(|e| self.explain(&e))?.samples,
             failure: continued.error,
             statistics,
-            segments: continued
-                .segments
-                .into_iter()
-                .map(|segment| (segment.chart, segment.solution))
-                .collect(),
+            segments: segments.map(|s| (s.chart, s.solution)).collect(),
         })
     }
 
     /// Lines of the summary about chart changes and change points.
-    pub(crate) fn describe_changes(
-        &self,
-        atlas: &Atlas<'_>,
-        continued: &ContinuedMotion,
-    ) -> Vec<String> {
-        let mut descriptions = Vec::new();
-        let name = |chart: usize| atlas.charts()[chart].name.clone();
-        for change in continued.changes.iter().take(MAX_LISTED) {
-            let t = digits(change.t, 6);
-            descriptions.push(match change.reason {
+    fn describe_changes(&self, atlas: &Atlas<'_>, continued: &ContinuedMotion) -> Vec<String> {
+        let name = |chart: usize| &atlas.charts()[chart].name;
+        let listed = continued.changes.iter().take(MAX_LISTED);
+        let mut descriptions: Vec<String> = listed
+            .map(|change| match change.reason {
                 ChartChangeReason::CrossesChangePoint { .. } => {
-                    format!("t = {t} s: change point crossed")
+                    format!("t = {} s: change point crossed", digits(change.t, 6))
                 }
                 ChartChangeReason::CoordinateFold { .. } | ChartChangeReason::SolutionEnds => {
                     format!(
-                        "t = {t} s: coordinate changed from {} (at its dead point) to {}",
+                        "t = {} s: coordinate changed from {} (at its dead point) to {}",
+                        digits(change.t, 6),
                         name(change.from),
                         name(change.to)
                     )
                 }
-            });
-        }
+            })
+            .collect();
         if continued.changes.len() > MAX_LISTED {
-            descriptions.push(format!(
-                "and {} more changes",
-                continued.changes.len() - MAX_LISTED
-            ));
+            let more = continued.changes.len() - MAX_LISTED;
+            descriptions.push(format!("and {more} more changes"));
         }
         for fit in atlas.change_point_fits() {
-            let indeterminate: Vec<String> = fit
-                .indeterminate
-                .iter()
-                .map(|&r| self.loaded_scene.mechanism.reaction_name(r))
-                .collect();
-            let indeterminate = if indeterminate.is_empty() {
-                String::new()
-            } else {
-                format!("; indeterminate there: {}", indeterminate.join(", "))
+            let names = fit.indeterminate.iter();
+            let names = names.map(|&r| self.loaded_scene.mechanism.reaction_name(r));
+            let indeterminate = match names.collect::<Vec<_>>() {
+                none if none.is_empty() => String::new(),
+                names => format!("; indeterminate there: {}", names.join(", ")),
             };
             descriptions.push(format!(
                 "change point at {}: crossed by a polynomial fit within ±{}; {} degrees of freedom there{indeterminate}",
@@ -157,30 +139,27 @@ impl<'a> FreeMotionProblem<'a> {
                 fit.mobility,
             ));
         }
-        for (q, error) in atlas.uncrossable() {
-            descriptions.push(format!(
-                "the change point at {} cannot be crossed: {error}",
-                digits(*q, 6)
-            ));
-        }
+        descriptions.extend(atlas.uncrossable().iter().map(|(q, error)| {
+            let at = digits(*q, 6);
+            format!("the change point at {at} cannot be crossed: {error}")
+        }));
         descriptions
     }
 
     /// The machine of a chart.
     pub(crate) fn machine<'m>(&'m self, motion: &'m SegmentedMotion, chart: usize) -> &'m Machine {
-        motion
-            .charts
-            .get(chart)
-            .map_or(&self.machine, |c| &c.machine)
+        let chart = motion.charts.get(chart);
+        chart.map_or(&self.machine, |c| &c.machine)
     }
 
     pub(crate) fn initial_state(&self) -> OdeState {
+        let (q, q_dot) = (
+            &self.spec.initial_coordinates,
+            &self.spec.initial_velocities,
+        );
         OdeState {
             t: 0.0,
-            y: self.machine.initial_state(
-                &self.spec.initial_coordinates,
-                &self.spec.initial_velocities,
-            ),
+            y: self.machine.initial_state(q, q_dot),
         }
     }
 
@@ -192,21 +171,13 @@ impl<'a> FreeMotionProblem<'a> {
         };
         match Orbit::loaded(&self.machine, self.initial_reduced_state()) {
             Ok(orbit) => Ok(periods * orbit.period),
-            Err(DynamicsError::NotConservative { .. }) => {
-                let labels = [(SceneLocation::Duration, "a period is needed".to_owned())];
-                let help = "give a `duration` in s".to_owned();
-                let message =
-                    "the motion is not conservative, so its period is not known in advance";
-                let error = self
-                    .loaded_scene
-                    .error(message.to_owned(), Some(help), &labels);
-                Err(error.into())
-            }
-            Err(e) => Err(explain_motion(
+            Err(DynamicsError::NotConservative { .. }) => Err(scene_error(
                 self.loaded_scene,
-                self.output_model.plan(),
-                &e,
+                "the motion is not conservative, so its period is not known in advance",
+                "give a `duration` in s",
+                [(SceneLocation::Duration, "a period is needed")],
             )),
+            Err(e) => Err(self.explain(&e)),
         }
     }
 
@@ -224,21 +195,17 @@ impl<'a> FreeMotionProblem<'a> {
     pub(crate) fn events(&self) -> Vec<Event> {
         let mechanism = &self.loaded_scene.mechanism;
         let find = |c: Coordinate| CoordinateFunction::find(mechanism, c);
-        let reaction_index = |r: Reaction| {
-            self.output_model
-                .reactions()
-                .iter()
-                .position(|&candidate| candidate == r)
-        };
-        let event = |named: &dwell_scene::NamedEvent| {
-            let trigger = match named.trigger {
+        let reactions = self.output_model.reactions();
+        let reaction_index = |r: Reaction| reactions.iter().position(|&other| other == r);
+        let event = |named: &NamedEvent| {
+            let kind = match named.trigger {
                 EventTrigger::Reaches(c, value) => EventKind::Reaches(find(c)?, value),
                 EventTrigger::Reversal(c) => EventKind::Reversal(find(c)?),
                 EventTrigger::Revolution(c) => EventKind::Revolution(find(c)?),
                 EventTrigger::Reaction(r, value) => EventKind::Reaction(reaction_index(r)?, value),
             };
             Some(Event {
-                kind: trigger,
+                kind,
                 terminal: named.terminal.then_some(NonZeroUsize::MIN),
             })
         };

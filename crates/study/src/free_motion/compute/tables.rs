@@ -1,15 +1,33 @@
 //! The samples and the events of a motion as tables.
 
-use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use crate::trajectory::compute::{BALANCE, ExtraColumn, KINETIC, POTENTIAL, TrajectorySample};
-use dwell_dynamics::{
-    DynamicsError, EventOccurrence, Machine, MachineState, NonconservativeSource, OdeState,
+use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMotion};
+use crate::models::{drive_states, source_name};
+use crate::number_format::coordinate_unit;
+use crate::trajectory::compute::{
+    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, Trajectory, TrajectorySample,
 };
+use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineState, OdeState};
 use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::DriveKind;
 
 impl FreeMotionProblem<'_> {
+    /// A computed motion as a trajectory.
+    pub(crate) fn trajectory(
+        &self,
+        computed: &ComputedMotion,
+    ) -> Result<Trajectory<'static>, DynamicsError> {
+        let charts = computed.motion.charts.iter();
+        let motion = FreeTrajectory {
+            samples: self.samples(&computed.motion)?,
+            extra_columns: self.extra_columns(),
+            prescribed: self.spec.laws.iter().map(Option::is_some).collect(),
+            charts: charts.map(|c| c.output_model.clone()).collect(),
+        };
+        let mut trajectory = Trajectory::of_free_motion(self.output_model.plan(), motion);
+        trajectory.method_text.clone_from(&computed.method_text);
+        Ok(trajectory)
+    }
+
     /// Every sample with its accelerations, drive magnitudes and energies. Within the window of a change
     /// point's fit there are no reactions, and no row.
     pub(crate) fn samples(
@@ -26,19 +44,11 @@ impl FreeMotionProblem<'_> {
                     continue;
                 }
                 let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
-                let actuator_coordinate = motion
-                    .actuator_coordinates
-                    .get(segment)
-                    .and_then(|segment| segment.get(k))
-                    .copied();
-                samples.push(self.sample(
-                    machine,
-                    *chart,
-                    actuator_coordinate,
-                    point,
-                    &state,
-                    &mut initial_balance,
-                ));
+                let actuator_coordinates = motion.actuator_coordinates.get(segment);
+                let mut sample = self.sample(machine, point, &state, &mut initial_balance);
+                sample.chart = *chart;
+                sample.actuator_coordinate = actuator_coordinates.and_then(|s| s.get(k)).copied();
+                samples.push(sample);
             }
         }
         if let [only] = samples.as_slice() {
@@ -51,8 +61,6 @@ impl FreeMotionProblem<'_> {
     fn sample(
         &self,
         machine: &Machine,
-        chart: usize,
-        actuator_coordinate: Option<[f64; 3]>,
         point: &OdeState,
         state: &MachineState<'_>,
         initial_balance: &mut Option<f64>,
@@ -68,113 +76,79 @@ impl FreeMotionProblem<'_> {
         extra_values.extend(&point.y[2 * machine.free().len()..first]);
         let count = self.loaded_scene.loads.len();
         let drives = count - machine.drives()..count;
+        let magnitudes = state.magnitudes();
         TrajectorySample {
             t: point.t,
             q: state.q().to_vec(),
             q_dot: state.q_dot().to_vec(),
             q_ddot: state.q_ddot().to_vec(),
-            chart,
-            actuator_coordinate,
-            drive_magnitudes: drives
-                .map(|load| (load, state.magnitudes()[load]))
-                .collect(),
+            drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
             extra_values,
+            ..TrajectorySample::default()
         }
+    }
+
+    /// The error of the energy balance at a sample, J.
+    pub(crate) fn energy_balance(&self, sample: &TrajectorySample) -> f64 {
+        sample.extra_values[2 + self.machine.nonconservative_sources().len()]
     }
 
     /// The columns of [`TrajectorySample::extra_values`].
-    pub(crate) fn extra_columns(&self) -> Vec<ExtraColumn> {
-        let column = |name: String, unit, meaning: &str| ExtraColumn {
+    fn extra_columns(&self) -> Vec<ExtraColumn> {
+        let column = |(name, unit, meaning)| ExtraColumn {
             name,
             unit,
-            meaning: meaning.to_owned(),
+            meaning,
         };
-        let mut all = vec![
-            column(
-                KINETIC.into(),
-                "J",
-                "kinetic energy of all bodies and rotors",
-            ),
-            column(
-                POTENTIAL.into(),
-                "J",
-                "potential energy of gravity, springs and constant forces",
-            ),
-        ];
-        for source in self.machine.nonconservative_sources() {
-            let name = self.source_name(*source);
-            all.push(column(format!("{name}.work"), "J", "work since t = 0"));
-        }
-        let meaning =
+        let kinetic = "kinetic energy of all bodies and rotors";
+        let potential = "potential energy of gravity, springs and constant forces";
+        let balance =
             "drift of kinetic + potential energy − work since t = 0: error of the integration";
-        all.push(column(BALANCE.into(), "J", meaning));
-        for drive in &self.loaded_scene.drives {
-            match &drive.kind {
-                DriveKind::Motor(motor) if motor.inductance > 0.0 => {
-                    all.push(column(format!("{}.current", drive.name), "A", ""));
-                }
-                DriveKind::SpeedController(regulator) if regulator.integral_gain > 0.0 => {
-                    let unit = if drive.coordinate.is_angle() {
-                        "rad"
-                    } else {
-                        "m"
-                    };
-                    let meaning = "integral of the controller error";
-                    all.push(column(format!("{}.integral", drive.name), unit, meaning));
-                }
-                _ => {}
-            }
-        }
-        all
-    }
-
-    fn source_name(&self, source: NonconservativeSource) -> String {
-        match source {
-            NonconservativeSource::Load(load) => self.loaded_scene.loads[load].name.clone(),
-            NonconservativeSource::Drive(drive) => self.loaded_scene.drives[drive].name.clone(),
-            NonconservativeSource::Prescribed(actuator) => {
-                self.loaded_scene.mechanism.actuators[actuator].name.clone()
-            }
-        }
+        let mut all = vec![
+            (KINETIC.to_owned(), "J", kinetic),
+            (POTENTIAL.to_owned(), "J", potential),
+        ];
+        all.extend(
+            self.machine
+                .nonconservative_sources()
+                .iter()
+                .map(|&source| {
+                    let name = source_name(self.loaded_scene, source);
+                    (format!("{name}.work"), "J", "work since t = 0")
+                }),
+        );
+        all.push((BALANCE.to_owned(), "J", balance));
+        all.extend(drive_states(self.loaded_scene));
+        all.into_iter().map(column).collect()
     }
 
     /// The time of each event, and the actuator coordinates and speeds then.
     pub(crate) fn event_table(&self, motion: &SegmentedMotion) -> Table {
         let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
-        let actuators = &self.loaded_scene.mechanism.actuators;
-        for actuator in actuators {
-            let unit = if actuator.coordinate().is_angle() {
-                "rad"
-            } else {
-                "m"
-            };
-            columns.push(Column::new(actuator.name.clone(), unit));
-            columns.push(Column::new(
-                format!("{}.velocity", actuator.name),
-                format!("{unit}/s"),
-            ));
+        let mechanism = &self.loaded_scene.mechanism;
+        for actuator in &mechanism.actuators {
+            let (name, unit) = (
+                &actuator.name,
+                coordinate_unit(actuator.coordinate().is_angle()),
+            );
+            columns.push(Column::new(name, unit));
+            columns.push(Column::new(format!("{name}.velocity"), format!("{unit}/s")));
         }
         let row = |(chart, o): (usize, &EventOccurrence)| {
             let machine = self.machine(motion, chart);
             let mut workspace = machine.workspace();
             let mut row = vec![o.state.t, (o.event + 1) as f64];
             if let Ok(state) = machine.evaluate(o.state.t, &o.state.y, &mut workspace) {
-                for actuator in actuators {
-                    let measured = CoordinateFunction::find(
-                        &self.loaded_scene.mechanism,
-                        actuator.coordinate(),
-                    );
-                    let [q, q_dot] =
-                        measured.map_or([f64::NAN; 2], |measured| state.coordinate(measured));
-                    row.extend([q, q_dot]);
+                for actuator in &mechanism.actuators {
+                    let measured = CoordinateFunction::find(mechanism, actuator.coordinate());
+                    let values = measured.map(|measured| state.coordinate(measured));
+                    row.extend(values.unwrap_or([f64::NAN; 2]));
                 }
             }
-            row.resize(2 + 2 * actuators.len(), f64::NAN);
+            row.resize(columns.len(), f64::NAN);
             row
         };
-        Table {
-            columns,
-            rows: motion.occurrences().map(row).collect(),
-        }
+        let rows = motion.occurrences().map(row).collect();
+        Table { columns, rows }
     }
 }

@@ -1,5 +1,6 @@
 //! Reduced coefficients over the range, and their rounding errors.
 
+use crate::estimate::relative;
 use crate::explain::{StudyError, explain_position};
 use crate::models::PreparedScene;
 use crate::reduce::compute::UnitLoadCurves;
@@ -26,7 +27,7 @@ pub struct RoundingErrors {
     /// By position: the largest of all coefficients.
     pub(crate) rows: Vec<f64>,
     /// Over all positions: of m, of ½m′, of every a and b.
-    pub(crate) max_errors: [f64; 3],
+    pub max_errors: [f64; 3],
 }
 
 impl RoundingErrors {
@@ -52,25 +53,24 @@ impl RoundingErrors {
                 .reduction_rounding_errors(q, at, &mut workspace, &mut errors)
                 .map_err(|e| explain_position(prepared.scene, model.plan(), &e))?;
             let parts = flat(&errors).into_iter().zip(&scales);
-            let relative =
-                |(error, &scale): (f64, &f64)| if error > 0.0 { error / scale } else { 0.0 };
-            Ok(parts.map(relative).collect())
+            Ok(parts
+                .map(|(error, &scale)| relative(error, scale))
+                .collect())
         };
-        let all: Vec<Vec<f64>> = curves
+        let all = curves
             .q
             .par_iter()
             .zip(&curves.coefficients)
-            .map(relative_errors)
-            .collect::<Result<_, StudyError>>()?;
+            .map(relative_errors);
+        let all: Vec<Vec<f64>> = all.collect::<Result<_, StudyError>>()?;
         let largest = |some: &[f64]| some.iter().copied().fold(0.0, f64::max);
-        let max_of = |pick: &dyn Fn(&Vec<f64>) -> f64| all.iter().map(pick).fold(0.0, f64::max);
+        let max_of = |part: std::ops::Range<usize>| {
+            let parts = all.iter().map(|row| largest(&row[part.clone()]));
+            parts.fold(0.0, f64::max)
+        };
         Ok(Self {
             rows: all.iter().map(|row| largest(row)).collect(),
-            max_errors: [
-                max_of(&|row| row[0]),
-                max_of(&|row| row[1]),
-                max_of(&|row| largest(&row[2..])),
-            ],
+            max_errors: [max_of(0..1), max_of(1..2), max_of(2..scales.len())],
         })
     }
 }
@@ -86,17 +86,11 @@ impl ReducedCurves {
         let mut batch = Batch::default();
         model.reduce_batch(&q, &mut batch);
         if let Some((_, error)) = batch.errors.first() {
-            return Err(explain_position(
-                prepared.scene,
-                model.model().plan(),
-                error,
-            ));
+            let plan = model.model().plan();
+            return Err(explain_position(prepared.scene, plan, error));
         }
-        let at = (0..q.len()).map(|i| batch.coefficients(i)).collect();
-        Ok(Self {
-            q,
-            coefficients: at,
-        })
+        let coefficients = (0..q.len()).map(|i| batch.coefficients(i)).collect();
+        Ok(Self { q, coefficients })
     }
 
     /// The table: coordinate, m, ½m′, then a and b of each requested reaction.
@@ -126,7 +120,7 @@ impl ReducedCurves {
 }
 
 /// Unit of a and b for a reaction in N or N m: per rad/s² and per (rad/s)².
-pub(crate) fn coefficient_unit(unit: &str) -> &'static str {
+fn coefficient_unit(unit: &str) -> &'static str {
     if unit == "N" { "kg m" } else { "kg m2" }
 }
 
@@ -163,10 +157,8 @@ impl Reduction<'_> {
     /// Coordinate, m, ½m′, a and b of each requested reaction; V, w and c of the loads; relative rounding error.
     pub fn table(&self) -> Table {
         let mut table = self.curves.table(&self.prepared);
-        let unit_loads = self
-            .unit_loads
-            .iter()
-            .flat_map(|l| l.columns(&self.prepared));
+        let unit_loads = self.unit_loads.iter();
+        let unit_loads = unit_loads.flat_map(|l| l.columns(&self.prepared));
         let errors = (Column::new("relative_error", ""), self.errors.rows.clone());
         for (column, values) in unit_loads.chain([errors]) {
             table.columns.push(column);

@@ -4,7 +4,6 @@ mod curves;
 mod table;
 mod unit_load_curves;
 
-pub(crate) use curves::RoundingErrors;
-pub use curves::{ReducedCurves, Reduction, compute_reduction};
+pub use curves::{ReducedCurves, Reduction, RoundingErrors, compute_reduction};
 pub use table::{TableRequest, Tabulation, tabulate};
-pub(crate) use unit_load_curves::{UnitLoadCurves, units};
+pub use unit_load_curves::UnitLoadCurves;

@@ -1,9 +1,9 @@
 //! `dwell reduce --table-accuracy`: the whole reduced model as an interpolation table, usable without the mechanism.
 
-use crate::explain::{StudyError, explain_motion, not_one_actuator};
+use crate::explain::{self, StudyError, explain_motion, not_one_actuator, scene_error};
 use crate::models::{PreparedScene, loaded_determinate_model};
 use crate::number_format::number;
-use dwell_geometry::{Plan, Range};
+use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_kinetostatics::table::Labels;
 use dwell_kinetostatics::{ExactModel, TableDomain, TableError, TableQuantity, TabulatedModel};
 use dwell_scene::{Scene, SceneLocation};
@@ -31,10 +31,10 @@ pub struct Tabulation {
 /// Builds a table of m, ½m′, a and b of the requested reactions, and w and c of the loads, each to the required
 /// accuracy relative to its largest value.
 pub fn tabulate(
-    prepared_scene: &PreparedScene<'_>,
+    prepared: &PreparedScene<'_>,
     request: &TableRequest,
 ) -> Result<Tabulation, StudyError> {
-    let scene = prepared_scene.scene;
+    let scene = prepared.scene;
     let exact =
         ExactModel::new(loaded_determinate_model(scene)?).ok_or_else(|| not_one_actuator(scene))?;
     let plan = exact.model().plan();
@@ -45,46 +45,38 @@ pub fn tabulate(
         (None, Range::Unbounded) => TableDomain::Between(0.0, TAU),
         (None, _) => TableDomain::Full,
     };
+    let reactions = prepared.reaction_units().into_iter();
     let labels = Labels {
         scene: scene.hash(),
-        coordinate: prepared_scene.coordinate_name().to_owned(),
-        reactions: prepared_scene
-            .reaction_units()
-            .into_iter()
-            .map(|(name, _)| name)
-            .collect(),
+        coordinate: prepared.coordinate_name().to_owned(),
+        reactions: reactions.map(|(name, _)| name).collect(),
         loads: scene.loads.iter().map(|load| load.name.clone()).collect(),
     };
-    let error_of = |e: TableError| explain_table_error(scene, plan, &labels, &e);
+    let accuracy = request.accuracy;
+    let rows = format!("  accuracy {accuracy:e}: all rows evaluated exactly");
     let table = match TabulatedModel::new(&exact, request.accuracy, extent) {
         Ok(table) => table,
-        Err(error) if request.required => return Err(error_of(error)),
         Err(error) => {
-            let summary = format!(
-                "  accuracy {:e}: all rows evaluated exactly; no table for values between them: {}\n",
-                request.accuracy,
-                error_of(error)
-            );
-            return Ok(Tabulation {
-                summary,
-                text: None,
-            });
+            let error = explain_table_error(scene, plan, &labels, &error);
+            return match request.required {
+                true => Err(error),
+                false => Ok(Tabulation {
+                    summary: format!("{rows}; no table for values between them: {error}\n"),
+                    text: None,
+                }),
+            };
         }
     };
-    let mut summary = String::new();
-    if !request.required {
-        summary += &format!(
-            "  accuracy {:e}: all rows evaluated exactly (cheaper than building a table); use the table between rows\n",
-            request.accuracy
-        );
-    }
-    let text = table.to_text(&labels).map_err(|e| {
-        let error = scene.error(e.to_string(), None, &[]);
-        StudyError::from(error)
-    })?;
-    summary += &describe_table(scene, &table);
+    let cheaper = match request.required {
+        true => String::new(),
+        false => {
+            format!("{rows} (cheaper than building a table); use the table between rows\n")
+        }
+    };
+    let text = table.to_text(&labels);
+    let text = text.map_err(|e| scene_error(scene, e.to_string(), "", explain::Labels::new()))?;
     Ok(Tabulation {
-        summary,
+        summary: cheaper + &describe_table(scene, &table),
         text: Some(text),
     })
 }
@@ -97,12 +89,13 @@ fn describe_table(scene: &Scene, table: &TabulatedModel) -> String {
         Some(revolutions) => format!("over a period of {revolutions} revolutions"),
         None => interval_text(scene, from, to),
     };
+    let parts = ["m and ½m′", "a and b", "w and c"];
     let counts = table
         .cells()
         .into_iter()
-        .zip(["m and ½m′", "a and b", "w and c"]);
+        .zip(parts)
+        .filter(|(cells, _)| *cells > 0);
     let cells: Vec<String> = counts
-        .filter(|(cells, _)| *cells > 0)
         .map(|(cells, of)| format!("{cells} of {of}"))
         .collect();
     let [inertia, all] = table.bytes().map(|bytes| bytes.div_ceil(1024));
@@ -167,11 +160,11 @@ fn explain_table_error(
             "require less accuracy, such as --table-accuracy 1e-9",
         ),
     };
-    let labels = [(
-        SceneLocation::Actuator(dwell_geometry::ActuatorId(0)),
-        "over this coordinate".to_owned(),
-    )];
-    scene.error(message, Some(help.to_owned()), &labels).into()
+    let place = (
+        SceneLocation::Actuator(ActuatorId(0)),
+        "over this coordinate",
+    );
+    scene_error(scene, message, help, [place])
 }
 
 /// The name of a coefficient, with the names of the scene.

@@ -24,7 +24,7 @@ pub struct UnitLoadCurves {
 }
 
 /// Unit of w and of c (of a force and of a moment) for a load.
-pub(crate) fn units(kind: LoadKind) -> [&'static str; 3] {
+fn units(kind: LoadKind) -> [&'static str; 3] {
     match kind {
         LoadKind::Gravity { .. } => ["kg m", "kg", "kg m"],
         LoadKind::Spring { .. } => ["m2", "m", "m2"],
@@ -39,7 +39,23 @@ pub(crate) fn units(kind: LoadKind) -> [&'static str; 3] {
     }
 }
 
+/// The loads that have a w, with their indices.
+fn working(loads: &[Load]) -> impl Iterator<Item = (usize, &Load)> {
+    let all = loads.iter().enumerate();
+    all.filter(|(_, load)| load.does_work())
+}
+
 impl UnitLoadCurves {
+    /// The unit of w of a load.
+    pub fn unit(&self, load: usize) -> &'static str {
+        units(self.loads[load].kind)[0]
+    }
+
+    /// The indices of the loads that have a w.
+    pub(crate) fn working(&self) -> impl Iterator<Item = usize> {
+        working(&self.loads).map(|(l, _)| l)
+    }
+
     /// The unit-load response at the coordinates `q` (rad); `None` without loads.
     pub(crate) fn new(prepared: &PreparedScene<'_>, q: &[f64]) -> Result<Option<Self>, StudyError> {
         let scene = prepared.scene;
@@ -48,34 +64,30 @@ impl UnitLoadCurves {
         }
         let model = loaded_determinate_model(scene)?;
         let explain = |e: KinetostaticsError| explain_motion(scene, model.plan(), &e.into());
-        let mut workspace = model.workspace();
-        let mut inverse_dynamics = model.result_buffer();
+        let (mut workspace, mut results) = (model.workspace(), model.result_buffer());
+        let loads = 0..scene.loads.len();
         let mut curves = Self {
             loads: scene.loads.clone(),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
-            conservative: scene
-                .loads
-                .iter()
-                .any(|load| load.does_work() && load.is_conservative()),
+            conservative: working(&scene.loads).any(|(_, load)| load.is_conservative()),
         };
         for &q in q {
             let state = model.kinematic_state(&[q], &[1.0], &mut workspace);
-            let state = state
-                .map_err(KinetostaticsError::from)
-                .and_then(|state| state.apply_loads(0.0));
-            let mut state = state.map_err(explain)?;
+            let loaded = state.map_err(KinetostaticsError::from);
+            let loaded = loaded.and_then(|state| state.apply_loads(0.0));
+            let mut state = loaded.map_err(explain)?;
             let mut row = Vec::with_capacity(curves.loads.len());
-            for load in 0..curves.loads.len() {
-                let response = state.unit_load_response(load, &mut inverse_dynamics);
+            for load in loads.clone() {
+                let response = state.unit_load_response(load, &mut results);
                 response.map_err(explain)?;
-                let mut values = vec![-inverse_dynamics.tau[0]];
-                values.extend(&inverse_dynamics.reactions);
+                let mut values = vec![-results.tau[0]];
+                values.extend(&results.reactions);
                 row.push(values);
             }
             curves.rows.push(row);
-            let loads = 0..curves.loads.len();
-            let potentials = loads.filter_map(|load| state.potential_energy(load));
+            let all = loads.clone();
+            let potentials = all.filter_map(|load| state.potential_energy(load));
             curves.potential.push(potentials.sum());
         }
         Ok(Some(curves))
@@ -88,12 +100,7 @@ impl UnitLoadCurves {
             all.push((Column::new("V", "J"), self.potential.clone()));
         }
         let value = |load: usize, k: usize| self.rows.iter().map(|row| row[load][k]).collect();
-        let working = self
-            .loads
-            .iter()
-            .enumerate()
-            .filter(|(_, load)| load.does_work());
-        for (l, load) in working {
+        for (l, load) in working(&self.loads) {
             let [unit, ..] = units(load.kind);
             all.push((Column::new(format!("{}.w", load.name), unit), value(l, 0)));
         }

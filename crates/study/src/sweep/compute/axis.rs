@@ -42,26 +42,22 @@ impl Axis {
             help: help.to_owned(),
         };
         let separators = ["=", "~", "±", "+-"];
-        let split = separators
-            .iter()
-            .filter_map(|s| Some((given.find(s)?, *s)))
-            .min_by_key(|(at, _)| *at);
-        let Some((at, separator)) = split else {
+        let found = separators
+            .into_iter()
+            .filter_map(|s| Some((given.find(s)?, s)));
+        let Some((at, separator)) = found.min_by_key(|(at, _)| *at) else {
             return Err(refuse("does not define a variation".to_owned(), FORMS));
         };
         let (path, variation) = (given[..at].trim(), given[at + separator.len()..].trim());
-        let nominal = scene
-            .value(path)
-            .map_err(|e| refuse(e.message, &e.help.unwrap_or_default()))?;
+        let nominal = scene.value(path);
+        let nominal = nominal.map_err(|e| refuse(e.message, &e.help.unwrap_or_default()))?;
         let number = |text: &str| -> Result<f64, SweepError> {
-            let value: f64 = text
-                .trim()
-                .parse()
-                .map_err(|_| refuse(format!("`{}` is not a number", text.trim()), FORMS))?;
-            if value.is_finite() {
-                Ok(value)
-            } else {
-                Err(refuse(format!("{value} is not finite"), FORMS))
+            let text = text.trim();
+            let not_a_number = |_| refuse(format!("`{text}` is not a number"), FORMS);
+            let value: f64 = text.parse().map_err(not_a_number)?;
+            match value.is_finite() {
+                true => Ok(value),
+                false => Err(refuse(format!("{value} is not finite"), FORMS)),
             }
         };
         let kind = match separator {
@@ -81,10 +77,8 @@ impl Axis {
 
     /// Whether it is random.
     pub(crate) fn is_random(&self) -> bool {
-        matches!(
-            self.kind,
-            VariationKind::Normal { .. } | VariationKind::Uniform { .. }
-        )
+        use VariationKind::{Normal, Uniform};
+        matches!(self.kind, Normal { .. } | Uniform { .. })
     }
 
     /// Number of values; 1 if it is random.
@@ -117,51 +111,19 @@ impl Axis {
             }
         }
     }
-
-    /// Its heading in tables.
-    pub(crate) fn heading(&self) -> String {
-        heading(&self.path, &self.unit)
-    }
-
-    /// The axis with all digits, as the store records it.
-    pub(crate) fn to_exact_text(&self) -> String {
-        let path = &self.path;
-        match &self.kind {
-            VariationKind::Grid { from, to, count } => format!("{path}={from:?}:{to:?}:{count}"),
-            VariationKind::Listed(values) => {
-                let values: Vec<String> = values.iter().map(|v| format!("{v:?}")).collect();
-                format!("{path}={}", values.join(","))
-            }
-            VariationKind::Normal { mean, deviation } => {
-                format!("{path}~normal({mean:?},{deviation:?})")
-            }
-            VariationKind::Uniform { from, to } => format!("{path}~uniform({from:?},{to:?})"),
-        }
-    }
-}
-
-/// `name [unit]`.
-pub(crate) fn heading(name: &str, unit: &str) -> String {
-    match unit {
-        "" => name.to_owned(),
-        unit => format!("{name} [{unit}]"),
-    }
 }
 
 type Number<'a> = &'a dyn Fn(&str) -> Result<f64, SweepError>;
 
 type Refuse<'a> = &'a dyn Fn(String, &str) -> SweepError;
 
+type Parsed = Result<VariationKind, SweepError>;
+
 /// `FROM:TO:COUNT`, the ends among them.
-fn grid(
-    variation: &str,
-    number: Number<'_>,
-    refuse: Refuse<'_>,
-) -> Result<VariationKind, SweepError> {
+fn grid(variation: &str, number: Number<'_>, refuse: Refuse<'_>) -> Parsed {
     let parts: Vec<&str> = variation.split(':').collect();
     let [from, to, count] = parts.as_slice() else {
-        let reason = format!("`{variation}` is not FROM:TO:COUNT");
-        return Err(refuse(reason, FORMS));
+        return Err(refuse(format!("`{variation}` is not FROM:TO:COUNT"), FORMS));
     };
     let (from, to) = (number(from)?, number(to)?);
     let count: u64 = count.trim().parse().map_err(|_| {
@@ -182,56 +144,37 @@ fn grid(
 }
 
 /// `normal(MEAN,SD)` or `uniform(FROM,TO)`.
-fn random(
-    variation: &str,
-    number: Number<'_>,
-    refuse: Refuse<'_>,
-) -> Result<VariationKind, SweepError> {
-    let inner = variation
-        .strip_suffix(')')
-        .and_then(|variation| variation.split_once('('));
+fn random(variation: &str, number: Number<'_>, refuse: Refuse<'_>) -> Parsed {
+    let inner = variation.strip_suffix(')');
+    let inner = inner.and_then(|variation| variation.split_once('('));
     let known = |name: &str| matches!(name, "normal" | "uniform");
     let Some((name, inner)) = inner.filter(|(name, _)| known(name.trim())) else {
-        return Err(refuse(
-            format!("`{variation}` is not a distribution"),
-            "use normal(MEAN,SD) or uniform(FROM,TO)",
-        ));
+        let reason = format!("`{variation}` is not a distribution");
+        return Err(refuse(reason, "use normal(MEAN,SD) or uniform(FROM,TO)"));
     };
     let parts: Vec<&str> = inner.split(',').collect();
     let [first, second] = parts.as_slice() else {
-        return Err(refuse(
-            format!("`{variation}` does not have two numbers"),
-            FORMS,
-        ));
+        let reason = format!("`{variation}` does not have two numbers");
+        return Err(refuse(reason, FORMS));
     };
-    let (first, second) = (number(first)?, number(second)?);
-    match name.trim() {
-        "normal" if second <= 0.0 => Err(refuse(
-            format!("a standard deviation of {second} is not above zero"),
-            FORMS,
-        )),
-        "normal" => Ok(VariationKind::Normal {
-            mean: first,
-            deviation: second,
-        }),
-        _ if first >= second => Err(refuse(
-            format!("the range from {first} to {second} is empty"),
-            "give the smaller end first",
-        )),
-        _ => Ok(VariationKind::Uniform {
-            from: first,
-            to: second,
-        }),
+    let (from, to) = (number(first)?, number(second)?);
+    if name.trim() == "normal" {
+        let (mean, deviation) = (from, to);
+        if deviation <= 0.0 {
+            let reason = format!("a standard deviation of {deviation} is not above zero");
+            return Err(refuse(reason, FORMS));
+        }
+        return Ok(VariationKind::Normal { mean, deviation });
     }
+    if from >= to {
+        let reason = format!("the range from {from} to {to} is empty");
+        return Err(refuse(reason, "give the smaller end first"));
+    }
+    Ok(VariationKind::Uniform { from, to })
 }
 
 /// Uniform within a tolerance of the scene's value, in its unit or in percent of it.
-fn tolerance(
-    nominal: f64,
-    variation: &str,
-    number: Number<'_>,
-    refuse: Refuse<'_>,
-) -> Result<VariationKind, SweepError> {
+fn tolerance(nominal: f64, variation: &str, number: Number<'_>, refuse: Refuse<'_>) -> Parsed {
     let width = match variation.strip_suffix('%') {
         Some(percent) => number(percent)? / 100.0 * nominal.abs(),
         None => number(variation)?,

@@ -29,10 +29,8 @@ impl Design {
         seed: u64,
     ) -> Result<Self, SweepError> {
         let design = |message: &str| Err(SweepError::Design(message.to_owned()));
-        let axes: Vec<Axis> = vary
-            .iter()
-            .map(|given| Axis::parse(scene, given))
-            .collect::<Result<_, _>>()?;
+        let axes = vary.iter().map(|given| Axis::parse(scene, given));
+        let axes: Vec<Axis> = axes.collect::<Result<_, _>>()?;
         if axes.is_empty() {
             return design("no axis: give one or more --vary PATH=FROM:TO:COUNT");
         }
@@ -41,30 +39,26 @@ impl Design {
                 return design(&format!("`{}` is varied twice", axis.path));
             }
         }
-        let random = axes.iter().any(Axis::is_random);
-        let samples = match (random, samples) {
-            (true, None) => {
-                return design("random axes need a number of samples: give --samples");
-            }
-            (true, Some(0)) => return design("--samples must be at least 1"),
-            (false, Some(_)) => {
-                return design("--samples needs a random axis");
-            }
-            (_, samples) => samples.unwrap_or(1),
+        let mut found = Self {
+            axes,
+            samples: samples.unwrap_or(1),
+            seed,
+            points: 0,
         };
-        let mut counts = axes.iter().map(Axis::count);
-        let points = counts.try_fold(samples, u64::checked_mul);
-        match points {
-            Some(points) if points <= MAX_POINTS => Ok(Self {
-                axes,
-                samples,
-                seed,
-                points,
-            }),
-            _ => design(&format!(
-                "more than {MAX_POINTS} points: use fewer values or samples, or several studies"
-            )),
+        match (found.is_random(), samples) {
+            (true, None) => return design("random axes need a number of samples: give --samples"),
+            (true, Some(0)) => return design("--samples must be at least 1"),
+            (false, Some(_)) => return design("--samples needs a random axis"),
+            _ => {}
         }
+        let mut counts = found.axes.iter().map(Axis::count);
+        let points = counts.try_fold(found.samples, u64::checked_mul);
+        let Some(points) = points.filter(|points| *points <= MAX_POINTS) else {
+            let fault = "use fewer values or samples, or several studies";
+            return design(&format!("more than {MAX_POINTS} points: {fault}"));
+        };
+        found.points = points;
+        Ok(found)
     }
 
     /// Whether an axis is random.
@@ -96,7 +90,7 @@ pub struct Shard {
 
 impl Shard {
     /// Whether it contains a point.
-    pub(crate) fn contains(self, k: u64) -> bool {
+    pub fn contains(self, k: u64) -> bool {
         k % self.of == self.part - 1
     }
 }

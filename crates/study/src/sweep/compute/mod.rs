@@ -4,13 +4,13 @@ mod axis;
 mod design;
 mod point;
 mod random;
-mod spread;
 mod table;
 
-pub(crate) use axis::{Axis, heading};
+pub(crate) use axis::Axis;
 pub(crate) use design::Design;
 pub use design::Shard;
-pub(crate) use point::{PointResult, RequestedQuantities, SweepQuantity};
+pub(crate) use point::{PointResult, RequestedQuantities};
 pub(crate) use random::{normal, uniform};
-pub(crate) use spread::Spread;
-pub use table::{SweepTable, compute_sweep};
+pub use table::{ComputedSweep, compute_sweep};
+#[cfg(feature = "output")]
+pub(crate) use {axis::VariationKind, point::SweepQuantity};

@@ -1,31 +1,33 @@
 //! One point of a sweep: the scene with its input values, and the results.
 
-use crate::explain::{StudyError, SweepError, explain_machine, explain_motion, explain_position};
+use crate::explain::{
+    StudyError, SweepError, explain_machine, explain_motion, explain_position, not_one_actuator,
+};
 use crate::former_names;
-use crate::models::{compile_model, with_loads};
-use crate::sweep::compute::heading;
+use crate::models::{compile_model, initial_reduced_state, with_loads};
+use crate::number_format::{coordinate_unit, force_unit};
+use crate::ranges::extent;
 use crate::trajectory::compute::{Analysis, is_prefix_of, peak_forces, swept_range};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
 use dwell_kinetostatics::{ExactModel, Model, ReducedModel};
-use dwell_scene::{FreeMotionSpec, Scene};
+use dwell_scene::Scene;
 
 /// Intervals of the range at which m and ½m′ are evaluated: those of `dwell reduce`.
 const INTERVALS: usize = 720;
 
-/// The kind of a result.
+/// What a result is computed with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum SweepQuantityKind {
-    MinInertia,
-    MaxInertia,
-    MinHalfDm,
-    MaxHalfDm,
-    RangeLower,
-    RangeUpper,
-    Period,
-    Energy,
-    /// Largest absolute value of a reaction, by its index in the mechanism, or of an actuator force.
-    Reaction(usize),
-    ActuatorForce(usize),
+enum ResultKind {
+    /// Smallest and largest m, smallest and largest ½m′.
+    Inertia,
+    /// Lower and upper end of the range.
+    Range,
+    /// Period and energy of the free motion.
+    Orbit,
+    /// Largest absolute values, by reaction of the mechanism.
+    Reaction,
+    /// Largest absolute values, by actuator.
+    ActuatorForce,
 }
 
 /// A result by its name and unit.
@@ -35,14 +37,12 @@ pub(crate) struct SweepQuantity {
     /// The name it had before it was renamed, which a request may still use.
     former: Option<String>,
     pub(crate) unit: &'static str,
-    kind: SweepQuantityKind,
+    kind: ResultKind,
+    /// Its index among the results of its kind.
+    index: usize,
 }
 
 impl SweepQuantity {
-    pub(crate) fn heading(&self) -> String {
-        heading(&self.name, self.unit)
-    }
-
     /// Whether a request names it: its whole name, the part before one of its dots, or its former name.
     fn matches(&self, request: &str) -> bool {
         is_prefix_of(request, &self.name) || self.matches_former(request)
@@ -50,9 +50,8 @@ impl SweepQuantity {
 
     fn matches_former(&self, request: &str) -> bool {
         let former = self.former.as_deref();
-        former.is_some_and(|former| {
-            is_prefix_of(request, former) && !is_prefix_of(request, &self.name)
-        })
+        former.is_some_and(|former| is_prefix_of(request, former))
+            && !is_prefix_of(request, &self.name)
     }
 }
 
@@ -77,25 +76,18 @@ impl RequestedQuantities {
     /// # Errors
     /// [`StudyError`] where the unchanged scene cannot be assembled; [`SweepError::Result`].
     pub(crate) fn new(scene: &Scene, requests: &[String]) -> Result<Self, StudyError> {
-        let all = available_quantities(scene)?;
-        let names = || all.iter().map(|q| q.name.clone()).collect();
+        let mut quantities = available_quantities(scene)?;
         for request in requests {
-            if !all.iter().any(|q| q.matches(request)) {
-                return Err(SweepError::Result {
-                    name: request.clone(),
-                    known: names(),
-                }
-                .into());
+            if !quantities.iter().any(|q| q.matches(request)) {
+                let name = request.clone();
+                let known = quantities.into_iter().map(|q| q.name).collect();
+                return Err(SweepError::Result { name, known }.into());
             }
         }
-        if all.is_empty() {
-            return Err(SweepError::Design(
-                "this scene has no results to sweep: add a [prescribed] motion or a [coordinate-sweep]"
-                    .to_owned(),
-            )
-            .into());
+        if quantities.is_empty() {
+            let message = "this scene has no results to sweep: add a [prescribed] motion or a [coordinate-sweep]";
+            return Err(SweepError::Design(message.to_owned()).into());
         }
-        let mut quantities = all;
         let notes = requests.iter().filter_map(|request| {
             let renamed = quantities.iter().filter(|q| q.matches_former(request));
             let current: Vec<&str> = renamed.map(|q| q.name.as_str()).collect();
@@ -114,95 +106,64 @@ impl RequestedQuantities {
             values: vec![f64::NAN; self.quantities.len()],
             message: None,
         };
-        let done = scene
-            .with_values(values)
-            .map_err(StudyError::from)
-            .and_then(|scene| self.compute(&scene, &mut result));
-        if let Err(error) = done {
-            result.message.get_or_insert(first_message(&error));
-        }
+        let varied = scene.with_values(values).map_err(StudyError::from);
+        let done = varied.and_then(|scene| self.compute(&scene, &mut result.values));
+        result.message = done.err().map(|error| first_message(&error));
         result
     }
 
-    fn includes(&self, is: impl Fn(SweepQuantityKind) -> bool) -> bool {
-        self.quantities.iter().any(|q| is(q.kind))
-    }
-
-    /// Compiles the mechanism once, for all requested quantities.
-    fn compute(&self, scene: &Scene, result: &mut PointResult) -> Result<(), StudyError> {
+    /// Compiles the mechanism once, for all requested quantities. Returns the first error, with the values of the
+    /// others.
+    fn compute(&self, scene: &Scene, cells: &mut [f64]) -> Result<(), StudyError> {
         let model = compile_model(scene, &scene.mechanism.reactions())?;
-        let mut set = |value: &dyn Fn(SweepQuantityKind) -> Option<f64>| {
-            for (quantity, cell) in self.quantities.iter().zip(&mut result.values) {
-                if let Some(value) = value(quantity.kind) {
-                    *cell = value;
+        let includes = |kind: ResultKind| self.quantities.iter().any(|q| q.kind == kind);
+        let mut failed: Option<StudyError> = None;
+        let mut set = |kind: ResultKind, computed: Result<Vec<f64>, StudyError>| match computed {
+            Err(error) => {
+                failed.get_or_insert(error);
+            }
+            Ok(values) => {
+                let cells = self.quantities.iter().zip(&mut *cells);
+                for (quantity, cell) in cells.filter(|(q, _)| q.kind == kind) {
+                    *cell = values.get(quantity.index).copied().unwrap_or(f64::NAN);
                 }
             }
         };
         if let Some((from, to)) = model.plan().range().limits() {
-            set(&|kind| match kind {
-                SweepQuantityKind::RangeLower => Some(from),
-                SweepQuantityKind::RangeUpper => Some(to),
-                _ => None,
-            });
+            set(ResultKind::Range, Ok(vec![from, to]));
         }
-        let mut failed: Option<StudyError> = None;
-        if self.includes(SweepQuantityKind::is_inertia) {
-            match inertia_extrema(scene, &model) {
-                Ok(inertia) => set(&|kind| inertia.value(kind)),
-                Err(error) => failed = Some(error),
-            }
+        if includes(ResultKind::Inertia) {
+            set(ResultKind::Inertia, inertia_extrema(scene, &model));
         }
-        if self.includes(SweepQuantityKind::is_orbit)
-            && let Some(motion) = &scene.motion
+        if includes(ResultKind::Orbit)
+            && let Some(start) = initial_reduced_state(scene)
         {
-            match orbit(scene, motion, &model) {
-                Ok(orbit) => set(&|kind| match kind {
-                    SweepQuantityKind::Period => Some(orbit.period),
-                    SweepQuantityKind::Energy => Some(orbit.energy),
-                    _ => None,
-                }),
-                Err(error) => failed = failed.or(Some(error)),
-            }
+            let orbit = orbit(scene, start, &model);
+            let values = orbit.map(|orbit| vec![orbit.period, orbit.energy]);
+            set(ResultKind::Orbit, values);
         }
-        if self.includes(SweepQuantityKind::is_peak)
-            && let Some(command) = peak_analysis(scene)
+        if (includes(ResultKind::Reaction) || includes(ResultKind::ActuatorForce))
+            && let Some(analysis) = peak_analysis(scene)
         {
-            let loaded = with_loads(scene, model)?;
-            match peak_forces(scene, &loaded, command) {
-                Ok(peaks) => set(&|kind| match kind {
-                    SweepQuantityKind::Reaction(k) => peaks.reactions.get(k).copied(),
-                    SweepQuantityKind::ActuatorForce(k) => peaks.actuator_forces.get(k).copied(),
-                    _ => None,
-                }),
-                Err(error) => failed = failed.or(Some(error)),
+            match peak_forces(scene, &with_loads(scene, model)?, analysis) {
+                Ok(peaks) => {
+                    set(ResultKind::Reaction, Ok(peaks.reactions));
+                    set(ResultKind::ActuatorForce, Ok(peaks.actuator_forces));
+                }
+                Err(error) => set(ResultKind::Reaction, Err(error)),
             }
         }
         failed.map_or(Ok(()), Err)
     }
 }
 
-impl SweepQuantityKind {
-    fn is_inertia(self) -> bool {
-        use SweepQuantityKind::{MaxHalfDm, MaxInertia, MinHalfDm, MinInertia};
-        matches!(self, MinInertia | MaxInertia | MinHalfDm | MaxHalfDm)
-    }
-
-    fn is_orbit(self) -> bool {
-        matches!(self, Self::Period | Self::Energy)
-    }
-
-    fn is_peak(self) -> bool {
-        matches!(self, Self::Reaction(_) | Self::ActuatorForce(_))
-    }
-}
-
 /// The first sentence of an error: of several, the first.
 fn first_message(error: &StudyError) -> String {
     match error {
-        StudyError::Scene(scene) => scene
-            .errors()
-            .first()
-            .map_or_else(String::new, |first| first.message.clone()),
+        StudyError::Scene(scene) => {
+            let first = scene.errors().first();
+            first.map_or_else(String::new, |first| first.message.clone())
+        }
         other => other.to_string(),
     }
 }
@@ -220,62 +181,46 @@ fn peak_analysis(scene: &Scene) -> Option<Analysis> {
 fn available_quantities(scene: &Scene) -> Result<Vec<SweepQuantity>, StudyError> {
     let model = compile_model(scene, &scene.mechanism.reactions())?;
     let mut all = Vec::new();
-    let mut add = |name: String, unit, kind| {
+    let mut add = |name: String, unit, kind, index| {
         all.push(SweepQuantity {
             former: former_names::former_result(&name),
             name,
             unit,
             kind,
+            index,
         });
     };
     if model.plan().actuators() == 1 {
         let angle = model.plan().is_angle(0);
-        let pick = |of: [&'static str; 2]| if angle { of[0] } else { of[1] };
-        let (m, half_dm_unit) = (pick(["kg m2", "kg"]), pick(["kg m2/rad", "kg/m"]));
-        add("m.min".to_owned(), m, SweepQuantityKind::MinInertia);
-        add("m.max".to_owned(), m, SweepQuantityKind::MaxInertia);
-        add(
-            "half_dm.min".to_owned(),
-            half_dm_unit,
-            SweepQuantityKind::MinHalfDm,
-        );
-        add(
-            "half_dm.max".to_owned(),
-            half_dm_unit,
-            SweepQuantityKind::MaxHalfDm,
-        );
-        let unit = pick(["rad", "m"]);
-        add(
-            "range.lower".to_owned(),
-            unit,
-            SweepQuantityKind::RangeLower,
-        );
-        add(
-            "range.upper".to_owned(),
-            unit,
-            SweepQuantityKind::RangeUpper,
-        );
+        let (m, half_dm) = if angle {
+            ("kg m2", "kg m2/rad")
+        } else {
+            ("kg", "kg/m")
+        };
+        for (k, (name, unit)) in [("m", m), ("half_dm", half_dm)].into_iter().enumerate() {
+            add(format!("{name}.min"), unit, ResultKind::Inertia, 2 * k);
+            add(format!("{name}.max"), unit, ResultKind::Inertia, 2 * k + 1);
+        }
+        let unit = coordinate_unit(angle);
+        add("range.lower".to_owned(), unit, ResultKind::Range, 0);
+        add("range.upper".to_owned(), unit, ResultKind::Range, 1);
         if is_conservative(scene, &model) {
-            add("period".to_owned(), "s", SweepQuantityKind::Period);
-            add("energy".to_owned(), "J", SweepQuantityKind::Energy);
+            add("period".to_owned(), "s", ResultKind::Orbit, 0);
+            add("energy".to_owned(), "J", ResultKind::Orbit, 1);
         }
     }
     if peak_analysis(scene).is_some() {
         let mechanism = &scene.mechanism;
         for (k, actuator) in mechanism.actuators.iter().enumerate() {
-            let unit = if model.plan().is_angle(k) { "N m" } else { "N" };
+            let unit = force_unit(model.plan().is_angle(k));
             let name = format!("{}.actuator_force.max_abs", actuator.name);
-            add(name, unit, SweepQuantityKind::ActuatorForce(k));
+            add(name, unit, ResultKind::ActuatorForce, k);
         }
         for (k, reaction) in model.reactions().iter().enumerate() {
             // Statically indeterminate reactions are no results.
             if model.plan().is_determinate(k) && scene.requests.reactions.contains(reaction) {
                 let name = format!("{}.max_abs", mechanism.reaction_name(*reaction));
-                add(
-                    name,
-                    reaction.component.unit(),
-                    SweepQuantityKind::Reaction(k),
-                );
+                add(name, reaction.component.unit(), ResultKind::Reaction, k);
             }
         }
     }
@@ -284,77 +229,41 @@ fn available_quantities(scene: &Scene) -> Result<Vec<SweepQuantity>, StudyError>
 
 /// Whether the scene has a conservative free motion.
 fn is_conservative(scene: &Scene, model: &Model) -> bool {
-    let Some(spec) = &scene.motion else {
+    let laws = scene.motion.iter().flat_map(|spec| &spec.laws);
+    let is_free = laws.into_iter().all(Option::is_none) && scene.drives.is_empty();
+    let Some(start) = initial_reduced_state(scene).filter(|_| is_free) else {
         return false;
     };
-    let free = spec.laws.iter().all(Option::is_none) && scene.drives.is_empty();
-    free && orbit_machine(scene, model).is_ok_and(|machine| {
-        let orbit = Orbit::loaded(&machine, initial_state(spec));
+    orbit_machine(scene, model).is_ok_and(|machine| {
+        let orbit = Orbit::loaded(&machine, start);
         !matches!(orbit, Err(DynamicsError::NotConservative { .. }))
     })
 }
 
-pub(crate) fn orbit_machine(scene: &Scene, model: &Model) -> Result<Machine, StudyError> {
-    Machine::new(
-        model.without_reactions(),
-        &scene.loads,
-        vec![CoordinateMode::Free],
-        &scene.drives,
-    )
-    .map_err(|e| explain_machine(scene, e))
+fn orbit_machine(scene: &Scene, model: &Model) -> Result<Machine, StudyError> {
+    let (model, modes) = (model.without_reactions(), vec![CoordinateMode::Free]);
+    Machine::new(model, &scene.loads, modes, &scene.drives).map_err(|e| explain_machine(scene, e))
 }
 
-fn initial_state(spec: &FreeMotionSpec) -> ReducedState {
-    ReducedState {
-        t: 0.0,
-        q: spec.initial_coordinates.first().copied().unwrap_or(0.0),
-        q_dot: spec.initial_velocities.first().copied().unwrap_or(0.0),
-    }
-}
-
-fn orbit(scene: &Scene, spec: &FreeMotionSpec, model: &Model) -> Result<Orbit, StudyError> {
+fn orbit(scene: &Scene, start: ReducedState, model: &Model) -> Result<Orbit, StudyError> {
     let machine = orbit_machine(scene, model)?;
-    Orbit::loaded(&machine, initial_state(spec))
-        .map_err(|e| explain_motion(scene, model.plan(), &e))
+    Orbit::loaded(&machine, start).map_err(|e| explain_motion(scene, model.plan(), &e))
 }
 
-/// The extrema of m and of ½m′ over the range.
-struct InertiaExtrema {
-    m: [f64; 2],
-    half_dm: [f64; 2],
-}
-
-impl InertiaExtrema {
-    fn value(&self, kind: SweepQuantityKind) -> Option<f64> {
-        match kind {
-            SweepQuantityKind::MinInertia => Some(self.m[0]),
-            SweepQuantityKind::MaxInertia => Some(self.m[1]),
-            SweepQuantityKind::MinHalfDm => Some(self.half_dm[0]),
-            SweepQuantityKind::MaxHalfDm => Some(self.half_dm[1]),
-            _ => None,
-        }
-    }
-}
-
-fn inertia_extrema(scene: &Scene, model: &Model) -> Result<InertiaExtrema, StudyError> {
-    let plan = model.plan();
-    let Some(exact) = ExactModel::new(model.without_reactions()) else {
-        return Err(crate::explain::not_one_actuator(scene));
-    };
+/// The smallest and the largest m, and the smallest and the largest ½m′, over the range.
+fn inertia_extrema(scene: &Scene, model: &Model) -> Result<Vec<f64>, StudyError> {
+    let exact = ExactModel::new(model.without_reactions());
+    let exact = exact.ok_or_else(|| not_one_actuator(scene))?;
     let mut workspace = exact.workspace();
-    let [from, to] = swept_range(scene, plan);
-    let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let (mut m, mut half_dm_range) = (none, none);
+    let [from, to] = swept_range(scene, model.plan());
+    let (mut m, mut half_dm) = (Vec::new(), Vec::new());
     for k in 0..=INTERVALS {
         let fraction = k as f64 / INTERVALS as f64;
         let q = from * (1.0 - fraction) + to * fraction;
         let evaluated = exact.inertia(q, &mut workspace);
-        let (m_here, half_dm) = evaluated.map_err(|e| explain_position(scene, plan, &e))?;
-        m = [m[0].min(m_here), m[1].max(m_here)];
-        half_dm_range = [half_dm_range[0].min(half_dm), half_dm_range[1].max(half_dm)];
+        let here = evaluated.map_err(|e| explain_position(scene, model.plan(), &e))?;
+        m.push(here.0);
+        half_dm.push(here.1);
     }
-    Ok(InertiaExtrema {
-        m,
-        half_dm: half_dm_range,
-    })
+    Ok([extent(m), extent(half_dm)].concat())
 }

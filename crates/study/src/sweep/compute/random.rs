@@ -1,4 +1,4 @@
-//! Counter-based random numbers: the same number for the same (seed, axis, sample), whichever thread asks.
+//! Counter-based random numbers: the same number for the same (seed, axis, sample), on whichever thread.
 //!
 //! Philox4x32-10 of J. K. Salmon, M. A. Moraes, R. O. Dror and D. E. Shaw, "Parallel random numbers: as easy as
 //! 1, 2, 3" (SC 2011): ten rounds that mix a counter of 128 bits with a key of 64.

@@ -1,51 +1,67 @@
-//! All points of a sweep in memory.
+//! A whole sweep in memory.
 
 use crate::explain::StudyError;
-use crate::sweep::compute::{Axis, Design, PointResult, RequestedQuantities};
+use crate::sweep::compute::{Design, PointResult, RequestedQuantities};
 use dwell_findings::{Column, Table};
 use dwell_scene::Scene;
 use rayon::prelude::*;
 
-/// The results of a sweep.
+/// The points of a sweep.
 #[derive(Debug)]
-pub struct SweepTable {
-    /// A row for each point: the varied numbers in the scene's units, then the results.
+pub struct ComputedSweep {
+    /// A row for each point: the varied numbers, then the results; NaN where there is none.
     pub table: Table,
-    /// By point: why results are missing.
+    /// By point: why not all results could be computed.
     pub messages: Vec<Option<String>>,
+    /// A line for each requested result that is called by a former name.
+    pub notes: String,
 }
 
-/// Computes a sweep in memory, on all cores. `vary`, `samples`, `seed` and `requests` are those of a
-/// [sweep into a file](crate::sweep()).
+/// Computes all points of a sweep on all cores: `vary` and `requests` are those of
+/// `dwell sweep`, `samples` the number of random samples.
 ///
 /// # Errors
-/// [`StudyError`] where the sweep is invalid, or the unchanged scene cannot be assembled. A point that cannot be computed
-/// has a message.
+/// [`StudyError`] where the sweep is invalid or the unchanged scene cannot be assembled. A point that cannot be
+/// computed is no error: it has a message.
 pub fn compute_sweep(
     scene: &Scene,
     vary: &[String],
     samples: Option<u64>,
     seed: u64,
     requests: &[String],
-) -> Result<SweepTable, StudyError> {
+) -> Result<ComputedSweep, StudyError> {
     let design = Design::new(scene, vary, samples, seed)?;
     let requested = RequestedQuantities::new(scene, requests)?;
-    let row = |k: u64| {
+    let point = |k: u64| -> (Vec<f64>, Option<String>) {
+        let (inputs, PointResult { values, message }) = requested.point(scene, &design, k);
+        ([inputs, values].concat(), message)
+    };
+    let points: Vec<_> = (0..design.points).into_par_iter().map(point).collect();
+    let (rows, messages) = points.into_iter().unzip();
+    Ok(ComputedSweep {
+        table: Table {
+            columns: requested.columns(&design),
+            rows,
+        },
+        messages,
+        notes: requested.notes,
+    })
+}
+
+impl RequestedQuantities {
+    /// The columns of a table: the varied numbers, then the results.
+    pub(crate) fn columns(&self, design: &Design) -> Vec<Column> {
+        let inputs = design.axes.iter().map(|a| Column::new(&a.path, &a.unit));
+        let results = self.quantities.iter().map(|q| Column::new(&q.name, q.unit));
+        inputs.chain(results).collect()
+    }
+
+    /// The inputs and the results of point `k`.
+    pub(crate) fn point(&self, scene: &Scene, design: &Design, k: u64) -> (Vec<f64>, PointResult) {
         let inputs = design.values(k);
         let paths = design.axes.iter().map(|axis| axis.path.as_str());
         let values: Vec<(&str, f64)> = paths.zip(inputs.iter().copied()).collect();
-        let PointResult { values, message } = requested.evaluate(scene, &values);
-        ([inputs, values].concat(), message)
-    };
-    let rows: Vec<_> = (0..design.points).into_par_iter().map(row).collect();
-    let input = |axis: &Axis| Column::new(axis.path.clone(), axis.unit.clone());
-    let inputs = design.axes.iter().map(input);
-    let results = requested.quantities.iter();
-    let results = results.map(|q| Column::new(q.name.clone(), q.unit));
-    let columns = inputs.chain(results).collect();
-    let (rows, messages) = rows.into_iter().unzip();
-    Ok(SweepTable {
-        table: Table { columns, rows },
-        messages,
-    })
+        let result = self.evaluate(scene, &values);
+        (inputs, result)
+    }
 }

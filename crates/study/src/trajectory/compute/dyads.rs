@@ -59,10 +59,9 @@ pub(crate) fn dyads(mechanism: &Mechanism, plan: &Plan) -> Vec<(JointId, Dyad)> 
 fn levels(mechanism: &Mechanism, plan: &Plan) -> Vec<Option<usize>> {
     let mut groups = vec![None; mechanism.bodies.len()];
     for g in 0..plan.group_methods().len() {
-        let bodies = plan.group_bodies(g);
-        bodies
-            .iter()
-            .for_each(|b| groups[b.0] = groups[b.0].max(Some(g)));
+        for body in plan.group_bodies(g) {
+            groups[body.0] = groups[body.0].max(Some(g));
+        }
     }
     let mut tree_levels: Vec<Option<usize>> = Vec::with_capacity(plan.moving_bodies().len());
     let mut levels = vec![None; mechanism.bodies.len()];

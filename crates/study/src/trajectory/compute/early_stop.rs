@@ -2,9 +2,9 @@
 
 use crate::explain::{
     StudyError, body_names_or_mechanism, joint_labels, non_finite_coupling,
-    non_finite_coupling_error,
+    non_finite_coupling_error, scene_error,
 };
-use crate::number_format::{digits, number};
+use crate::number_format::{coordinate_unit, digits, number};
 use crate::trajectory::compute::{Trajectory, TrajectoryFault, TrajectorySample, table_of};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Plan, PositionError};
@@ -52,7 +52,8 @@ pub(crate) struct EarlyStop {
     pub(crate) last_reached: TrajectorySample,
     /// A position a little beyond it that cannot be reached.
     first_failed: TrajectorySample,
-    has_begun: bool,
+    /// Whether at least the first position can be reached.
+    pub(crate) has_begun: bool,
 }
 
 impl EarlyStop {
@@ -64,10 +65,7 @@ impl EarlyStop {
         cause: StopCause,
     ) -> Self {
         let (mut low, mut high) = (reached, beyond);
-        if matches!(
-            cause,
-            StopCause::NoSolution(KinetostaticsError::Position(_))
-        ) {
+        if let StopCause::NoSolution(KinetostaticsError::Position(_)) = cause {
             let start = trajectory.sample_at(reached).q;
             let mut pose = plan.pose();
             for _ in 0..BISECTIONS {
@@ -75,18 +73,18 @@ impl EarlyStop {
                 let q = trajectory.sample_at(middle).q;
                 let unreachable =
                     plan.actuators() == 1 && unreachable_error(plan, start[0], q[0]).is_some();
-                if !unreachable && plan.positions(&q, &mut pose).is_ok() {
-                    low = middle;
-                } else {
-                    high = middle;
+                let is_reached = !unreachable && plan.positions(&q, &mut pose).is_ok();
+                match is_reached {
+                    true => low = middle,
+                    false => high = middle,
                 }
             }
         }
+        let failed = (high + CAUSE_OFFSET * (beyond - reached)).min(beyond);
         Self {
             cause,
             last_reached: trajectory.sample_at(low),
-            first_failed: trajectory
-                .sample_at((high + CAUSE_OFFSET * (beyond - reached)).min(beyond)),
+            first_failed: trajectory.sample_at(failed),
             has_begun: beyond > reached,
         }
     }
@@ -105,55 +103,25 @@ impl EarlyStop {
         };
         match self.cause {
             StopCause::NoSolution(KinetostaticsError::Position(error)) => {
-                self.explain_limit(scene, plan, trajectory, &position, &error)
+                let location = trajectory.location;
+                self.explain_limit(scene, plan, location, &position, &error)
             }
-            StopCause::NoSolution(KinetostaticsError::NoDirection { load }) => scene
-                .error(
-                    format!(
-                        "load `{}` has no direction {when}: its two points coincide",
-                        load_name(scene, load)
-                    ),
-                    Some(match scene.loads.get(load).map(|l| l.kind) {
-                        Some(LoadKind::Spring { .. }) => {
-                            "a spring of free length 0 needs none; or keep the points apart".into()
-                        }
-                        _ => "it acts along the line of its points: keep them apart".into(),
-                    }),
-                    &[(SceneLocation::Load(load), "between two points".to_owned())],
-                )
-                .into(),
-            StopCause::NoSolution(KinetostaticsError::SelfLocking { load }) => scene
-                .error(
-                    format!("the mechanism is self-locking by friction {when}: the equations of motion have no unique solution"),
-                    Some("reduce a friction coefficient, or apply the force where the joint reactions are smaller".into()),
-                    &[(SceneLocation::Load(load), "together with the other friction loads".to_owned())],
-                )
-                .into(),
-            StopCause::NoSolution(KinetostaticsError::MagnitudeNotFinite { load }) => scene
-                .error(
-                    format!(
-                        "the magnitude of load `{}` is not finite {when}",
-                        load_name(scene, load)
-                    ),
-                    Some("check its expression there for a square root, a logarithm or a division".into()),
-                    &[(SceneLocation::Magnitude(load), "not a finite number".to_owned())],
-                )
-                .into(),
-            StopCause::Fault(TrajectoryFault::OffTable { load, value }) => off_table_error(scene, load, value, &when),
-            StopCause::Fault(TrajectoryFault::Discontinuity {
-                joint,
-                between: [a, b],
-            }) => scene
-                .error(
-                    format!(
-                        "the function of coupling `{}` is discontinuous {when}, at x = {}",
-                        scene.mechanism.joints[joint.0].name,
-                        jump_location(a, b)
-                    ),
-                    Some(CONTINUITY_HELP.to_owned()),
-                    &[(SceneLocation::CouplingLaw(joint), format!("jumps at x = {}", jump_location(a, b)))],
-                )
-                .into(),
+            StopCause::NoSolution(error) => explain_load(scene, error, &when),
+            StopCause::Fault(TrajectoryFault::OffTable { load, value }) => {
+                off_table_error(scene, load, value, &when)
+            }
+            StopCause::Fault(TrajectoryFault::Discontinuity { joint, between }) => {
+                let name = &scene.mechanism.joints[joint.0].name;
+                let x = jump_location(between[0], between[1]);
+                let message = format!(
+                    "the function of coupling `{name}` is discontinuous {when}, at x = {x}"
+                );
+                let place = (
+                    SceneLocation::CouplingLaw(joint),
+                    format!("jumps at x = {x}"),
+                );
+                scene_error(scene, message, CONTINUITY_HELP, [place])
+            }
         }
     }
 
@@ -161,7 +129,7 @@ impl EarlyStop {
         &self,
         scene: &Scene,
         plan: &Plan,
-        trajectory: &Trajectory<'_>,
+        location: SceneLocation,
         position: &str,
         error: &PositionError,
     ) -> StudyError {
@@ -170,43 +138,34 @@ impl EarlyStop {
             return non_finite_coupling_error(scene, relation, &format!("{at} {position}"));
         }
         if !self.has_begun {
-            return self.explain_first_position(scene, plan, trajectory, position, error);
+            return explain_first_position(scene, plan, location, position, error);
         }
-        let is_unexplored = match *error {
-            // Beyond the range on a side where no limit was found.
-            PositionError::OutOfRange { q, to, .. } => {
-                plan.range_limits()[usize::from(q > to)].is_none()
-            }
-            _ => false,
-        };
-        if is_unexplored {
-            return scene
-                .error(
-                    format!(
-                        "the range was searched only up to {position}; no limit position was found, and positions \
-                         beyond are not available"
-                    ),
-                    Some("the results end there; start nearer, or end the motion earlier".into()),
-                    &[(trajectory.location, "continues beyond it".to_owned())],
-                )
-                .into();
+        let beyond = (location, "continues beyond it".to_owned());
+        // Beyond the range on a side where no limit was found.
+        if let PositionError::OutOfRange { q, to, .. } = *error
+            && plan.range_limits()[usize::from(q > to)].is_none()
+        {
+            return scene_error(
+                scene,
+                format!(
+                    "the range was searched only up to {position}; no limit position was found, and positions beyond \
+                     are not available"
+                ),
+                "the results end there; start nearer, or end the motion earlier",
+                [beyond],
+            );
         }
-        let group = error
-            .group()
-            .or_else(|| diverging_group(plan, &self.last_reached.q));
+        let group = error.group();
+        let group = group.or_else(|| diverging_group(plan, &self.last_reached.q));
         let bodies = group.map(|g| plan.group_bodies(g)).unwrap_or_default();
         let joints = group.map(|g| plan.group_joints(g)).unwrap_or_default();
         let who = body_names_or_mechanism(&scene.mechanism, &bodies);
         let why = match error {
-            PositionError::NotFinite { .. } => {
-                "a coordinate is not a finite number beyond".to_owned()
-            }
+            PositionError::NotFinite { .. } => "a coordinate is not a finite number beyond".into(),
             PositionError::NoAssembly { .. } => format!("{who} cannot reach each other beyond"),
-            PositionError::Singular { .. } => {
-                format!(
-                    "{who} are in a singular configuration there, and the actuators do not determine their motion"
-                )
-            }
+            PositionError::Singular { .. } => format!(
+                "{who} are in a singular configuration there, and the actuators do not determine their motion"
+            ),
             PositionError::OtherBranch { .. } => {
                 format!("{who} can only be assembled in another assembly mode beyond")
             }
@@ -219,51 +178,73 @@ impl EarlyStop {
             PositionError::OutOfRange { .. } => "the range ends there".to_owned(),
         };
         let mut labels = joint_labels(&joints, "cannot stay joined beyond");
-        labels.push((trajectory.location, "continues beyond it".to_owned()));
-        let help =
-            "the results end there; end the motion or the sweep before it, or change a length";
-        scene
-            .error(
-                format!("a limit position is reached at {position}: {why}"),
-                Some(help.to_owned()),
-                &labels,
-            )
-            .into()
+        labels.push(beyond);
+        scene_error(
+            scene,
+            format!("a limit position is reached at {position}: {why}"),
+            "the results end there; end the motion or the sweep before it, or change a length",
+            labels,
+        )
     }
 }
 
-impl EarlyStop {
-    /// The error where not even the first position can be reached.
-    fn explain_first_position(
-        &self,
-        scene: &Scene,
-        plan: &Plan,
-        trajectory: &Trajectory<'_>,
-        position: &str,
-        error: &PositionError,
-    ) -> StudyError {
-        let joints = error.group().map(|g| plan.group_joints(g));
-        let mut labels = joint_labels(&joints.unwrap_or_default(), "cannot be joined there");
-        labels.push((trajectory.location, "starts there".to_owned()));
-        let range = match plan.range().limits() {
-            Some((from, to)) => {
-                let unit = if plan.is_angle(0) { "rad" } else { "m" };
-                let [from, to] = [from, to].map(number);
-                match plan.range_limits() {
-                    [Some(_), Some(_)] => format!(", outside the range of {from} to {to} {unit}"),
-                    _ => format!("; the range was searched from {from} to {to} {unit} only"),
+/// The error where a load or the equations of motion are undefined.
+fn explain_load(scene: &Scene, error: KinetostaticsError, when: &str) -> StudyError {
+    let load = error.load().unwrap_or(0);
+    let name = load_name(scene, load);
+    let (message, help, place) = match error {
+        KinetostaticsError::NoDirection { .. } => (
+            format!("load `{name}` has no direction {when}: its two points coincide"),
+            match scene.loads.get(load).map(|l| l.kind) {
+                Some(LoadKind::Spring { .. }) => {
+                    "a spring of free length 0 needs none; or keep the points apart"
                 }
-            }
-            None => String::new(),
-        };
-        scene
-            .error(
-                format!("the first position cannot be reached: {position}{range}"),
-                Some("start within the range; `dwell check` shows it".to_owned()),
-                &labels,
-            )
-            .into()
-    }
+                _ => "it acts along the line of its points: keep them apart",
+            },
+            (SceneLocation::Load(load), "between two points"),
+        ),
+        KinetostaticsError::SelfLocking { .. } => (
+            format!(
+                "the mechanism is self-locking by friction {when}: the equations of motion have no unique solution"
+            ),
+            "reduce a friction coefficient, or apply the force where the joint reactions are smaller",
+            (
+                SceneLocation::Load(load),
+                "together with the other friction loads",
+            ),
+        ),
+        KinetostaticsError::MagnitudeNotFinite { .. } | KinetostaticsError::Position(_) => (
+            format!("the magnitude of load `{name}` is not finite {when}"),
+            "check its expression there for a square root, a logarithm or a division",
+            (SceneLocation::Magnitude(load), "not a finite number"),
+        ),
+    };
+    scene_error(scene, message, help, [place])
+}
+
+/// The error where not even the first position can be reached.
+fn explain_first_position(
+    scene: &Scene,
+    plan: &Plan,
+    location: SceneLocation,
+    position: &str,
+    error: &PositionError,
+) -> StudyError {
+    let joints = error.group().map(|g| plan.group_joints(g));
+    let mut labels = joint_labels(&joints.unwrap_or_default(), "cannot be joined there");
+    labels.push((location, "starts there".to_owned()));
+    let range = plan.range().limits().map(|(from, to)| {
+        let unit = coordinate_unit(plan.is_angle(0));
+        let [from, to] = [from, to].map(number);
+        match plan.range_limits() {
+            [Some(_), Some(_)] => format!(", outside the range of {from} to {to} {unit}"),
+            _ => format!("; the range was searched from {from} to {to} {unit} only"),
+        }
+    });
+    let range = range.unwrap_or_default();
+    let message = format!("the first position cannot be reached: {position}{range}");
+    let help = "start within the range; `dwell check` shows it";
+    scene_error(scene, message, help, labels)
 }
 
 /// Help for a discontinuous function.
@@ -287,18 +268,15 @@ fn off_table_error(scene: &Scene, load: usize, value: f64, when: &str) -> StudyE
         Some((signal, spline)) => (signal, spline.range()),
         None => (Signal::Time, [f64::NAN; 2]),
     };
-    let (name, angle) = match signal {
-        Signal::Time => ("t".to_owned(), false),
-        Signal::Value(c) => (scene.name_of(c), c.is_angle()),
-        Signal::Velocity(c) => (format!("{}.velocity", scene.name_of(c)), false),
+    let (name, unit) = match signal {
+        Signal::Time => ("t".to_owned(), "s"),
+        Signal::Value(c) => (scene.name_of(c), coordinate_unit(c.is_angle())),
+        Signal::Velocity(c) => {
+            let unit = if c.is_angle() { "rad/s" } else { "m/s" };
+            (format!("{}.velocity", scene.name_of(c)), unit)
+        }
     };
-    let unit = match signal {
-        Signal::Time => "s",
-        Signal::Value(c) if c.is_angle() => "rad",
-        Signal::Value(_) => "m",
-        Signal::Velocity(c) if c.is_angle() => "rad/s",
-        Signal::Velocity(_) => "m/s",
-    };
+    let angle = unit == "rad";
     let value_text = |value: f64| match angle {
         true => format!("{} rad ({}°)", number(value), number(value.to_degrees())),
         false => format!("{} {unit}", number(value)),
@@ -311,17 +289,16 @@ fn off_table_error(scene: &Scene, load: usize, value: f64, when: &str) -> StudyE
         ),
         false => "extend the table, or write an expression".to_owned(),
     };
-    scene
-        .error(
-            format!(
-                "the table of load `{}` covers {name} {table_range}, but {name} is {} {when}",
-                load_name(scene, load),
-                value_text(value)
-            ),
-            Some(help),
-            &[(SceneLocation::Magnitude(load), table_range)],
-        )
-        .into()
+    scene_error(
+        scene,
+        format!(
+            "the table of load `{}` covers {name} {table_range}, but {name} is {} {when}",
+            load_name(scene, load),
+            value_text(value)
+        ),
+        help,
+        [(SceneLocation::Magnitude(load), table_range)],
+    )
 }
 
 /// The actuator coordinates, and the time unless it is a sweep.
@@ -332,14 +309,10 @@ fn describe_sample(
     at: &TrajectorySample,
 ) -> String {
     let one = |(i, q): (usize, &f64)| {
-        let name = &scene.mechanism.actuators[i].name;
+        let (name, value) = (&scene.mechanism.actuators[i].name, digits(*q, 8));
         match plan.is_angle(i) {
-            true => format!(
-                "{name} = {} rad ({}°)",
-                digits(*q, 8),
-                number(q.to_degrees())
-            ),
-            false => format!("{name} = {} m", digits(*q, 8)),
+            true => format!("{name} = {value} rad ({}°)", number(q.to_degrees())),
+            false => format!("{name} = {value} m"),
         }
     };
     let all: Vec<_> = at.q.iter().enumerate().map(one).collect();

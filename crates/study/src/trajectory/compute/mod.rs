@@ -1,10 +1,11 @@
-//! Computes columns, extrema, sections and peak forces along a trajectory.
+//! Computes columns, sections and peak forces along a trajectory.
 
 mod analysis;
+mod column;
 mod columns;
 mod dyads;
 mod early_stop;
-mod extrema;
+mod evaluator;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
@@ -13,25 +14,27 @@ mod results;
 mod rounding_error;
 mod sectioned_link;
 mod selection;
-mod table;
 mod trajectory;
 
 pub use analysis::Analysis;
-pub(crate) use columns::{Column, ColumnQuantity, Columns, PowerTerm, is_prefix_of};
+pub(crate) use column::{Column, PowerTerm, Quantity, is_prefix_of};
+pub(crate) use columns::all_columns;
 pub(crate) use dyads::{Dyad, dyads};
 pub(crate) use early_stop::{
     CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
 };
-pub(crate) use extrema::{ColumnExtrema, extrema};
+pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryFault, TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::peak_forces;
 pub(crate) use pruning::{prune_model, requested_bodies};
-pub(crate) use results::{TrajectoryResults, evaluate_trajectory};
+pub(crate) use results::compute_along;
+pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use rounding_error::RoundingError;
-pub(crate) use sectioned_link::SectionedLink;
+pub use sectioned_link::SectionedLink;
 pub(crate) use selection::{check_variables, is_requested, selected_columns};
-pub use table::{TrajectoryTable, compute_trajectory};
+pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, ExtraColumn, KINETIC, POTENTIAL, Trajectory, TrajectorySample, swept_range,
+    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample,
+    swept_range,
 };

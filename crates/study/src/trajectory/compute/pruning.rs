@@ -1,7 +1,7 @@
 //! Pruning: a trajectory analysis models only the groups that inertia, a load or a request needs.
 
 use crate::models::requested_reaction_bodies;
-use crate::trajectory::compute::Columns;
+use crate::trajectory::compute::all_columns;
 use dwell_geometry::BodyId;
 use dwell_kinetostatics::Model;
 use dwell_scene::Scene;
@@ -18,7 +18,7 @@ pub(crate) fn requested_bodies(scene: &Scene, model: &Model) -> Option<Vec<BodyI
     if requests.reactions.len() < scene.mechanism.reactions().len() {
         bodies.extend(requested_reaction_bodies(scene));
     }
-    for column in Columns::all(scene, model, true) {
+    for column in all_columns(scene, model, true) {
         if names.iter().any(|name| column.matches(name)) {
             bodies.extend(column.quantity.bodies(scene, model.reactions()));
         }

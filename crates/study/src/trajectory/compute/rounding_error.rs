@@ -1,5 +1,6 @@
 //! Rounding error of a trajectory analysis: some positions are evaluated again in 32-digit arithmetic.
 
+use crate::estimate::relative;
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
 use dwell_numerics::DoubleDouble;
 use dwell_scene::Scene;
@@ -47,17 +48,13 @@ impl RoundingError {
         if !k.is_multiple_of(self.stride) {
             return;
         }
-        let done = model.kinetostatics_rounding_errors(
-            t,
-            at,
-            inverse_dynamics,
-            &mut self.workspace,
-            &mut self.errors,
-        );
+        let (workspace, errors) = (&mut self.workspace, &mut self.errors);
         // Next to a limit position there may be a pose in double precision and none in 32 digits.
-        if done.is_err() {
+        let Ok(()) =
+            model.kinetostatics_rounding_errors(t, at, inverse_dynamics, workspace, errors)
+        else {
             return;
-        }
+        };
         let errors = [&self.errors.tau, &self.errors.reactions];
         let values = [&inverse_dynamics.tau, &inverse_dynamics.reactions];
         for ((errors, values), forces) in errors.into_iter().zip(values).zip(&self.is_force) {
@@ -71,7 +68,7 @@ impl RoundingError {
 
     /// The largest error, relative to the largest value of its unit.
     pub(crate) fn max_relative(&self) -> f64 {
-        let relative = |[error, value]: [f64; 2]| if error > 0.0 { error / value } else { 0.0 };
-        self.maxima.map(relative).into_iter().fold(0.0, f64::max)
+        let [moments, forces] = self.maxima.map(|[error, value]| relative(error, value));
+        moments.max(forces)
     }
 }

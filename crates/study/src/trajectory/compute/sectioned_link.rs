@@ -1,21 +1,25 @@
 //! Internal forces of a link along the trajectory: the sections at the largest bending moment, and the envelope.
 
 use dwell_findings::{Column, Table};
-use dwell_kinetostatics::{AppliedWrench, Distribution, EvaluatedState, FreeBodyForces, Section};
+use dwell_kinetostatics::{Distribution, LinkForces, Section};
 use dwell_scene::SectionRequest as Request;
 
 /// Intervals along a link.
 const INTERVALS: usize = 100;
+/// The internal forces and their units.
+const COMPONENTS: [(&str, &str); 3] = [("axial", "N"), ("shear", "N"), ("bending", "N m")];
 
 /// A link and its internal forces.
-pub(crate) struct SectionedLink {
-    pub(crate) request: Request,
-    pub(crate) distribution: Distribution,
+pub struct SectionedLink {
+    /// The body and the two points.
+    pub request: Request,
+    /// How its mass is distributed.
+    pub distribution: Distribution,
     /// The position of the largest bending moment, and the sections there.
-    pub(crate) max_bending_sections: Option<(usize, Vec<Section>)>,
+    pub max_bending_sections: Option<(usize, Vec<Section>)>,
     max_bending: f64,
     /// By station: smallest and largest axial force, shear and bending moment.
-    pub(crate) envelope: Vec<(f64, [[f64; 2]; 3])>,
+    pub envelope: Vec<(f64, [[f64; 2]; 3])>,
 }
 
 impl SectionedLink {
@@ -30,15 +34,8 @@ impl SectionedLink {
     }
 
     /// Adds the internal forces at the `k`th position.
-    pub(crate) fn add_position(
-        &mut self,
-        k: usize,
-        body_forces: &FreeBodyForces,
-        state: &EvaluatedState<'_>,
-        wrenches: &[AppliedWrench],
-    ) {
-        let Request { body, points, .. } = self.request;
-        let Some(forces) = body_forces.link_forces(state, body, points, wrenches) else {
+    pub(crate) fn add_position(&mut self, k: usize, forces: Option<&LinkForces>) {
+        let Some(forces) = forces else {
             return;
         };
         self.distribution = forces.distribution;
@@ -49,10 +46,11 @@ impl SectionedLink {
         }
         for (station, extremes) in &mut self.envelope {
             // On both sides of a concentrated load.
-            for section in [
+            let [before, after] = [
                 forces.section_before(*station),
                 forces.section_after(*station),
-            ] {
+            ];
+            for section in [before, after] {
                 let values = [section.axial, section.shear, section.bending];
                 for ([min, max], value) in extremes.iter_mut().zip(values) {
                     *min = min.min(value);
@@ -69,44 +67,35 @@ impl SectionedLink {
     }
 
     /// The largest bending moment, N·m, with its sign and its station.
-    pub(crate) fn max_bending_section(&self) -> Option<Section> {
+    pub fn max_bending_section(&self) -> Option<Section> {
         let (_, sections) = self.max_bending_sections.as_ref()?;
         let size = |s: &&Section| s.bending.abs();
-        sections
-            .iter()
-            .max_by(|a, b| size(a).total_cmp(&size(b)))
-            .copied()
+        let largest = sections.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+        largest.copied()
     }
 
     /// `body from … to …`, as part of a file's name.
-    pub(crate) fn file_name(&self, body: &str) -> String {
+    pub fn file_name(&self, body: &str) -> String {
         let [from, to] = &self.request.names;
         format!("{body}-{from}-{to}")
     }
 
     /// The sections where the bending moment is largest.
-    pub(crate) fn table(&self) -> Table {
-        let rows = self
-            .max_bending_sections
-            .iter()
-            .flat_map(|(_, sections)| sections);
+    pub fn table(&self) -> Table {
+        let mut columns = vec![Column::new("station", "m")];
+        columns.extend(COMPONENTS.map(|(name, unit)| Column::new(name, unit)));
+        let sections = self.max_bending_sections.iter().flat_map(|(_, s)| s);
+        let rows = sections.map(|s| vec![s.station, s.axial, s.shear, s.bending]);
         Table {
-            columns: vec![
-                Column::new("station", "m"),
-                Column::new("axial", "N"),
-                Column::new("shear", "N"),
-                Column::new("bending", "N m"),
-            ],
-            rows: rows
-                .map(|s| vec![s.station, s.axial, s.shear, s.bending])
-                .collect(),
+            columns,
+            rows: rows.collect(),
         }
     }
 
     /// The envelope over the whole trajectory, by station.
-    pub(crate) fn envelope_table(&self) -> Table {
+    pub fn envelope_table(&self) -> Table {
         let mut columns = vec![Column::new("station", "m")];
-        for (name, unit) in [("axial", "N"), ("shear", "N"), ("bending", "N m")] {
+        for (name, unit) in COMPONENTS {
             columns.push(Column::new(format!("{name}.min"), unit));
             columns.push(Column::new(format!("{name}.max"), unit));
         }

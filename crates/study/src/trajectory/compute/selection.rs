@@ -1,8 +1,8 @@
 //! The columns that a scene requests.
 
-use crate::explain::StudyError;
+use crate::explain::{StudyError, scene_error};
 use crate::former_names;
-use crate::trajectory::compute::{Column, ColumnQuantity, Columns, is_prefix_of};
+use crate::trajectory::compute::{Column, Quantity, all_columns, is_prefix_of};
 use dwell_kinetostatics::Model;
 use dwell_scene::{Scene, SceneLocation, choices};
 
@@ -14,7 +14,7 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
     let Some(variables) = &scene.requests.variables else {
         return Ok(String::new());
     };
-    let columns = Columns::all(scene, model, true);
+    let columns = all_columns(scene, model, true);
     let mut notes = String::new();
     for (k, name) in variables.iter().enumerate() {
         if columns.iter().any(|c| c.matches(name)) {
@@ -28,14 +28,10 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
         if let Some(error) = indeterminate_error(scene, model, k, name) {
             return Err(error);
         }
-        let labels = [(SceneLocation::Variable(k), "unknown column".to_owned())];
-        return Err(scene
-            .error(
-                format!("there is no column `{name}`"),
-                Some(suggestion(name, &columns)),
-                &labels,
-            )
-            .into());
+        let message = format!("there is no column `{name}`");
+        let place = (SceneLocation::Variable(k), "unknown column");
+        let help = suggestion(name, &columns);
+        return Err(scene_error(scene, message, help, [place]));
     }
     Ok(notes)
 }
@@ -44,22 +40,21 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
 fn indeterminate_error(scene: &Scene, model: &Model, k: usize, name: &str) -> Option<StudyError> {
     let mechanism = &scene.mechanism;
     let joint = name.split('.').next();
-    let of_joint = |(r, reaction): (usize, &dwell_geometry::Reaction)| {
-        let named = Some(mechanism.joints[reaction.joint.0].name.as_str()) == joint;
-        named && !model.plan().is_determinate(r)
-    };
-    model
-        .reactions()
-        .iter()
-        .enumerate()
-        .find(|&r| of_joint(r))?;
-    let labels = [(SceneLocation::Variable(k), "indeterminate".to_owned())];
-    let error = scene.error(
-        format!("`{name}` is statically indeterminate: redundant constraints share the load"),
-        Some("`dwell check` lists such reactions; remove one of the redundant joints".to_owned()),
-        &labels,
-    );
-    Some(error.into())
+    let is_of_joint = |j: dwell_geometry::JointId| Some(&*mechanism.joints[j.0].name) == joint;
+    let mut reactions = model.reactions().iter().enumerate();
+    let is_indeterminate = |r| !model.plan().is_determinate(r);
+    reactions
+        .any(|(r, reaction)| is_of_joint(reaction.joint) && is_indeterminate(r))
+        .then(|| {
+            scene_error(
+                scene,
+                format!(
+                    "`{name}` is statically indeterminate: redundant constraints share the load"
+                ),
+                "`dwell check` lists such reactions; remove one of the redundant joints",
+                [(SceneLocation::Variable(k), "indeterminate")],
+            )
+        })
 }
 
 /// Names that may have been meant: columns and their prefixes; otherwise those with the same first word,
@@ -95,10 +90,9 @@ pub(crate) fn is_requested(scene: &Scene, column: &Column) -> bool {
 /// The indices of the columns of the tables: time, actuator coordinates and those requested.
 pub(crate) fn selected_columns(scene: &Scene, columns: &[Column]) -> Vec<usize> {
     let is_selected = |column: &Column| match (&scene.requests.variables, column.quantity) {
-        (None, _) | (_, ColumnQuantity::Time | ColumnQuantity::ActuatorCoordinate(_, 0)) => true,
+        (None, _) | (_, Quantity::Time | Quantity::ActuatorCoordinate(_, 0)) => true,
         (Some(_), _) => is_requested(scene, column),
     };
-    (0..columns.len())
-        .filter(|&k| is_selected(&columns[k]))
-        .collect()
+    let all = 0..columns.len();
+    all.filter(|&k| is_selected(&columns[k])).collect()
 }

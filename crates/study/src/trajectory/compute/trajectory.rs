@@ -1,14 +1,17 @@
-//! The samples and the events of a motion as tables.
+//! The coordinates that an analysis follows: a prescribed motion, a free motion, or a sweep.
 
-use crate::bodies::max_point_distance;
-use crate::explain::StudyError;
-use crate::number_format::{count, digits};
-use crate::trajectory::compute::{Analysis, CONTINUITY_HELP, jump_location};
+use crate::explain::{StudyError, actuator_labels, scene_error};
+use crate::number_format::{coordinate_unit, count, digits};
+use crate::trajectory::compute::{
+    Analysis, CONTINUITY_HELP, EarlyStop, StopCause, jump_location, unreachable_error,
+};
 use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_kinetostatics::Model;
-use dwell_scene::{MAX_ANGLE, PrescribedMotion, Scene, SceneLocation};
+use dwell_scene::{CoordinateSweep, MAX_ANGLE, PrescribedMotion, Scene, SceneLocation};
 use std::f64::consts::TAU;
 
+/// Positions per step of progress.
+pub(crate) const POSITIONS_PER_STEP: usize = 500;
 /// Number of positions if neither the scene nor the caller gives one.
 const DEFAULT_POINTS: usize = 361;
 /// Fraction of a range left out at a limit position, where velocities grow without bound.
@@ -17,7 +20,7 @@ const LIMIT_MARGIN: f64 = 1e-3;
 const DEFAULT_STROKE: f64 = 0.25;
 
 /// The actuator coordinates and their derivatives at one position.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct TrajectorySample {
     /// Time since the start, s.
     pub(crate) t: f64,
@@ -35,44 +38,44 @@ pub(crate) struct TrajectorySample {
     pub(crate) extra_values: Vec<f64>,
 }
 
+impl TrajectorySample {
+    /// The coordinate of an actuator, whichever coordinate its chart uses.
+    pub(crate) fn coordinate(&self, actuator: usize) -> f64 {
+        let own = self.actuator_coordinate;
+        own.map_or(self.q[actuator], |derivatives| derivatives[0])
+    }
+}
+
 /// A column that only the integration of a free motion yields, such as an energy.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ExtraColumn {
     pub(crate) name: String,
     pub(crate) unit: &'static str,
-    pub(crate) meaning: String,
+    pub(crate) meaning: &'static str,
 }
 
 /// A trajectory of the actuator coordinates, as a function of the completed fraction (0 to 1).
 #[derive(Debug, Clone)]
-pub(crate) struct Trajectory<'a> {
+pub struct Trajectory<'a> {
     kind: TrajectoryKind<'a>,
     /// Number of positions, both ends included.
-    pub(crate) points: usize,
+    pub points: usize,
     /// Description for summaries.
-    pub(crate) description: String,
+    pub description: String,
     /// The method that computed its positions, for captions.
-    pub(crate) method_text: String,
+    pub method_text: String,
     /// Where the scene defines it.
-    pub(crate) location: SceneLocation,
+    pub location: SceneLocation,
     /// Whether its start and its end are next to a limit position.
-    pub(crate) ends_at_limit_position: [bool; 2],
+    pub ends_at_limit_position: [bool; 2],
     /// Period of the pose in the coordinate of the only actuator, rad.
-    pub(crate) period: Option<f64>,
+    pub period: Option<f64>,
 }
 
 #[derive(Debug, Clone)]
 enum TrajectoryKind<'a> {
     Prescribed(&'a PrescribedMotion),
-    /// A free motion, sampled.
-    Free {
-        samples: Vec<TrajectorySample>,
-        extra_columns: Vec<ExtraColumn>,
-        /// By actuator: whether its coordinate is prescribed.
-        prescribed: Vec<bool>,
-        /// By chart: the model in its coordinate.
-        charts: Vec<Model>,
-    },
+    Free(FreeTrajectory),
     Swept {
         actuator: usize,
         from: f64,
@@ -82,18 +85,20 @@ enum TrajectoryKind<'a> {
     },
 }
 
-/// The limits of a sweep.
-struct SweepLimits {
-    from: f64,
-    to: f64,
-    ends_at_limit_position: [bool; 2],
-    description: &'static str,
+/// A free motion, sampled.
+#[derive(Debug, Clone)]
+pub(crate) struct FreeTrajectory {
+    /// Two samples or more.
+    pub(crate) samples: Vec<TrajectorySample>,
+    pub(crate) extra_columns: Vec<ExtraColumn>,
+    /// By actuator: whether its coordinate is prescribed.
+    pub(crate) prescribed: Vec<bool>,
+    /// By chart: the model in its coordinate.
+    pub(crate) charts: Vec<Model>,
 }
 
-/// The method text of a trajectory that is not integrated.
-fn positions_text(points: usize) -> String {
-    format!("the mechanism at {}", count(points, "position"))
-}
+/// The limits of a sweep: from where to where, whether these are next to a limit position, and what it sweeps.
+type SweepLimits = ([f64; 2], [bool; 2], &'static str);
 
 impl<'a> Trajectory<'a> {
     /// The trajectory that an analysis of a scene follows, at `points` positions if given.
@@ -106,130 +111,175 @@ impl<'a> Trajectory<'a> {
         analysis: Analysis,
         points: Option<usize>,
     ) -> Result<Self, StudyError> {
-        if let Some(prescribed) = &scene.prescribed {
-            let points = points.unwrap_or(prescribed.points).max(2);
-            return Ok(Self {
-                points,
-                method_text: positions_text(points),
-                description: format!(
-                    "the prescribed motion of {} s",
-                    digits(prescribed.duration, 6)
-                ),
-                kind: TrajectoryKind::Prescribed(prescribed),
-                location: SceneLocation::Prescribed,
-                ends_at_limit_position: [false; 2],
-                period: plan.range().period(),
-            });
-        }
-        let (actuator, range, fixed_coordinates, requested, speed, location) = match &scene.sweep {
-            Some(sweep) => (
-                sweep.actuator.0,
-                sweep.range,
-                sweep.fixed_coordinates.clone(),
-                Some(sweep.points),
-                sweep.speed,
-                SceneLocation::CoordinateSweep,
-            ),
+        let Some(prescribed) = &scene.prescribed else {
+            return Self::swept(scene, plan, analysis, points);
+        };
+        let points = points.unwrap_or(prescribed.points);
+        let duration = digits(prescribed.duration, 6);
+        let description = format!("the prescribed motion of {duration} s");
+        let kind = TrajectoryKind::Prescribed(prescribed);
+        Ok(Self::at_positions(
+            kind,
+            plan,
+            points,
+            description,
+            SceneLocation::Prescribed,
+        ))
+    }
+
+    /// The sweep of a scene; or else over the range of its only actuator.
+    fn swept(
+        scene: &Scene,
+        plan: &Plan,
+        analysis: Analysis,
+        points: Option<usize>,
+    ) -> Result<Self, StudyError> {
+        let (sweep, location) = match &scene.sweep {
+            Some(sweep) => (sweep.clone(), SceneLocation::CoordinateSweep),
             None if plan.actuators() != 1 || analysis == Analysis::Kinetostatics => {
                 return Err(no_trajectory_error(scene, analysis));
             }
-            None => (
-                0,
-                None,
-                plan.assembly_coordinates().to_vec(),
-                None,
-                1.0,
-                SceneLocation::Whole,
-            ),
+            None => {
+                let sweep = CoordinateSweep {
+                    actuator: ActuatorId(0),
+                    range: None,
+                    fixed_coordinates: plan.assembly_coordinates().to_vec(),
+                    points: DEFAULT_POINTS,
+                    speed: 1.0,
+                };
+                (sweep, SceneLocation::Whole)
+            }
         };
-        let limits = match range {
-            Some([from, to]) => SweepLimits {
-                from,
-                to,
-                ends_at_limit_position: [false; 2],
-                description: "the sweep",
-            },
+        let actuator = sweep.actuator.0;
+        let start = sweep.fixed_coordinates[actuator];
+        let ([from, to], ends_at_limit_position, what) = match sweep.range {
+            Some(range) => (range, [false; 2], "the sweep"),
             None if plan.actuators() == 1 => default_limits(scene, plan),
-            None if plan.is_angle(actuator) => SweepLimits {
-                from: fixed_coordinates[actuator],
-                to: fixed_coordinates[actuator] + TAU,
-                ends_at_limit_position: [false; 2],
-                description: "one turn",
-            },
+            None if plan.is_angle(actuator) => one_revolution(start),
             None => return Err(open_sweep_error(scene, actuator)),
         };
-        let unit = if plan.is_angle(actuator) { "rad" } else { "m" };
         let name = &scene.mechanism.actuators[actuator].name;
-        let points = points.or(requested).unwrap_or(DEFAULT_POINTS).max(2);
+        let unit = coordinate_unit(plan.is_angle(actuator));
+        let [first, last] = [from, to].map(|q| digits(q, 6));
+        let description = format!("{what} of {name} from {first} to {last} {unit}");
+        let kind = TrajectoryKind::Swept {
+            actuator,
+            from,
+            to,
+            fixed_coordinates: sweep.fixed_coordinates,
+            speed: sweep.speed,
+        };
+        let points = points.unwrap_or(sweep.points);
         Ok(Self {
-            method_text: positions_text(points),
-            description: format!(
-                "{} of {name} from {} to {} {unit}",
-                limits.description,
-                digits(limits.from, 6),
-                digits(limits.to, 6)
-            ),
-            kind: TrajectoryKind::Swept {
-                actuator,
-                from: limits.from,
-                to: limits.to,
-                fixed_coordinates,
-                speed,
-            },
-            points,
-            location,
-            ends_at_limit_position: limits.ends_at_limit_position,
-            period: plan.range().period(),
+            ends_at_limit_position,
+            ..Self::at_positions(kind, plan, points, description, location)
         })
     }
 
-    /// A computed free motion of two samples or more.
-    pub(crate) fn of_free_motion(
+    /// A computed free motion.
+    pub(crate) fn of_free_motion(plan: &Plan, motion: FreeTrajectory) -> Self {
+        let (points, last) = (
+            motion.samples.len(),
+            motion.samples.last().map_or(0.0, |s| s.t),
+        );
+        let description = format!("a free motion of {} s", digits(last, 6));
+        let kind = TrajectoryKind::Free(motion);
+        Self::at_positions(kind, plan, points, description, SceneLocation::Motion)
+    }
+
+    fn at_positions(
+        kind: TrajectoryKind<'a>,
         plan: &Plan,
-        samples: Vec<TrajectorySample>,
-        extra_columns: Vec<ExtraColumn>,
-        prescribed: Vec<bool>,
-        charts: Vec<Model>,
+        points: usize,
+        description: String,
+        location: SceneLocation,
     ) -> Self {
-        let last = samples.last().map_or(0.0, |s| s.t);
+        let points = points.max(2);
         Self {
-            points: samples.len(),
-            method_text: positions_text(samples.len()),
-            description: format!("a free motion of {} s", digits(last, 6)),
-            kind: TrajectoryKind::Free {
-                samples,
-                extra_columns,
-                prescribed,
-                charts,
-            },
-            location: SceneLocation::Motion,
+            kind,
+            points,
+            description,
+            method_text: format!("the mechanism at {}", count(points, "position")),
+            location,
             ends_at_limit_position: [false; 2],
             period: plan.range().period(),
         }
     }
 
+    /// The number of steps in which progress is reported.
+    pub(crate) fn progress_steps(&self) -> usize {
+        self.points.div_ceil(POSITIONS_PER_STEP)
+    }
+
+    fn free_motion(&self) -> Option<&FreeTrajectory> {
+        match &self.kind {
+            TrajectoryKind::Free(motion) => Some(motion),
+            TrajectoryKind::Prescribed(_) | TrajectoryKind::Swept { .. } => None,
+        }
+    }
+
     /// The models by chart; empty if the scene's own model applies throughout.
     pub(crate) fn charts(&self) -> &[Model] {
-        match &self.kind {
-            TrajectoryKind::Free { charts, .. } => charts,
-            TrajectoryKind::Prescribed(_) | TrajectoryKind::Swept { .. } => &[],
-        }
+        self.free_motion().map_or(&[], |motion| &motion.charts)
     }
 
     /// Whether an actuator exerts a force: in a free motion only prescribed ones do.
     pub(crate) fn exerts_force(&self, actuator: usize) -> bool {
-        match &self.kind {
-            TrajectoryKind::Free { prescribed, .. } => prescribed[actuator],
-            TrajectoryKind::Prescribed(_) | TrajectoryKind::Swept { .. } => true,
-        }
+        self.free_motion()
+            .is_none_or(|motion| motion.prescribed[actuator])
     }
 
     /// The columns that its integration adds.
     pub(crate) fn extra_columns(&self) -> &[ExtraColumn] {
+        self.free_motion()
+            .map_or(&[], |motion| &motion.extra_columns)
+    }
+
+    /// The swept actuator; `None` if the trajectory is a motion in time.
+    pub(crate) fn swept_actuator(&self) -> Option<usize> {
         match &self.kind {
-            TrajectoryKind::Free { extra_columns, .. } => extra_columns,
-            TrajectoryKind::Prescribed(_) | TrajectoryKind::Swept { .. } => &[],
+            TrajectoryKind::Prescribed(_) | TrajectoryKind::Free(_) => None,
+            TrajectoryKind::Swept { actuator, .. } => Some(*actuator),
         }
+    }
+
+    /// Whether its tables have a time: a static sweep has none.
+    pub(crate) fn is_timed(&self, analysis: Analysis) -> bool {
+        self.swept_actuator().is_none() || analysis != Analysis::Statics
+    }
+
+    /// The time at which the loads of a sample are evaluated: without time, at t = 0.
+    pub(crate) fn load_time(&self, sample: &TrajectorySample, analysis: Analysis) -> f64 {
+        if self.is_timed(analysis) {
+            sample.t
+        } else {
+            0.0
+        }
+    }
+
+    /// Visits one position after another until a visit fails. Returns where and why it ends early, if it does.
+    pub(crate) fn follow(
+        &self,
+        plan: &Plan,
+        mut visit: impl FnMut(usize, &TrajectorySample) -> Result<(), StopCause>,
+    ) -> Option<EarlyStop> {
+        let in_own_coordinate = plan.actuators() == 1 && self.charts().is_empty();
+        let mut previous: Option<f64> = None;
+        for k in 0..self.points {
+            let fraction = self.fraction_at(k);
+            let sample = self.sample_at(fraction);
+            let previous_q = previous.filter(|_| in_own_coordinate);
+            let visited = match previous_q.and_then(|q| unreachable_error(plan, q, sample.q[0])) {
+                Some(error) => Err(error.into()),
+                None => visit(k, &sample),
+            };
+            if let Err(cause) = visited {
+                let reached = self.fraction_at(k.saturating_sub(1));
+                return Some(EarlyStop::find(plan, self, [reached, fraction], cause));
+            }
+            previous = sample.q.first().copied();
+        }
+        None
     }
 
     /// Rejects a law that has no finite value, speed or acceleration at a position, exceeds the largest
@@ -242,40 +292,35 @@ impl<'a> Trajectory<'a> {
         let mut previous: Option<f64> = None;
         for k in 0..self.points {
             let t = self.fraction_at(k) * prescribed.duration;
+            let time = || format!("t = {} s", digits(t, 6));
             for (a, (actuator, law)) in actuators.iter().zip(&prescribed.laws).enumerate() {
                 let reject = |what: String, help: &str, label: String| {
                     let message = format!("the law of `{}` {what}", actuator.name);
-                    let labels = [(SceneLocation::PrescribedLaw(ActuatorId(a)), label)];
-                    Err(scene.error(message, Some(help.to_owned()), &labels).into())
+                    let place = (SceneLocation::PrescribedLaw(ActuatorId(a)), label);
+                    Err(scene_error(scene, message, help, [place]))
                 };
                 let at = law.eval(t);
                 let names = ["value", "speed", "acceleration"];
                 if let Some(order) = at[..3].iter().position(|v| !v.is_finite()) {
                     let what = format!("no finite {}", names[order]);
                     return reject(
-                        format!("has {what} at t = {} s", digits(t, 6)),
+                        format!("has {what} at {}", time()),
                         "a prescribed motion needs a finite value and two finite derivatives everywhere",
                         what,
                     );
                 }
                 if actuator.coordinate().is_angle() && at[0].abs() > MAX_ANGLE {
                     return reject(
-                        format!("is more than {MAX_ANGLE:e} rad at t = {} s", digits(t, 6)),
-                        "so large an angle has lost its last digits: end the motion earlier, or check \
-                         the numbers",
+                        format!("is more than {MAX_ANGLE:e} rad at {}", time()),
+                        "so large an angle has lost its last digits: end the motion earlier, or check the numbers",
                         "angle too large".to_owned(),
                     );
                 }
-                if let Some([from, to]) =
-                    previous.and_then(|previous| law.discontinuity(previous, t))
-                {
-                    let time = jump_location(from, to);
+                let jump = previous.and_then(|previous| law.discontinuity(previous, t));
+                if let Some([from, to]) = jump {
+                    let jumps = format!("jumps at t = {} s", jump_location(from, to));
                     let [p, q] = [from, to].map(|t| digits(law.eval(t)[0], 6));
-                    return reject(
-                        format!("jumps at t = {time} s, from {p} to {q}"),
-                        CONTINUITY_HELP,
-                        format!("jumps at t = {time} s"),
-                    );
+                    return reject(format!("{jumps}, from {p} to {q}"), CONTINUITY_HELP, jumps);
                 }
             }
             previous = Some(t);
@@ -294,13 +339,10 @@ impl<'a> Trajectory<'a> {
                     q: derivative(0),
                     q_dot: derivative(1),
                     q_ddot: derivative(2),
-                    chart: 0,
-                    actuator_coordinate: None,
-                    drive_magnitudes: Vec::new(),
-                    extra_values: Vec::new(),
+                    ..TrajectorySample::default()
                 }
             }
-            TrajectoryKind::Free { samples, .. } => {
+            TrajectoryKind::Free(FreeTrajectory { samples, .. }) => {
                 let last = samples.len().saturating_sub(1);
                 let k = (fraction * last as f64).round() as usize;
                 samples[k.min(last)].clone()
@@ -318,10 +360,7 @@ impl<'a> Trajectory<'a> {
                     q: fixed_coordinates.clone(),
                     q_dot: zeros.clone(),
                     q_ddot: zeros,
-                    chart: 0,
-                    actuator_coordinate: None,
-                    drive_magnitudes: Vec::new(),
-                    extra_values: Vec::new(),
+                    ..TrajectorySample::default()
                 };
                 // Exact at both ends.
                 sample.q[*actuator] = from * (1.0 - fraction) + to * fraction;
@@ -335,41 +374,30 @@ impl<'a> Trajectory<'a> {
     pub(crate) fn fraction_at(&self, k: usize) -> f64 {
         k as f64 / (self.points - 1) as f64
     }
-
-    /// The swept actuator; `None` if the trajectory is a motion in time.
-    pub(crate) fn swept_actuator(&self) -> Option<usize> {
-        match &self.kind {
-            TrajectoryKind::Prescribed(_) | TrajectoryKind::Free { .. } => None,
-            TrajectoryKind::Swept { actuator, .. } => Some(*actuator),
-        }
-    }
 }
 
 /// The limits of the default sweep over the range of the only actuator, rad or m.
 pub(crate) fn swept_range(scene: &Scene, plan: &Plan) -> [f64; 2] {
-    let SweepLimits { from, to, .. } = default_limits(scene, plan);
-    [from, to]
+    default_limits(scene, plan).0
+}
+
+fn one_revolution(start: f64) -> SweepLimits {
+    ([start, start + TAU], [false; 2], "one revolution")
 }
 
 /// The default sweep over the range of the only actuator.
 fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
     let start = plan.assembly_coordinates()[0];
-    let half_stroke = DEFAULT_STROKE * max_point_distance(scene);
-    let limits = |from, to, ends_at_limit_position, description| SweepLimits {
-        from,
-        to,
-        ends_at_limit_position,
-        description,
-    };
+    let half_stroke = DEFAULT_STROKE * scene.mechanism.size();
     match plan.range() {
-        Range::Full => limits(0.0, TAU, [false; 2], "one turn"),
+        Range::Full => one_revolution(0.0),
         Range::Revolutions(revolutions) => {
             let end = start + TAU * f64::from(revolutions);
-            limits(start, end, [false; 2], "the period")
+            ([start, end], [false; 2], "the period")
         }
         Range::Limited(from, to) => {
             let margin = LIMIT_MARGIN * (to - from);
-            limits(from + margin, to - margin, [true; 2], "the range")
+            ([from + margin, to - margin], [true; 2], "the range")
         }
         Range::Stroke(from, to) => {
             // A limit that was not found is only where the search stopped.
@@ -378,20 +406,12 @@ fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
             let low = if found[0] { from } else { start - half_stroke };
             let high = if found[1] { to } else { start + half_stroke };
             let margin = LIMIT_MARGIN * (high - low);
-            let margin_at = |found: bool| if found { margin } else { 0.0 };
-            limits(
-                low + margin_at(found[0]),
-                high - margin_at(found[1]),
-                found,
-                "the range",
-            )
+            let [below, above] = found.map(|found| if found { margin } else { 0.0 });
+            ([low + below, high - above], found, "the range")
         }
-        Range::Unbounded | Range::Unresolved(..) if plan.is_angle(0) => {
-            limits(start, start + TAU, [false; 2], "one turn")
-        }
-        Range::Unbounded | Range::Unresolved(..) => limits(
-            start - half_stroke,
-            start + half_stroke,
+        Range::Unbounded | Range::Unresolved(..) if plan.is_angle(0) => one_revolution(start),
+        Range::Unbounded | Range::Unresolved(..) => (
+            [start - half_stroke, start + half_stroke],
             [false; 2],
             "a stroke",
         ),
@@ -401,48 +421,33 @@ fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
 /// The error of a scene that prescribes no actuator coordinates.
 fn no_trajectory_error(scene: &Scene, analysis: Analysis) -> StudyError {
     let actuators = &scene.mechanism.actuators;
-    let label = |a| {
-        (
-            SceneLocation::Actuator(ActuatorId(a)),
-            "no coordinate is given".to_owned(),
-        )
-    };
-    let mut labels: Vec<_> = (0..actuators.len()).map(label).collect();
-    if labels.is_empty() {
-        labels.push((
-            SceneLocation::Whole,
-            "there are no [actuators] in this file".into(),
-        ));
-    }
     let message = match analysis {
         Analysis::Kinetostatics => {
             "the scene prescribes no motion, so there are no accelerations".to_owned()
         }
-        _ => format!(
-            "the scene has {} and no coordinates for them",
-            count(actuators.len(), "actuator")
-        ),
+        _ => {
+            let given = count(actuators.len(), "actuator");
+            format!("the scene has {given} and no coordinates for them")
+        }
     };
     let example = actuators.first().map_or("phi", |a| a.name.as_str());
     let help = format!(
         "add [prescribed] with a `duration` and a law for each, as in `{example} = {{ speed = 1.0 }}`; or \
          [coordinate-sweep] with a range for one of them, as in `{example} = [0.0, 1.0]`"
     );
-    scene.error(message, Some(help), &labels).into()
+    let labels = actuator_labels(scene, "no coordinate is given");
+    scene_error(scene, message, help, labels)
 }
 
 /// The error of a swept length that has no limits, in a mechanism with several actuators.
 fn open_sweep_error(scene: &Scene, actuator: usize) -> StudyError {
     let name = &scene.mechanism.actuators[actuator].name;
-    scene
-        .error(
-            format!("[coordinate-sweep] gives no range for `{name}`"),
-            Some(format!(
-                "add `{name} = [from, to]`: the range is computed for a single actuator only"
-            )),
-            &[(SceneLocation::CoordinateSweep, "no range".to_owned())],
-        )
-        .into()
+    scene_error(
+        scene,
+        format!("[coordinate-sweep] gives no range for `{name}`"),
+        format!("add `{name} = [from, to]`: the range is computed for a single actuator only"),
+        [(SceneLocation::CoordinateSweep, "no range")],
+    )
 }
 
 /// Names of the energies' columns.

@@ -1,9 +1,9 @@
 //! Figures of a free motion: energies, phase portraits, coordinates in time.
 
-use crate::output::symbol;
-use crate::trajectory::compute::{Analysis, BALANCE, ColumnQuantity, KINETIC, POTENTIAL};
+use crate::output::{chart, coordinate_axis, symbol};
+use crate::trajectory::compute::{Analysis, BALANCE, Column, KINETIC, POTENTIAL, Quantity};
 use crate::trajectory::figures::{FigureContext, MAX_CURVES};
-use dwell_report::{Axis, Chart, Figure, Panel, Series};
+use dwell_report::{Axis, Figure, Panel, Series};
 
 impl FigureContext<'_> {
     /// Every coordinate and its speed over time.
@@ -15,53 +15,36 @@ impl FigureContext<'_> {
         for (i, actuator) in self.scene.mechanism.actuators.iter().enumerate().take(3) {
             let name = symbol(&actuator.name);
             for (order, label) in [(0, name.clone()), (1, format!("d{name}/dt"))] {
-                let columns = self
-                    .columns_where(|c| c.quantity == ColumnQuantity::ActuatorCoordinate(i, order));
-                let curves: Vec<_> = columns.iter().map(|&k| (label.clone(), k)).collect();
-                if !curves.is_empty() {
-                    panels.push(self.chart("", &label, &curves).into());
-                }
+                let column = self
+                    .results
+                    .column_index(Quantity::ActuatorCoordinate(i, order));
+                let curve = column.map(|k| [(label.clone(), k)]);
+                panels.extend(curve.map(|curve| self.chart("", &label, &curve).into()));
             }
         }
-        let title = "Coordinates and their speeds".to_owned();
-        (!panels.is_empty())
-            .then(|| self.figure("coordinates".to_owned(), title, "Over time.", panels))
+        let title = "Coordinates and their speeds";
+        self.figure_of_some("coordinates", title, "Over time.", panels)
     }
 
     /// Kinetic and potential energy, work of nonconservative loads, and the error of the balance.
     pub(crate) fn energies(&self) -> Option<Figure> {
         let named = |name: &str| self.results.columns.iter().position(|c| c.name == name);
-        let [kinetic, potential] = [KINETIC, POTENTIAL].map(named);
-        let balance = named(BALANCE)?;
-        let mut stored = vec![("kinetic".to_owned(), kinetic?)];
-        stored.extend(
-            potential
-                .filter(|&k| !self.is_zero(k, 0.0))
-                .map(|k| ("potential".to_owned(), k)),
-        );
-        let works = self.columns_where(|c| {
-            matches!(c.quantity, ColumnQuantity::Extra(_)) && c.name.ends_with(".work")
-        });
-        let works: Vec<_> = works
-            .into_iter()
-            .filter(|&k| !self.is_zero(k, 0.0))
-            .collect();
+        let (kinetic, balance) = (named(KINETIC)?, named(BALANCE)?);
+        let mut stored = vec![("kinetic".to_owned(), kinetic)];
+        let potential = named(POTENTIAL).filter(|&k| !self.is_zero(k));
+        stored.extend(potential.map(|k| ("potential".to_owned(), k)));
+        let is_extra = |c: &Column| matches!(c.quantity, Quantity::Extra(_));
+        let mut works = self.columns_where(|c| is_extra(c) && c.name.ends_with(".work"));
+        works.retain(|&k| !self.is_zero(k));
         let works = self.labelled(&works, ".work");
-        let mut panels: Vec<Panel> = vec![
-            self.chart("Kinetic and potential energy", "energy", &stored)
-                .into(),
-        ];
-        for some in works.chunks(MAX_CURVES) {
-            panels.push(self.chart("Work done", "work", some).into());
-        }
-        let balance_curve = [("balance".to_owned(), balance)];
-        panels.push(
-            self.chart("Kinetic + potential − work", "change", &balance_curve)
-                .into(),
-        );
-        let text = "Work: that of nonconservative loads and drives. The last panel is the error of the \
-                     integration.";
-        Some(self.figure("energies".to_owned(), "Energies".to_owned(), text, panels))
+        let mut charts = vec![self.chart("Kinetic and potential energy", "energy", &stored)];
+        let works = works.chunks(MAX_CURVES);
+        charts.extend(works.map(|some| self.chart("Work done", "work", some)));
+        let balance = [("balance".to_owned(), balance)];
+        charts.push(self.chart("Kinetic + potential − work", "change", &balance));
+        let text = "Work: that of nonconservative loads and drives. The last panel is the error of the integration.";
+        let panels = charts.into_iter().map(Panel::from).collect();
+        Some(self.figure("energies", "Energies", text, panels))
     }
 
     /// Speed over coordinate.
@@ -72,11 +55,8 @@ impl FigureContext<'_> {
         let actuators = self.scene.mechanism.actuators.iter().enumerate();
         let panel = |(i, actuator): (usize, &dwell_geometry::Actuator)| {
             let column = |order| {
-                let quantity = ColumnQuantity::ActuatorCoordinate(i, order);
-                self.results
-                    .columns
-                    .iter()
-                    .position(|c| c.quantity == quantity)
+                let quantity = Quantity::ActuatorCoordinate(i, order);
+                self.results.column_index(quantity)
             };
             let (q, speed) = (column(0)?, column(1)?);
             let name = symbol(&actuator.name);
@@ -85,21 +65,12 @@ impl FigureContext<'_> {
                 let x = if angle { row[q].to_degrees() } else { row[q] };
                 [x, row[speed]]
             };
-            let unit = if angle { "rad/s" } else { "m/s" };
-            Some(Panel::from(Chart {
-                x: if angle {
-                    Axis::degrees(name.clone())
-                } else {
-                    Axis::new(name.clone(), "m")
-                },
-                y: Axis::new(format!("d{name}/dt"), unit),
-                series: vec![Series::line("", self.results.rows.iter().map(at).collect())],
-                ..Chart::default()
-            }))
+            let y = Axis::new(format!("d{name}/dt"), if angle { "rad/s" } else { "m/s" });
+            let line = Series::line("", self.results.rows.iter().map(at).collect());
+            Some(chart("", coordinate_axis(&name, angle), y, vec![line]).into())
         };
         let panels: Vec<Panel> = actuators.take(4).filter_map(panel).collect();
-        let title = "Phase portrait".to_owned();
         let text = "Speed over coordinate.";
-        (!panels.is_empty()).then(|| self.figure("phase-portrait".to_owned(), title, text, panels))
+        self.figure_of_some("phase-portrait", "Phase portrait", text, panels)
     }
 }

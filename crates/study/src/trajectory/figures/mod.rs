@@ -6,9 +6,10 @@ mod motion;
 
 use crate::bodies::{BodyPose, point_position};
 use crate::number_format::digits;
-use crate::output::{MechanismDrawing, scene_caption, symbol};
+use crate::output::{MechanismDrawing, chart, coordinate_axis, figure, symbol};
+use crate::ranges::extent;
 use crate::trajectory::compute::{
-    Analysis, Column, ColumnQuantity, Trajectory, TrajectoryResults, is_requested,
+    Analysis, Column, ComputedTrajectory, Quantity, TrajectoryResults, is_requested,
 };
 use dwell_report::{
     Animation, Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Scale, Series, Shape, Stroke,
@@ -34,7 +35,7 @@ pub(crate) struct FigureContext<'a> {
     scene: &'a Scene,
     results: &'a TrajectoryResults,
     analysis: Analysis,
-    /// How the positions were come by.
+    /// The method that computed the positions.
     method_text: String,
     x: Axis,
     abscissa_values: Vec<f64>,
@@ -45,12 +46,11 @@ pub(crate) struct FigureContext<'a> {
 /// The figures of a trajectory without the animation, and a note if some are left out.
 pub(crate) fn trajectory_figures(
     scene: &Scene,
-    results: &TrajectoryResults,
-    trajectory: &Trajectory<'_>,
+    computed: &ComputedTrajectory<'_>,
     analysis: Analysis,
 ) -> (Vec<Figure>, Option<String>) {
-    let context = FigureContext::new(scene, results, trajectory, analysis);
-    let mut figures = vec![context.mechanism(last_drawn(results, trajectory.period))];
+    let context = FigureContext::new(scene, computed, analysis);
+    let mut figures = vec![context.mechanism(last_drawn(computed))];
     figures.extend(context.angles());
     figures.extend(context.paths());
     figures.extend(context.lengths());
@@ -63,112 +63,79 @@ pub(crate) fn trajectory_figures(
     figures.extend(context.power());
     figures.extend(context.energies());
     figures.extend(context.phase_portraits());
-    figures.extend(
-        results
-            .sectioned_links
-            .iter()
-            .filter_map(|link| context.internal_forces(link)),
-    );
+    let links = context.results.sectioned_links.iter();
+    figures.extend(links.filter_map(|link| context.internal_forces(link)));
     (figures, note)
 }
 
 /// The animation of the mechanism, with the requested paths.
-pub(crate) fn animation(
-    scene: &Scene,
-    results: &TrajectoryResults,
-    trajectory: &Trajectory<'_>,
-) -> Animation {
-    let context = FigureContext::new(scene, results, trajectory, Analysis::Kinematics);
+pub(crate) fn animation(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Animation {
+    let context = FigureContext::new(scene, computed, Analysis::Kinematics);
+    let results = context.results;
     let drawing = MechanismDrawing::new(scene, &results.body_poses).with_visible(&results.modelled);
-    let last = last_drawn(results, trajectory.period);
+    let last = last_drawn(computed);
     let count = MAX_FRAMES.min(last + 1);
     // Over a whole period the last position equals the first.
-    let is_closed_curve = is_closed(&results.body_poses[..=last]);
-    let steps = if is_closed_curve {
-        count
-    } else {
-        count.saturating_sub(1)
-    };
+    let is_closed = is_closed(&results.body_poses[..=last]);
+    let steps = count.saturating_sub(usize::from(!is_closed));
     let frame = |i: usize| {
         let k = (i * last) / steps.max(1);
         let mut shapes = context.path_lines();
         drawing.draw(&results.body_poses[k], 0.0, &mut shapes);
         // Moving labels would distract.
         shapes.retain(|s| !matches!(s, Shape::Text { .. }));
-        Drawing {
-            title: context.describe_position(k),
-            x: Axis::new("x", "m"),
-            y: Axis::new("y", "m"),
-            shapes,
-        }
+        plane(context.describe_position(k), shapes)
     };
     Animation {
         name: "mechanism".to_owned(),
         frames: (0..count).map(frame).collect(),
         delay_ms: DELAY_MS,
         width_px: WIDTH_PX,
-        provenance: trajectory.method_text.clone(),
+        provenance: context.method_text,
     }
 }
 
 /// The last position that is drawn: the end of the trajectory, or of the first period of the only actuator.
-fn last_drawn(results: &TrajectoryResults, period: Option<f64>) -> usize {
-    let last = results.body_poses.len().saturating_sub(1);
-    let Some(period) = period else { return last };
-    let drive = |c: &Column| c.quantity == ColumnQuantity::ActuatorCoordinate(0, 0);
-    let Some(k) = results.columns.iter().position(drive) else {
-        return last;
+fn last_drawn(computed: &ComputedTrajectory<'_>) -> usize {
+    let results = &computed.results;
+    let end_of_period = || {
+        let k = results.column_index(Quantity::ActuatorCoordinate(0, 0))?;
+        let rows = results.rows.iter();
+        let mut rotated = rows.map(|row| (row[k] - results.rows[0][k]).abs());
+        // Up to rounding.
+        let full = computed.trajectory.period? * (1.0 - 1e-9);
+        rotated.position(|q| q >= full)
     };
-    let rows = results.rows.iter();
-    let mut rotated = rows.map(|row| (row[k] - results.rows[0][k]).abs());
-    // Up to rounding.
-    rotated
-        .position(|q| q >= period * (1.0 - 1e-9))
-        .unwrap_or(last)
+    end_of_period().unwrap_or(results.body_poses.len().saturating_sub(1))
 }
 
 /// Whether the last position equals the first.
 fn is_closed(body_poses: &[Vec<BodyPose>]) -> bool {
-    let (Some(first), Some(last)) = (body_poses.first(), body_poses.last()) else {
+    let [first, _, .., last] = body_poses else {
         return false;
     };
     let size = first.iter().map(|(p, _)| p.norm()).fold(0.0, f64::max);
     let same = |(a, b): (&BodyPose, &BodyPose)| {
         (a.0 - b.0).norm() <= 1e-6 * size && (a.1 - b.1).norm() <= 1e-6
     };
-    body_poses.len() > 2 && first.iter().zip(last).all(same)
+    first.iter().zip(last).all(same)
 }
 
 impl<'a> FigureContext<'a> {
-    fn new(
-        scene: &'a Scene,
-        results: &'a TrajectoryResults,
-        trajectory: &Trajectory<'_>,
-        analysis: Analysis,
-    ) -> Self {
-        let column_index =
-            |quantity: ColumnQuantity| results.columns.iter().position(|c| c.quantity == quantity);
-        let values = |k: Option<usize>| -> Vec<f64> {
-            let k = k.unwrap_or(0);
-            results.rows.iter().map(|row| row[k]).collect()
-        };
-        let (x, at) = match trajectory.swept_actuator() {
-            None => (
-                Axis::new("time", "s"),
-                values(column_index(ColumnQuantity::Time)),
-            ),
+    fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'_>, analysis: Analysis) -> Self {
+        let (trajectory, results) = (&computed.trajectory, &computed.results);
+        let abscissa = results.abscissa(trajectory);
+        let values = results.rows.iter().map(|row| row[abscissa]);
+        let (x, abscissa_values) = match trajectory.swept_actuator() {
+            None => (Axis::new("time", "s"), values.collect()),
             Some(actuator) => {
-                let at = values(column_index(ColumnQuantity::ActuatorCoordinate(
-                    actuator, 0,
-                )));
                 let swept = &scene.mechanism.actuators[actuator];
-                let name = symbol(&swept.name);
-                if swept.coordinate().is_angle() {
-                    let degrees = at.iter().map(|q| q.to_degrees()).collect();
-                    (Axis::degrees(name), degrees)
-                } else {
-                    (Axis::new(name, "m"), at)
-                }
+                let is_angle = swept.coordinate().is_angle();
+                let drawn = values.map(|q| if is_angle { q.to_degrees() } else { q });
+                (
+                    coordinate_axis(&symbol(&swept.name), is_angle),
+                    drawn.collect(),
+                )
             }
         };
         let [start, end] = trajectory.ends_at_limit_position;
@@ -178,21 +145,15 @@ impl<'a> FigureContext<'a> {
             analysis,
             method_text: trajectory.method_text.clone(),
             x,
-            abscissa_values: at,
-            limits: [start, end || results.early_stop.is_some()],
+            abscissa_values,
+            limits: [start, end || computed.early_stop.is_some()],
         }
-    }
-
-    fn caption(&self, text: &str) -> String {
-        scene_caption(self.scene, text)
     }
 
     /// The abscissa of the `k`th position: `time = 0.25 s`, `φ = −12.5°`.
     fn describe_position(&self, k: usize) -> String {
-        let (label, at) = (
-            &self.x.label,
-            self.abscissa_values.get(k).copied().unwrap_or(0.0),
-        );
+        let label = &self.x.label;
+        let at = self.abscissa_values.get(k).copied().unwrap_or(0.0);
         let text = match self.x.scale {
             Scale::Degrees => format!("{label} = {at:.1}°"),
             _ => format!("{label} = {} {}", digits(at, 4), self.x.unit),
@@ -200,20 +161,31 @@ impl<'a> FigureContext<'a> {
         text.replace('-', "−")
     }
 
-    fn figure(&self, name: String, title: String, text: &str, panels: Vec<Panel>) -> Figure {
-        let limit_note = if self.limits[0] || self.limits[1] {
-            " Towards a limit position quantities may grow without bound."
-        } else {
-            ""
+    /// A figure whose curves may grow without bound towards a limit position.
+    fn figure(
+        &self,
+        name: impl Into<String>,
+        title: impl Into<String>,
+        text: &str,
+        panels: Vec<Panel>,
+    ) -> Figure {
+        let limit_note = match self.limits {
+            [false, false] => "",
+            _ => " Towards a limit position quantities may grow without bound.",
         };
-        Figure {
-            name,
-            title,
-            caption: self.caption(&format!("{text}{limit_note}")),
-            columns: 1,
-            panels,
-            provenance: self.method_text.clone(),
-        }
+        let text = format!("{text}{limit_note}");
+        figure(self.scene, name, title, &text, panels, &self.method_text)
+    }
+
+    /// The same if there is a panel.
+    fn figure_of_some(
+        &self,
+        name: &str,
+        title: &str,
+        text: &str,
+        panels: Vec<Panel>,
+    ) -> Option<Figure> {
+        (!panels.is_empty()).then(|| self.figure(name, title, text, panels))
     }
 
     /// A curve over the trajectory; angles in degrees.
@@ -221,70 +193,48 @@ impl<'a> FigureContext<'a> {
         let degrees = self.results.columns[k].unit == "rad";
         let value = |row: &Vec<f64>| if degrees { row[k].to_degrees() } else { row[k] };
         let values = self.results.rows.iter().map(value);
-        let points = self
-            .abscissa_values
-            .iter()
-            .zip(values)
-            .map(|(x, y)| [*x, y]);
-        Series::line(name, points.collect())
+        let points = self.abscissa_values.iter().zip(values);
+        Series::line(name, points.map(|(x, y)| [*x, y]).collect())
     }
 
     /// A chart of some columns of one unit, each with its name in the legend.
     fn chart(&self, title: &str, label: &str, curves: &[(String, usize)]) -> Chart {
-        let series: Vec<Series> = curves
-            .iter()
-            .enumerate()
-            .map(|(i, (name, k))| {
-                let name = if curves.len() > 1 { name.as_str() } else { "" };
-                let curve = self.curve(name, *k);
+        let line = |(i, (name, k)): (usize, &(String, usize))| {
+            let name = if curves.len() > 1 { name.as_str() } else { "" };
+            match self.curve(name, *k) {
                 // From the seventh on colours alone would not do.
-                if i < 6 {
-                    curve
-                } else {
-                    curve.stroke(Stroke::Dashed)
-                }
-            })
-            .collect();
-        let unit = curves
-            .first()
-            .map_or("", |(_, k)| self.results.columns[*k].unit);
-        let y = match unit {
-            "rad" => Axis::degrees(label),
-            unit => Axis::new(label, unit_text(unit)),
+                curve if i >= 6 => curve.stroke(Stroke::Dashed),
+                curve => curve,
+            }
         };
+        let series: Vec<Series> = curves.iter().enumerate().map(line).collect();
+        let unit = curves.first().map(|(_, k)| self.results.columns[*k].unit);
+        let mut y = match unit.unwrap_or_default() {
+            "rad" => Axis::degrees(label),
+            unit => Axis::new(label, unit.replace("s2", "s²")),
+        };
+        y.range = self.value_range(&series);
         let title = match curves {
             [(name, _)] if !title.is_empty() => format!("{title}: {name}"),
             _ => title.to_owned(),
         };
-        Chart {
-            title,
-            x: self.x.clone(),
-            y: Axis {
-                range: self.value_range(&series),
-                ..y
-            },
-            series,
-            ..Chart::default()
-        }
+        chart(title, self.x.clone(), y, series)
+    }
+
+    /// A chart of some columns, if there are any.
+    fn chart_of_some(&self, title: &str, label: &str, curves: &[(String, usize)]) -> Option<Chart> {
+        (!curves.is_empty()).then(|| self.chart(title, label, curves))
     }
 
     /// The vertical range to show if curves grow without bound towards a limit position.
     fn value_range(&self, curves: &[Series]) -> Option<[f64; 2]> {
-        let span = |points: &[[f64; 2]]| {
-            let start = [f64::MAX, f64::MIN];
-            points
-                .iter()
-                .fold(start, |[a, b], [_, v]| [a.min(*v), b.max(*v)])
-        };
-        let joined = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        let none = [f64::MAX, f64::MIN];
-        let inner = |c: &Series| {
+        let all = extent(curves.iter().flat_map(|c| &c.points).map(|[_, v]| *v));
+        let inner = curves.iter().flat_map(|c| {
             let n = c.points.len();
             let [from, to] = self.limits.map(|limit| if limit { n / 20 } else { 0 });
-            span(&c.points[from..n - to])
-        };
-        let all = curves.iter().map(|c| span(&c.points)).fold(none, joined);
-        let inner = curves.iter().map(inner).fold(none, joined);
+            &c.points[from..n - to]
+        });
+        let inner = extent(inner.map(|[_, v]| *v));
         let [whole, part] = [all, inner].map(|[low, high]| high - low);
         let margin = 0.08 * part;
         (part > 0.0 && whole > DIVERGENCE_RATIO * part)
@@ -302,11 +252,12 @@ impl<'a> FigureContext<'a> {
         columns.filter(|(_, c)| holds(c)).map(|(k, _)| k).collect()
     }
 
-    /// Whether the absolute values of a column never exceed `size`.
-    fn is_zero(&self, k: usize, size: f64) -> bool {
-        self.results.rows.iter().all(|row| row[k].abs() <= size)
+    /// Whether a column is zero at every position.
+    fn is_zero(&self, k: usize) -> bool {
+        self.results.rows.iter().all(|row| row[k] == 0.0)
     }
 
+    /// The columns of these indices, named without a suffix.
     fn labelled(&self, indices: &[usize], suffix: &str) -> Vec<(String, usize)> {
         let name = |&k: &usize| {
             let full = &self.results.columns[k].name;
@@ -318,11 +269,10 @@ impl<'a> FigureContext<'a> {
     /// The requested paths.
     fn path_lines(&self) -> Vec<Shape> {
         let path = |path: &dwell_scene::PathPoint| {
-            let body_poses = self.results.body_poses.iter();
-            let points = body_poses
-                .map(|f| point_position(f, path.body.0, path.at))
-                .collect();
-            Shape::line(points, Pen::new(Paint::Ink, 2.0).lightness(0.55)).named("paths")
+            let poses = self.results.body_poses.iter();
+            let points = poses.map(|pose| point_position(pose, path.body.0, path.at));
+            let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
+            Shape::line(points.collect(), pen).named("paths")
         };
         self.scene.requests.paths.iter().map(path).collect()
     }
@@ -333,52 +283,39 @@ impl<'a> FigureContext<'a> {
             .with_visible(&self.results.modelled);
         let body_poses = &self.results.body_poses[..=last];
         let mut shapes = Vec::new();
-        let drawn = if is_closed(body_poses) {
-            DRAWN_POSITIONS
-        } else {
-            DRAWN_POSITIONS - 1
-        };
+        let drawn = DRAWN_POSITIONS - usize::from(!is_closed(body_poses));
         for k in (1..DRAWN_POSITIONS.min(body_poses.len())).rev() {
-            drawing.draw(
-                &body_poses[k * last / drawn],
-                0.62 + 0.04 * k as f64,
-                &mut shapes,
-            );
+            let lightness = 0.62 + 0.04 * k as f64;
+            drawing.draw(&body_poses[k * last / drawn], lightness, &mut shapes);
         }
         // Drawn before the first position, above the slots of the others.
         shapes.extend(self.path_lines());
         if let Some(first) = body_poses.first() {
             drawing.draw(first, 0.0, &mut shapes);
         }
-        let unmodelled = self.results.unmodelled_bodies(self.scene);
-        let unmodelled = match unmodelled.is_empty() {
-            true => String::new(),
-            false => format!(
+        let unmodelled = match self.results.unmodelled_bodies(self.scene) {
+            none if none.is_empty() => String::new(),
+            bodies => format!(
                 " Not modelled, as no result depends on them: {}.",
-                unmodelled.join(", ")
+                bodies.join(", ")
             ),
         };
         let text = format!(
             "Drawn in full at {}, lighter further on.{unmodelled}",
             self.describe_position(0)
         );
-        Figure {
-            name: "mechanism".to_owned(),
-            title: self.scene.title.clone(),
-            caption: self.caption(&text),
-            columns: 1,
-            panels: vec![Panel::from(Drawing {
-                title: String::new(),
-                x: Axis::new("x", "m"),
-                y: Axis::new("y", "m"),
-                shapes,
-            })],
-            provenance: self.method_text.clone(),
-        }
+        let panels = vec![plane(String::new(), shapes).into()];
+        let (scene, title) = (self.scene, &self.scene.title);
+        figure(scene, "mechanism", title, &text, panels, &self.method_text)
     }
 }
 
-/// A unit as a chart writes it.
-fn unit_text(unit: &str) -> String {
-    unit.replace("s2", "s²")
+/// A drawing in the plane of the mechanism.
+fn plane(title: String, shapes: Vec<Shape>) -> Drawing {
+    Drawing {
+        title,
+        x: Axis::new("x", "m"),
+        y: Axis::new("y", "m"),
+        shapes,
+    }
 }

@@ -1,6 +1,6 @@
 //! Angles, paths and travels, with their speeds and accelerations.
 
-use crate::trajectory::compute::{Analysis, ColumnQuantity};
+use crate::trajectory::compute::{Analysis, Quantity};
 use crate::trajectory::figures::{FigureContext, MAX_BODIES, MAX_CURVES};
 use dwell_geometry::BodyId;
 use dwell_report::{Chart, Figure, Mark};
@@ -8,29 +8,20 @@ use dwell_report::{Chart, Figure, Mark};
 impl FigureContext<'_> {
     pub(crate) fn angles(&self) -> Option<Figure> {
         let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
-        let angle = |body: BodyId, order: usize| {
-            let columns = &self.results.columns;
-            columns
-                .iter()
-                .position(|c| c.quantity == ColumnQuantity::BodyAngle(body, order))
-        };
+        let angle = |body, order| self.results.column_index(Quantity::BodyAngle(body, order));
         let rotates = |body: &BodyId| {
             let Some(k) = angle(*body, 0) else {
                 return false;
             };
+            let mut rows = self.results.rows.iter();
             let start = self.results.rows.first().map_or(0.0, |row| row[k]);
             // A translating body rotates by rounding only.
-            self.results
-                .rows
-                .iter()
-                .any(|row| (row[k] - start).abs() > 1e-9)
+            rows.any(|row| (row[k] - start).abs() > 1e-9)
         };
         let all: Vec<BodyId> = bodies.filter(rotates).collect();
         let is_requested = |body: &BodyId| {
-            let orders = (0..3).filter_map(|order| angle(*body, order));
-            orders
-                .into_iter()
-                .any(|k| self.is_requested(&self.results.columns[k]))
+            let mut columns = (0..3).filter_map(|order| angle(*body, order));
+            columns.any(|k| self.is_requested(&self.results.columns[k]))
         };
         let all = self.distinct_bodies(&all, angle);
         let requested: Vec<BodyId> = all.iter().copied().filter(is_requested).collect();
@@ -39,28 +30,19 @@ impl FigureContext<'_> {
         } else {
             &requested[..requested.len().min(MAX_CURVES)]
         };
-        let chart = |order: usize, suffix: &str, label: &str| {
+        let chart = |(order, label): (usize, &&str)| {
             let indices: Vec<usize> = shown.iter().filter_map(|b| angle(*b, order)).collect();
-            (!indices.is_empty()).then(|| self.chart("", label, &self.labelled(&indices, suffix)))
+            let suffix = format!(".{}", label.replace(' ', "_"));
+            self.chart_of_some("", label, &self.labelled(&indices, &suffix))
         };
-        let charts: Vec<Chart> = [
-            chart(0, ".angle", "angle"),
-            chart(1, ".angular_velocity", "angular velocity"),
-            chart(2, ".angular_acceleration", "angular acceleration"),
-        ]
-        .into_iter()
-        .flatten()
-        .collect();
-        let left_out = all.len() - shown.len();
-        let text = match left_out {
+        let labels = ["angle", "angular velocity", "angular acceleration"];
+        let charts: Vec<Chart> = labels.iter().enumerate().filter_map(chart).collect();
+        let text = match all.len() - shown.len() {
             0 => "Angles of the bodies from the ground, with their speeds and accelerations."
                 .to_owned(),
             n => format!("Angles of the bodies from the ground; {n} more are in the table."),
         };
-        (!charts.is_empty()).then(|| {
-            let title = "Angles".to_owned();
-            self.figure("angles".to_owned(), title, &text, vec![charts.into()])
-        })
+        (!charts.is_empty()).then(|| self.figure("angles", "Angles", &text, vec![charts.into()]))
     }
 
     /// The bodies without those that rotate exactly as an earlier one.
@@ -88,20 +70,20 @@ impl FigureContext<'_> {
             let labels = ["position", "velocity", "acceleration"];
             let chart = |order: usize| {
                 let indices = self.columns_where(|c| {
-                    matches!(c.quantity, ColumnQuantity::PointCoordinate(b, at, k)
+                    matches!(c.quantity, Quantity::PointCoordinate(b, at, k)
                         if b == path.body && at == path.at && k / 2 == order)
                 });
                 let names = ["x", "y"].map(str::to_owned);
                 // Two names of one point are drawn once.
-                let curves: Vec<_> = names.into_iter().zip(indices.iter().copied()).collect();
-                (!curves.is_empty()).then(|| self.chart("", labels[order], &curves))
+                let curves: Vec<_> = names.into_iter().zip(indices).collect();
+                self.chart_of_some("", labels[order], &curves)
             };
             let charts: Vec<Chart> = (0..3).filter_map(chart).collect();
             let body = self.scene.mechanism.body_name(path.body);
-            let point = format!("{body}.{}", path.name);
-            let text = "Components in the ground's axes.";
+            let title = format!("Point {body}.{}", path.name);
             let name = format!("path-{body}-{}", path.name);
-            self.figure(name, format!("Point {point}"), text, vec![charts.into()])
+            let text = "Components in the ground's axes.";
+            self.figure(name, title, text, vec![charts.into()])
         };
         self.scene.requests.paths.iter().map(one).collect()
     }
@@ -110,70 +92,53 @@ impl FigureContext<'_> {
     pub(crate) fn lengths(&self) -> Option<Figure> {
         let of_order = |order: usize, unit: &str| {
             self.columns_where(|c| {
-                let (ColumnQuantity::ActuatorCoordinate(_, o) | ColumnQuantity::Measured(_, o)) =
-                    c.quantity
-                else {
-                    return false;
-                };
-                o == order && c.unit == unit
+                use Quantity::{ActuatorCoordinate, Measured};
+                let is_of_order =
+                    matches!(c.quantity, ActuatorCoordinate(_, o) | Measured(_, o) if o == order);
+                is_of_order && c.unit == unit
             })
         };
         // A travel that also has a coordinate name is drawn once.
         let mut kept: Vec<(String, usize)> = Vec::new();
         for (name, k) in self.labelled(&of_order(0, "m"), "") {
             let rows = &self.results.rows;
-            let is_known = kept
-                .iter()
-                .any(|(_, other)| rows.iter().all(|row| row[k] == row[*other]));
+            let is_same = |other: usize| rows.iter().all(|row| row[k] == row[other]);
+            let is_known = kept.iter().any(|&(_, other)| is_same(other));
             if !is_known && kept.len() < MAX_BODIES {
                 kept.push((name, k));
             }
         }
-        let charts: Vec<Chart> = [
-            (0, "m", "travel", ""),
-            (1, "m/s", "velocity", ".velocity"),
-            (2, "m/s2", "acceleration", ".acceleration"),
-        ]
-        .into_iter()
-        .filter_map(|(order, unit, label, suffix)| {
+        let kinds = [
+            ("m", "travel", ""),
+            ("m/s", "velocity", ".velocity"),
+            ("m/s2", "acceleration", ".acceleration"),
+        ];
+        let chart = |(order, (unit, label, suffix))| {
             let mut curves = self.labelled(&of_order(order, unit), suffix);
             curves.retain(|(name, _)| kept.iter().any(|(k, _)| k == name));
-            (!curves.is_empty()).then(|| self.chart("", label, &curves))
-        })
-        .collect();
-        (!charts.is_empty()).then(|| {
-            let text = "Travels of joints and lengths, with their speeds and accelerations.";
-            let title = "Travels and lengths".to_owned();
-            self.figure("travels".to_owned(), title, text, vec![charts.into()])
-        })
+            self.chart_of_some("", label, &curves)
+        };
+        let charts: Vec<Chart> = kinds.into_iter().enumerate().filter_map(chart).collect();
+        let text = "Travels of joints and lengths, with their speeds and accelerations.";
+        let title = "Travels and lengths";
+        (!charts.is_empty()).then(|| self.figure("travels", title, text, vec![charts.into()]))
     }
 
     pub(crate) fn transmission(&self) -> Option<Figure> {
         let mut indices =
-            self.columns_where(|c| matches!(c.quantity, ColumnQuantity::TransmissionAngle(_)));
+            self.columns_where(|c| matches!(c.quantity, Quantity::TransmissionAngle(_)));
         indices.truncate(MAX_CURVES);
         if indices.is_empty() || self.analysis != Analysis::Kinematics {
             return None;
         }
-        let chart = self.chart(
-            "",
-            "transmission angle",
-            &self.labelled(&indices, ".transmission_angle"),
-        );
-        let chart = Chart {
-            marks: vec![Mark::Horizontal {
-                at: 90.0,
-                label: "optimum".to_owned(),
-            }],
-            ..chart
-        };
+        let curves = self.labelled(&indices, ".transmission_angle");
+        let mut chart = self.chart("", "transmission angle", &curves);
+        chart.marks.push(Mark::Horizontal {
+            at: 90.0,
+            label: "optimum".to_owned(),
+        });
         let text = "The angle between the two bodies of a dyad at their pin, or between a rod and the normal of its slide.";
-        let title = "Transmission angles".to_owned();
-        Some(self.figure(
-            "transmission-angles".to_owned(),
-            title,
-            text,
-            vec![chart.into()],
-        ))
+        let panels = vec![chart.into()];
+        Some(self.figure("transmission-angles", "Transmission angles", text, panels))
     }
 }

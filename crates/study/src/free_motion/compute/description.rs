@@ -2,11 +2,11 @@
 
 use crate::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use crate::models::SolverSettings;
-use crate::number_format::digits;
+use crate::number_format::{coordinate_unit, digits};
 use dwell_dynamics::{
-    MachineWorkspace, Method, MotionClass, OdeState, Options, Orbit, motion_class, solve,
+    MachineWorkspace, Method, MotionClass, OdeState, Options, Orbit, Statistics, motion_class,
+    solve,
 };
-use std::fmt::Write as _;
 
 /// Largest relative error of the energy balance that is not commented on.
 const MAX_ENERGY_LOSS: f64 = 1e-6;
@@ -21,34 +21,33 @@ impl FreeMotionProblem<'_> {
             return String::new();
         }
         let name = &self.loaded_scene.mechanism.actuators[0].name;
-        let angle = self.output_model.plan().is_angle(0);
-        let unit = if angle { "rad" } else { "m" };
-        let period = || match Orbit::loaded(&self.machine, self.initial_reduced_state()) {
+        let unit = coordinate_unit(self.output_model.plan().is_angle(0));
+        let start = self.initial_reduced_state();
+        let period = || match Orbit::loaded(&self.machine, start) {
             Ok(orbit) => format!("; period {} s by quadrature", digits(orbit.period, 13)),
             Err(_) => String::new(),
         };
-        match motion_class(&self.machine, self.initial_reduced_state()) {
+        let class = match motion_class(&self.machine, start) {
             Ok(MotionClass::Rotation {
                 kinetic_at_maximum, ..
-            }) => format!(
-                "  by energy: rotation; kinetic energy at the potential maximum {} J{}\n",
-                digits(kinetic_at_maximum, 6),
-                period()
-            ),
-            Ok(MotionClass::Libration {
-                turning_points: [a, b],
-            }) => format!(
-                "  by energy: libration between {name} = {} and {} {unit}{}\n",
-                digits(a, 10),
-                digits(b, 10),
-                period()
-            ),
-            Ok(MotionClass::Asymptotic { to }) => format!(
-                "  by energy: asymptotic to {name} = {} {unit} (separatrix)\n",
-                digits(to, 10)
-            ),
-            _ => String::new(),
-        }
+            }) => {
+                let kinetic = digits(kinetic_at_maximum, 6);
+                let period = period();
+                format!("rotation; kinetic energy at the potential maximum {kinetic} J{period}")
+            }
+            Ok(MotionClass::Libration { turning_points }) => {
+                let [a, b] = turning_points.map(|q| digits(q, 10));
+                format!("libration between {name} = {a} and {b} {unit}{}", period())
+            }
+            Ok(MotionClass::Asymptotic { to }) => {
+                format!(
+                    "asymptotic to {name} = {} {unit} (separatrix)",
+                    digits(to, 10)
+                )
+            }
+            _ => return String::new(),
+        };
+        format!("  by energy: {class}\n")
     }
 
     pub(crate) fn summary(
@@ -58,39 +57,30 @@ impl FreeMotionProblem<'_> {
         duration: f64,
     ) -> String {
         let end = motion.end_time();
-        // Writing to a string cannot fail.
-        let mut text = String::new();
-        let reached = if end < duration {
-            format!("{} of {} s", digits(end, 7), digits(duration, 7))
-        } else {
-            format!("{} s", digits(end, 7))
+        let of_all = match end < duration {
+            true => format!(" of {}", digits(duration, 7)),
+            false => String::new(),
         };
-        let _ = writeln!(text, "  {reached} by {method_text}");
+        let mut text = format!("  {}{of_all} s by {method_text}\n", digits(end, 7));
         for (i, event) in self.spec.events.iter().enumerate() {
-            let times: Vec<_> = motion.occurrences().filter(|(_, o)| o.event == i).collect();
-            let first = times
-                .first()
-                .map(|(_, o)| format!(", first at t = {} s", digits(o.state.t, 13)));
-            let stopped = if event.terminal && !times.is_empty() {
-                "; the motion ends there"
-            } else {
-                ""
+            let times = motion.occurrences().filter(|(_, o)| o.event == i);
+            let times: Vec<_> = times.collect();
+            let first = times.first();
+            let first = first.map(|(_, o)| format!(", first at t = {} s", digits(o.state.t, 13)));
+            let stopped = match first {
+                Some(_) if event.terminal => "; the motion ends there",
+                _ => "",
             };
-            let _ = writeln!(
-                text,
-                "  {}: {} times{}{stopped}",
-                event.name,
-                times.len(),
-                first.unwrap_or_default()
-            );
+            let (name, count) = (&event.name, times.len());
+            let first = first.unwrap_or_default();
+            text += &format!("  {name}: {count} times{first}{stopped}\n");
         }
         for change in &motion.chart_changes {
-            let _ = writeln!(text, "  {change}");
+            text += &format!("  {change}\n");
         }
         let statistics = motion.statistics;
-        let _ = writeln!(
-            text,
-            "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations",
+        text += &format!(
+            "  {} steps, {} rejected, {} evaluations, {} Jacobians, {} factorisations\n",
             statistics.steps,
             statistics.rejected_steps,
             statistics.evaluations,
@@ -138,21 +128,19 @@ impl FreeMotionProblem<'_> {
         settings: &SolverSettings,
     ) -> String {
         let end = motion.end_time();
-        let other = if settings.method.is_implicit() {
-            Method::Dop853
-        } else {
-            Method::Bdf
-        };
         if motion.statistics.steps < 100 || end <= 0.0 || motion.segments.len() > 1 {
             return String::new();
         }
+        let other = match settings.method.is_implicit() {
+            true => Method::Dop853,
+            false => Method::Bdf,
+        };
         // A motion may be stiff in parts only, so the costliest tenth is repeated by the other method.
         let steps: Vec<&OdeState> = motion.steps().map(|(_, point)| point).collect();
         let until = |k: usize| 0.1 * k as f64 * end;
         let first = |k: usize| steps.partition_point(|p| p.t < until(k));
-        let costliest = (0..10)
-            .max_by_key(|&k| first(k + 1) - first(k))
-            .unwrap_or(0);
+        let costliest = (0..10).max_by_key(|&k| first(k + 1) - first(k));
+        let costliest = costliest.unwrap_or(0);
         let (from, to) = (first(costliest), first(costliest + 1));
         let Some(&start) = steps.get(from).filter(|p| p.t < until(costliest + 1)) else {
             return String::new();
@@ -162,35 +150,26 @@ impl FreeMotionProblem<'_> {
             max_steps: motion.statistics.steps.max(100),
             ..Options::new(other, settings.rtol)
         };
-        let (end, events) = (until(costliest + 1), &[]);
-        let other_solution = solve(
-            &self.machine,
-            &self.output_model,
-            start,
-            end,
-            &options,
-            events,
-        );
-        let cost = |method: Method, statistics: dwell_dynamics::Statistics| {
+        let end = until(costliest + 1);
+        let repeated = solve(&self.machine, &self.output_model, start, end, &options, &[]);
+        let Some(repeated) = repeated.ok().filter(|s| s.error.is_none()) else {
+            return String::new();
+        };
+        let cost = |method: Method, statistics: Statistics| {
             // A Jacobian takes two evaluations in dual numbers for each free coordinate.
             let columns = 4 * self.machine.free().len() * usize::from(method.is_implicit());
             (statistics.evaluations + columns * statistics.jacobians) as f64
         };
-        let Ok(other_solution) = other_solution else {
-            return String::new();
-        };
         let share = (to - from) as f64 / steps.len() as f64;
         let cost_here = cost(settings.method, motion.statistics) * share;
-        let other_cost = cost(other, other_solution.statistics);
-        if other_solution.error.is_some() || cost_here < HINT_COST_RATIO * other_cost {
+        let other_cost = cost(other, repeated.statistics);
+        if cost_here < HINT_COST_RATIO * other_cost {
             return String::new();
         }
+        let (name, ratio) = (other.name().to_lowercase(), cost_here / other_cost);
+        let [from, to] = [start.t, end].map(|t| digits(t, 3));
         format!(
-            "  hint: --method {} takes about {:.0} times fewer evaluations from t = {} to {} s\n",
-            other.name().to_lowercase(),
-            cost_here / other_cost,
-            digits(start.t, 3),
-            digits(end, 3),
+            "  hint: --method {name} takes about {ratio:.0} times fewer evaluations from t = {from} to {to} s\n"
         )
     }
 }

@@ -1,0 +1,158 @@
+//! Simulates a free motion: integration, samples, energies and forces.
+
+use crate::explain::{StudyError, missing_section_label, scene_error};
+use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
+use crate::models::{SolverSettings, with_drive_loads};
+use crate::progress::Progress;
+use crate::trajectory::compute::{Analysis, ComputedTrajectory, compute_along};
+use dwell_dynamics::{EventOccurrence, Options};
+use dwell_findings::Table;
+use dwell_scene::{Scene, SceneLocation};
+
+/// Number of samples if no sample interval is given.
+const DEFAULT_SAMPLES: f64 = 1000.0;
+/// Maximum number of samples of a motion.
+const MAX_SAMPLES: f64 = 100_000.0;
+
+/// How a motion is integrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum MotionSolver {
+    /// By a method and its tolerances.
+    Settings(SolverSettings),
+    /// By the cheapest method that reaches an accuracy, which bounds the error of angles in rad, of lengths relative to
+    /// their largest change, and of energy and reactions relative to their largest value.
+    Accuracy {
+        /// The accuracy.
+        accuracy: f64,
+        /// Sample interval, s; `None` for a thousandth of the duration.
+        sample_interval: Option<f64>,
+    },
+}
+
+impl MotionSolver {
+    fn sample_interval(&self) -> Option<f64> {
+        match self {
+            Self::Settings(settings) => settings.sample_interval,
+            Self::Accuracy {
+                sample_interval, ..
+            } => *sample_interval,
+        }
+    }
+}
+
+/// A free motion, up to where it ended.
+pub struct FreeMotion {
+    /// The scene with the loads through which its drives act.
+    pub loaded_scene: Scene,
+    /// Coordinates, energies and forces at the samples, and why the motion ended early or misses the required accuracy.
+    pub computed: ComputedTrajectory<'static>,
+    /// By event that happened: its time, s, and its name.
+    pub events: Vec<(f64, String)>,
+    /// By event that happened: its time and number, and the actuator coordinates and speeds then.
+    pub event_table: Table,
+    /// The estimated error, in the sense of [`MotionSolver::Accuracy`], where an accuracy was required.
+    pub estimated_error: Option<f64>,
+    /// What the integration reports: method, events, cost, motion class, energy balance and estimated error.
+    pub summary: String,
+}
+
+/// The free motion of a scene.
+///
+/// # Errors
+/// [`StudyError`] when the scene has no motion, or its initial state cannot be evaluated. An error later in
+/// the motion, or an accuracy that is not reached, is in [`ComputedTrajectory::early_stop`].
+pub fn compute_free_motion(
+    scene: &Scene,
+    solver: &MotionSolver,
+    progress: Progress<'_>,
+) -> Result<FreeMotion, StudyError> {
+    let Some(spec) = &scene.motion else {
+        return Err(scene_error(
+            scene,
+            "the scene has no [motion] to simulate",
+            "add [motion] with `initial-velocity`, and `periods` or `duration`",
+            missing_section_label("motion"),
+        ));
+    };
+    let loaded_scene = with_drive_loads(scene)?;
+    let problem = FreeMotionProblem::new(scene, &loaded_scene, spec)?;
+    let duration = problem.duration()?;
+    let integrated = problem.integrate(scene, solver, duration)?;
+    let motion = &integrated.motion;
+    if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
+        return Err(problem.explain(error));
+    }
+    let trajectory = problem
+        .trajectory(&integrated)
+        .map_err(|e| problem.explain(&e))?;
+    let (model, analysis) = (&problem.output_model, Analysis::FreeMotion);
+    let mut computed = compute_along(&loaded_scene, model, trajectory, analysis, progress)?;
+    let shortfall = problem.shortfall(scene, &integrated);
+    computed.early_stop = shortfall.or(computed.early_stop);
+    let mut summary = problem.summary(motion, &integrated.method_text, duration);
+    summary += &problem.notes;
+    summary += &integrated.remarks;
+    let event = |(_, o): (usize, &EventOccurrence)| {
+        let name = spec.events.get(o.event).map(|e| e.name.clone());
+        (o.state.t, name.unwrap_or_default())
+    };
+    Ok(FreeMotion {
+        computed,
+        events: motion.occurrences().map(event).collect(),
+        event_table: problem.event_table(motion),
+        estimated_error: integrated.accuracy.map(|[_, error]| error),
+        summary,
+        loaded_scene,
+    })
+}
+
+impl FreeMotionProblem<'_> {
+    fn integrate(
+        &self,
+        scene: &Scene,
+        solver: &MotionSolver,
+        duration: f64,
+    ) -> Result<ComputedMotion, StudyError> {
+        let interval = solver.sample_interval();
+        let interval = interval.unwrap_or(duration / DEFAULT_SAMPLES);
+        let interval = interval.max(duration / MAX_SAMPLES);
+        let settings = match solver {
+            MotionSolver::Settings(settings) => settings,
+            MotionSolver::Accuracy { accuracy, .. } => {
+                return self.to_accuracy(scene, *accuracy, duration, interval);
+            }
+        };
+        let options = Options {
+            atol: settings.atol,
+            max_step: settings.max_step,
+            sample_interval: Some(interval),
+            ..Options::new(settings.method, settings.rtol)
+        };
+        let motion = self.solve(scene, duration, &options)?;
+        let error = self.estimate_error(scene, &motion, &options)?;
+        Ok(ComputedMotion {
+            method_text: settings.describe(),
+            remarks: self.method_hint(&motion, settings) + &error,
+            accuracy: None,
+            motion,
+        })
+    }
+
+    /// Why a motion is not what was required: it ended early, or is less accurate.
+    fn shortfall(&self, scene: &Scene, integrated: &ComputedMotion) -> Option<StudyError> {
+        if let Some(error) = &integrated.motion.failure {
+            return Some(self.explain(error));
+        }
+        let [requested, error] = integrated.accuracy?;
+        (error > requested).then(|| {
+            scene_error(
+                scene,
+                format!(
+                    "an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}"
+                ),
+                "the results are written with the error above; require that accuracy, or a shorter motion",
+                [(SceneLocation::Duration, "the error grows with the duration")],
+            )
+        })
+    }
+}

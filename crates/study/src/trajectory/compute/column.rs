@@ -1,0 +1,167 @@
+//! A column of a trajectory table: its quantity, and which names ask for it.
+
+use crate::trajectory::compute::{Analysis, Dyad};
+use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::{BodyId, JointId, Reaction, Vec2};
+use dwell_scene::Scene;
+
+/// Whether a name selects a column: its full name, or a prefix up to a dot.
+pub(crate) fn is_prefix_of(name: &str, column: &str) -> bool {
+    let rest = column.strip_prefix(name);
+    rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
+}
+
+/// The quantity of a column. An order is 0 for a position, 1 for its velocity, 2 for its acceleration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Quantity {
+    Time,
+    ActuatorCoordinate(usize, usize),
+    ActuatorForce(usize),
+    Measured(CoordinateFunction, usize),
+    BodyAngle(BodyId, usize),
+    /// dθ/dq of a body.
+    VelocityRatio(BodyId),
+    /// dq/dθ of a body, dq/ds of a point along its path.
+    MechanicalAdvantage(BodyId, Option<Vec2>),
+    /// x and y of where a body has no velocity (order 1) or no acceleration (order 2).
+    Pole(BodyId, usize, usize),
+    /// x, y, then their speeds, then their accelerations.
+    PointCoordinate(BodyId, Vec2, usize),
+    TransmissionAngle(Dyad),
+    Reaction(usize),
+    /// The force of a joint along an axis (0 or 1) of a body.
+    BodyFrameForce(JointId, BodyId, usize),
+    ForceMagnitude(JointId),
+    ForceDirection(JointId),
+    /// Force x, y and moment on the frame.
+    ShakingForce(usize),
+    Power(PowerTerm),
+    LoadForce(usize),
+    LoadPower(usize),
+    /// A column of a free motion's integration, by its index among the
+    /// [`ExtraColumn`](super::ExtraColumn)s.
+    Extra(usize),
+}
+
+/// A term of the power balance.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PowerTerm {
+    Actuators,
+    Loads,
+    KineticRate,
+    Residual,
+    KineticEnergy,
+}
+
+/// A column.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) name: String,
+    /// The name it had before it was renamed, unless another column has that name now.
+    pub(crate) former: Option<String>,
+    pub(crate) unit: &'static str,
+    pub(crate) quantity: Quantity,
+    /// Its meaning, where the name alone does not say.
+    pub(crate) meaning: String,
+}
+
+impl Quantity {
+    /// The bodies that it depends on: if they are not modelled, it has no value.
+    pub(crate) fn bodies(self, scene: &Scene, reactions: &[Reaction]) -> Vec<BodyId> {
+        let joint = |j: JointId| scene.mechanism.joints[j.0].bodies.to_vec();
+        match self {
+            Self::Measured(
+                CoordinateFunction::Angle(bodies)
+                | CoordinateFunction::Travel { bodies, .. }
+                | CoordinateFunction::Length { bodies, .. },
+                _,
+            ) => bodies.to_vec(),
+            Self::BodyAngle(body, _)
+            | Self::VelocityRatio(body)
+            | Self::MechanicalAdvantage(body, _)
+            | Self::Pole(body, ..)
+            | Self::PointCoordinate(body, ..) => vec![body],
+            Self::TransmissionAngle(dyad) => dyad.bodies().to_vec(),
+            Self::Reaction(k) => joint(reactions[k].joint),
+            Self::BodyFrameForce(j, ..) | Self::ForceMagnitude(j) | Self::ForceDirection(j) => {
+                joint(j)
+            }
+            // What the actuators and the loads act on is placed anyway, or does not move them.
+            Self::Time
+            | Self::ActuatorCoordinate(..)
+            | Self::ActuatorForce(_)
+            | Self::ShakingForce(_)
+            | Self::Power(_)
+            | Self::LoadForce(_)
+            | Self::LoadPower(_)
+            | Self::Extra(_) => Vec::new(),
+        }
+    }
+}
+
+impl Column {
+    /// Whether `request` names it: by its name, the first part of it, or its former name.
+    pub(crate) fn matches(&self, request: &str) -> bool {
+        self.names_it(request, &self.name) || self.matches_former(request)
+    }
+
+    /// Whether `request` names it by its former name.
+    pub(crate) fn matches_former(&self, request: &str) -> bool {
+        let former = self.former.as_deref();
+        former.is_some_and(|former| self.names_it(request, former))
+            && !self.names_it(request, &self.name)
+    }
+
+    /// Whether `request` is `name` or the first part of it. A column that has no value in some positions must be
+    /// named itself: a body's name does not ask for its pole.
+    fn names_it(&self, request: &str, name: &str) -> bool {
+        let optional_suffix = match self.quantity {
+            Quantity::MechanicalAdvantage(..) => 0,
+            Quantity::Pole(..) => ".x".len(),
+            _ => name.len(),
+        };
+        is_prefix_of(request, name) && request.len() + optional_suffix >= name.len()
+    }
+
+    /// Whether it is computed only on request.
+    pub(crate) fn is_optional(&self) -> bool {
+        use Quantity::{MechanicalAdvantage, Pole};
+        matches!(self.quantity, MechanicalAdvantage(..) | Pole(..))
+    }
+
+    /// Whether it is an angle that is unwrapped along the trajectory.
+    pub(crate) fn unwraps(&self) -> bool {
+        use Quantity::{BodyAngle, Measured};
+        let quantity = self.quantity;
+        matches!(
+            quantity,
+            BodyAngle(_, 0) | Measured(CoordinateFunction::Angle(_), 0)
+        )
+    }
+
+    /// Whether an analysis computes it.
+    pub(crate) fn is_computed_by(&self, analysis: Analysis) -> bool {
+        let forces = analysis != Analysis::Kinematics;
+        let moves = analysis != Analysis::Statics;
+        match self.quantity {
+            Quantity::Time => true,
+            Quantity::ActuatorCoordinate(_, order)
+            | Quantity::Measured(_, order)
+            | Quantity::BodyAngle(_, order) => order == 0 || moves,
+            Quantity::PointCoordinate(_, _, k) => k < 2 || moves,
+            Quantity::VelocityRatio(_)
+            | Quantity::MechanicalAdvantage(..)
+            | Quantity::TransmissionAngle(_) => analysis != Analysis::FreeMotion,
+            Quantity::Extra(_) => analysis == Analysis::FreeMotion,
+            Quantity::Pole(..) => moves,
+            Quantity::ActuatorForce(_)
+            | Quantity::Reaction(_)
+            | Quantity::BodyFrameForce(..)
+            | Quantity::ForceMagnitude(_)
+            | Quantity::ForceDirection(_)
+            | Quantity::ShakingForce(_)
+            | Quantity::LoadForce(_) => forces,
+            Quantity::Power(_) | Quantity::LoadPower(_) => forces && moves,
+        }
+    }
+}

@@ -1,0 +1,311 @@
+//! Evaluates one position of a trajectory after another.
+
+use crate::bodies::BodyPose;
+use crate::explain::{StudyError, explain_model};
+use crate::trajectory::compute::{
+    Analysis, PowerTerm, Quantity, SpeedScale, StopCause, TrajectoryMonitor, TrajectorySample,
+};
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
+use dwell_kinetostatics::{
+    AppliedWrench, EvaluatedState, ForceSource, FreeBodyForces, InverseDynamics, LinkForces,
+    LoadKind, Model, PowerBalance, Workspace, Wrench,
+};
+use dwell_scene::Scene;
+
+/// Evaluates the forces at one position after another.
+pub(crate) struct ForceEvaluator<'a> {
+    pub(crate) model: &'a Model,
+    analysis: Analysis,
+    workspace: Workspace<f64>,
+    pub(crate) results: InverseDynamics<f64>,
+    pose: Pose<f64>,
+    motion_buffer: Motion<f64>,
+    /// The bodies at the velocities of the trajectory, whatever the analysis.
+    body_states: BodyStates,
+    monitor: TrajectoryMonitor<'a>,
+}
+
+impl<'a> ForceEvaluator<'a> {
+    pub(crate) fn new(scene: &'a Scene, model: &'a Model, analysis: Analysis) -> Self {
+        Self {
+            model,
+            analysis,
+            workspace: model.workspace(),
+            results: model.result_buffer(),
+            pose: model.plan().pose(),
+            motion_buffer: model.plan().motion(),
+            body_states: BodyStates::new(model.plan()),
+            monitor: TrajectoryMonitor::new(scene),
+        }
+    }
+
+    /// Evaluates the position of a sample, with the loads at time `t`; its state, but for kinematics.
+    pub(crate) fn evaluate(
+        &mut self,
+        sample: &TrajectorySample,
+        t: f64,
+    ) -> Result<Option<EvaluatedState<'_>>, StopCause> {
+        let (model, workspace, results) = (self.model, &mut self.workspace, &mut self.results);
+        let TrajectorySample {
+            q, q_dot, q_ddot, ..
+        } = sample;
+        let state = match self.analysis {
+            Analysis::Kinematics => {
+                model.plan().positions(q, &mut self.pose)?;
+                return Ok(None);
+            }
+            Analysis::Statics => model.statics(t, q, workspace, results)?,
+            Analysis::Kinetostatics | Analysis::FreeMotion => {
+                let mut state = model.kinematic_state(q, q_dot, workspace)?.apply_loads(t)?;
+                for &(load, magnitude) in &sample.drive_magnitudes {
+                    state.set_magnitude(load, magnitude);
+                }
+                state.evaluate(q_ddot, results)?
+            }
+        };
+        self.pose.clone_from(state.pose());
+        match self.monitor.off_table(t, state.bodies()) {
+            Some(fault) => Err(StopCause::Fault(fault)),
+            None => Ok(Some(state)),
+        }
+    }
+
+    /// Computes the states of the bodies at the velocities of the sample; fails where a coupling jumps.
+    pub(crate) fn fill_states(&mut self, sample: &TrajectorySample) -> Result<(), StopCause> {
+        let (plan, pose) = (self.model.plan(), &self.pose);
+        plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
+        plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
+        self.body_states.fill(plan, pose, &self.motion_buffer);
+        let fault = self.monitor.discontinuity(&self.body_states);
+        fault.map_or(Ok(()), |fault| Err(StopCause::Fault(fault)))
+    }
+}
+
+/// What the forces at one position are computed into.
+pub(crate) struct PositionForces<'a> {
+    scene: &'a Scene,
+    body_forces: FreeBodyForces,
+    wrenches: Vec<AppliedWrench>,
+    /// By load: its magnitude and its power.
+    magnitudes: Vec<f64>,
+    load_powers: Vec<f64>,
+    /// By joint: the force on its second body, N.
+    joint_forces: Vec<Vec2>,
+    shaking_wrench: Wrench,
+    pub(crate) power_balance: PowerBalance,
+    /// By requested link: its internal forces.
+    pub(crate) link_forces: Vec<Option<LinkForces>>,
+}
+
+impl<'a> PositionForces<'a> {
+    fn new(scene: &'a Scene, model: &Model) -> Result<Self, StudyError> {
+        Ok(Self {
+            body_forces: FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?,
+            scene,
+            wrenches: Vec::new(),
+            magnitudes: vec![0.0; scene.loads.len()],
+            load_powers: vec![0.0; scene.loads.len()],
+            joint_forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
+            shaking_wrench: Wrench::default(),
+            power_balance: PowerBalance::default(),
+            link_forces: Vec::new(),
+        })
+    }
+
+    /// Computes joint forces, shaking force, power balance and internal forces.
+    fn compute(&mut self, state: &EvaluatedState<'_>) {
+        let (body_forces, wrenches) = (&self.body_forces, &mut self.wrenches);
+        body_forces.wrenches(state, wrenches);
+        self.joint_forces.fill(Vec2::ZERO);
+        for wrench in &*wrenches {
+            if let ForceSource::Joint(j) = wrench.source
+                && wrench.body == self.scene.mechanism.joints[j.0].bodies[1]
+            {
+                self.joint_forces[j.0] += wrench.force;
+            }
+        }
+        let shaking = body_forces.shaking_force(state, wrenches);
+        let [by_reactions, by_loads] = [shaking.from_reactions, shaking.loads_on_ground];
+        self.shaking_wrench = Wrench {
+            force: by_reactions.force + by_loads.force,
+            moment: by_reactions.moment + by_loads.moment,
+        };
+        self.power_balance = state.power_balance();
+        state.load_powers(&mut self.load_powers);
+        self.magnitudes.clone_from(&state.loads().magnitude);
+        let links = self.scene.requests.sections.iter();
+        let forces = links.map(|l| body_forces.link_forces(state, l.body, l.points, wrenches));
+        self.link_forces.clear();
+        self.link_forces.extend(forces);
+    }
+}
+
+/// Evaluates all quantities at one position after another.
+pub(crate) struct PositionEvaluator<'a> {
+    scene: &'a Scene,
+    pub(crate) forces: ForceEvaluator<'a>,
+    pub(crate) position: PositionForces<'a>,
+    /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
+    whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
+    /// The bodies at q̇ = 1 of a single actuator.
+    unit_speed_states: BodyStates,
+    /// Size of the mechanism, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
+    size: f64,
+    speed_scales: [SpeedScale; 2],
+}
+
+impl<'a> PositionEvaluator<'a> {
+    pub(crate) fn new(
+        scene: &'a Scene,
+        whole_plan: &'a Plan,
+        model: &'a Model,
+        analysis: Analysis,
+    ) -> Result<Self, StudyError> {
+        let is_pruned = model.plan().pruned_groups().contains(&true);
+        let checks_whole = is_pruned && whole_plan.actuators() > 1;
+        Ok(Self {
+            position: PositionForces::new(scene, model)?,
+            scene,
+            forces: ForceEvaluator::new(scene, model, analysis),
+            whole_mechanism: checks_whole.then(|| (whole_plan, whole_plan.pose())),
+            size: scene.mechanism.size(),
+            speed_scales: [SpeedScale::default(); 2],
+            unit_speed_states: BodyStates::new(model.plan()),
+        })
+    }
+
+    /// Evaluates the position of a sample, with the loads at time `t`.
+    pub(crate) fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
+        if let Some((whole_plan, pose)) = &mut self.whole_mechanism {
+            whole_plan.positions(&sample.q, pose)?;
+        }
+        if let Some(state) = self.forces.evaluate(sample, t)? {
+            self.position.compute(&state);
+        }
+        let forces = &mut self.forces;
+        let plan = forces.model.plan();
+        if plan.actuators() == 1 {
+            let (pose, motion) = (&forces.pose, &mut forces.motion_buffer);
+            plan.velocities(pose, &[1.0], motion);
+            self.unit_speed_states.fill(plan, pose, motion);
+        }
+        forces.fill_states(sample)?;
+        self.speed_scales = [&self.unit_speed_states, &forces.body_states]
+            .map(|states| SpeedScale::new(states, self.size));
+        Ok(())
+    }
+
+    pub(crate) fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
+        let (forces, states) = (&self.forces.results, &self.forces.body_states);
+        let (unit_speed, balance) = (&self.unit_speed_states, &self.position.power_balance);
+        let component = |v: Vec2, axis: usize| if axis == 0 { v.x } else { v.y };
+        match quantity {
+            Quantity::Time => sample.t,
+            Quantity::ActuatorCoordinate(i, order) => match sample.actuator_coordinate {
+                Some(actuator_coordinate) => actuator_coordinate[order],
+                None => [&sample.q, &sample.q_dot, &sample.q_ddot][order][i],
+            },
+            Quantity::ActuatorForce(i) => forces.tau[i],
+            Quantity::Measured(measured, order) => states.coordinate(measured)[order],
+            // As couplings and loads count revolutions, so that columns of one angle agree.
+            Quantity::BodyAngle(body, 0) => {
+                states.angle([BodyId(self.scene.mechanism.ground), body])[0]
+            }
+            Quantity::BodyAngle(body, 1) => states.body(body).angular_velocity,
+            Quantity::BodyAngle(body, _) => states.body(body).angular_acceleration,
+            Quantity::VelocityRatio(body) => unit_speed.body(body).angular_velocity,
+            Quantity::MechanicalAdvantage(body, point) => {
+                self.speed_scales[0].mechanical_advantage(unit_speed, body, point)
+            }
+            Quantity::Pole(body, order, axis) => {
+                let [at_unit_speed, scale] = &self.speed_scales;
+                let pole = match order {
+                    // At rest of a single actuator the body still has its pole.
+                    1 if self.forces.model.plan().actuators() == 1 => {
+                        at_unit_speed.pole(unit_speed, body)
+                    }
+                    1 => scale.pole(states, body),
+                    _ => scale.acceleration_pole(states, body),
+                };
+                component(pole, axis)
+            }
+            Quantity::PointCoordinate(body, at, k) => {
+                let point = states.point(body, at);
+                let vectors = [point.position, point.velocity, point.acceleration];
+                component(vectors[k / 2], k % 2)
+            }
+            Quantity::TransmissionAngle(dyad) => dyad.angle(states),
+            Quantity::Reaction(k) => forces.reactions[k],
+            Quantity::BodyFrameForce(joint, body, axis) => {
+                let rotation = states.body(body).rotation;
+                component(
+                    self.position.joint_forces[joint.0].rotate_inverse(rotation),
+                    axis,
+                )
+            }
+            Quantity::ForceMagnitude(joint) => self.position.joint_forces[joint.0].norm(),
+            Quantity::ForceDirection(joint) => self.position.joint_forces[joint.0].angle(),
+            Quantity::ShakingForce(2) => self.position.shaking_wrench.moment,
+            Quantity::ShakingForce(axis) => component(self.position.shaking_wrench.force, axis),
+            Quantity::Power(PowerTerm::Actuators) => balance.actuators,
+            Quantity::Power(PowerTerm::Loads) => balance.loads,
+            Quantity::Power(PowerTerm::KineticRate) => balance.kinetic_energy_rate,
+            Quantity::Power(PowerTerm::Residual) => balance.residual(),
+            Quantity::Power(PowerTerm::KineticEnergy) => balance.kinetic_energy,
+            Quantity::LoadForce(k) => self.load_force(k),
+            Quantity::LoadPower(k) => self.position.load_powers[k],
+            Quantity::Extra(k) => sample.extra_values[k],
+        }
+    }
+
+    /// The rate of an angle that is unwrapped along the trajectory, rad/s.
+    pub(crate) fn angular_velocity(&self, angle: Quantity) -> f64 {
+        match angle {
+            Quantity::Measured(measured @ CoordinateFunction::Angle(_), _) => {
+                self.forces.body_states.coordinate(measured)[1]
+            }
+            Quantity::BodyAngle(body, _) => self.forces.body_states.body(body).angular_velocity,
+            _ => 0.0,
+        }
+    }
+
+    /// The force of a load along its direction or line, or its moment on its second body.
+    fn load_force(&self, k: usize) -> f64 {
+        let states = &self.forces.body_states;
+        let on = |body: BodyId| {
+            let mut wrenches = self.position.wrenches.iter();
+            wrenches.find(|w| w.source == ForceSource::Load(k) && w.body == body)
+        };
+        match self.scene.loads[k].kind {
+            LoadKind::Gravity { .. }
+            | LoadKind::Force { .. }
+            | LoadKind::Torque { .. }
+            | LoadKind::PointToPointForce { .. }
+            | LoadKind::SeparatingForce(_) => self.position.magnitudes[k],
+            LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
+                let line = states.separation(bodies, points).direction;
+                let force_and_line = on(bodies[1]).zip(line);
+                force_and_line.map_or(0.0, |(wrench, line)| wrench.force.dot(line))
+            }
+            LoadKind::TorsionSpring { bodies, .. } | LoadKind::RotationalDamper { bodies } => {
+                on(bodies[1]).map_or(0.0, |wrench| wrench.couple)
+            }
+            LoadKind::SlideForce(guide) | LoadKind::SlideDamper(guide) => {
+                let [first, second] = guide.bodies;
+                let axis = guide.axis.rotate(states.body(first).rotation);
+                on(second).map_or(0.0, |wrench| wrench.force.dot(axis))
+            }
+        }
+    }
+
+    pub(crate) fn body_poses(&self) -> Vec<BodyPose> {
+        let states = &self.forces.body_states;
+        let bodies = (0..self.scene.mechanism.bodies.len()).map(BodyId);
+        let body_pose = |b| {
+            let origin = states.point(b, Vec2::ZERO).position;
+            (origin, states.body(b).rotation)
+        };
+        bodies.map(body_pose).collect()
+    }
+}
