@@ -19,7 +19,7 @@ validate-slow: && size
 size:
     cargo run --release --example size
 
-# Deliberate faults, and which independent truths catch them: reports/mutations.png, .md and .txt
+# Deliberate faults, and which independent checks catch them: reports/mutations.png, .md and .txt
 [group('main')]
 mutations:
     cargo run --release --example mutations

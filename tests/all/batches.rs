@@ -8,6 +8,7 @@ use dwell_tests::changes::{Rng, Setup, positions};
 use dwell_tests::fixtures::{case_names, scene};
 
 /// Holds a batch against single evaluations, bit for bit, and gives the part of its fours that go together.
+// Long: one comparison for each output of a batch.
 pub(crate) fn compare_batch(model: &ExactModel, q: &[f64]) -> Result<f64, String> {
     let mut batch = Batch::default();
     model.reduce_batch(q, &mut batch);

@@ -99,6 +99,7 @@ fn a_damped_flywheel() {
 /// A motor against a constant torque: its line of torque over speed; with inductance, both multipliers
 /// are those of the linear equations, exp(λT), here of a swinging pair; a regulator holds its speed.
 #[test]
+// Long: one derivation by hand.
 fn motors_against_a_constant_torque() {
     let scene = wheel_scene("load = { torque = \"wheel\", magnitude = -1.5 }");
     let (u, kn, r, j) = (24.0, 0.25, 0.8, 0.02 + 25.0 * 1e-4);

@@ -213,6 +213,7 @@ fn a_regulator_of_speed_has_no_equilibrium() {
 
 /// B, C and D of a machine with every kind of load and drive against differences.
 #[test]
+// Long: one comparison, matrix by matrix.
 fn linearised_inputs_and_outputs_agree_with_differences() {
     let (machine, y) = everything();
     let linear = linearise(&machine, 0.0, &y).expect("a linearisation");

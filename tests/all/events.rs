@@ -14,6 +14,7 @@ use std::num::NonZeroUsize;
 /// The pendulum A01 falls from level: it passes the bottom after a quarter of its period, where the
 /// horizontal force of its pin changes its sign, and turns back after half of it.
 #[test]
+// Long: one motion, event by event.
 fn val_events_of_a_pendulum() {
     let scene = scene("pendulum-a01");
     let all = scene.mechanism.reactions();

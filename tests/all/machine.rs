@@ -298,6 +298,7 @@ fn a_block_on_an_incline() {
 /// Every action and every reaction is one line: M q̈ + (what speeds alone make) + Σ c_ℓ F_ℓ, on every
 /// case with loads, whatever its number of coordinates; and w of what has a potential is its slope.
 #[test]
+// Long: one sum, term by term.
 fn reactions_are_the_sum_of_their_channels() {
     let mut kinds = std::collections::HashSet::new();
     for case in [

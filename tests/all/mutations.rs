@@ -16,7 +16,7 @@ use dwell_tests::mutations::tested_mechanism::{self, CheckMode, TestedMechanism}
 const MECHANISMS: [&str; 3] = ["cross-slide", "planetary", "slider-crank-friction"];
 
 #[test]
-fn every_fault_in_an_equation_is_caught_by_two_truths() {
+fn every_fault_in_an_equation_is_detected_by_two_checks() {
     let models = study::tested_models().into_iter();
     let some = models.filter(|m| ["single-dwell", "turning-rail"].contains(&m.scene.name.as_str()));
     let some: Vec<_> = some.collect();
@@ -68,9 +68,9 @@ fn a_dropped_centrifugal_term_cannot_be_missed() {
     }
 }
 
-/// Without a fault nothing slips, and a slip is one of the line that it names alone.
+/// Without a mutation nothing is mutated, and a mutation is one of the line that it names alone.
 #[test]
-fn a_slip_is_of_one_line() {
+fn a_mutation_is_of_one_line() {
     let machine = TestedMechanism::new(scene("cross-slide"), CheckMode::States);
     assert_eq!(machine.change(None), Some(0.0));
     let operations = machine.operations();
@@ -95,9 +95,9 @@ fn a_slip_is_of_one_line() {
     assert_eq!(machine.change(None), Some(0.0));
 }
 
-/// One truth is not enough, and two findings of one truth are one.
+/// One check is not enough, and two findings of one check count once.
 #[test]
-fn a_fault_that_one_truth_catches_is_a_hole() {
+fn a_fault_that_one_check_detects_is_a_gap() {
     let failed = |check: Check, relative: f64| Finding {
         check,
         relative_difference: relative,

@@ -180,6 +180,7 @@ fn fates_of_a_pendulum() {
 
 /// A block on a spring along a line without ends: one sine, whatever its amplitude and wherever it is.
 #[test]
+// Long: one derivation by hand.
 fn a_block_on_a_spring() {
     let scene = parse(
         r#"

@@ -128,6 +128,7 @@ impl BuiltMechanism {
     }
 
     /// The states at these steps from the start, each in the same memory.
+    // Long: one mechanism through all analyses.
     fn evaluate(
         &self,
         placed: &PlacedMechanism,
@@ -257,6 +258,7 @@ impl BuiltMechanism {
 /// Tolerances are parts of the condition, which is that of the dense rows at the start (up to 1e3
 /// and more): a rounding of the attachments is magnified by it. The worst met in many thousands
 /// were 1e-15 of it for the pose, 8e-15 for another description, and 5e-15 for the dense findings.
+// Long: one comparison for each analysis.
 fn check(seed: &Seed, tally: &mut Tally) -> Result<(), String> {
     let placed = seed.mechanism();
     let views = seed.views.map(|seed| Description::of(&placed, seed));

@@ -58,6 +58,7 @@ fn crank() -> (Sketch, BodyId) {
 }
 
 #[test]
+// Long: a table of cases.
 fn val_every_kind_of_limit_is_found() {
     // RRR: coupler and rocker in line.
     let [a, b, c, d] = [3.0, 1.0, 2.5, 3.2_f64];

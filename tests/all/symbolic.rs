@@ -232,6 +232,7 @@ fn what_is_printed_computes_the_same() {
 }
 
 /// The quantities at some coordinates, by a program of this language; none where there is no tool.
+// Long: the generated program as text.
 fn run_generated_code(
     folder: &Path,
     form: &ClosedForm,

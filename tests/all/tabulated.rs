@@ -37,6 +37,7 @@ spring = { spring = ["ground.A", "rocker.C"], stiffness = 15, free = 2.5 }
 "#;
 
 /// Name, machine, first coordinate and speed, and how long it is followed (s).
+// Long: a list of machines.
 fn machines() -> Vec<(&'static str, Machine, [f64; 2], f64)> {
     let time_dependent = r#"
 [loads]

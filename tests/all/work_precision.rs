@@ -1,4 +1,4 @@
-//! What accuracy costs: the study's truth, its errors and its fronts.
+//! The cost of accuracy: the study's reference, its errors and its fronts.
 
 use dwell_dynamics::Method;
 use dwell_geometry::{PositionError, Range};
@@ -56,7 +56,7 @@ fn result_of(found: &WorkPrecision, integrator: Integrator, name: &str) -> Combi
 }
 
 #[test]
-fn the_truth_is_known_better_than_anything_on_the_front() {
+fn the_reference_is_known_better_than_anything_on_the_front() {
     let effort = effort(&[-3, -5, -7, -9, -11], &[1e-6]);
     for name in ["crank-rocker", "single-dwell", "double-pendulum", "boom"] {
         let found = run_study(name, &effort);
@@ -66,7 +66,7 @@ fn the_truth_is_known_better_than_anything_on_the_front() {
             for k in front {
                 let point = &found.points[k];
                 assert!(
-                    !found.is_below_reference_error(point, quantity),
+                    !found.is_below_reference(point, quantity),
                     "{name}: {quantity:?} of {} is below {:?}",
                     point.combination.name(),
                     found.reference.error
@@ -249,17 +249,17 @@ fn an_evaluation_keeps_what_it_promises() {
     }
     let [coarse, exact] = [at("table 1e-6", 1e-7), at("exact f64", 1e-11)];
     assert!(exact < 1e-3 * coarse, "{exact:e} {coarse:e}");
-    // A table is of one freedom without loads, and is told to be missing elsewhere.
+    // A table is of one degree of freedom without loads; elsewhere its absence is noted.
     let loaded = run_study("double-pendulum", &effort(&[-5, -7], &[1e-6]));
     assert!(loaded.omitted.iter().any(|why| why.starts_with("tables")));
 }
 
-/// Quadrature of the exact model is the truth itself, at less than any integrator takes for twelve digits.
+/// Quadrature of the exact model is the reference itself, at less than any integrator takes for twelve digits.
 #[test]
-fn quadrature_is_told_where_the_motion_is_known_by_its_energy() {
+fn quadrature_is_shown_where_the_motion_follows_from_its_energy() {
     let found = run_study("crank-rocker", &effort(&[-9, -11, -13], &[]));
     let point = found.quadrature().expect("a conservative motion");
-    assert!(found.is_below_reference_error(point, ErrorQuantity::Coordinate));
+    assert!(found.is_below_reference(point, ErrorQuantity::Coordinate));
     assert!(
         found
             .points

@@ -45,7 +45,7 @@ fn rewrite(case: &Path) -> Result<usize, Box<dyn Error>> {
     let validation = dwell_validation::validate(&scene, &bare, &dwell_study::no_progress)?;
     std::fs::remove_dir_all(&bare)?;
     let mut tolerances: BTreeMap<&str, f64> = BTreeMap::new();
-    // Of the integrated ones only truth 6 has a bound by case: the others are factors of an integrator's tolerance.
+    // Of the integrated ones only check 6 has a bound by case: the others are factors of an integrator's tolerance.
     let bound = |f: &&Finding| !f.integrated || f.check == Check::MultibodyMotion;
     let exact = validation.outcome.findings.iter().filter(bound);
     for finding in exact.filter(|f| f.tolerance > 0.0 && f.relative_difference.is_finite()) {

@@ -1,5 +1,5 @@
 //! Named faults in states under loads: what is claimed comes from a wrong description or is altered on
-//! the way out, and is judged by the right one.
+//! its results, and is checked by the right one.
 
 use super::detection::Detection;
 use super::tested_mechanism::{CheckMode, ClaimedStates, TestedMechanism};
@@ -97,7 +97,7 @@ impl Mutation {
         }
     }
 
-    /// What the truths say of a machine with this fault; nothing where it is none there.
+    /// What the checks detect in a mechanism with this fault; nothing where it is none there.
     pub fn check(self, mechanism: &TestedMechanism) -> Option<Detection> {
         let mut claimed = mechanism.claims()?;
         if self.alter_claims(mechanism, &mut claimed) {
@@ -113,6 +113,7 @@ impl Mutation {
     }
 
     /// Describes the machine wrongly, if it can be.
+    // Long: an arm for each mutation.
     fn alter_scene(self, scene: &mut Scene) -> bool {
         match self {
             Self::HalvedInertia => {

@@ -1,28 +1,28 @@
-//! Which truths catch a fault, and by how much.
+//! Which checks detect a fault, and by how much.
 
 use dwell_findings::{Check, Finding};
 
-/// The checks that mutations are held against: all but rounding and closed forms.
+/// The checks that are applied to mutations: all but rounding and closed forms.
 pub const CHECKS: &[Check] = Check::ALL.split_at(10).0;
-/// Truths that must catch a fault in an equation.
+/// Checks that must detect a fault in an equation.
 pub const REQUIRED_CHECKS: usize = 2;
-/// Digits above the tolerance from which on a fault counts as caught: the rounding of another machine
+/// Digits above the tolerance from which on a fault counts as detected: the rounding of another machine
 /// must not decide it.
 const MIN_DIGITS: f64 = 1.0;
-/// Digits from which on it is caught strongly.
+/// Digits from which on it is detected clearly.
 pub const STRONG_DIGITS: f64 = 3.0;
-/// Digits that stand for a difference that is no number, or that should be exactly zero.
+/// Digits that stand for a difference that is not a number, or that should be exactly zero.
 const MAX_DIGITS: f64 = 16.0;
 
-/// By truth: the digits by which a fault is seen, log₁₀ of difference over tolerance; zero where it passes, none
-/// where the truth was not asked.
+/// By check: the digits by which a fault is detected, log₁₀ of difference over tolerance; zero where it passes, none
+/// where the check was not applied.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Detection {
     pub digits: [Option<f64>; 10],
 }
 
 impl Detection {
-    /// Of findings, by the number that each truth begins with.
+    /// Of findings, by the number of their check.
     pub fn from_findings<'a>(findings: impl IntoIterator<Item = &'a Finding>) -> Self {
         let mut detection = Self::default();
         for finding in findings {
@@ -49,19 +49,19 @@ impl Detection {
         self
     }
 
-    /// Whether a truth catches it.
+    /// Whether a check detects it.
     pub fn detects(&self, number: usize) -> bool {
         self.digits[number].is_some_and(|digits| digits >= MIN_DIGITS)
     }
 
-    /// How many independent truths catch it.
+    /// How many independent checks detect it.
     pub fn check_count(&self) -> usize {
         (0..CHECKS.len())
             .filter(|&number| self.detects(number))
             .count()
     }
 
-    /// The numbers of the truths that catch it, in brackets those that do so weakly.
+    /// The numbers of the checks that detect it, in brackets those with few digits.
     pub fn check_numbers(&self) -> String {
         let each = (0..CHECKS.len()).filter(|&number| self.detects(number));
         let texts = each.map(|number| match self.digits[number] {

@@ -1,4 +1,4 @@
-//! The matrix of faults and truths as a picture.
+//! The matrix of faults and checks as a figure.
 
 use super::detection::{CHECKS, Detection};
 use super::study::Study;
@@ -10,12 +10,12 @@ use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row};
 pub fn figure(study: &Study, steps: &[(&'static str, Tally)]) -> Figure {
     Figure {
         name: "mutations".into(),
-        title: "Deliberate faults and the independent truths that catch them".into(),
+        title: "Deliberate faults and the independent checks that detect them".into(),
         caption: format!(
-            "Above: named faults, each on the machine that shows it to the fewest truths; a number is the digits by which the \
-             difference exceeds the truth's tolerance, 0: not seen, hatched: not asked. Below: {} faults of single operations in \
-             the product's own lines, every sign, term and factor of each step; a number is the share that a truth catches, in \
-             percent. A fault must be caught by two truths at least.",
+            "Above: named faults, each on the mechanism where the fewest checks detect it; a number is the digits by which the \
+             difference exceeds the tolerance of the check, 0: not detected, hatched: not applied. Below: {} faults of single \
+             operations in the source code, every sign, term and factor of each step; a number is the share that a check \
+             detects, in percent. At least two checks must detect a fault.",
             study.operation_results.len()
         ),
         columns: 1,
@@ -86,6 +86,6 @@ fn operations(steps: &[(&'static str, Tally)]) -> Panel {
             heading: String::new(),
             rows: steps.iter().map(row).collect(),
         }],
-        values: Axis::new("caught by the truth", "%").with_range(0.0, 100.0),
+        values: Axis::new("detected by the check", "%").with_range(0.0, 100.0),
     })
 }

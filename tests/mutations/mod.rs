@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! mutating_scalar  a number that knows the source line that computes with it, and computes wrongly there
-//! operations       every operation of every step goes wrong   ┐
+//! operations       every operation of every step is mutated    ┐
 //! reduced_model    named faults of the reduced model          │  each checked by
 //! claimed_states   named faults of states under loads         │  the independent checks
 //! motions          named faults of the equation of motion     ┘

@@ -1,4 +1,4 @@
-//! Named faults in the equation of motion: the faulty equation is integrated, and its motion judged.
+//! Named faults in the equation of motion: the faulty equation is integrated, and its motion checked.
 
 use super::detection::Detection;
 use dwell_dynamics::ReducedState;
@@ -108,7 +108,7 @@ impl ReducedModel for ScaledSlopeModel<'_> {
     }
 }
 
-/// The free motion of a reduced model with ½m′ wrong by a factor, judged over one turn.
+/// The free motion of a reduced model with ½m′ wrong by a factor, checked over one revolution.
 pub fn reduced(scene: &Scene, mutation: Option<Mutation>) -> Option<Detection> {
     let factor = match mutation {
         None => 1.0,
@@ -136,7 +136,7 @@ pub fn reduced(scene: &Scene, mutation: Option<Mutation>) -> Option<Detection> {
     Some(Detection::from_findings(&run.findings))
 }
 
-/// The free motion of a scene under its weight alone, judged by the multibody equations (6) and by the
+/// The free motion of a scene under its weight alone, checked by the multibody equations (6) and by the
 /// energy of what is claimed (4).
 pub fn under_gravity(scene: &Scene, mutation: Option<Mutation>) -> Option<Detection> {
     let mut scene_unaltered = scene.clone();

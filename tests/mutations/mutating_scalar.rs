@@ -1,4 +1,4 @@
-//! A number that knows which line of the product computes with it, and can be told to slip there.
+//! A number that knows which source line computes with it, and can be set to compute wrongly there.
 //!
 //! The steps of a plan are generic over their numbers. Evaluated in [`MutatingScalar`] they are the very lines
 //! that are shipped, with one operation of one line gone wrong: a sign, a term left out, a factor.
@@ -25,7 +25,7 @@ pub enum Operation {
     Constant,
 }
 
-/// How an operation goes wrong.
+/// How an operation is mutated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum MutationKind {
     /// The other sign: of the second term, or of the whole.
@@ -101,17 +101,17 @@ pub struct SourceOperation {
     pub link: u8,
 }
 
-/// Links of a chain that are told apart; loops go on and on.
+/// Links of a chain that are distinguished; loops have any number.
 const MAX_CHAIN_LINKS: u8 = 3;
 
 thread_local! {
-    /// The place that slips in this thread, and how.
+    /// The operation that is mutated in this thread, and how.
     static ACTIVE_MUTATION: Cell<Option<(SourceOperation, MutationKind)>> = const { Cell::new(None) };
     /// The places met, where they are noted.
     static RECORDED_OPERATIONS: RefCell<Option<BTreeSet<SourceOperation>>> = const { RefCell::new(None) };
 }
 
-/// Does something while one place slips.
+/// Does something while one operation is mutated.
 pub fn with_mutation<R>(
     mutation: Option<(SourceOperation, MutationKind)>,
     run: impl FnOnce() -> R,
@@ -129,7 +129,7 @@ pub fn recording_operations<R>(run: impl FnOnce() -> R) -> (R, BTreeSet<SourceOp
     (result, RECORDED_OPERATIONS.take().unwrap_or_default())
 }
 
-/// How an operation called from here on this first term slips, if it does, and where it comes from.
+/// How an operation called from here on this first term is mutated, if it is, and where it comes from.
 #[track_caller]
 fn mutation_here(operation: Operation, first: Origin) -> (Option<MutationKind>, Origin) {
     let at = Location::caller();
@@ -174,7 +174,7 @@ pub struct Origin {
     link: u8,
 }
 
-/// A plain number whose operations are watched.
+/// A number whose operations are recorded and mutated.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MutatingScalar(pub f64, Origin);
 

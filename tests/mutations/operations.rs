@@ -27,7 +27,7 @@ pub struct MutationResult {
 }
 
 impl MutationResult {
-    /// Whether it is a fault that fewer truths catch than must.
+    /// Whether it is a fault that fewer checks detect than must.
     pub fn undetected(&self) -> bool {
         matches!(&self.outcome, MutationOutcome::Checked(verdict, _) if verdict.check_count() < REQUIRED_CHECKS)
     }
@@ -68,7 +68,7 @@ pub fn mutate_operations(machines: &[TestedMechanism]) -> Vec<MutationResult> {
 }
 
 /// Judges a fault where it is felt: once by the reduced model and once by states, and on more machines
-/// while fewer truths catch it than must.
+/// while fewer checks detect it than must.
 fn outcome(
     operation: SourceOperation,
     kind: MutationKind,

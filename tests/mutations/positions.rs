@@ -1,15 +1,15 @@
-//! Where a machine is judged.
+//! The positions at which a mechanism is checked.
 
 use dwell_geometry::Plan;
 use dwell_scene::Scene;
 use dwell_verify::spread;
 use std::f64::consts::TAU;
 
-/// Positions or states at which a fault is judged.
+/// Positions or states at which a fault is checked.
 pub(super) const POSITIONS: usize = 3;
-/// Between two positions no coordinate goes farther at once, rad or m: whole turns are counted.
+/// The largest step of a coordinate, rad or m: whole revolutions are counted.
 const MAX_COORDINATE_STEP: f64 = 0.05;
-/// What is left out at both ends of a range, as a part of it.
+/// The margin at both ends of a range, as a part of it.
 const RANGE_MARGIN: f64 = 0.1;
 
 /// Some positions inside the range, or near the start where there are several actuators.
@@ -42,7 +42,7 @@ pub(super) fn positions(scene: &Scene, plan: &Plan) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The frames at the start and at some positions, whole turns counted on the way.
+/// The frames at the start and at some positions, whole revolutions counted.
 pub(super) fn poses_along(
     scene: &Scene,
     plan: &Plan,

@@ -1,5 +1,5 @@
 //! Named faults in the reduced model: what has gone wrong in programs and papers, each a wrapper of the
-//! judged subject.
+//! checked subject.
 
 use super::detection::Detection;
 use super::unit_wrenches::{BodyMotion, UnitWrenches};
@@ -14,7 +14,7 @@ use dwell_verify::{
 };
 use std::f64::consts::FRAC_PI_2;
 
-/// Positions at which a fault is judged.
+/// Positions at which a fault is checked.
 const POSITIONS: usize = 4;
 /// A coefficient that changes by less, relative to the largest, is not changed.
 const UNCHANGED_TOLERANCE: f64 = 1e-9;
@@ -154,7 +154,7 @@ impl TestedModel {
         }
     }
 
-    /// What the truths say of the mechanism with a fault, or without; nothing where the fault is none
+    /// What the checks detect in the mechanism with a fault, or without; nothing where the fault is none
     /// here.
     pub fn check(&self, mutation: Option<Mutation>) -> Option<Detection> {
         let mutated = MutatedSubject {
@@ -298,6 +298,7 @@ impl Subject for MutatedSubject<'_> {
         self.subject(q).poses(q - lag)
     }
 
+    // Long: an arm for each mutation.
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {
         let lag = if self.mutation == Some(Mutation::PoseThatLags) {
             1e-3

@@ -9,11 +9,11 @@ use dwell_findings::Check;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// `mutations.txt`: which truths catch what. Digits and counts are left out: they are not the same everywhere, and
+/// `mutations.txt`: which checks detect what. Digits and counts are left out: they are not the same everywhere, and
 /// each new line of the product changes them.
 pub fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String {
     let mut out = String::from(HEAD);
-    let _ = writeln!(out, "{:<58}  {:<18} truths", "fault", "on");
+    let _ = writeln!(out, "{:<58}  {:<18} checks", "fault", "on");
     let _ = writeln!(
         out,
         "{:<58}  {:<18} [{}]",
@@ -35,7 +35,7 @@ pub fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String {
     }
     let _ = writeln!(
         out,
-        "\nEvery sign, term and factor, by function: the fewest truths that catch a fault that an answer shows"
+        "\nEvery sign, term and factor, by function: the fewest checks that detect a fault that changes a result"
     );
     for (function, tally) in functions {
         let min_checks = tally.min_checks.map_or("-".to_owned(), |n| n.to_string());
@@ -44,10 +44,10 @@ pub fn text(study: &Study, functions: &BTreeMap<String, Tally>) -> String {
     out
 }
 
-const HEAD: &str = "Deliberate faults and the independent truths that catch them\n\
-    A truth is named by its number; in brackets where it exceeds its tolerance by less than three digits.\n\n";
+const HEAD: &str = "Deliberate faults and the independent checks that detect them\n\
+    A check is named by its number; in brackets where it exceeds its tolerance by less than three digits.\n\n";
 
-/// How many faults, and how many truths.
+/// How many faults, and how many checks.
 pub fn summary(study: &Study) -> String {
     let named: usize = study.groups.iter().map(|c| c.rows.len()).sum();
     let checked = study.operation_results.iter().filter_map(detection);
@@ -62,9 +62,9 @@ pub fn summary(study: &Study) -> String {
         .flat_map(|c| &c.rows)
         .map(|r| r.detection.check_count());
     format!(
-        "{named} named faults, each caught by at least {} independent truths.\n\
-         {} faults of single operations: {} change an answer, each caught by at least {min_checks};\n\
-         {} change none, {} end in a refusal.",
+        "{named} named faults, each detected by at least {} independent checks.\n\
+         {} faults of single operations: {} change a result, each detected by at least {min_checks};\n\
+         {} change none, {} end in an error.",
         of_named.min().unwrap_or(0),
         study.operation_results.len(),
         checked.count(),
@@ -89,15 +89,16 @@ fn detection(result: &MutationResult) -> Option<&Detection> {
 }
 
 /// `mutations.md`.
+// Long: one document.
 pub fn markdown(
     study: &Study,
     functions: &BTreeMap<String, Tally>,
     source: &SourceFiles,
 ) -> String {
     let mut out = String::from(
-        "# Deliberate faults\n\n![Faults and truths](mutations.png)\n\nA fault is a wrapper around what is judged; production \
-         code holds none. A cell is the digits by which the difference exceeds the truth's tolerance; 0: the truth was asked and \
-         sees nothing; empty: it was not asked. Every fault is shown on the machine that shows it to the fewest truths.\n\n",
+        "# Deliberate faults\n\n![Faults and checks](mutations.png)\n\nA fault is a wrapper around what is checked; production \
+         code holds none. A cell is the digits by which the difference exceeds the tolerance of the check; 0: it detects \
+         nothing; empty: it was not applied. Every fault is shown on the mechanism where the fewest checks detect it.\n\n",
     );
     let _ = writeln!(out, "{}\n", summary(study));
     for gap in study.gaps() {
@@ -142,9 +143,9 @@ pub fn markdown(
     }
     let _ = writeln!(
         out,
-        "\n## Operations, by function\n\nEach operation of the product's own lines goes wrong in every way: another sign, a \
-         term or the whole forgotten, twice, half. The truths' columns say how many faults they catch.\n\n\
-         | function | faults | no answer moves | refused | fewest truths | {} |",
+        "\n## Operations, by function\n\nEach operation of the source code is mutated: another sign, a \
+         term or the whole forgotten, twice, half. The columns of the checks count the faults that they detect.\n\n\
+         | function | faults | no effect | error | fewest checks | {} |",
         column_heads()
     );
     let _ = writeln!(out, "|---|---|---|---|---|{}", "---|".repeat(CHECKS.len()));
@@ -159,8 +160,8 @@ pub fn markdown(
     }
     let _ = writeln!(
         out,
-        "\n## Faults that no answer shows\n\nThese change nothing that is judged on any machine: a guess of Newton's method or its \
-         Jacobian, a term that is zero by construction, a measure that nothing asks for.\n"
+        "\n## Faults without effect\n\nThese change nothing that is checked on any mechanism: an initial guess of Newton's method or its \
+         Jacobian, a term that is zero by construction, a value that is not used.\n"
     );
     for result in study
         .operation_results

@@ -9,7 +9,7 @@ use dwell_scene::Scene;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
-/// A named fault, on the machine that shows it least, and what the truths say there.
+/// A named fault, on the mechanism that shows it least, and what the checks detect there.
 #[derive(Debug, Clone)]
 pub struct NamedMutation {
     pub description: &'static str,
@@ -25,7 +25,7 @@ pub struct MutationGroup {
     pub rows: Vec<NamedMutation>,
 }
 
-/// A truth that cannot judge a machine.
+/// A check that cannot be applied to a mechanism.
 pub type IgnoredFindings = (String, CheckMode, Vec<String>);
 
 /// The study.
@@ -71,7 +71,7 @@ pub fn scene(name: &str) -> Scene {
     Scene::read(path).unwrap_or_else(|e| panic!("{name}: {e:?}"))
 }
 
-/// The machines, the quickest to judge first.
+/// The mechanisms, the quickest to check first.
 pub fn tested_mechanisms(scenes: Vec<Scene>) -> Vec<TestedMechanism> {
     let all = scenes.into_par_iter().flat_map_iter(|scene| {
         let single = scene.mechanism.actuators.len() == 1;
@@ -129,6 +129,7 @@ impl Study {
     }
 
     /// All faults on some machines.
+    // Long: the three groups of mutations.
     pub fn run(scenes: Vec<Scene>, models: &[reduced_model::TestedModel]) -> Self {
         let mechanisms = tested_mechanisms(scenes);
         let states: Vec<&TestedMechanism> = mechanisms
@@ -193,12 +194,12 @@ impl Study {
         }
     }
 
-    /// What is wrong with the evidence, in words; empty if nothing is.
+    /// What the study lacks; empty if nothing.
     pub fn gaps(&self) -> Vec<String> {
         let mut gaps = Vec::new();
         if self.without_mutation.check_count() > 0 {
             gaps.push(format!(
-                "truths {} fail without a fault",
+                "checks {} fail without a fault",
                 self.without_mutation.check_numbers()
             ));
         }
@@ -231,7 +232,7 @@ impl Study {
     }
 }
 
-/// Each fault on every machine where it is one; the machine that shows it to the fewest truths is told.
+/// Each fault on every mechanism where it is one; the row is that of the mechanism where the fewest checks detect it.
 fn named_rows<F: Copy + Sync, M: Sync>(
     mutations: &[F],
     describe: fn(F) -> &'static str,

@@ -13,10 +13,10 @@ pub struct Tally {
     /// Of them: no answer moved, and no answer was given.
     pub unchanged: usize,
     pub no_result: usize,
-    /// Of the others, how many each truth caught, and how many it was asked about.
+    /// Of the others, how many each check detected, and to how many it was applied.
     pub detected: [usize; CHECKS.len()],
     pub applicable: [usize; CHECKS.len()],
-    /// The fewest truths that caught one.
+    /// The fewest checks that detected one.
     pub min_checks: Option<usize>,
 }
 
@@ -74,6 +74,7 @@ pub fn by_step(results: &[MutationResult], source: &SourceFiles) -> Vec<(&'stati
         .collect()
 }
 
+// Long: an entry for each step.
 /// The step that a function belongs to, with its place in the order of evaluation. Every function in which a mutation was
 /// tried must be named here: what is unknown fails, so that a renamed file cannot move its mutations to another step.
 fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> {
@@ -86,7 +87,7 @@ fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> 
     Some(match (name, module, function) {
         ("geometry", _, "rrr_dyad_positions") => (0, "positions: RRR dyad"),
         ("geometry", _, "guided_point_positions") => (1, "positions: guided point"),
-        ("geometry", _, "coupling_angle_derivatives") => (17, "couples of couplings"),
+        ("geometry", _, "coupling_angle_derivatives") => (17, "moments of couplings"),
         ("geometry", "positions/construct", _) => (3, "positions: triangle, circle, line"),
         ("geometry", "positions/factored_group", _) => (4, "positions: Newton and Jacobian"),
         ("geometry", "positions" | "positions/closed_forms" | "plan" | "body_frames", _) => {
@@ -128,7 +129,7 @@ fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> 
             "pass/recursive_pass",
             "accumulate_joint_moments" | "transfer_joint_moments",
         ) => (15, "moments in the tree's joints"),
-        ("kinetostatics", "pass/recursive_pass", "tau") => (16, "actuator's action"),
+        ("kinetostatics", "pass/recursive_pass", "tau") => (16, "actuator forces"),
         (
             "kinetostatics",
             "pass/recursive_pass",
@@ -138,7 +139,7 @@ fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> 
         ("kinetostatics", "friction", _) | ("kinetostatics", _, "solve_friction") => {
             (23, "friction")
         }
-        ("kinetostatics", "reduced" | "model/equation_terms", _) => (19, "unit runs"),
+        ("kinetostatics", "reduced" | "model/equation_terms", _) => (19, "unit accelerations"),
         ("geometry", "body_states", _) => (20, "states of bodies and distances"),
         ("kinetostatics", _, _) if module.starts_with("load") => (21, "loads"),
         ("laws", _, _) | ("numerics", "scalar", _) => (24, "laws and number types"),

@@ -43,7 +43,7 @@ pub struct Finding {
     pub scale: String,
     /// Where the largest difference occurred, such as `phi = 1.3 rad, slide.normal`.
     pub worst_at: String,
-    /// The bound on the judged difference (the relative one unless `scale` says otherwise).
+    /// The bound on the compared difference (the relative one unless `scale` says otherwise).
     pub tolerance: f64,
     /// Why the tolerance is what it is.
     pub tolerance_reason: String,
@@ -106,7 +106,7 @@ impl Finding {
     }
 
     /// Whether the tolerance is above [`Finding::max_tolerance`]. Integrated results are exempt, since slopes and
-    /// factors of the integrator's tolerance judge them; a finding that compared nothing is never loose.
+    /// factors of the integrator's tolerance decide on them; a finding that compared nothing is never loose.
     pub fn is_loose(&self) -> bool {
         !self.integrated && self.tolerance > self.max_tolerance()
     }

@@ -22,7 +22,7 @@ impl Plan {
 
     /// The angle of a body's frame with its whole revolutions, rad, where actuators turn it from the
     /// ground or a coupling or load needs it.
-    pub fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
+    pub(crate) fn counted_angle<T: Scalar>(&self, body: usize, pose: &Pose<T>) -> Option<T> {
         let orientation = self.frames.orientations[body];
         let offset = orientation.offset.angle();
         if self.revolution_counted[orientation.frame] {
@@ -39,7 +39,7 @@ impl Plan {
         self.revolution_counted[frame] || self.frames.frames[frame].orientation_class == 0
     }
 
-    /// The angle of a frame that actuators alone turn from the ground's, rad.
+    /// The angle of a frame that actuators alone revolution from the ground's, rad.
     fn actuated_angle<T: Scalar>(&self, mut frame: usize, pose: &Pose<T>) -> Option<T> {
         let mut angle = T::from_f64(0.0);
         loop {

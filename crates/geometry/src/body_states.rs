@@ -245,7 +245,7 @@ impl<T: Scalar> BodyStates<T> {
     }
 
     /// Angle of the second body's frame from the first's, rad, its speed (rad/s) and acceleration
-    /// (rad/s²). Whole turns are counted where they are for both bodies; else it is in (−π, π].
+    /// (rad/s²). Whole revolutions are counted where they are for both bodies; else it is in (−π, π].
     pub fn angle(&self, bodies: [BodyId; 2]) -> [T; 3] {
         let [one, two] = bodies.map(|b| self.body(b));
         let counted = one.angle.zip(two.angle).map(|(one, two)| two - one);

@@ -37,7 +37,7 @@
 //!
 //! **Signs.** Since P2 enters with a plus, the multiplier λₖ of row k in Jᵀλ is the action of the
 //! first-named body on the second, as [`crate::Component`] says. In rows along an axis the
-//! derivative with θ1 turns the axis too, so that both bodies feel the force at the *second*
+//! derivative with θ1 turns the axis too, so that the force acts on both bodies at the *second*
 //! body's point; the rows with r bring the couple that moves it to the pitch point. The
 //! multiplier of (6) has the moment r2 λ on the second body. A coupling's λ acts on the bodies of
 //! `of`, and −λ dlaw/dby on those of `by`.

@@ -72,7 +72,7 @@ pub struct Plan {
     pub(crate) assembly_pose: Option<Box<Pose<f64>>>,
     /// By reaction of the mechanism: whether the loads determine it; empty where they determine all.
     pub(crate) determinate: Vec<bool>,
-    /// By group: the ways in which it closes at the start.
+    /// By group: its assembly modes at the start.
     pub(crate) group_modes: Vec<GroupModes>,
 }
 
@@ -213,7 +213,7 @@ pub(crate) struct RrrDyad {
     /// The other vectors of the loop: those on the ground, and those that move.
     pub(crate) fixed: Vec2,
     pub(crate) known: Vec<(usize, usize)>,
-    /// Sign of arm₁ × arm₂: the assembly branch.
+    /// Sign of vector₁ × vector₂: the assembly branch.
     pub(crate) branch: f64,
 }
 

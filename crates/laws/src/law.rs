@@ -31,10 +31,10 @@ impl Law {
         }
     }
 
-    /// Where the value jumps on the way from one number to another, which should be close: the last
+    /// Where the value jumps between one number and another, which should be close: the last
     /// number before the jump and the first after it. Only an expression can jump (`floor`, `sign`,
     /// `step`, `if`); of several jumps it is the one that shows most. A jump of less than
-    /// 10⁻⁶ of the value is none, nor is what cannot be told from it, a slope of 10⁹ and more.
+    /// 10⁻⁶ of the value is none, nor is what cannot be distinguished from it, a slope of 10⁹ and more.
     pub fn discontinuity(&self, from: f64, to: f64) -> Option<[f64; 2]> {
         let Self::Expression(_) = self else {
             return None;

@@ -1,9 +1,26 @@
 //! Functions of one variable with three derivatives, and expressions of named variables.
 //!
 //! A [`Law`] gives a quantity with its first three derivatives, exactly: a prescribed motion is
-//! needed as q, q̇ and q̈ at once, the motion through a cam relation one derivative further. An
+//! needed as q, q̇ and q̈ at once, the motion through a cam one derivative further. An
 //! [`Expression`] is a formula of several names, as a load has it. Everything is checked when it
 //! is built; evaluation allocates nothing, cannot fail, and shows what is undefined as NaN or ±∞.
+//!
+//! ```
+//! use dwell_laws::{Expression, Law, Profile, Rise, Shape};
+//!
+//! // A cam follower: 10 mm up while the cam turns by 2 rad, without a jump of velocity or acceleration.
+//! let rise = Rise { start: 0.0, rise: 0.01, duration: 2.0, delay: 0.0 };
+//! let lift = Law::Profile(Profile::new(Shape::Polynomial345, rise)?);
+//! let [value, slope, ..] = lift.eval(1.0); // halfway: half the lift, and the largest slope
+//! assert_eq!(value, 0.005);
+//! assert!((slope - 1.875 * 0.01 / 2.0).abs() < 1e-15);
+//!
+//! // The same quantity as a formula, differentiated exactly.
+//! let formula = Law::Expression(Expression::parse("0.005*(1 - cos(pi*x/2))", &["x"])?);
+//! let [value, slope, ..] = formula.eval(1.0);
+//! assert!((value - 0.005).abs() < 1e-17 && slope > 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 pub mod error;
 pub mod expression;

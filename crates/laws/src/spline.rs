@@ -11,7 +11,7 @@ use crate::error::LawError;
 /// curvature there. Three points make a parabola, two a line.
 ///
 /// Outside its range it goes on along the tangent of its end: the speed of a motion does not
-/// jump, and [`range`](Self::range) tells who must know.
+/// jump, and [`range`](Self::range) gives its ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
     /// Where the pieces begin, and where the last ends.

@@ -18,6 +18,11 @@ impl Dual {
     pub fn variable(v: f64) -> Self {
         Self { v, d: 1.0 }
     }
+
+    #[inline]
+    fn new(v: f64, d: f64) -> Self {
+        Self { v, d }
+    }
 }
 
 impl Scalar for Dual {
@@ -25,7 +30,7 @@ impl Scalar for Dual {
     const EPSILON: f64 = f64::EPSILON;
     #[inline]
     fn from_f64(value: f64) -> Self {
-        Self { v: value, d: 0.0 }
+        Self::new(value, 0.0)
     }
     #[inline]
     fn value(self) -> f64 {
@@ -34,39 +39,24 @@ impl Scalar for Dual {
     #[inline]
     fn sqrt(self) -> Self {
         let v = self.v.sqrt();
-        Self {
-            v,
-            d: 0.5 * self.d / v,
-        }
+        Self::new(v, 0.5 * self.d / v)
     }
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
         let (s, c) = Scalar::sin_cos(self.v);
-        (
-            Self {
-                v: s,
-                d: c * self.d,
-            },
-            Self {
-                v: c,
-                d: -s * self.d,
-            },
-        )
+        (Self::new(s, c * self.d), Self::new(c, -s * self.d))
     }
     #[inline]
     fn atan2(self, other: Self) -> Self {
         let square = self.v * self.v + other.v * other.v;
-        Self {
-            v: self.v.atan2(other.v),
-            d: (other.v * self.d - self.v * other.d) / square,
-        }
+        Self::new(
+            self.v.atan2(other.v),
+            (other.v * self.d - self.v * other.d) / square,
+        )
     }
     #[inline]
     fn compose(self, derivatives: &[f64; 4]) -> Self {
-        Self {
-            v: derivatives[0],
-            d: derivatives[1] * self.d,
-        }
+        Self::new(derivatives[0], derivatives[1] * self.d)
     }
 }
 
@@ -74,10 +64,7 @@ impl Add for Dual {
     type Output = Self;
     #[inline]
     fn add(self, o: Self) -> Self {
-        Self {
-            v: self.v + o.v,
-            d: self.d + o.d,
-        }
+        Self::new(self.v + o.v, self.d + o.d)
     }
 }
 
@@ -85,10 +72,7 @@ impl Sub for Dual {
     type Output = Self;
     #[inline]
     fn sub(self, o: Self) -> Self {
-        Self {
-            v: self.v - o.v,
-            d: self.d - o.d,
-        }
+        Self::new(self.v - o.v, self.d - o.d)
     }
 }
 
@@ -96,10 +80,7 @@ impl Mul for Dual {
     type Output = Self;
     #[inline]
     fn mul(self, o: Self) -> Self {
-        Self {
-            v: self.v * o.v,
-            d: self.d * o.v + self.v * o.d,
-        }
+        Self::new(self.v * o.v, self.d * o.v + self.v * o.d)
     }
 }
 
@@ -108,10 +89,7 @@ impl Div for Dual {
     #[inline]
     fn div(self, o: Self) -> Self {
         let v = self.v / o.v;
-        Self {
-            v,
-            d: (self.d - v * o.d) / o.v,
-        }
+        Self::new(v, (self.d - v * o.d) / o.v)
     }
 }
 
@@ -119,10 +97,7 @@ impl Neg for Dual {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
-        Self {
-            v: -self.v,
-            d: -self.d,
-        }
+        Self::new(-self.v, -self.d)
     }
 }
 

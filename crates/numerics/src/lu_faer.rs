@@ -7,7 +7,7 @@ use faer::linalg::lu::partial_pivoting::factor;
 use faer::{MatMut, Par};
 
 /// Unknowns from which faer is used (measured: 23 µs by elimination against 17 µs at 60 unknowns,
-/// the other way round at 30).
+/// the reverse at 30).
 pub(crate) const FAER_MIN_UNKNOWNS: usize = 40;
 
 /// Factors the row-major n × n matrix `a` in place, with the row exchanges in `pivots`: the same

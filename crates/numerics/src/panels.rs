@@ -217,7 +217,7 @@ mod tests {
                 let exact = of(s).expect("a value");
                 assert!((value / exact - 1.0).abs() < 1e-11, "{gap:e} {s}");
                 let [_, shifted] = panels.eval(s + TAU);
-                // Whole turns round the phase.
+                // Whole revolutions do not change the phase.
                 let difference = (shifted - integral - TAU * panels.mean).abs();
                 assert!(difference < 1e-14 * shifted + 1e-15 * value, "{gap:e} {s}");
             }

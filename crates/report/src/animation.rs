@@ -31,7 +31,7 @@ const MIN_DELAY: u32 = 2;
 /// Drawings of the same things at successive times, such as a mechanism over a turn.
 ///
 /// All frames are fitted to one extent, that of all their shapes and ranges together, and share one legend, so that
-/// nothing moves but the shapes. A frame's own title may say its time or angle. The film begins again at its end,
+/// nothing moves but the shapes. A frame's own title may give its time or angle. The film begins again at its end,
 /// for ever; over a whole turn leave the last position out, as it is the first.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Animation {

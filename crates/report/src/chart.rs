@@ -18,7 +18,7 @@ use crate::theme::{CURVE_WIDTH, GREY, INK, LABEL_SIZE, Rgb, SPINE_WIDTH, lighten
 
 /// Height of a chart's cell as a share of its width.
 pub(crate) const HEIGHT: f64 = 0.68;
-/// Markers of a line closer together than this say nothing more.
+/// Markers of a line closer together than this add nothing.
 const MARKER_STEP: f64 = 15.0;
 /// Opacity of an area.
 const FILL_OPACITY: f64 = 0.22;
@@ -181,7 +181,7 @@ impl<'a> PreparedChart<'a> {
     ) {
         let chart = self.chart;
         let second = chart.y2.as_ref().zip(self.y2.as_ref());
-        // With two axes, colour says which curve belongs to which.
+        // With two axes, the colour shows which curve belongs to which.
         let side = |ticks, right| VerticalAxisStyle {
             ticks,
             color: self

@@ -12,7 +12,7 @@ pub enum ReportError {
     Draw {
         /// File stem of the figure.
         figure: String,
-        /// What the backend said.
+        /// The message of the backend.
         reason: String,
     },
     /// The page is too large, or has no area.
@@ -52,7 +52,7 @@ pub enum ReportError {
     Encode {
         /// File stem of the figure.
         figure: String,
-        /// What the encoder said.
+        /// The message of the encoder.
         reason: String,
     },
     /// A row of a table does not match its columns.
@@ -79,7 +79,7 @@ pub enum ReportError {
     File {
         /// The file or folder.
         path: PathBuf,
-        /// What the operating system said.
+        /// The message of the operating system.
         source: std::io::Error,
     },
 }

@@ -1,4 +1,4 @@
-//! A matrix of judged or measured cells as plain data.
+//! A matrix of checked or measured cells as plain data.
 
 use crate::axis::Axis;
 

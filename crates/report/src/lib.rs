@@ -36,7 +36,7 @@
 //! | a mechanism that moves | [`Animation`] |
 //! | many cases under many checks | [`Grid`], cells coloured by a value, with a few letters each |
 //!
-//! The example `gallery` draws one of each. Six colours, ink and grey tell eight curves apart, also for colour-blind
+//! The example `gallery` draws one of each. Six colours, ink and grey distinguish eight curves, also for colour-blind
 //! readers; from the seventh curve on use [`Stroke::Dashed`] too.
 //!
 //! Pages are written as SVG, which resvg turns into pixels. Ticks, margins and the positions of labels are decided here, from

@@ -51,16 +51,7 @@ fn filled_marker(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], r: f64
     }
     match shape % 4 {
         0 => canvas.disc([x, y], r, color),
-        1 => canvas.rect(
-            &Rect {
-                x0: x - r,
-                y0: y - r,
-                x1: x + r,
-                y1: y + r,
-            }
-            .grown(-0.1 * r),
-            color,
-        ),
+        1 => canvas.rect(&Rect::around([x, y], r).grown(-0.1 * r), color),
         2 => canvas.polygon(
             &[
                 [x, y - 1.25 * r],
@@ -107,7 +98,7 @@ pub(crate) fn mark_occupied(frame: &PlotFrame, marks: &[Mark], occupied: &mut Oc
     for mark in marks {
         path(frame, mark).iter().for_each(|run| occupied.line(run));
         if let Some([x, y]) = ring(frame, mark) {
-            occupied.block(&Rect::sized(x, y, 0.0, 0.0).grown(MARKER_RADIUS + 4.0));
+            occupied.block(&Rect::around([x, y], MARKER_RADIUS + 4.0));
         }
     }
 }
@@ -147,12 +138,14 @@ pub(crate) fn rings(canvas: &mut Canvas<'_>, frame: &PlotFrame, marks: &[Mark]) 
 fn path(frame: &PlotFrame, mark: &Mark) -> Vec<Vec<[f64; 2]>> {
     let Rect { x0, y0, x1, y1 } = frame.plot;
     let line = match mark {
-        Mark::Vertical { at, .. } => frame
-            .x_to_px(*at)
-            .map(|x| vec![Some([x, y0]), Some([x, y1])]),
-        Mark::Horizontal { at, .. } => frame
-            .y_to_px(*at, false)
-            .map(|y| vec![Some([x0, y]), Some([x1, y])]),
+        Mark::Vertical { at, .. } => {
+            let x = frame.x_to_px(*at);
+            x.map(|x| vec![Some([x, y0]), Some([x, y1])])
+        }
+        Mark::Horizontal { at, .. } => {
+            let y = frame.y_to_px(*at, false);
+            y.map(|y| vec![Some([x0, y]), Some([x1, y])])
+        }
         Mark::Slope { order, through, .. } => {
             // Between other axes than logarithmic ones a power law is a curve, so it is followed in steps.
             let at = |i: i32| {
@@ -193,11 +186,8 @@ pub(crate) fn draw_labels(
         };
         // The first of the best: the positions are given in the order of preference.
         let hidden = |area: &Rect| occupied.count(&area.grown(3.0));
-        let Some(area) = label_candidates(frame, mark, size)
-            .into_iter()
-            .filter(free)
-            .min_by_key(hidden)
-        else {
+        let candidates = label_candidates(frame, mark, size).into_iter();
+        let Some(area) = candidates.filter(free).min_by_key(hidden) else {
             continue;
         };
         let middle = [area.x0, area.centre()[1]];
@@ -213,32 +203,28 @@ pub(crate) fn draw_labels(
 }
 
 /// Places for the words of a mark, the best first.
+//
+// Long: the candidates of each kind of mark.
 fn label_candidates(frame: &PlotFrame, mark: &Mark, [width, height]: [f64; 2]) -> Vec<Rect> {
     const GAP: f64 = 12.0;
     let plot = frame.plot;
     let parts = || (0..=10).map(|i| f64::from(i) / 10.0);
     let y_at = |t: f64| plot.y0 + GAP + t * (plot.height() - height - 2.0 * GAP);
     let x_at = |t: f64| plot.x1 - GAP - width - t * (plot.width() - width - 2.0 * GAP);
-    match mark {
+    let corners: Vec<[f64; 2]> = match mark {
         Mark::Vertical { at, .. } => {
-            let Some(x) = frame.x_to_px(*at) else {
-                return Vec::new();
-            };
-            parts()
-                .flat_map(|t| {
-                    [x + GAP, x - GAP - width].map(|x| Rect::sized(x, y_at(t), width, height))
-                })
-                .collect()
+            let sides = frame.x_to_px(*at).map(|x| [x + GAP, x - GAP - width]);
+            let along = |x: [f64; 2]| parts().flat_map(move |t| x.map(|x| (x, t)));
+            let places = sides.into_iter().flat_map(along);
+            places.map(|(x, t)| [x, y_at(t)]).collect()
         }
         Mark::Horizontal { at, .. } => {
-            let Some(y) = frame.y_to_px(*at, false) else {
-                return Vec::new();
-            };
-            parts()
-                .flat_map(|t| {
-                    [y - GAP - height, y + GAP].map(|y| Rect::sized(x_at(t), y, width, height))
-                })
-                .collect()
+            let sides = frame
+                .y_to_px(*at, false)
+                .map(|y| [y - GAP - height, y + GAP]);
+            let along = |y: [f64; 2]| parts().flat_map(move |t| y.map(|y| (t, y)));
+            let places = sides.into_iter().flat_map(along);
+            places.map(|(t, y)| [x_at(t), y]).collect()
         }
         Mark::Band { from, to, .. } => {
             let Some(band) = band(frame, *from, *to) else {
@@ -246,58 +232,37 @@ fn label_candidates(frame: &PlotFrame, mark: &Mark, [width, height]: [f64; 2]) -
             };
             let x = (band.centre()[0] - 0.5 * width)
                 .clamp(plot.x0 + GAP, (plot.x1 - GAP - width).max(plot.x0 + GAP));
-            parts()
-                .map(|t| Rect::sized(x, y_at(t), width, height))
-                .collect()
+            parts().map(|t| [x, y_at(t)]).collect()
         }
         Mark::Point { at, .. } | Mark::Text { at, .. } => {
             let Some([x, y]) = frame.point_to_px(*at, false) else {
                 return Vec::new();
             };
-            let mut all = Vec::new();
-            for factor in [1.0, 2.0, 3.5] {
+            let around = |factor: f64| {
                 let d = (MARKER_RADIUS + GAP) * factor;
-                all.push(Rect::sized(x + d, y - 0.5 * height, width, height));
-                all.push(Rect::sized(x - d - width, y - 0.5 * height, width, height));
-                all.push(Rect::sized(x - 0.5 * width, y - d - height, width, height));
-                all.push(Rect::sized(x - 0.5 * width, y + d, width, height));
-                all.push(Rect::sized(
-                    x + 0.7 * d,
-                    y - 0.7 * d - height,
-                    width,
-                    height,
-                ));
-                all.push(Rect::sized(
-                    x - 0.7 * d - width,
-                    y - 0.7 * d - height,
-                    width,
-                    height,
-                ));
-                all.push(Rect::sized(x + 0.7 * d, y + 0.7 * d, width, height));
-                all.push(Rect::sized(x - 0.7 * d - width, y + 0.7 * d, width, height));
-            }
-            all
+                [
+                    [x + d, y - 0.5 * height],
+                    [x - d - width, y - 0.5 * height],
+                    [x - 0.5 * width, y - d - height],
+                    [x - 0.5 * width, y + d],
+                    [x + 0.7 * d, y - 0.7 * d - height],
+                    [x - 0.7 * d - width, y - 0.7 * d - height],
+                    [x + 0.7 * d, y + 0.7 * d],
+                    [x - 0.7 * d - width, y + 0.7 * d],
+                ]
+            };
+            [1.0, 2.0, 3.5].into_iter().flat_map(around).collect()
         }
         Mark::Slope { .. } => {
             let runs = path(frame, mark);
-            let mut all = Vec::new();
-            for p in runs.iter().flatten().step_by(8) {
-                all.push(Rect::sized(p[0] + GAP, p[1] + 0.3 * height, width, height));
-                all.push(Rect::sized(
-                    p[0] - GAP - width,
-                    p[1] - 1.3 * height,
-                    width,
-                    height,
-                ));
-                all.push(Rect::sized(p[0] + GAP, p[1] - 1.3 * height, width, height));
-                all.push(Rect::sized(
-                    p[0] - GAP - width,
-                    p[1] + 0.3 * height,
-                    width,
-                    height,
-                ));
-            }
-            all
+            let beside = |[x, y]: &[f64; 2]| {
+                let (right, left) = (x + GAP, x - GAP - width);
+                let (above, below) = (y - 1.3 * height, y + 0.3 * height);
+                [[right, below], [left, above], [right, above], [left, below]]
+            };
+            runs.iter().flatten().step_by(8).flat_map(beside).collect()
         }
-    }
+    };
+    let area = |[x, y]: [f64; 2]| Rect::sized(x, y, width, height);
+    corners.into_iter().map(area).collect()
 }

@@ -27,7 +27,7 @@ const LONE_HEIGHT: f64 = 0.56;
 const STRETCHED_HEIGHT: f64 = 0.36;
 const TITLE_LEADING: f64 = 1.25;
 const CAPTION_LEADING: f64 = 1.4;
-/// Between the caption and the line that says where the figure comes from.
+/// Between the caption and the line with the provenance of the figure.
 const FOOTER_GAP: f64 = 10.0;
 
 /// A panel whose labels have been measured.
@@ -80,6 +80,15 @@ pub(crate) struct Page<'a> {
     panels: Vec<PlacedPanel<'a>>,
 }
 
+fn prepared(panel: &Panel, width: f64) -> PreparedPanel<'_> {
+    match panel {
+        Panel::Chart(chart) => PreparedPanel::Chart(PreparedChart::new(chart)),
+        Panel::Drawing(drawing) => PreparedPanel::Drawing(drawing),
+        Panel::Stack(charts) => PreparedPanel::Stack(Stack::new(charts)),
+        Panel::Grid(grid) => PreparedPanel::Grid(Box::new(HeatMap::new(grid, width))),
+    }
+}
+
 impl<'a> Page<'a> {
     /// Lays everything out.
     pub(crate) fn new(figure: &'a Figure) -> Self {
@@ -105,20 +114,10 @@ impl<'a> Page<'a> {
                 .map(|panel| preferred_height(panel, width, columns == 1, stretched))
                 .fold(0.0, f64::max);
             for (column, panel) in chunk.iter().enumerate() {
-                let cell = Rect::sized(
-                    MARGIN + column as f64 * (width + COLUMN_GAP),
-                    y,
-                    width,
-                    height,
-                );
-                let panel = match panel {
-                    Panel::Chart(chart) => PreparedPanel::Chart(PreparedChart::new(chart)),
-                    Panel::Drawing(drawing) => PreparedPanel::Drawing(drawing),
-                    Panel::Stack(charts) => PreparedPanel::Stack(Stack::new(charts)),
-                    Panel::Grid(grid) => PreparedPanel::Grid(Box::new(HeatMap::new(grid, width))),
-                };
+                let x = MARGIN + column as f64 * (width + COLUMN_GAP);
+                let cell = Rect::sized(x, y, width, height);
                 panels.push(PlacedPanel {
-                    panel,
+                    panel: prepared(panel, width),
                     row,
                     column: (!stretched).then_some(column),
                     cell,

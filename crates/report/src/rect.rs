@@ -41,6 +41,11 @@ impl Rect {
         }
     }
 
+    /// A square by its centre and half its side.
+    pub(crate) fn around([x, y]: [f64; 2], half: f64) -> Self {
+        Self::sized(x, y, 0.0, 0.0).grown(half)
+    }
+
     pub(crate) fn width(&self) -> f64 {
         self.x1 - self.x0
     }

@@ -80,12 +80,11 @@ pub(crate) fn mark_occupied(frame: &PlotFrame, shape: &Shape, occupied: &mut Occ
 }
 
 /// Draws a shape; parts outside the plot are cut off, and what is not finite is left out.
+//
+// Long: a few lines for each kind of shape.
 pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
-    let place = |p: &[f64; 2]| {
-        frame
-            .point_to_px(*p, false)
-            .filter(|p| frame.plot.grown(1.0).contains(*p))
-    };
+    let plot = frame.plot.grown(1.0);
+    let place = |p: &[f64; 2]| frame.point_to_px(*p, false).filter(|p| plot.contains(*p));
     match shape {
         Shape::Polyline {
             points,
@@ -112,8 +111,7 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
             let Some(at) = place(at) else { return };
             let color = lightened(rgb(pen.color), pen.lightness);
             canvas.disc(at, radius_px + 0.5 * pen.width, color);
-            if *filled {
-            } else {
+            if !*filled {
                 canvas.disc(at, (radius_px - 0.5 * pen.width).max(0.0), WHITE);
             }
         }
@@ -123,21 +121,15 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
             }
         }
         Shape::GroundLine { from, to } => {
-            for run in clipped(
-                [
-                    frame.point_to_px(*from, false),
-                    frame.point_to_px(*to, false),
-                ],
-                &frame.plot,
-            ) {
+            let ends = [from, to].map(|p| frame.point_to_px(*p, false));
+            for run in clipped(ends, &frame.plot) {
                 ground_line(canvas, &run);
             }
         }
         Shape::Arrow { from, to, pen, .. } => {
-            let Some((from, to)) = place(from).zip(place(to)) else {
-                return;
-            };
-            arrow(canvas, from, to, pen);
+            if let Some((from, to)) = place(from).zip(place(to)) {
+                arrow(canvas, from, to, pen);
+            }
         }
         Shape::Text {
             at,
@@ -147,12 +139,8 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
         } => {
             let Some(at) = place(at) else { return };
             let place = text_box(at, text, *placement);
-            let [x, y] = [place.x0, place.centre()[1]];
-            canvas.text_with_halo(
-                text,
-                [x, y],
-                TextStyle::new(TICK_SIZE, rgb(*color), Align::Start),
-            );
+            let style = TextStyle::new(TICK_SIZE, rgb(*color), Align::Start);
+            canvas.text_with_halo(text, [place.x0, place.centre()[1]], style);
         }
     }
 }

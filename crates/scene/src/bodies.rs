@@ -120,7 +120,7 @@ impl<'a> Bodies<'a> {
     }
 
     /// The point of a body named by `body.point`: (body, index of its point). Names hold no dot,
-    /// so there is one way to read it.
+    /// so it is unambiguous.
     pub(crate) fn find_point(&self, text: &str, at: &Span) -> Option<(BodyId, usize)> {
         let Some((body, point)) = text.split_once('.') else {
             let named = self.by_name.get(text).map(|&k| &self.list[k]);
@@ -164,7 +164,7 @@ impl<'a> Bodies<'a> {
         found
     }
 
-    /// Reports a `path` that leads to no number, which the text names at `at`.
+    /// Reports a `path` without a number, which the text names at `at`.
     pub(crate) fn check_number(&self, path: &str, at: &Span) {
         let path_of = |n: &BodyNumber| {
             let body = &self.list[n.body.0];

@@ -82,6 +82,7 @@ const MAX_TITLE_LENGTH: usize = 200;
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 impl<'f, 'a> ParsedScene<'f, 'a> {
+    // Long: one section after another, in an order in which each finds the names it refers to.
     fn read(text: &str, fields: &'f TableReader<'a>) -> Option<Self> {
         if fields.entries.is_empty() {
             let blank = |c: char| c.is_whitespace() || c == BYTE_ORDER_MARK;

@@ -98,7 +98,7 @@ impl DriveTable<'_> {
         let ratio = NumberRule {
             unit: &SI,
             sign: SignRule::NotZero,
-            why: "below zero the motor turns in the opposite direction; at zero it is not connected",
+            why: "below zero the motor rotates in the opposite direction; at zero it is not connected",
         };
         let ratio = fields.number_or(1.0, "gear-ratio", &ratio);
         if let Some(entry) = fields.get("inertia") {

@@ -48,7 +48,7 @@
 //! Former names of keys are still read, with a warning in [`Scene::warnings`] that names the current one.
 //!
 //! Names are made of letters and digits of any script, `_`, `-`, primes and inner spaces. They
-//! hold no dot, so that `body.point` and `joint.component` can be read in one way only. Bodies,
+//! hold no dot, so that `body.point` and `joint.component` are unambiguous. Bodies,
 //! actuators and coordinates do not share names: the first two are keys of `[assembly]`, the last
 //! two are names in expressions, where `t` is the time. A pin of three bodies or more makes a joint
 //! of the first with each of the others, named `pin-body`; `pin` in `[requests]` means them all.

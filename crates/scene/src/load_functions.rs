@@ -8,7 +8,7 @@ use dwell_kinetostatics::{Load, Magnitude, MagnitudeFunction, Signal};
 
 impl Scene {
     /// The same scene with the magnitude of the load `name` computed by `function` from `signals`: `t`, a coordinate
-    /// such as `phi` (rad or m), or its velocity `phi.velocity`, in SI. What the file says of the magnitude is dropped.
+    /// such as `phi` (rad or m), or its velocity `phi.velocity`, in SI. The magnitude in the file is dropped.
     ///
     /// # Errors
     /// [`SceneError`] where there is no such load or no such signal.

@@ -49,7 +49,7 @@ impl BodyNumber {
     }
 }
 
-/// Message and help for a path that leads nowhere: what there is of that body, or at all.
+/// Message and help for a path without a number: the numbers of that body, or all.
 pub(crate) fn no_number(path: &str, all: &[String]) -> (String, String) {
     let first = |path: &str| path.split('.').next().map(str::to_owned);
     let body = first(path).unwrap_or_default();

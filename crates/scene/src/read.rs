@@ -78,7 +78,7 @@ fn bytes(path: &Path, display_path: &str) -> Result<Vec<u8>, SceneError> {
     };
     let file = File::open(path).map_err(|e| unreadable(&e))?;
     let mut bytes = Vec::new();
-    // One byte more than allowed tells a longer file, even one that never ends.
+    // One byte more than allowed shows that a file is longer, even one that never ends.
     let read = file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes);
     let length = read.map_err(|e| unreadable(&e))?;
     if length as u64 > MAX_SCENE_BYTES {
@@ -155,7 +155,7 @@ fn explain(message: &str, found: &str, from: &str) -> (String, Option<String>) {
             None => ("a value is missing".to_owned(), None),
             Some('0'..='9' | '+' | '-') => (
                 format!("`{quoted}` is not a number"),
-                help("a number stands alone; its unit is said once, in [units]"),
+                help("a number stands alone; its unit is given once, in [units]"),
             ),
             Some(_) => (
                 format!("`{quoted}` is not a value"),

@@ -22,7 +22,7 @@ pub struct Scene {
     pub name: String,
     /// The title, or the name if there is none.
     pub title: String,
-    /// What has to be said wherever the results are shown.
+    /// A remark that is shown with all results.
     pub note: Option<String>,
     /// Bodies, joints and actuators.
     pub mechanism: Mechanism,
@@ -39,7 +39,7 @@ pub struct Scene {
     pub prescribed: Option<PrescribedMotion>,
     /// The positions of kinematics, statics and kinetostatics without a prescribed motion.
     pub sweep: Option<CoordinateSweep>,
-    /// What acts on the mechanism from outside, and the friction in its joints.
+    /// The loads on the mechanism, and the friction in its joints.
     pub loads: Vec<Load>,
     /// What drives it in a free motion.
     pub drives: Vec<Drive>,
@@ -65,9 +65,9 @@ pub struct Scene {
 pub struct Assembly {
     /// Exact coordinate of each actuator, rad or m.
     pub coordinates: Vec<f64>,
-    /// Rough angle of each body, rad, where the scene gives one.
+    /// Initial guess of the angle of each body, rad, where the scene gives one.
     pub initial_guess: Vec<Option<f64>>,
-    /// Rough travel, m, or direction, rad, of each joint, where the scene gives one.
+    /// Approximate travel, m, or direction, rad, of each joint, where the scene gives one.
     pub branch_hints: Vec<Option<f64>>,
 }
 
@@ -154,7 +154,7 @@ pub struct PrescribedMotion {
 pub struct CoordinateSweep {
     /// The actuator that is swept.
     pub actuator: ActuatorId,
-    /// From where to where, rad or m; none: over its range, or one turn.
+    /// From where to where, rad or m; none: over its range, or one revolution.
     pub range: Option<[f64; 2]>,
     /// Coordinate of each actuator, rad or m: where it is held, or the swept one's at assembly.
     pub fixed_coordinates: Vec<f64>,
@@ -167,15 +167,15 @@ pub struct CoordinateSweep {
 /// A free motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeMotionSpec {
-    /// Coordinate of each actuator at the start, rad or m; of one that is led, its law's.
+    /// Coordinate of each actuator at the start, rad or m; of a prescribed one, that of its law.
     pub initial_coordinates: Vec<f64>,
-    /// Speed of each actuator at the start, rad/s or m/s; of one that is led, its law's.
+    /// Speed of each actuator at the start, rad/s or m/s; of a prescribed one, that of its law.
     pub initial_velocities: Vec<f64>,
     /// By actuator: the law it follows; none where it is free.
     pub laws: Vec<Option<Law>>,
     /// How long it lasts.
     pub duration: MotionDuration,
-    /// What is looked for on the way.
+    /// The events that are located.
     pub events: Vec<NamedEvent>,
 }
 
@@ -199,7 +199,7 @@ pub enum EventTrigger {
     Reversal(Coordinate),
     /// A reaction passes a value, N or N·m.
     Reaction(Reaction, f64),
-    /// A coordinate completes a whole turn from where it started.
+    /// A coordinate completes a whole revolution from where it started.
     Revolution(Coordinate),
 }
 

@@ -102,17 +102,7 @@ impl<'a> Symbolic<'a> {
     /// [`SymbolicError::Reaction`] where the loads do not determine the reaction.
     pub fn closed_form(&self, reaction: Option<Reaction>) -> Result<ClosedForm, SymbolicError> {
         let mut positions = self.positions.clone();
-        let release = match reaction {
-            Some(reaction) => {
-                let all = positions.mechanism.reactions();
-                let at = all.iter().position(|&r| r == reaction);
-                if !at.is_some_and(|k| positions.plan.is_determinate(k)) {
-                    return Err(SymbolicError::Reaction(reaction));
-                }
-                Some(positions.release(reaction)?)
-            }
-            None => None,
-        };
+        let release = reaction.map(|r| positions.release(r)).transpose()?;
         let mut symbols = std::mem::take(&mut positions.symbols);
         let base = std::mem::take(&mut symbols.assignments);
         let none = BTreeMap::new();
@@ -153,12 +143,8 @@ impl<'a> Symbolic<'a> {
             symbols,
         };
         let angle = positions.plan.is_angle(0);
-        closed_form.quantities.extend(result_quantities(
-            &closed_form.symbols,
-            &results,
-            reaction,
-            angle,
-        ));
+        let found = result_quantities(&closed_form.symbols, &results, reaction, angle);
+        closed_form.quantities.extend(found);
         closed_form.inline();
         closed_form.prune();
         Ok(closed_form)
@@ -244,7 +230,7 @@ impl Derivatives<'_> {
         [first, second, derivative(term, self.virtual_displacements)]
     }
 
-    /// The same of a body's angle, which a released couple turns beside its frame.
+    /// The same of a body's angle, which a released couple rotates from its frame.
     fn of_angle(&self, body: usize) -> [Term; 3] {
         let frame = self.positions.plan.frames().orientations[body].frame;
         let [first, second, virtual_rotation] = self.of_term(&self.positions.angle(frame));

@@ -43,7 +43,7 @@ impl ClosedForm {
     }
 
     /// A function of the coordinate in a language, that gives all quantities: what steps share is computed
-    /// once. `name` is its name, and `about` is said above it.
+    /// once. `name` is its name, and `about` stands in the comment above it.
     pub fn code(&self, language: Language, name: &str, about: &str) -> String {
         let lines = self.lines();
         // A title may hold anything: it must not end the comment that it stands in.
@@ -206,7 +206,7 @@ fn camel(name: &str) -> String {
 }
 
 impl ClosedForm {
-    /// Steps that say more than another name, in all parts.
+    /// Steps that are more than another name, in all parts.
     pub fn assignment_count(&self) -> usize {
         self.assignments().filter(|s| !is_atomic(&s.value)).count()
     }

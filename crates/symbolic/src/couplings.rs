@@ -30,7 +30,9 @@ impl PositionFormulas<'_> {
                 );
             } else {
                 if !self.counts_revolutions(frame) {
-                    return Err(self.unsupported(group, "a relation counts the turns of a dyad"));
+                    return Err(
+                        self.unsupported(group, "a coupling counts the revolutions of a dyad")
+                    );
                 }
                 known_terms = plus(&known_terms, &times(&coefficient, &self.angle(frame)));
             }

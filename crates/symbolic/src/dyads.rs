@@ -159,15 +159,13 @@ impl PositionFormulas<'_> {
     }
 
     /// A class turns and a slide travels until a loop closes.
+    //
+    // Long: the slide may turn with the class or not; both cases begin with the same known part.
     fn line_circle(&mut self, group: usize, class: usize, slide: usize, closure: usize) {
         let joint = self.loop_joint_name(closure);
         let but = [slide];
-        let Some(slide_term) = self.loops[closure]
-            .slide_terms
-            .iter()
-            .find(|p| p.slide == slide)
-            .cloned()
-        else {
+        let mut slide_terms = self.loops[closure].slide_terms.iter();
+        let Some(slide_term) = slide_terms.find(|p| p.slide == slide).cloned() else {
             return;
         };
         let d = self.known_part(group, closure, &but);
@@ -212,7 +210,7 @@ impl PositionFormulas<'_> {
             } else {
                 self.varying_polar(closure, self.plan.class_frame(class), &reached)
             };
-            // What it reaches is what is known, the other way round.
+            // What it reaches is the known part, reversed.
             polar.sign = -polar.sign;
             self.orient_class(class, &d, &polar);
         } else {

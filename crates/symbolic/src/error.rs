@@ -18,7 +18,7 @@ pub enum SymbolicError {
         bodies: Vec<BodyId>,
         /// The joints that close it.
         joints: Vec<JointId>,
-        /// What is in the way.
+        /// What has no closed form.
         what: &'static str,
     },
     /// A reaction that the loads do not determine, or that no joint has.

@@ -1,4 +1,4 @@
-//! How a loop is made of pieces of bodies: walked anew, body by body, so that each piece can be turned or
+//! How a loop is composed of link vectors: found anew, body by body, so that each piece can be turned or
 //! shifted by itself when a joint is released.
 
 use dwell_geometry::frames::Frames;
@@ -20,20 +20,20 @@ pub(crate) struct LinkVector {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct SlideTerm {
     pub(crate) slide: usize,
-    /// The first body of its bond, which holds its direction.
+    /// The first body of its pair, which holds its direction.
     pub(crate) body: usize,
     pub(crate) frame: usize,
     /// The direction along which it counts, in the frame.
     pub(crate) local: Vec2,
 }
 
-/// A loop: P₂ − P₁ of the bond that closes it, through the tree.
+/// A loop: P₂ − P₁ of the pair that closes it, through the tree.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct LoopEquation {
     pub(crate) loop_joint: usize,
     pub(crate) link_vectors: Vec<LinkVector>,
     pub(crate) slide_terms: Vec<SlideTerm>,
-    /// The tree's bonds that it passes, each with the sign of what shifts its second point.
+    /// The pairs of the tree that it passes, each with the sign of a shift of its second point.
     pub(crate) tree_pairs: Vec<(usize, f64)>,
     /// Where only the normal part must vanish: the axis, with its body and frame.
     pub(crate) axis: Option<(usize, usize, Vec2)>,
@@ -59,7 +59,7 @@ pub(crate) fn rotated_constant(vector: Vec2, by: Vec2) -> Vec2 {
     dwell_geometry::vec2(clean(rotated.x), clean(rotated.y))
 }
 
-/// The name of what a bond comes from.
+/// The name of the joint or actuator that a kinematic pair comes from.
 pub(crate) fn pair_name(mechanism: &Mechanism, plan: &Plan, pair: usize) -> String {
     match plan.pairs()[pair].owner {
         Owner::Joint(joint) => mechanism.joints[joint.0].name.clone(),
@@ -68,7 +68,7 @@ pub(crate) fn pair_name(mechanism: &Mechanism, plan: &Plan, pair: usize) -> Stri
 }
 
 impl LoopEquation {
-    /// The loop that a chord closes.
+    /// The loop that a loop joint closes.
     pub(crate) fn of(mechanism: &Mechanism, plan: &Plan, closure: usize) -> Self {
         let (tree, frames) = (plan.tree(), plan.frames());
         let loop_joint = plan.loop_closures()[closure].pair;
@@ -80,29 +80,21 @@ impl LoopEquation {
             tree_pairs: Vec::new(),
             axis: None,
         };
-        let point_on = |pair: usize, body: usize| {
-            let pair = &plan.pairs()[pair];
-            pair.points[usize::from(pair.bodies[0] != body)]
-        };
+        let pairs = plan.pairs();
+        let point_on = |b: usize, body| pairs[b].points[usize::from(pairs[b].bodies[0] != body)];
         let mut ends = [0, 1].map(|i| (pair.bodies[i], pair.points[i], loop_joint));
         while ends[0].0 != ends[1].0 {
             let which = usize::from(tree.joint_of_body[ends[1].0] > tree.joint_of_body[ends[0].0]);
             let sign = if which == 1 { 1.0 } else { -1.0 };
             let (body, point, reached) = ends[which];
-            let Some(at) = tree.joint_of_body[body] else {
+            let Some(tree_joint) = tree.joint_of_body[body].map(|at| &tree.joints[at]) else {
                 break;
             };
-            let tree_joint = &tree.joints[at];
             let joint_origin = point_on(tree_joint.pair, body);
-            loop_equation.add_link_vector(
-                frames,
-                body,
-                (joint_origin, point),
-                sign,
-                [tree_joint.pair, reached].map(|b| pair_name(mechanism, plan, b)),
-            );
-            let is_second = plan.pairs()[tree_joint.pair].bodies[1] == body;
-            let pair_sign = if is_second { sign } else { -sign };
+            let names = [tree_joint.pair, reached].map(|b| pair_name(mechanism, plan, b));
+            loop_equation.add_link_vector(frames, body, (joint_origin, point), sign, names);
+            let is_first = plan.pairs()[tree_joint.pair].bodies[1] != body;
+            let pair_sign = if is_first { -sign } else { sign };
             loop_equation.tree_pairs.push((tree_joint.pair, pair_sign));
             if let Some((slide, away)) = tree_joint.slide {
                 loop_equation.slide_terms.push(SlideTerm {
@@ -112,39 +104,26 @@ impl LoopEquation {
                     local: away * sign,
                 });
             }
-            ends[which] = (
-                tree_joint.parent,
-                point_on(tree_joint.pair, tree_joint.parent),
-                tree_joint.pair,
-            );
+            let (parent, pair) = (tree_joint.parent, tree_joint.pair);
+            ends[which] = (parent, point_on(pair, parent), pair);
         }
         let names = [ends[0].2, ends[1].2].map(|b| pair_name(mechanism, plan, b));
         loop_equation.add_link_vector(frames, ends[0].0, (ends[0].1, ends[1].1), 1.0, names);
-        loop_equation
-            .link_vectors
-            .retain(|piece| piece.local != Vec2::ZERO);
-        if let PairKind::Prismatic {
-            axes,
-            travel_is_coordinate: measured,
-            ..
-        } = pair.kind
-        {
+        let vectors = &mut loop_equation.link_vectors;
+        vectors.retain(|vector| vector.local != Vec2::ZERO);
+        if let PairKind::Prismatic { axes, .. } = pair.kind {
             let body = pair.bodies[0];
-            let attitude = frames.orientations[body];
-            let local = rotated_constant(axes[0], attitude.offset);
-            let slide_index = plan
-                .tree()
-                .slide_pairs
-                .iter()
-                .position(|&b| b == loop_joint);
-            match slide_index.filter(|_| measured) {
+            let orientation = frames.orientations[body];
+            let local = rotated_constant(axes[0], orientation.offset);
+            // The slides of loop joints are those whose travel is a coordinate.
+            match tree.slide_pairs.iter().position(|&b| b == loop_joint) {
                 Some(slide) => loop_equation.slide_terms.push(SlideTerm {
                     slide,
                     body,
-                    frame: attitude.frame,
+                    frame: orientation.frame,
                     local: -local,
                 }),
-                None => loop_equation.axis = Some((body, attitude.frame, local)),
+                None => loop_equation.axis = Some((body, orientation.frame, local)),
             }
         }
         loop_equation

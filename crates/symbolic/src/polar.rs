@@ -38,7 +38,7 @@ impl PositionFormulas<'_> {
             } else {
                 let k = self.next_number();
                 let meaning = format!(
-                    "{name}: direction of its arm at {}, from its x axis",
+                    "{name}: direction of its vector at {}, from its x axis",
                     self.loop_joint_name(closure)
                 );
                 self.symbols

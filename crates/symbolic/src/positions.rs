@@ -14,7 +14,7 @@ use std::collections::HashMap;
 /// A vector in the plane.
 pub(crate) type Vector = [Term; 2];
 
-/// Where a loop feels what shifts it.
+/// The quantities of a loop that a released joint shifts.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LoopSymbols {
     /// The steps of the known part of the loop.
@@ -107,7 +107,7 @@ impl<'a> PositionFormulas<'a> {
         self.angle_from(frame, false)
     }
 
-    /// The angle of a frame from the root of its class.
+    /// The angle of a frame from the class frame.
     pub(crate) fn relative_angle(&self, frame: usize) -> Term {
         self.angle_from(frame, true)
     }
@@ -172,7 +172,7 @@ impl<'a> PositionFormulas<'a> {
 
     /// A constant vector in its frame, by the names of its components, m.
     pub(crate) fn frame_vector(&mut self, frame: usize, local: Vec2, meaning: &str) -> Vector {
-        // The same vector the other way round is no other constant.
+        // The same vector reversed is no other constant.
         let back = local.x < 0.0 || (local.x == 0.0 && local.y < 0.0);
         let sign = if back { -1.0 } else { 1.0 };
         let forth = local * sign + Vec2::ZERO;
@@ -337,7 +337,7 @@ impl<'a> PositionFormulas<'a> {
         })
     }
 
-    /// The ground, the bodies' roots and their centres of mass.
+    /// The bodies' joint origins and their centres of mass.
     fn body_positions(&mut self, masses: &[Mass]) {
         let tree = self.plan.tree();
         let frames = self.plan.frames();
@@ -349,21 +349,15 @@ impl<'a> PositionFormulas<'a> {
             let frame = frames.orientations[parent].frame;
             let from = match self.joint_origins[parent] {
                 Some(_) => tree.joint_origins[parent],
-                // The ground's own coordinates tell where its points are.
+                // The points of the ground are given by its own coordinates.
                 None => Vec2::ZERO,
             };
             let local = vector_between(frames, parent, from, point);
             let reached = tree.joint_of_body[parent].map(|p| tree.joints[p].pair);
             let start = reached.map(|b| pair_name(self.mechanism, self.plan, b));
             let start = start.unwrap_or_else(|| "the origin".to_owned());
-            let arm = self.frame_vector(
-                frame,
-                local,
-                &format!(
-                    "{}: from {start} to {joint}",
-                    self.body_or_joint_name(parent)
-                ),
-            );
+            let name = self.body_or_joint_name(parent);
+            let arm = self.frame_vector(frame, local, &format!("{name}: from {start} to {joint}"));
             let mut joint_origin = rotate(&arm, &self.angle(frame));
             if let Some(codes) = &self.joint_origins[parent] {
                 joint_origin = add(&[symbol(&codes[0]), symbol(&codes[1])], &joint_origin);
@@ -433,10 +427,13 @@ impl<'a> PositionFormulas<'a> {
         class > 0 && unknowns.contains(&Unknown::ClassAngle(class))
     }
 
-    /// A constant direction of a bond's axis in its body, in its frame.
+    /// A constant direction of the axis of a pair in its body, in its frame.
     pub(crate) fn to_frame(&self, body: usize, local: Vec2) -> (usize, Vec2) {
-        let attitude = self.plan.frames().orientations[body];
-        (attitude.frame, rotated_constant(local, attitude.offset))
+        let orientation = self.plan.frames().orientations[body];
+        (
+            orientation.frame,
+            rotated_constant(local, orientation.offset),
+        )
     }
 }
 

@@ -73,38 +73,27 @@ impl PositionFormulas<'_> {
                 found.push(quantity(code, "rad", meaning, QuantityOrigin::Frame(frame)));
             }
         }
-        for (slide, travel) in self.travels.iter().enumerate() {
-            if let (Some(code), None) = (
-                travel.as_ref().and_then(symbol_name),
-                self.plan.actuated_slides()[slide],
-            ) {
-                let pair = self.plan.tree().slide_pairs[slide];
-                let name = pair_name(self.mechanism, self.plan, pair);
-                let meaning = format!("travel of {name}");
+        let travel = |pair| format!("travel of {}", pair_name(self.mechanism, self.plan, pair));
+        for (slide, variable) in self.travels.iter().enumerate() {
+            let actuator = self.plan.actuated_slides()[slide];
+            if let (Some(code), None) = (variable.as_ref().and_then(symbol_name), actuator) {
+                let meaning = travel(self.plan.tree().slide_pairs[slide]);
                 found.push(quantity(code, "m", meaning, QuantityOrigin::Slide(slide)));
             }
         }
-        for (c, (symbols_of_loop, loop_equation)) in
-            self.loop_symbols.iter().zip(&self.loops).enumerate()
-        {
-            if let Some(code) = symbols_of_loop
-                .normal_distance
-                .as_ref()
-                .and_then(|n| symbol_name(&n.1))
-            {
-                let name = pair_name(self.mechanism, self.plan, loop_equation.loop_joint);
-                let meaning = format!("travel of {name}");
+        let loops = self.loop_symbols.iter().zip(&self.loops);
+        for (c, (loop_symbols, loop_equation)) in loops.enumerate() {
+            let distance = loop_symbols.normal_distance.as_ref();
+            if let Some(code) = distance.and_then(|n| symbol_name(&n.1)) {
+                let meaning = travel(loop_equation.loop_joint);
                 found.push(quantity(code, "m", meaning, QuantityOrigin::Closure(c)));
             }
         }
         let joint_origin: fn(usize, usize) -> QuantityOrigin = QuantityOrigin::JointOrigin;
+        let mass_centre = QuantityOrigin::MassCentre;
         let points = [
             (&self.joint_origins, "the point that carries", joint_origin),
-            (
-                &self.mass_centres,
-                "the centre of mass of",
-                QuantityOrigin::MassCentre,
-            ),
+            (&self.mass_centres, "the centre of mass of", mass_centre),
         ];
         for (points, what, of) in points {
             for (body, point) in points.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A joint that lets go along one component: what each step feels of it.
+//! A joint that is released along one component, and how that shifts each step.
 //!
 //! A second coordinate shifts the joint's second body along the component by one unit. To first order,
 //! which is all that a and b take of it, the known part of each loop is shifted by a sum over its pieces, and
@@ -12,12 +12,12 @@ use dwell_geometry::lower::PairKind;
 use dwell_geometry::{Component, JointKind, Reaction, Vec2};
 use std::collections::BTreeMap;
 
-/// What lets go.
+/// The constraint that is released.
 #[derive(Debug, Clone)]
 enum Released {
-    /// A bond, along a direction in the plane.
+    /// A kinematic pair, along a direction in the plane.
     Pair(usize, Vector),
-    /// The couple of a bond.
+    /// The couple of a kinematic pair.
     Moment(usize),
     Coupling(usize),
 }
@@ -32,13 +32,19 @@ pub(crate) struct Release {
 impl PositionFormulas<'_> {
     /// Releases one component of a joint. Further constants may be named, and no steps.
     pub(crate) fn release(&mut self, reaction: Reaction) -> Result<Release, SymbolicError> {
+        let all = self.mechanism.reactions();
+        let at = all.iter().position(|&r| r == reaction);
+        if !at.is_some_and(|k| self.plan.is_determinate(k)) {
+            return Err(SymbolicError::Reaction(reaction));
+        }
         let released = self.released_constraint(reaction)?;
         let extra_rotation = self.extra_rotations(&released);
         let mut shifts = BTreeMap::new();
         for closure in 0..self.loops.len() {
             self.shift_loop(closure, &released, &extra_rotation, &mut shifts);
         }
-        self.shift_bodies(&released, &extra_rotation, &mut shifts);
+        self.shift_joint_origins(&released, &extra_rotation, &mut shifts);
+        self.shift_mass_centres(&extra_rotation, &mut shifts);
         self.shift_couplings(&released, &extra_rotation, &mut shifts);
         Ok(Release {
             shifts,
@@ -59,7 +65,7 @@ impl PositionFormulas<'_> {
                 return Ok(Released::Coupling(coupling));
             }
             (Component::Moment, Some(pair), _) => return Ok(Released::Moment(pair)),
-            // Along a direction of a pair, below; or nothing lets go, which is refused there.
+            // Along a direction of a pair, below; or there is nothing to release, which is refused there.
             (Component::X | Component::Y | Component::Normal | Component::Axial, _, _)
             | (Component::Tooth | Component::Tangent | Component::Force, _, None)
             | (Component::Moment, None, _) => {}
@@ -88,7 +94,7 @@ impl PositionFormulas<'_> {
         Ok(Released::Pair(pair, direction))
     }
 
-    /// By body: how much it turns beside its frame for each unit.
+    /// By body: its rotation from its frame for each unit.
     fn extra_rotations(&self, released: &Released) -> Vec<f64> {
         let mut extra_rotation = vec![0.0; self.plan.frames().orientations.len()];
         let Released::Moment(pair) = *released else {
@@ -96,7 +102,7 @@ impl PositionFormulas<'_> {
         };
         for constraint in &self.plan.frames().angular_constraints {
             let relative = if constraint.source == AngularConstraintSource::Pair(pair) {
-                // Its second body turns from its first.
+                // Its second body rotates from its first.
                 if constraint.body_is_first { -1.0 } else { 1.0 }
             } else {
                 0.0
@@ -166,7 +172,7 @@ impl PositionFormulas<'_> {
         }
     }
 
-    fn shift_bodies(
+    fn shift_joint_origins(
         &mut self,
         released: &Released,
         extra_rotation: &[f64],
@@ -220,6 +226,9 @@ impl PositionFormulas<'_> {
                 shifts.insert(code, shift.simplify());
             }
         }
+    }
+
+    fn shift_mass_centres(&self, extra_rotation: &[f64], shifts: &mut BTreeMap<String, Term>) {
         for (body, &parent_rotation) in extra_rotation.iter().enumerate() {
             let (Some(centre), Some(joint_origin)) = (
                 self.mass_centres[body].clone(),
@@ -242,9 +251,9 @@ impl PositionFormulas<'_> {
         shifts: &mut BTreeMap<String, Term>,
     ) {
         let mut pose = self.plan.pose::<f64>();
-        if self
-            .plan
-            .positions(self.plan.assembly_coordinates(), &mut pose)
+        let plan = self.plan;
+        if plan
+            .positions(plan.assembly_coordinates(), &mut pose)
             .is_err()
         {
             return;
@@ -254,10 +263,9 @@ impl PositionFormulas<'_> {
                 continue;
             };
             let mut shift = 0.0;
-            self.plan
-                .coupling_angle_derivatives(coupling, &pose, |body, factor| {
-                    shift += factor * extra_rotation[body];
-                });
+            plan.coupling_angle_derivatives(coupling, &pose, |body, factor| {
+                shift += factor * extra_rotation[body];
+            });
             if matches!(released, Released::Coupling(r) if *r == coupling) {
                 shift -= 1.0;
             }

@@ -65,10 +65,8 @@ impl BodyMotion<'_> {
         let [gap, rate] = self.gap(bodies, points)?;
         let axis_in_plane = axis.rotate(self.rotation(bodies[0])?);
         let axis_rate = axis_in_plane.perp() * self.velocities.get(bodies[0].0)?[2];
-        Some([
-            axis_in_plane.dot(gap),
-            axis_in_plane.dot(rate) + axis_rate.dot(gap),
-        ])
+        let rate = axis_in_plane.dot(rate) + axis_rate.dot(gap);
+        Some([axis_in_plane.dot(gap), rate])
     }
 
     /// The distance of two points, and its rate.

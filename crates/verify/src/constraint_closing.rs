@@ -10,7 +10,7 @@
 //! so that pivots can be compared with each other, whatever the mechanism's size.
 
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use crate::lu::Lu;
 use dwell_geometry::Vec2;
 use faer::Mat;
@@ -26,14 +26,14 @@ const STALLED_STEP: f64 = 1e-6;
 const MAX_RESIDUAL: f64 = 1e-11;
 /// A step as large as the mechanism is not a correction any more: another branch would be found.
 const MAX_NEWTON_STEP: f64 = 1.5;
-/// How far one step of [`DenseMechanism::follow`] may turn or move a body, in rad or sizes.
+/// How far one step of [`DenseMechanism::follow`] may rotate or move a body, in rad or sizes.
 const MAX_FOLLOW_STEP: f64 = 0.15;
 /// Steps of [`DenseMechanism::follow`] before it gives up: next to a dead point they become ever shorter.
 const MAX_FOLLOW_STEPS: usize = 2000;
 
 /// A closed configuration: coordinates that meet the imposed values, and the factors there.
 #[derive(Debug, Clone)]
-pub struct ClosedConfiguration {
+pub struct Configuration {
     /// Dense coordinates, three per moving body, in the moved frames.
     pub(crate) x: Vec<f64>,
     /// The value each row was closed at: zero for a closed joint, q for an actuator.
@@ -43,23 +43,19 @@ pub struct ClosedConfiguration {
 
 impl DenseMechanism {
     /// Where a point given in a body's own frame is in the plane, m.
-    pub fn point(&self, closed: &ClosedConfiguration, body: usize, point: Vec2) -> Vec2 {
+    pub fn point(&self, closed: &Configuration, body: usize, point: Vec2) -> Vec2 {
         let ground = self.bodies[self.mechanism.ground].shift;
         let of = &self.bodies[body];
         ground + self.frame_point(of, &closed.x, point - of.shift)
     }
 
-    /// Closes every row at its imposed value, starting from the coordinates `initial_guess`.
-    pub fn close(
-        &self,
-        initial_guess: &[f64],
-        row_values: &[f64],
-    ) -> Result<ClosedConfiguration, DenseError> {
-        if initial_guess.len() != self.rows.columns() || row_values.len() != self.rows.len() {
+    /// Closes every row at its imposed value, starting from the coordinates `guess`.
+    pub fn close(&self, guess: &[f64], row_values: &[f64]) -> Result<Configuration> {
+        if guess.len() != self.rows.columns() || row_values.len() != self.rows.len() {
             return Err(DenseError::InvalidPoses);
         }
         let not_closed = |steps, last_step| Err(DenseError::NotClosed { steps, last_step });
-        let mut x = initial_guess.to_vec();
+        let mut x = guess.to_vec();
         let mut residual = vec![0.0; self.rows.len()];
         let mut previous = f64::INFINITY;
         for step in 1..=MAX_NEWTON_STEPS {
@@ -78,7 +74,7 @@ impl DenseMechanism {
                     return not_closed(step, norm);
                 }
                 let (lu, row_values) = (self.factor(&x)?, row_values.to_vec());
-                return Ok(ClosedConfiguration { x, row_values, lu });
+                return Ok(Configuration { x, row_values, lu });
             }
             previous = norm;
         }
@@ -87,11 +83,7 @@ impl DenseMechanism {
 
     /// Closes the frames `poses` of all bodies at the coordinates `q` of the actuators; and how far that moves them,
     /// relative to the largest coordinate in them.
-    pub(crate) fn close_poses(
-        &self,
-        poses: &[[f64; 3]],
-        q: &[f64],
-    ) -> Result<(ClosedConfiguration, f64), DenseError> {
+    pub(crate) fn close_at(&self, poses: &[[f64; 3]], q: &[f64]) -> Result<(Configuration, f64)> {
         let coordinates = self.coordinates(poses)?;
         let mut row_values = vec![0.0; self.rows.len()];
         row_values[self.actuator_row()..].copy_from_slice(q);
@@ -104,7 +96,7 @@ impl DenseMechanism {
     }
 
     /// How far two configurations are apart, whole revolutions of a body not counted, rad or sizes.
-    pub(crate) fn distance(&self, one: &ClosedConfiguration, other: &ClosedConfiguration) -> f64 {
+    pub(crate) fn distance(&self, one: &Configuration, other: &Configuration) -> f64 {
         let both = one.x.iter().zip(&other.x);
         let mut difference: Vec<f64> = both.map(|(a, b)| a - b).collect();
         for angle in difference.iter_mut().skip(2).step_by(3) {
@@ -120,10 +112,10 @@ impl DenseMechanism {
     /// sign of det J distinguishes them, because it cannot change along a branch.
     pub fn close_on_branch(
         &self,
-        from: &ClosedConfiguration,
+        from: &Configuration,
         initial_guess: &[f64],
         row_values: &[f64],
-    ) -> Result<ClosedConfiguration, DenseError> {
+    ) -> Result<Configuration> {
         let configuration = self.close(initial_guess, row_values)?;
         if configuration.lu.positive() == from.lu.positive() {
             Ok(configuration)
@@ -136,11 +128,11 @@ impl DenseMechanism {
     /// `direction`, the unit velocity of that row, leads.
     pub fn step_row(
         &self,
-        from: &ClosedConfiguration,
+        from: &Configuration,
         row: usize,
         direction: &[f64],
         value: f64,
-    ) -> Result<ClosedConfiguration, DenseError> {
+    ) -> Result<Configuration> {
         let increment = value - from.row_values[row];
         let moved = from.x.iter().zip(direction);
         let initial_guess: Vec<_> = moved.map(|(x, u)| x + u * increment).collect();
@@ -153,10 +145,10 @@ impl DenseMechanism {
     /// any others may become dependent before the end.
     pub(crate) fn follow_with_best_rows(
         &self,
-        from: &ClosedConfiguration,
+        from: &Configuration,
         row: usize,
         to: f64,
-    ) -> Result<ClosedConfiguration, DenseError> {
+    ) -> Result<Configuration> {
         if self.rows.len() == self.rows.columns() {
             return self.follow(from, row, to);
         }
@@ -173,12 +165,7 @@ impl DenseMechanism {
 
     /// Follows the branch continuously until `row` has the value `to`, in steps short enough for
     /// Newton's method not to change branch, halved where it fails.
-    pub fn follow(
-        &self,
-        from: &ClosedConfiguration,
-        row: usize,
-        to: f64,
-    ) -> Result<ClosedConfiguration, DenseError> {
+    pub fn follow(&self, from: &Configuration, row: usize, to: f64) -> Result<Configuration> {
         let mut here = from.clone();
         for _ in 0..MAX_FOLLOW_STEPS {
             if here.row_values[row] == to {
@@ -218,7 +205,7 @@ impl DenseMechanism {
 
     /// The velocities of all coordinates when `row` opens, or the actuator moves, at unit rate and all
     /// other rows are held: column k of J⁻¹.
-    pub fn unit_velocity(&self, at: &ClosedConfiguration, row: usize) -> Vec<f64> {
+    pub fn unit_velocity(&self, at: &Configuration, row: usize) -> Vec<f64> {
         let mut rates = vec![0.0; self.rows.len()];
         rates[row] = 1.0;
         self.solve(&at.lu, &rates)
@@ -227,7 +214,7 @@ impl DenseMechanism {
     /// The unit velocities of every row.
     ///
     /// A row that is not solved cannot be opened: nothing moves.
-    pub fn unit_velocities(&self, at: &ClosedConfiguration) -> Vec<Vec<f64>> {
+    pub fn unit_velocities(&self, at: &Configuration) -> Vec<Vec<f64>> {
         let n = self.independent_rows.len();
         let mut right = Mat::zeros(n, n);
         for (k, &row) in self.independent_rows.iter().enumerate() {
@@ -245,15 +232,10 @@ impl DenseMechanism {
 
     /// The accelerations of all coordinates when they move at `x_dot` and row values accelerate
     /// at `rates`: J ẍ = rates − Φ̇ₓ ẋ.
-    pub fn acceleration(
-        &self,
-        at: &ClosedConfiguration,
-        x_dot: &[f64],
-        row_accelerations: &[f64],
-    ) -> Vec<f64> {
+    pub fn acceleration(&self, at: &Configuration, x_dot: &[f64], rates: &[f64]) -> Vec<f64> {
         let mut right = vec![0.0; self.rows.len()];
         self.rows.velocity_product(&at.x, x_dot, &mut right);
-        for (r, rate) in right.iter_mut().zip(row_accelerations) {
+        for (r, rate) in right.iter_mut().zip(rates) {
             *r = rate - *r;
         }
         self.solve(&at.lu, &right)
@@ -268,7 +250,7 @@ impl DenseMechanism {
     ///
     /// # Errors
     /// [`DenseError::RedundantRowsOpen`] with the largest residual.
-    pub(crate) fn check_redundant_rows(&self, at: &ClosedConfiguration) -> Result<(), DenseError> {
+    pub(crate) fn check_redundant_rows(&self, at: &Configuration) -> Result<()> {
         let mut residual = vec![0.0; self.rows.len()];
         self.rows.residual(&at.x, &at.row_values, &mut residual);
         let all: Vec<usize> = (0..residual.len()).collect();
@@ -296,7 +278,7 @@ impl DenseMechanism {
         })
     }
 
-    fn factor(&self, x: &[f64]) -> Result<Lu, DenseError> {
+    fn factor(&self, x: &[f64]) -> Result<Lu> {
         Lu::new(self.independent_part(&self.scaled_jacobian(x)))
             .map_err(|pivot| DenseError::Singular { pivot })
     }
@@ -310,11 +292,7 @@ impl DenseMechanism {
 
     /// The multipliers of all rows under which the forces `q` of the coordinates are made up:
     /// Jᵀ λ = q, by factors of the transposed matrix. Those of rows that are not solved are zero.
-    pub(crate) fn multipliers(
-        &self,
-        at: &ClosedConfiguration,
-        q: &[f64],
-    ) -> Result<Vec<f64>, DenseError> {
+    pub(crate) fn multipliers(&self, at: &Configuration, q: &[f64]) -> Result<Vec<f64>> {
         let rows = self.independent_part(&self.scaled_jacobian(&at.x));
         let lu = Lu::new(rows.transpose().to_owned());
         let lu = lu.map_err(|pivot| DenseError::Singular { pivot })?;

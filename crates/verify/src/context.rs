@@ -3,9 +3,9 @@
 
 use crate::case::Case;
 use crate::comparison::{Comparison, LargestDifference};
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use crate::subject::{Coefficients, Subject, SubjectError};
 use dwell_geometry::{Component, Reaction};
 use rayon::iter::Either;
@@ -17,7 +17,7 @@ pub struct CheckedPosition {
     /// The coordinate, rad.
     pub q: f64,
     /// The configuration, closed from the subject's pose.
-    pub configuration: ClosedConfiguration,
+    pub configuration: Configuration,
     /// How far closing moved the subject's pose, relative to the largest coordinate in it.
     pub closing_correction: f64,
     /// Unit velocities of every row, the actuator's last.
@@ -35,7 +35,7 @@ pub struct CheckedPosition {
 /// The largest coefficients of each unit over all positions, by the dense side.
 ///
 /// A coefficient may be zero throughout: the moment of a guide on a slider without inertia is. It
-/// is therefore held against the largest of its unit in the whole mechanism, the actuator's own
+/// is therefore compared with the largest of its unit in the whole mechanism, the actuator's own
 /// coefficients m and ½m′ included, since τ is a moment too. Where a whole unit is zero (every
 /// force of a balanced flywheel) a small part of what the other coefficients would make of it
 /// stands in, so that rounding is not divided by rounding.
@@ -82,7 +82,7 @@ const CONSTANT_SHARE_TOLERANCE: f64 = 1e-12;
 impl<'a> CheckContext<'a> {
     /// Closes the mechanism at every position and measures the scales. A position that does not
     /// close is noted, not an error: the others are still checked.
-    pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self, DenseError> {
+    pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self> {
         let actuators = case.mechanism.actuators.len();
         if actuators != 1 {
             return Err(DenseError::Actuators { actuators });
@@ -150,7 +150,7 @@ impl<'a> CheckContext<'a> {
     }
 
     /// The mechanism at the coordinate `h` beyond a position, on the same branch.
-    pub(crate) fn stepped(&self, at: &CheckedPosition, h: f64) -> Option<ClosedConfiguration> {
+    pub(crate) fn stepped(&self, at: &CheckedPosition, h: f64) -> Option<Configuration> {
         let (dense, u) = (&self.dense, at.unit_velocity());
         let stepped = dense.step_row(&at.configuration, dense.actuator_row(), u, at.q + h);
         stepped.ok()
@@ -199,8 +199,8 @@ impl CheckedPosition {
         Self::closed(dense, &poses, q).map_err(|e| e.to_string())
     }
 
-    fn closed(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self, DenseError> {
-        let (configuration, closing_correction) = dense.close_poses(poses, &[q])?;
+    fn closed(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self> {
+        let (configuration, closing_correction) = dense.close_at(poses, &[q])?;
         let unit_velocities = dense.unit_velocities(&configuration);
         let reference = dense.coefficients(&configuration, &unit_velocities);
         let (rounding_bound, pose_rounding_bound) =
@@ -252,20 +252,18 @@ impl CheckedPosition {
     /// What some bodies have in m.
     pub(crate) fn inertia_share(&self, dense: &DenseMechanism, bodies: &[usize]) -> f64 {
         let (at, u) = (&self.configuration, self.unit_velocity());
-        bodies
-            .iter()
-            .map(|&b| dense.body_inertia(b, at, u, u))
-            .sum()
+        let share = |&b: &usize| dense.body_inertia(b, at, u, u);
+        bodies.iter().map(share).sum()
     }
 }
 
 /// What rounding does to the coefficients and to the pose.
 fn rounding_bounds(
     dense: &DenseMechanism,
-    configuration: &ClosedConfiguration,
+    configuration: &Configuration,
     reference: &Coefficients,
     unit_velocities: &[Vec<f64>],
-) -> Result<(Coefficients, f64), DenseError> {
+) -> Result<(Coefficients, f64)> {
     let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
     let exact = flat(reference);
     let (bounds, pose_bound) =

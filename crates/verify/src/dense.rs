@@ -3,10 +3,10 @@
 //! No structure is looked for and nothing is compiled: all coordinates of all bodies, all rows,
 //! one square matrix. Only where the origins are is changed. Each frame, the ground's too, is
 //! moved to the mean of its body's attachments, which the subtraction of nearby numbers does
-//! exactly; otherwise a mechanism that stands a kilometre from the origin would be judged by
+//! exactly; otherwise a mechanism a kilometre from the origin would be checked by
 //! differences of rounded large numbers.
 
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use dwell_geometry::constraint_rows::ConstraintRows;
 use dwell_geometry::{ActuatorKind, BodyId, Coordinate, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::Mass;
@@ -41,7 +41,7 @@ pub struct DenseMechanism {
 
 impl DenseMechanism {
     /// Moves the frames and writes the rows, as many as there are coordinates.
-    pub fn new(mechanism: &Mechanism, masses: &[Mass]) -> Result<Self, DenseError> {
+    pub fn new(mechanism: &Mechanism, masses: &[Mass]) -> Result<Self> {
         let dense = Self::without_rank_check(mechanism, masses)?;
         let (rows, columns) = (dense.rows.len(), dense.rows.columns());
         if rows == columns {
@@ -52,10 +52,7 @@ impl DenseMechanism {
     }
 
     /// The same whatever the number of rows: it can be measured, but not closed.
-    pub(crate) fn without_rank_check(
-        mechanism: &Mechanism,
-        masses: &[Mass],
-    ) -> Result<Self, DenseError> {
+    pub(crate) fn without_rank_check(mechanism: &Mechanism, masses: &[Mass]) -> Result<Self> {
         Self::with_origins(mechanism, masses, |_, mean| mean)
     }
 
@@ -64,7 +61,7 @@ impl DenseMechanism {
         mechanism: &Mechanism,
         masses: &[Mass],
         origin: impl Fn(usize, Vec2) -> Vec2,
-    ) -> Result<Self, DenseError> {
+    ) -> Result<Self> {
         let size = mechanism.size();
         let mut mechanism = mechanism.clone();
         // References first: what follows indexes by them.
@@ -108,7 +105,7 @@ impl DenseMechanism {
     }
 
     /// Meshes the gears as they stand in the frames of all bodies: there their rows vanish.
-    pub fn mesh(&mut self, poses: &[[f64; 3]]) -> Result<(), DenseError> {
+    pub fn mesh(&mut self, poses: &[[f64; 3]]) -> Result<()> {
         let x = self.coordinates(poses)?;
         self.rows.mesh(&x);
         Ok(())
@@ -130,7 +127,7 @@ impl DenseMechanism {
     }
 
     /// Dense coordinates out of the frames of all bodies.
-    pub fn coordinates(&self, poses: &[[f64; 3]]) -> Result<Vec<f64>, DenseError> {
+    pub fn coordinates(&self, poses: &[[f64; 3]]) -> Result<Vec<f64>> {
         if poses.len() != self.bodies.len() || poses.iter().flatten().any(|v| !v.is_finite()) {
             return Err(DenseError::InvalidPoses);
         }
@@ -189,7 +186,7 @@ pub fn condition_number(mechanism: &Mechanism, poses: &[[f64; 3]]) -> f64 {
 }
 
 /// Any other length than one would scale a reaction silently.
-fn check_axes(mechanism: &Mechanism) -> Result<(), DenseError> {
+fn check_axes(mechanism: &Mechanism) -> Result<()> {
     for (joint, described) in mechanism.joints.iter().enumerate() {
         let axes = match described.kind {
             JointKind::Prismatic { axes } => axes,
@@ -212,13 +209,10 @@ fn check_axes(mechanism: &Mechanism) -> Result<(), DenseError> {
 }
 
 /// Every point of the mechanism that is given in a body's frame, with the body.
-pub(crate) fn for_each_attachment(
-    mechanism: &mut Mechanism,
-    mut visit: impl FnMut(usize, &mut Vec2),
-) {
+pub(crate) fn for_each_attachment(mechanism: &mut Mechanism, mut f: impl FnMut(usize, &mut Vec2)) {
     let mut pair = |bodies: [BodyId; 2], points: &mut [Vec2; 2]| {
         for (body, point) in bodies.into_iter().zip(points) {
-            visit(body.0, point);
+            f(body.0, point);
         }
     };
     for joint in &mut mechanism.joints {

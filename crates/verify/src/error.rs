@@ -2,7 +2,10 @@
 
 use dwell_geometry::constraint_rows::ConstraintRowsError;
 
-/// Why the dense side cannot answer.
+/// A result of the dense equations.
+pub(crate) type Result<T, E = DenseError> = std::result::Result<T, E>;
+
+/// Why the dense equations cannot be written or solved.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum DenseError {
     /// The mechanism refers to something that is not there.

@@ -135,13 +135,13 @@ impl MotionScales {
         case: &FreeMotionCase,
         orbit: &Orbit,
     ) -> Result<Self, DynamicsError> {
-        let mut reaction_evaluator = ReactionEvaluator::new(model);
+        let mut outputs = ReducedOutputs::new(model);
         let (mut speed, mut largest) = (0.0_f64, vec![0.0_f64; case.reactions.len()]);
         for i in 0..COMPARED_STATES {
             let t = case.initial_state.t + orbit.period * i as f64 / COMPARED_STATES as f64;
             let state = orbit.state_at(t);
             speed = speed.max(state.q_dot.abs());
-            for (max, value) in largest.iter_mut().zip(reaction_evaluator.reactions(state)?) {
+            for (max, value) in largest.iter_mut().zip(reactions(&mut outputs, state)?) {
                 *max = max.max(value.abs());
             }
         }
@@ -155,39 +155,33 @@ impl MotionScales {
     }
 }
 
-/// Evaluates reactions in a state of the free motion, with q̈ from the equation of motion.
-struct ReactionEvaluator<'a, R: ReducedModel>(ReducedOutputs<'a, R>);
-
-impl<'a, R: ReducedModel> ReactionEvaluator<'a, R> {
-    fn new(model: &'a R) -> Self {
-        Self(ReducedOutputs::new(model))
-    }
-
-    fn reactions(&mut self, state: ReducedState) -> Result<Vec<f64>, DynamicsError> {
-        self.0.evaluate(state.q, state.q_dot)?;
-        Ok(self.0.reactions.clone())
-    }
-
-    /// Largest difference of the reactions in two states, relative to their scales and absolute, and of which reaction.
-    fn difference(
-        &mut self,
-        one: ReducedState,
-        other: ReducedState,
-        scales: &MotionScales,
-    ) -> Result<(f64, f64, usize), DynamicsError> {
-        let (r, s) = (self.reactions(one)?, self.reactions(other)?);
-        let mut worst = (0.0, 0.0, 0);
-        for (k, ((r, s), scale)) in r.iter().zip(&s).zip(&scales.reactions).enumerate() {
-            let difference = (r - s).abs();
-            if difference > worst.0 * scale {
-                worst = (difference / scale, difference, k);
-            }
-        }
-        Ok(worst)
-    }
+/// The reactions in a state of the free motion, with q̈ from the equation of motion.
+fn reactions<R: ReducedModel>(
+    outputs: &mut ReducedOutputs<'_, R>,
+    state: ReducedState,
+) -> Result<Vec<f64>, DynamicsError> {
+    outputs.evaluate(state.q, state.q_dot)?;
+    Ok(outputs.reactions.clone())
 }
 
-/// The largest change of the velocity and its time, and that of a reaction as [`ReactionEvaluator::difference`].
+/// Largest difference of the reactions in two states, relative to their scales and absolute, and of which reaction.
+fn reaction_difference<R: ReducedModel>(
+    outputs: &mut ReducedOutputs<'_, R>,
+    [one, other]: [ReducedState; 2],
+    scales: &MotionScales,
+) -> Result<(f64, f64, usize), DynamicsError> {
+    let (r, s) = (reactions(outputs, one)?, reactions(outputs, other)?);
+    let mut worst = (0.0, 0.0, 0);
+    for (k, ((r, s), scale)) in r.iter().zip(&s).zip(&scales.reactions).enumerate() {
+        let difference = (r - s).abs();
+        if difference > worst.0 * scale {
+            worst = (difference / scale, difference, k);
+        }
+    }
+    Ok(worst)
+}
+
+/// The largest change of the velocity and its time, and that of a reaction as [`reaction_difference`].
 type Periodicity = ((f64, f64), ((f64, f64, usize), f64));
 
 /// A motion with its references.
@@ -232,12 +226,13 @@ impl<R: ReducedModel> Motion<'_, R> {
             let energy = equation.kinetic_energy(state.q, state.q_dot)?;
             drift_over_time.push([state.t, (energy / self.orbit.energy - 1.0).abs()]);
         }
-        let mut evaluator = ReactionEvaluator::new(self.model);
+        let mut outputs = ReducedOutputs::new(self.model);
         let mut reaction_error = 0.0_f64;
         if self.model.reactions() > 0 {
             for state in steps.iter().step_by(steps.len() / COMPARED_STATES + 1) {
                 let exact = self.orbit.state_at(state.t);
-                let error = evaluator.difference(*state, exact, self.scales)?.0;
+                let both = [*state, exact];
+                let error = reaction_difference(&mut outputs, both, self.scales)?.0;
                 reaction_error = reaction_error.max(error);
             }
         }
@@ -265,14 +260,15 @@ impl<R: ReducedModel> Motion<'_, R> {
     fn periodicity(&self, solution: &Solution) -> Result<Periodicity, DynamicsError> {
         let start = self.case.initial_state;
         let (mut velocity, mut reaction) = ((0.0, 0.0), ((0.0, 0.0, 0), 0.0));
-        let mut evaluator = ReactionEvaluator::new(self.model);
+        let mut outputs = ReducedOutputs::new(self.model);
         for occurrence in &solution.event_occurrences {
             let state = ReducedState::from(&occurrence.state);
             let change = (state.q_dot - start.q_dot).abs();
             if change > velocity.0 {
                 velocity = (change, state.t);
             }
-            let difference = evaluator.difference(state, start, self.scales)?;
+            let both = [state, start];
+            let difference = reaction_difference(&mut outputs, both, self.scales)?;
             if difference.0 > reaction.0.0 {
                 reaction = (difference, state.t);
             }
@@ -304,9 +300,7 @@ impl<R: ReducedModel> Motion<'_, R> {
         let periodic = [change, change / scales.speed];
         let mut findings = vec![
             Finding {
-                comparison: format!(
-                    "the first revolution of {name}, by dense output, with the quadrature"
-                ),
+                comparison: format!("the first revolution of {name} with the quadrature"),
                 domain: over("one revolution".to_owned()),
                 unit: "s".into(),
                 scale: "the period".into(),
@@ -346,14 +340,12 @@ impl<R: ReducedModel> Motion<'_, R> {
 
 /// The quadrature against a reference value, where there is one.
 fn check_quadrature(case: &FreeMotionCase, orbit: &Orbit) -> Option<Finding> {
-    let (reference, source) = case.period.as_ref()?;
+    let (known, source) = case.period.as_ref()?;
     let (period, points) = (orbit.period, orbit.points);
-    let difference = (period - reference).abs();
+    let difference = (period - known).abs();
     let numbers = [difference, difference / period];
     Some(Finding {
-        comparison: format!(
-            "T = ∮ √(m / 2E) dq = {period:.14} s with {reference:.14} s ({source})"
-        ),
+        comparison: format!("T = ∮ √(m / 2E) dq = {period:.14} s with {known:.14} s ({source})"),
         domain: format!("one revolution, {points} points of the trapezoid rule"),
         unit: "s".into(),
         scale: "the period".into(),

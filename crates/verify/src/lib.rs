@@ -71,7 +71,7 @@ mod wrenches;
 pub use all::verify_all;
 pub use case::{Case, spread};
 pub use comparison::FindingSpec;
-pub use constraint_closing::ClosedConfiguration;
+pub use constraint_closing::Configuration;
 pub use context::{CheckContext, CheckedPosition, Scales};
 pub use curves::{ErrorCurve, half_dm_curve, reaction_curve};
 pub use dense::{DenseMechanism, condition_number};

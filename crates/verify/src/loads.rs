@@ -316,6 +316,14 @@ mod tests {
         assert!((got - want).norm() < 1e-15);
     }
 
+    fn mesh(pitch: PitchLines) -> LoadKind {
+        LoadKind::SeparatingForce(Mesh {
+            bodies: ON,
+            points: POINTS,
+            pitch,
+        })
+    }
+
     /// What acts between two bodies is nothing on the whole.
     #[test]
     fn inner_loads_balance() {
@@ -330,6 +338,14 @@ mod tests {
                 points: POINTS,
             },
             LoadKind::Torque { bodies: ON },
+            mesh(PitchLines::Circles {
+                radii: [0.4, 0.9],
+                internal: true,
+            }),
+            mesh(PitchLines::Line {
+                axis: vec2(0.6, 0.8),
+                radius: 0.3,
+            }),
         ] {
             let wrenches = wrenches(kind, &BODIES);
             let force = wrenches.iter().fold(Vec2::ZERO, |sum, a| sum + a.force);

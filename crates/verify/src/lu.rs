@@ -25,7 +25,7 @@ impl Lu {
     /// matrix is not finite).
     ///
     /// Sequential by its arguments, not by faer's global setting: another crate of the program
-    /// turns faer's threads on, and these matrices are too small for them.
+    /// enables faer's threads, and these matrices are too small for them.
     pub(crate) fn new(mut factors: Mat<f64>) -> Result<Self, f64> {
         let n = factors.nrows();
         if !factors.is_all_finite() {

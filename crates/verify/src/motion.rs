@@ -11,7 +11,7 @@
 //!
 //! so m₁ = ⟨u₁, u₁⟩, m₁₂ = ⟨u₁, u₂⟩, with u₁ and u₂ the unit velocities of the two coordinates.
 
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::dense::{DenseBody, DenseMechanism};
 use crate::differences::{DerivativeOrder, Extrapolated, derivatives};
 use crate::subject::Coefficients;
@@ -19,13 +19,13 @@ use dwell_geometry::{Vec2, vec2};
 
 impl DenseMechanism {
     /// ⟨u, w⟩ of the whole mechanism, eq. (1), kg m² for two speeds per rad/s.
-    pub fn inertia(&self, at: &ClosedConfiguration, u: &[f64], w: &[f64]) -> f64 {
+    pub fn inertia(&self, at: &Configuration, u: &[f64], w: &[f64]) -> f64 {
         let bodies = 0..self.bodies.len();
         bodies.map(|b| self.body_inertia(b, at, u, w)).sum()
     }
 
     /// The share of one body in ⟨u, w⟩.
-    pub fn body_inertia(&self, body: usize, at: &ClosedConfiguration, u: &[f64], w: &[f64]) -> f64 {
+    pub fn body_inertia(&self, body: usize, at: &Configuration, u: &[f64], w: &[f64]) -> f64 {
         let of = &self.bodies[body];
         of.column.map_or(0.0, |c| {
             let [u_g, w_g] = [u, w].map(|speeds| self.center_velocity(of, at, speeds));
@@ -34,7 +34,7 @@ impl DenseMechanism {
     }
 
     /// Kinetic energy, J, when each listed row moves at its rate and the others are held: eq. (2).
-    pub fn kinetic_energy(&self, at: &ClosedConfiguration, rates: &[(usize, f64)]) -> f64 {
+    pub fn kinetic_energy(&self, at: &Configuration, rates: &[(usize, f64)]) -> f64 {
         let mut x_dot = vec![0.0; self.rows.columns()];
         for &(row, rate) in rates {
             for (v, u) in x_dot.iter_mut().zip(self.unit_velocity(at, row)) {
@@ -46,7 +46,7 @@ impl DenseMechanism {
 
     /// Linear momentum in x and y, kg m/s, and angular momentum about the ground's moved origin,
     /// kg m²/s.
-    pub fn momentum(&self, at: &ClosedConfiguration, x_dot: &[f64]) -> [f64; 3] {
+    pub fn momentum(&self, at: &Configuration, x_dot: &[f64]) -> [f64; 3] {
         let mut sum = [0.0; 3];
         for body in &self.bodies {
             if let Some(c) = body.column {
@@ -60,19 +60,13 @@ impl DenseMechanism {
     }
 
     /// Σ m v_G(w)·a_G + I ω(w) α: the power of the inertia forces with the speeds `w`, when the
-    /// mechanism moves at `x_dot` with accelerations `x_ddot`.
-    pub fn inertia_power(
-        &self,
-        at: &ClosedConfiguration,
-        w: &[f64],
-        x_dot: &[f64],
-        x_ddot: &[f64],
-    ) -> f64 {
+    /// mechanism moves at `v` with accelerations `a`.
+    pub fn inertia_power(&self, at: &Configuration, w: &[f64], v: &[f64], a: &[f64]) -> f64 {
         let power = |body: &DenseBody| {
             body.column.map_or(0.0, |c| {
-                let a = self.center_acceleration(body, at, x_dot, x_ddot);
-                body.mass.mass * self.center_velocity(body, at, w).dot(a)
-                    + body.mass.inertia * (w[c + 2] * x_ddot[c + 2])
+                let a_g = self.center_acceleration(body, at, v, a);
+                body.mass.mass * self.center_velocity(body, at, w).dot(a_g)
+                    + body.mass.inertia * (w[c + 2] * a[c + 2])
             })
         };
         self.bodies.iter().map(power).sum()
@@ -81,11 +75,7 @@ impl DenseMechanism {
     /// The reduced coefficients without any step, from the unit velocities of every row: m and a by
     /// eq. (1), and ½m′ and b as the power of the inertia forces at q̇ = 1, q̈ = 0 with the speeds
     /// of the actuator and of each released row (principle of virtual power).
-    pub fn coefficients(
-        &self,
-        at: &ClosedConfiguration,
-        unit_velocities: &[Vec<f64>],
-    ) -> Coefficients {
+    pub fn coefficients(&self, at: &Configuration, unit_velocities: &[Vec<f64>]) -> Coefficients {
         let (released, driven) = unit_velocities.split_at(self.actuator_row());
         let u = driven.first().map_or(&[][..], Vec::as_slice);
         let x_ddot = self.acceleration(at, u, &vec![0.0; self.rows.len()]);
@@ -104,12 +94,12 @@ impl DenseMechanism {
     /// extrapolation would need velocities.
     pub(crate) fn second_differences(
         &self,
-        at: &ClosedConfiguration,
+        at: &Configuration,
         first_step: f64,
         rounding: f64,
         actuator_values: impl Fn(f64, &mut [f64]),
     ) -> Vec<Extrapolated> {
-        let positions = |configuration: &ClosedConfiguration| -> Vec<f64> {
+        let positions = |configuration: &Configuration| -> Vec<f64> {
             let moving = self.bodies.iter().filter_map(|b| Some((b, b.column?)));
             let position = |(body, c): (&DenseBody, usize)| {
                 let center = self.center(body, configuration);
@@ -129,16 +119,11 @@ impl DenseMechanism {
     }
 
     /// Where a body's centre of mass is, from the ground's moved origin.
-    pub(crate) fn center(&self, body: &DenseBody, at: &ClosedConfiguration) -> Vec2 {
+    pub(crate) fn center(&self, body: &DenseBody, at: &Configuration) -> Vec2 {
         self.frame_point(body, &at.x, body.mass.center)
     }
 
-    pub(crate) fn center_velocity(
-        &self,
-        body: &DenseBody,
-        at: &ClosedConfiguration,
-        u: &[f64],
-    ) -> Vec2 {
+    pub(crate) fn center_velocity(&self, body: &DenseBody, at: &Configuration, u: &[f64]) -> Vec2 {
         body.column.map_or(Vec2::ZERO, |c| {
             let arm = body.mass.center.rotate(Vec2::from_angle(at.x[c + 2]));
             vec2(u[c], u[c + 1]) + arm.perp() * u[c + 2]
@@ -148,7 +133,7 @@ impl DenseMechanism {
     pub(crate) fn center_acceleration(
         &self,
         body: &DenseBody,
-        at: &ClosedConfiguration,
+        at: &Configuration,
         u: &[f64],
         a: &[f64],
     ) -> Vec2 {

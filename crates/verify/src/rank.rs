@@ -12,7 +12,7 @@
 //! span it.
 
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use dwell_geometry::{BodyId, Mechanism};
 use dwell_kinetostatics::Mass;
 use faer::MatRef;
@@ -70,7 +70,7 @@ pub struct Ranks {
 /// [`DenseError`] when the mechanism refers to something that is not there, or the poses are
 /// incomplete or not finite. The poses are taken as they are: joints that do not close there are
 /// not an error.
-pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks, DenseError> {
+pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks> {
     let masses = vec![Mass::default(); mechanism.bodies.len()];
     let dense = DenseMechanism::without_rank_check(mechanism, &masses)?;
     let x = dense.coordinates(poses)?;
@@ -86,7 +86,7 @@ pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks, DenseErr
     })
 }
 
-fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank, DenseError> {
+fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank> {
     let (rows, columns) = matrix.shape();
     let svd = matrix.svd();
     let svd = svd.map_err(|_| DenseError::Singular { pivot: f64::NAN })?;
@@ -102,15 +102,14 @@ fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank, Dens
     };
     let moves = |c: usize| in_null_space(svd.V(), c..c + 3);
     let movable = |&b: &usize| dense.bodies[b].column.is_some_and(moves);
+    let dependent = |&k: &usize| in_null_space(svd.U(), k..k + 1);
     let bodies = 0..dense.bodies.len();
     Ok(Rank {
         rows,
         columns,
         rank,
         movable_bodies: bodies.filter(movable).map(BodyId).collect(),
-        dependent_rows: (0..rows)
-            .filter(|&k| in_null_space(svd.U(), k..k + 1))
-            .collect(),
+        dependent_rows: (0..rows).filter(dependent).collect(),
         singular_values,
     })
 }

@@ -1,7 +1,7 @@
 //! Mechanisms whose joints repeat each other: which rows are solved, and which multipliers are determined.
 
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use crate::rank::rank;
 use dwell_geometry::Mechanism;
 use dwell_kinetostatics::Mass;
@@ -16,7 +16,7 @@ impl DenseMechanism {
         mechanism: &Mechanism,
         masses: &[Mass],
         poses: &[[f64; 3]],
-    ) -> Result<Self, DenseError> {
+    ) -> Result<Self> {
         let mut dense = Self::without_rank_check(mechanism, masses)?;
         let (rows, columns) = (dense.rows.len(), dense.rows.columns());
         if rows == columns {
@@ -38,7 +38,7 @@ impl DenseMechanism {
         mechanism: &Mechanism,
         masses: &[Mass],
         poses: &[[f64; 3]],
-    ) -> Result<Self, DenseError> {
+    ) -> Result<Self> {
         let mut dense = Self::with_redundant_rows(mechanism, masses, poses)?;
         dense.mesh(poses)?;
         Ok(dense)

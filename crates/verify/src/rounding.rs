@@ -1,8 +1,8 @@
 //! The effect of rounding on everything that is computed in a closed configuration.
 
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
+use crate::error::Result;
 
 /// How far a row is opened to see what rounding does, in sizes.
 const PROBE_STEP: f64 = 1e-7;
@@ -19,11 +19,11 @@ impl DenseMechanism {
     /// the sum of what that moves, scaled down to one rounding, bounds the noise to first order.
     pub(crate) fn rounding_bounds(
         &self,
-        configuration: &ClosedConfiguration,
+        configuration: &Configuration,
         unit_velocities: &[Vec<f64>],
         exact: &[f64],
-        values: impl Fn(&ClosedConfiguration) -> Result<Vec<f64>, DenseError>,
-    ) -> Result<(Vec<f64>, f64), DenseError> {
+        values: impl Fn(&Configuration) -> Result<Vec<f64>>,
+    ) -> Result<(Vec<f64>, f64)> {
         let mut bounds = vec![0.0; exact.len()];
         let mut pose_bound = 0.0;
         let factor = EXPECTED_SHARE * f64::EPSILON / PROBE_STEP;

@@ -74,7 +74,7 @@ pub fn check_states(
     states: &[ClaimedState],
 ) -> Vec<Finding> {
     match DenseMechanism::with_meshed_gears(mechanism, masses, assembly_poses) {
-        Ok(dense) => StateChecker::new(&dense, mechanism, states).findings(),
+        Ok(dense) => StateChecker::new(&dense, states).findings(),
         Err(error) => vec![not_dense(&POSES, &error)],
     }
 }
@@ -153,18 +153,13 @@ const MOMENTUM: FindingSpec<'_> = FindingSpec {
 
 struct StateChecker<'a> {
     dense: &'a DenseMechanism,
-    mechanism: &'a Mechanism,
     dense_states: Vec<DenseState<'a>>,
     failures: Vec<String>,
     state_count: usize,
 }
 
 impl<'a> StateChecker<'a> {
-    fn new(
-        dense: &'a DenseMechanism,
-        mechanism: &'a Mechanism,
-        states: &'a [ClaimedState],
-    ) -> Self {
+    fn new(dense: &'a DenseMechanism, states: &'a [ClaimedState]) -> Self {
         let of = |state: &'a ClaimedState| {
             DenseState::new(dense, state).map_err(|error| format!("t = {} s: {error}", state.t))
         };
@@ -174,7 +169,6 @@ impl<'a> StateChecker<'a> {
         });
         Self {
             dense,
-            mechanism,
             dense_states,
             failures,
             state_count: states.len(),
@@ -191,12 +185,16 @@ impl<'a> StateChecker<'a> {
     }
 
     fn finding(&self, spec: &FindingSpec<'_>, comparisons: ComparisonSet) -> Finding {
-        comparisons.finding(spec, &self.failures, self.state_count)
+        let mut worst = comparisons.largest();
+        for reason in &self.failures {
+            worst.record_failure(reason.clone());
+        }
+        spec.finding(format!("{} states", self.state_count), worst)
     }
 
     /// By row, the actuators' after the reactions': whether its multiplier is a moment, and its name.
     fn rows(&self) -> Vec<(bool, String)> {
-        let mechanism = self.mechanism;
+        let mechanism = &self.dense.mechanism;
         let of_reaction =
             |r: Reaction| (r.component == Component::Moment, mechanism.reaction_name(r));
         let joints = mechanism.reactions().into_iter().map(of_reaction);
@@ -228,17 +226,18 @@ impl<'a> StateChecker<'a> {
         let size = self.dense.size();
         let (mut first, mut second) = (ComparisonSet::new("m/s"), ComparisonSet::new("m/s2"));
         for m in &self.dense_states {
-            let [speed, acceleration] = [&m.x_dot, &m.x_ddot].map(|x| m.scaled_norm(x) * size);
+            let [speed, acceleration] =
+                [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.scaled_norm(x) * size);
             let acceleration = acceleration.max(speed * speed / size);
             for (body, column) in m.moving_bodies() {
-                let name = &self.mechanism.bodies[body].name;
+                let name = &self.dense.mechanism.bodies[body].name;
                 for c in column..column + 3 {
                     let arm = if c == column + 2 { size } else { 1.0 };
-                    let difference = (m.claimed_dot[c] - m.x_dot[c]) * arm;
-                    let numbers = [difference, speed, m.velocity_rounding_bound[c] * arm];
+                    let difference = (m.claimed_dot[c] - m.solution.x_dot[c]) * arm;
+                    let numbers = [difference, speed, m.bounds.x_dot[c] * arm];
                     first.add(m, numbers, name);
-                    let difference = (m.claimed_ddot[c] - m.x_ddot[c]) * arm;
-                    let error = m.acceleration_rounding_bound[c] * arm;
+                    let difference = (m.claimed_ddot[c] - m.solution.x_ddot[c]) * arm;
+                    let error = m.bounds.x_ddot[c] * arm;
                     second.add(m, [difference, acceleration, error], name);
                 }
             }
@@ -262,8 +261,8 @@ impl<'a> StateChecker<'a> {
                     continue;
                 }
                 let arm = if *moment { 1.0 / size } else { 1.0 };
-                let dense = m.multipliers[k] * arm;
-                let error = m.multiplier_rounding_bound[k] * arm;
+                let dense = m.solution.multipliers[k] * arm;
+                let error = m.bounds.multipliers[k] * arm;
                 let scale = largest_force.max(dense.abs());
                 comparisons.add(m, [claimed * arm - dense, scale, error], name);
             }
@@ -279,7 +278,7 @@ impl<'a> StateChecker<'a> {
         let from_positions: Vec<_> = states.map(DenseState::second_differences).collect();
         for (m, second) in self.dense_states.iter().zip(from_positions) {
             for (i, (body, _)) in m.moving_bodies().enumerate() {
-                let name = &self.mechanism.bodies[body].name;
+                let name = &self.dense.mechanism.bodies[body].name;
                 let net = m.net_wrench(body);
                 let Mass { mass, inertia, .. } = self.dense.bodies[body].mass;
                 for (c, exact) in m.inertia_forces(body).into_iter().enumerate() {

@@ -2,7 +2,7 @@
 //! [`Component`](dwell_geometry::Component) and the positions of the bodies, never from the rows.
 
 use crate::body_motion::slide_axis;
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use dwell_geometry::{BodyId, Coordinate, Joint, JointId, JointKind, Vec2, vec2};
 
@@ -69,7 +69,7 @@ impl NetWrench {
 /// Gathers forces in pairs: that of the first body on the second, and the opposite on the first.
 struct ActionReaction<'a> {
     dense: &'a DenseMechanism,
-    at: &'a ClosedConfiguration,
+    at: &'a Configuration,
     wrenches: Vec<DenseWrench>,
 }
 
@@ -230,7 +230,7 @@ impl DenseMechanism {
     /// All forces of joints and actuators on bodies, the ground among them.
     pub(crate) fn joint_wrenches(
         &self,
-        at: &ClosedConfiguration,
+        at: &Configuration,
         reactions: &[f64],
         tau: &[f64],
     ) -> Vec<DenseWrench> {

@@ -1,4 +1,4 @@
-//! Every truth fails on the faults it is there to find, and only where it should.
+//! Every check fails on the faults that it is meant to detect, and only there.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]
 
@@ -188,7 +188,7 @@ fn a_part_in_a_thousand_million() {
     ];
     assert_failing(&setup, &mutated, &keys);
     let mutated = MutatedSubject::new(&subject).poses(|_, poses| poses[3][2] += 1e-9);
-    // Every other truth starts from the poses closed again, which are right.
+    // Every other check starts from the poses closed again, which are right.
     assert_failing(&setup, &mutated, &["closure"]);
 }
 

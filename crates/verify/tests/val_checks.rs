@@ -80,7 +80,7 @@ fn val_inverted_slider_crank() {
     assert_at_most(&findings, &[("half-dm-spectral", 1e-12)]);
 }
 
-/// An actuator between two moving bodies, and part of a turn.
+/// An actuator between two moving bodies, and part of a revolution.
 #[test]
 fn val_relative_drive() {
     let findings = check("relative drive", &relative_drive());
@@ -88,7 +88,7 @@ fn val_relative_drive() {
     assert!(findings.iter().all(|f| f.key != "half-dm-spectral"));
 }
 
-/// Frames and the place in the plane are nobody's business.
+/// The results depend neither on frames nor on the place in the plane.
 #[test]
 fn val_reframed() {
     let by = (vec2(3.0, -2.0), vec2(-0.4, 0.3), 0.7);
@@ -158,7 +158,7 @@ fn val_massless() {
     check("massless", &setup);
 }
 
-/// Close to a change point the branches nearly cross. The truths stay on theirs, and widen their
+/// Close to a change point the branches nearly cross. The checks stay on theirs, and widen their
 /// tolerances by what they can no longer know rather than blame the subject.
 #[test]
 fn val_near_a_change_point() {

@@ -32,7 +32,7 @@ fn assert_v(curve: &ErrorCurve) {
         assert!((order[48].0 - 1e-13).abs() < 1e-25);
         assert!(at(order, 1e-13) > 1e-5);
     }
-    // On the way down a decade of h is a hundred, ten thousand of error.
+    // Downwards a decade of h is a hundred, ten thousand of error.
     let second = at(orders[0], 1e-2) / at(orders[0], 1e-3);
     assert!((50.0..200.0).contains(&second), "{second}");
     let fourth = at(orders[1], 3.16e-2) / at(orders[1], 3.16e-3);

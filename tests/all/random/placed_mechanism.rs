@@ -160,6 +160,7 @@ const GUESS_ERROR: f64 = 0.002;
 
 impl PlacedMechanism {
     /// The mechanism as it is described in a view.
+    // Long: an arm for each kind of part.
     pub(super) fn describe(&self, view: &Description) -> DescribedMechanism {
         let whole = Vec2::from_angle(view.rotation);
         let transformed = |p: Vec2| p.rotate(whole) + view.shift;

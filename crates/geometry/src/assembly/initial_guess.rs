@@ -123,7 +123,7 @@ impl Plan {
                 matches!(u, Unknown::ClassAngle(c) if self.revolution_counted[self.class_frame(c)]);
             let hints = self.hints(u, initial_guess).into_iter();
             let each = hints.map(|hint| {
-                // Where revolutions count, the approximate angle says which one is meant.
+                // Where revolutions are counted, the approximate angle selects one.
                 let deviation = value - Vec2::from_angle(hint);
                 let angle_deviation = angle - hint;
                 if counted {

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 ///
 /// A whole revolution of ψ changes this by 2π (r2 ± r1), which is not a whole revolution of anything. So ψ has
 /// to be counted as the angles of x are. Where one body holds both centres (the carrier, often the
-/// ground), ψ turns with it, and its counted angle tells the turn. Where no body does, it is the
+/// ground), ψ turns with it, and its counted angle gives the revolution. Where no body does, it is the
 /// turn that leaves the row least open: right near a closed pose, and blind to whole revolutions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gear {

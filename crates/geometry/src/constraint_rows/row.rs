@@ -23,7 +23,7 @@ pub(super) enum ConstraintRow {
     },
 }
 
-/// The angle less the nearest whole number of turns.
+/// The angle less the nearest whole number of revolutions.
 fn wrap_angle(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }

@@ -119,9 +119,9 @@ impl ConstraintTerm {
             }
             Self::GroundFixedComponent(points, u) => pair(points, at.gap(points).offsets, u),
             Self::BodyFixedComponent(points, u) => {
-                let Gap { offsets: arms, d } = at.gap(points);
+                let Gap { offsets, d } = at.gap(points);
                 // The first body's vector reaches to P2, not to P1, because u turns with it.
-                let offsets_to_second = [arms[0] + d, arms[1]];
+                let offsets_to_second = [offsets[0] + d, offsets[1]];
                 pair(
                     points,
                     offsets_to_second,

@@ -10,7 +10,7 @@ use crate::plane::Vec2;
 pub(crate) struct StoredPose {
     /// The coordinate, rad or m.
     pub(crate) q: f64,
-    /// By unknown of the group: (cos, sin) of a class, (counted angle, 0) of one whose turns are
+    /// By unknown of the group: (cos, sin) of a class, (counted angle, 0) of one whose revolutions are
     /// counted, or (travel, 0) of a slide.
     pub(crate) values: Vec<Vec2>,
     /// By unknown: its derivative with respect to the coordinate.

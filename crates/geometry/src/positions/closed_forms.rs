@@ -10,7 +10,7 @@ use dwell_numerics::{Scalar, map_array, uniform};
 /// Below this determinant, relative to the lengths that make it, no digit of the result is significant.
 const SINGULAR: f64 = 1e-14;
 
-/// The same for a number type. More precise ones refuse where `f64` does, since they judge its rounding.
+/// The same for a number type. More precise ones refuse where `f64` does, since they measure its rounding.
 pub(crate) const fn singular_tolerance<T: Scalar>() -> f64 {
     SINGULAR.max(32.0 * T::EPSILON)
 }
@@ -70,7 +70,7 @@ pub(super) fn rrr_dyad_positions<T: Scalar>(
     pose.vector[dyad.vectors[1]] = second;
     pose.rotation[dyad.frames[0]] = first.rotate_inverse(per_square[0]);
     pose.rotation[dyad.frames[1]] = second.rotate_inverse(per_square[1]);
-    // arm₁ × arm₂ = the signed double area.
+    // vector₁ × vector₂ = the signed double area.
     pose.inverse_determinant[group] = T::from_f64(1.0) / double_area;
     Ok(())
 }

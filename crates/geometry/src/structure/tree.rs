@@ -3,7 +3,7 @@
 //! A spanning tree of joints carries each body from a body that comes earlier. A body's *root*
 //! is its point in the joint that carries it; every other attachment is measured from there, so
 //! nothing depends on where the mechanism or a body's frame stands. A joint outside the tree is a
-//! *loop joint*: its loop says that the point on the second body, reached through the tree, meets the
+//! *loop joint*: its loop closes where the point on the second body, reached through the tree, meets the
 //! point on the first.
 
 use crate::error::StructureError;

@@ -148,15 +148,17 @@ fn a_rack_pushes_its_pinion_off_normal_to_the_pitch_line() {
     for side in [1.0, -1.0] {
         for force in [80.0, -80.0] {
             let mut case = case(&rack(side, force));
-            case.evaluate(0.0, &[0.0], &[0.0], &[0.0]);
+            case.evaluate(0.0, &[1.0], &[0.0], &[0.0]);
             // The teeth hold the rack: T acts on the pinion, −T on the rack.
             assert!((case.reaction("mesh.tooth") - force).abs() < ROUNDING);
             let separating = force.abs() * tangent() * side;
             close(case.pin("C"), vec2(-force, -separating));
-            // The rack is pushed the other way, and its guide holds it: there the pinion is at travel 0.1 m.
+            // The rack is pushed the other way, and its guide holds it. It has gone r φ on from where its point was at
+            // the pitch point.
             assert!((case.reaction("guide.normal") - separating).abs() < ROUNDING);
             let moment = case.reaction("guide.moment");
-            assert!((moment - 0.1 * separating).abs() < ROUNDING, "{moment}");
+            let expected = -0.02 * separating.abs();
+            assert!((moment - expected).abs() < ROUNDING, "{moment} {expected}");
         }
     }
 }
@@ -177,6 +179,8 @@ const PLANETARY: &str = r#"
     phi = { angle = ["ground", "sun"] }
     [assembly]
     phi = 0.4
+    arm = 0.0
+    planet = 0.0
     [loads]
     load = { torque = "arm", magnitude = -12.0 }
 "#;
@@ -247,7 +251,6 @@ fn a_separating_force_does_no_work_and_adds_its_unit_response() {
         with.evaluate(t, &q, &q_dot, &q_ddot);
         without.evaluate(t, &q, &q_dot, &q_ddot);
         let force = with.magnitude("mesh.separating");
-        assert_eq!(force, with.reaction("mesh.tooth").abs() * tangent());
         with.model
             .unit_load_response(separating, &mut with.workspace, &mut unit)
             .expect("gears apart");
@@ -256,7 +259,8 @@ fn a_separating_force_does_no_work_and_adds_its_unit_response() {
             .reactions
             .iter()
             .fold(1.0_f64, |s, r| s.max(r.abs()));
-        assert!((with.result.tau[0] - without.result.tau[0]).abs() < 1e-14 * size);
+        assert!((force - with.reaction("mesh.tooth").abs() * tangent()).abs() < 1e-14 * size);
+        assert!((with.result.tau[0] - without.result.tau[0]).abs() < 1e-13 * size);
         let all = with.result.reactions.iter().zip(&without.result.reactions);
         for ((found, plain), response) in all.zip(&unit.reactions) {
             assert!((found - (plain + response * force)).abs() < 1e-13 * size);
@@ -266,12 +270,12 @@ fn a_separating_force_does_no_work_and_adds_its_unit_response() {
         assert!(power.residual().abs() < 1e-13 * power.scale);
         let mut powers = vec![0.0; separating + 1];
         with.model.load_powers(&with.workspace, &mut powers);
-        assert!(powers[separating].abs() < 1e-14 * power.scale);
+        assert!(powers[separating].abs() < 1e-13 * power.scale);
         let mut wrenches = Vec::new();
         body_forces.wrenches(&with.model, &with.workspace, &with.result, &mut wrenches);
         let shaking = body_forces.shaking_force(&with.model, &with.workspace, &wrenches);
         let difference = shaking.from_momentum.force - shaking.from_reactions.force;
-        assert!(difference.norm() < 1e-13 * size);
+        assert!(difference.norm() < 1e-12 * size);
     }
     assert!(largest_share > 0.1, "{largest_share}");
 }
@@ -346,6 +350,7 @@ fn an_indeterminate_tooth_force_has_no_separating_force() {
     let two = PLANETARY
         .replace("C = [0.05, 0] }", "C = [0.05, 0], D = [-0.05, 0] }")
         .replace("[joints]", "second.points = { D = [0, 0] }\n[joints]")
+        .replace("planet = 0.0", "planet = 0.0\n    second = 0.0")
         .replace("[actuators]", second_planet);
     let scene = Scene::parse("test.toml", &two).expect("a scene");
     let assembly = scene.assembly.to_configuration();

@@ -10,7 +10,7 @@ pub struct ExpressionError {
     pub span: Range<usize>,
     /// What is wrong, without a full stop.
     pub message: String,
-    /// What to write instead, where that can be told.
+    /// What to write instead, where that is known.
     pub help: Option<String>,
 }
 

@@ -38,7 +38,7 @@ impl TapeScalar for f64 {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Jet {
     entries: [f64; 4],
-    /// Whether it moves with the variable at all. That its derivatives are zero does not tell:
+    /// Whether it moves with the variable at all. That its derivatives are zero does not show it:
     /// those of x⁴ are, at 0, and those of its root are not.
     is_active: bool,
 }

@@ -372,7 +372,7 @@ fn constant(op: Op, operands: &[Operand]) -> Option<f64> {
         .map(|ops| run::<f64, MAX_OPERANDS>(ops, |_| f64::NAN))
 }
 
-/// A scene can have hundreds of names; the first two dozen are told.
+/// A scene can have hundreds of names; the first two dozen are listed.
 fn list<'a>(title: &str, names: impl Iterator<Item = &'a str>) -> String {
     const MAX_LISTED: usize = 24;
     let mut names: Vec<_> = names.map(|name| format!("`{name}`")).collect();

@@ -152,7 +152,7 @@ proptest! {
             let [coarse, fine] = [difference(4e-3), difference(2e-3)];
             let rounding = 1e-14 * largest.max(1.0) / 2e-3;
             let error_bound = (coarse - fine).abs() + rounding;
-            // Where differences cannot tell, they must say so seldom.
+            // Differences may be inconclusive in few cases only.
             prop_assume!(error_bound < 1e-6 * (1.0 + exact[k + 1].abs()));
             prop_assert!(
                 (fine - exact[k + 1]).abs() <= error_bound,

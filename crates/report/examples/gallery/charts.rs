@@ -18,6 +18,7 @@ fn inertia_rate(deg: f64) -> f64 {
     0.5 * (inertia(deg + 1e-3) - inertia(deg - 1e-3)) / 2e-3_f64.to_radians()
 }
 
+// Long: one picture, written out as data.
 pub(crate) fn curves() -> Figure {
     let reaction = |k: f64, d: f64| {
         40.0 * k * inertia_rate(d * k) + 3.0 * k + 4.0 * (d.to_radians() * k).cos()
@@ -140,6 +141,7 @@ pub(crate) fn precision() -> Figure {
     }
 }
 
+// Long: one picture, written out as data.
 pub(crate) fn time() -> Figure {
     let chart = Chart {
         title: "Motion".to_owned(),
@@ -205,6 +207,7 @@ pub(crate) fn time() -> Figure {
     }
 }
 
+// Long: one picture, written out as data.
 pub(crate) fn errors() -> Figure {
     let shape = |name: &str, order: f64, scale: f64| {
         let error =

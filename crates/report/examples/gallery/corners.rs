@@ -4,6 +4,7 @@ use crate::charts::sampled;
 use crate::linkage::block;
 use dwell_report::{Axis, Chart, Drawing, Figure, Paint, Pen, Series, Shape, Stroke};
 
+// Long: one picture, written out as data.
 pub(crate) fn corners() -> Figure {
     let many = Chart {
         title: "A title that is much too long for the panel it stands above, and is set smaller"

@@ -8,6 +8,8 @@ fn scattered(row: usize, column: usize) -> usize {
 }
 
 /// Faults against checks: the colour is by how much a fault exceeds the tolerance.
+//
+// Long: one picture, written out as data.
 pub(crate) fn mutations() -> Figure {
     let columns = [
         "dense rows",

@@ -98,6 +98,7 @@ pub(crate) fn path() -> Figure {
     }
 }
 
+// Long: one picture, written out as data.
 pub(crate) fn motion() -> Figure {
     // A slider-crank at constant speed: crank 0.05 m, rod 0.2 m, 10 rad/s.
     let (r, l, w) = (0.05, 0.2, 10.0);

@@ -41,6 +41,7 @@ pub(crate) fn block(at: [f64; 2], angle: f64, half: [f64; 2]) -> Vec<[f64; 2]> {
         .to_vec()
 }
 
+// Long: one picture, written out as data.
 pub(crate) fn linkage() -> Figure {
     let path = |from: f64, to: f64| {
         (0..=720)

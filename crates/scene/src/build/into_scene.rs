@@ -11,6 +11,8 @@ use dwell_geometry::{ActuatorId, Body, BodyId, JointId, Mechanism};
 
 impl ParsedScene<'_, '_> {
     /// The scene of parts in which nothing was found wrong.
+    //
+    // Long: it fills the fields of a scene one after another.
     pub(super) fn into_scene(self, name: String, source: Source) -> Scene {
         let spans = self.spans();
         let bodies = self.bodies.list;
@@ -95,6 +97,7 @@ impl ParsedScene<'_, '_> {
         }
     }
 
+    // Long: one entry after another for all that a message can point at.
     fn spans(&self) -> SceneSpans {
         let mut spans = SceneSpans::default();
         for (location, key) in [

@@ -39,8 +39,8 @@ fn the_separating_force_has_a_column_beside_the_tooth_force() {
         let tangent = 20.0_f64.to_radians().tan();
         assert!(largest(&force) > 1.0);
         for (tooth, force) in tooth.iter().zip(&force) {
-            // As it is written, with 17 digits.
-            assert!((force - tooth.abs() * tangent).abs() <= 1e-15 * force);
+            // Rounding of forces of some hundred newtons.
+            assert!((force - tooth.abs() * tangent).abs() <= 1e-12);
         }
         for name in &without.names {
             let [a, b] = [&with, &without].map(|table| table.column(name));

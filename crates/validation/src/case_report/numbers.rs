@@ -122,31 +122,22 @@ pub(super) fn tables(reduced: &ReducedAnalysis<'_>) -> Vec<(&'static str, Table)
 
 /// Cost and errors of one method over its tolerances.
 fn tolerance_runs_table(motion: &CheckedFreeMotion, method: Method) -> Table {
-    let columns = [
-        ("tolerance", ""),
-        ("steps", ""),
-        ("evaluations", ""),
-        ("jacobians", ""),
-        ("wall_time", "s"),
-        ("period_error", ""),
-        ("energy_drift", ""),
-        ("reaction_error", ""),
+    let columns: [(&str, &str, fn(&ToleranceRun) -> f64); 8] = [
+        ("tolerance", "", |r| r.tolerance),
+        ("steps", "", |r| r.statistics.steps as f64),
+        ("evaluations", "", |r| r.statistics.evaluations as f64),
+        ("jacobians", "", |r| r.statistics.jacobians as f64),
+        ("wall_time", "s", |r| r.wall_time),
+        ("period_error", "", |r| r.period_error),
+        ("energy_drift", "", |r| r.drift),
+        ("reaction_error", "", |r| r.reaction_error),
     ];
-    let row = |r: &ToleranceRun| {
-        vec![
-            r.tolerance,
-            r.statistics.steps as f64,
-            r.statistics.evaluations as f64,
-            r.statistics.jacobians as f64,
-            r.wall_time,
-            r.period_error,
-            r.drift,
-            r.reaction_error,
-        ]
-    };
     let runs = motion.tolerance_runs.iter().filter(|r| r.method == method);
+    let row = |r| columns.iter().map(|(.., value)| value(r)).collect();
     Table {
-        columns: columns.map(|(n, u)| Column::new(n, u)).to_vec(),
+        columns: columns
+            .map(|(name, unit, _)| Column::new(name, unit))
+            .to_vec(),
         rows: runs.map(row).collect(),
     }
 }

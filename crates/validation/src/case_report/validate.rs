@@ -13,7 +13,7 @@ use crate::report_parts::draw_figures;
 use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::Scene;
 use dwell_study::output::signed_png;
-use dwell_study::{Outcome, Progress, SolverSettings, Step, reduce};
+use dwell_study::{Outcome, Progress, Step, reduce};
 use std::path::Path;
 
 /// Steps of the progress bar for one case: three of the analysis and two of the report.
@@ -109,8 +109,7 @@ fn reduced_figures(
     // The caption of the last one says which reactions are left out.
     figures.extend(reduce::figures::coefficients(prepared, &reduced.curves).0);
     if let Some(history) = &reduced.history {
-        let settings = SolverSettings::default();
-        figures.push(figures::history(prepared, history, &settings));
+        figures.push(figures::history(prepared, history));
     }
     if let Some(motion) = &reduced.motion {
         figures.push(figures::drift(prepared, motion));

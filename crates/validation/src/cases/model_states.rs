@@ -203,8 +203,8 @@ impl<'a> ModelStates<'a> {
 
     fn set_coordinates(&mut self, q: &[f64]) -> Result<(), StudyError> {
         let plan = self.model.plan();
-        plan.positions(q, &mut self.workspace.pose)
-            .map_err(|e| explain_position(self.scene, plan, &e))
+        let done = plan.positions(q, &mut self.workspace.pose);
+        done.map_err(|e| explain_position(self.scene, plan, &e))
     }
 
     fn body_poses(&self) -> Vec<[f64; 3]> {
@@ -244,9 +244,8 @@ impl<'a> ModelStates<'a> {
         if let KinetostaticsError::Position(error) = error {
             return explain_position(self.scene, self.model.plan(), error);
         }
-        let load = error
-            .load()
-            .and_then(|l| Some((l, self.scene.loads.get(l)?)));
+        let loads = &self.scene.loads;
+        let load = error.load().and_then(|l| Some((l, loads.get(l)?)));
         let (location, name) = load.map_or((SceneLocation::Whole, ""), |(l, load)| {
             (SceneLocation::Load(l), &load.name)
         });

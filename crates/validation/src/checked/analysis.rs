@@ -5,7 +5,7 @@ use crate::cases::subject::PlanSubject;
 use crate::checked::history::History;
 use crate::checked::multibody::{self, FreeMotionRun};
 use crate::checked::period_check;
-use crate::checked::rounding_check::{self, RoundingCheck};
+use crate::checked::rounding_check::{self, StateRounding};
 use crate::checked::states::{self, CheckedStates};
 use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
@@ -13,9 +13,7 @@ use dwell_kinetostatics::ReducedModel;
 use dwell_scene::{MotionDuration, Scene};
 use dwell_study::explain::explain_motion;
 use dwell_study::reduce::compute::ReducedCurves;
-use dwell_study::{
-    CalibrationResult, PreparedScene, SolverSettings, StudyError, find_value, symbolic_findings,
-};
+use dwell_study::{CalibrationResult, PreparedScene, StudyError, find_value, symbolic_findings};
 use dwell_verify::{
     Case, CheckContext, CheckedFreeMotion, CheckedPosition, ErrorCurve, FreeMotionCase, Range,
     check_free_motion, half_dm_curve, reaction_curve, spread,
@@ -33,7 +31,8 @@ pub(crate) struct CaseAnalysis<'a> {
     /// The checks without findings, and in a few words why.
     pub(crate) not_applicable: Vec<(Check, &'static str)>,
     pub(crate) states: CheckedStates,
-    pub(crate) rounding: RoundingCheck,
+    /// The effect of rounding, by state.
+    pub(crate) rounding: Vec<StateRounding>,
     /// The free motion that was compared with the multibody equations.
     pub(crate) free_motion: Option<FreeMotionRun>,
     /// The reduced model, where it describes the whole case.
@@ -50,7 +49,7 @@ pub(crate) struct ReducedAnalysis<'a> {
     pub(crate) history: Option<History>,
 }
 
-/// Checks a case in every way that applies to it; `done` is called after each of three steps.
+/// Applies every check that applies to a case; `done` is called after each of three steps.
 ///
 /// # Errors
 /// [`ValidationError`] when the scene or the reference cannot be used. A failed check is no error.
@@ -75,7 +74,7 @@ pub(crate) fn analyse<'a>(
         || check_motions(scene, reference, motion.is_some()),
     );
     let (states, ((free_motion, multibody_findings), period)) = (states?, motions?);
-    let rounding = RoundingCheck::new(scene, &states.states)?;
+    let rounding = rounding_check::rounding_errors(scene, &states.states)?;
     let mut findings = in_order(
         prepared.is_some(),
         [
@@ -225,7 +224,7 @@ fn free_motion_results(
     };
     let plan = prepared.model.model().plan();
     let duration = two_periods(motion.duration);
-    let history = History::new(prepared, start, duration, &SolverSettings::default())?;
+    let history = History::new(prepared, start, duration)?;
     let check = |period: f64| {
         let revolutions = match motion.duration {
             MotionDuration::Periods(n) => n,

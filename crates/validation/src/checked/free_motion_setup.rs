@@ -101,13 +101,11 @@ impl FreeMotionSetup {
             let limit = of(k)[0] < low || of(k)[0] > high;
             let stops = stop_reason.is_some() && run.steps[k].t > KEPT_FRACTION * end;
             let before_end = limit || stops;
+            let travel = (of(k)[0] - of(0)[0]).abs();
             let over = [
                 (limit, "short of a limit position or the end of the sweep"),
                 (stops, "short of its end"),
-                (
-                    (of(k)[0] - of(0)[0]).abs() >= self.full_travel,
-                    "one revolution",
-                ),
+                (travel >= self.full_travel, "one revolution"),
                 (reversals > 2, "one oscillation"),
             ];
             if let Some((_, text)) = over.into_iter().find(|(over, _)| *over) {

@@ -31,18 +31,16 @@ impl History {
         prepared: &PreparedScene<'_>,
         start: ReducedState,
         length: MotionDuration,
-        settings: &SolverSettings,
     ) -> Result<Self, StudyError> {
         let plan = prepared.model.model().plan();
-        Self::integrate(prepared, start, length, settings)
-            .map_err(|e| explain_motion(prepared.scene, plan, &e))
+        let history = Self::integrate(prepared, start, length);
+        history.map_err(|e| explain_motion(prepared.scene, plan, &e))
     }
 
     fn integrate(
         prepared: &PreparedScene<'_>,
         start: ReducedState,
         length: MotionDuration,
-        settings: &SolverSettings,
     ) -> Result<Self, DynamicsError> {
         let model = &prepared.model;
         let period = match Orbit::new(model, start) {
@@ -59,6 +57,7 @@ impl History {
             (MotionDuration::Periods(n), Some(period)) => n * period,
             (MotionDuration::Periods(n) | MotionDuration::Seconds(n), _) => n,
         };
+        let settings = SolverSettings::default();
         let sampled_time = period.map_or(duration, |period| period.min(duration));
         let options = Options {
             rtol: settings.rtol,

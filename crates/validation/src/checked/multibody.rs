@@ -115,7 +115,7 @@ fn collect_steps(
         // A segment begins with the state in which the last one ended.
         for point in solution.steps.iter().skip(usize::from(k > 0)) {
             if !machine.is_in_fit_window(&point.y) {
-                reader.append_state(point, &mut run)?;
+                reader.append(point, &mut run)?;
             }
         }
     }
@@ -145,11 +145,7 @@ impl<'a> StateReader<'a> {
     }
 
     /// Adds a state to the run. Angles go on from those before: no step rotates a body by half a revolution.
-    fn append_state(
-        &mut self,
-        at: &OdeState,
-        run: &mut FreeMotionRun,
-    ) -> Result<(), DynamicsError> {
+    fn append(&mut self, at: &OdeState, run: &mut FreeMotionRun) -> Result<(), DynamicsError> {
         let (machine, workspace) = (self.machine, &mut self.workspace);
         machine.evaluate(at.t, &at.y, workspace)?;
         let (outputs, result) = (&mut self.output_workspace, &mut self.result);

@@ -25,12 +25,6 @@ pub(crate) struct StateRounding {
     pub(crate) f32_error: Option<f64>,
 }
 
-/// All states of a case.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct RoundingCheck {
-    pub(crate) states: Vec<StateRounding>,
-}
-
 /// Actuator forces and reactions in one state, in any precision.
 fn evaluate<T: Scalar>(model: &Model, state: &ClaimedState) -> Result<Vec<T>, KinetostaticsError> {
     let lift = |values: &[f64]| -> Vec<T> { values.iter().map(|&v| T::from_f64(v)).collect() };
@@ -41,55 +35,46 @@ fn evaluate<T: Scalar>(model: &Model, state: &ClaimedState) -> Result<Vec<T>, Ki
     Ok(out.tau)
 }
 
-impl RoundingCheck {
-    /// Evaluates states of a scene in `f32`, `f64` and double-double numbers.
-    ///
-    /// # Errors
-    /// [`StudyError`] when the mechanism cannot be put together.
-    pub(crate) fn new(scene: &Scene, states: &[ClaimedState]) -> Result<Self, StudyError> {
-        let model = loaded_model(scene)?;
-        let exact = |state| evaluate::<DoubleDouble>(&model, state).ok();
-        let reference: Vec<_> = states.par_iter().map(exact).collect();
-        let mechanism = &scene.mechanism;
-        let actuators = mechanism.actuators.iter();
-        let actuators = actuators.map(|a| (a.name.clone(), a.coordinate().force_unit()));
-        let reactions = mechanism.reactions().into_iter();
-        let reactions = reactions.map(|r| (mechanism.reaction_name(r), r.component.unit()));
-        let named: Vec<(String, &str)> = actuators.chain(reactions).collect();
-        let largest = |unit: &str| {
-            let all = reference.iter().flatten();
-            let all = all.flat_map(|values| named.iter().zip(values));
-            let same = all.filter(|((_, of), _)| *of == unit);
-            same.fold(0.0_f64, |largest, (_, v)| largest.max(v.value().abs()))
-        };
-        let [forces, moments] = ["N", "N m"].map(largest);
-        let scale = |(_, unit): &(_, &str)| if *unit == "N" { forces } else { moments };
-        let scales: Vec<f64> = named.iter().map(scale).collect();
-        let rounding = |(state, reference): (&ClaimedState, &Option<Vec<DoubleDouble>>)| {
-            let reference = reference.as_ref()?;
-            let values = evaluate::<f64>(&model, state).ok()?;
-            let (f64_error, k) = max_relative_error(&values, reference, &scales);
-            let single = evaluate::<f32>(&model, state).ok();
-            Some(StateRounding {
-                t: state.t,
-                f64_error,
-                quantity: named.get(k).map_or(String::new(), |n| n.0.clone()),
-                f32_error: single.map(|v| max_relative_error(&v, reference, &scales).0),
-            })
-        };
-        let evaluated = states.par_iter().zip(&reference).filter_map(rounding);
-        Ok(Self {
-            states: evaluated.collect(),
+/// Evaluates states of a scene in `f32`, `f64` and double-double numbers.
+///
+/// # Errors
+/// [`StudyError`] when the mechanism cannot be assembled.
+pub(crate) fn rounding_errors(
+    scene: &Scene,
+    states: &[ClaimedState],
+) -> Result<Vec<StateRounding>, StudyError> {
+    let model = loaded_model(scene)?;
+    let exact = |state| evaluate::<DoubleDouble>(&model, state).ok();
+    let reference: Vec<_> = states.par_iter().map(exact).collect();
+    let mechanism = &scene.mechanism;
+    let actuators = mechanism.actuators.iter();
+    let actuators = actuators.map(|a| (a.name.clone(), a.coordinate().force_unit()));
+    let reactions = mechanism.reactions().into_iter();
+    let reactions = reactions.map(|r| (mechanism.reaction_name(r), r.component.unit()));
+    let named: Vec<(String, &str)> = actuators.chain(reactions).collect();
+    let largest = |unit: &str| {
+        let all = reference.iter().flatten();
+        let all = all.flat_map(|values| named.iter().zip(values));
+        let same = all.filter(|((_, of), _)| *of == unit);
+        same.fold(0.0_f64, |largest, (_, v)| largest.max(v.value().abs()))
+    };
+    let [forces, moments] = ["N", "N m"].map(largest);
+    let scale = |(_, unit): &(_, &str)| if *unit == "N" { forces } else { moments };
+    let scales: Vec<f64> = named.iter().map(scale).collect();
+    let rounding = |(state, reference): (&ClaimedState, &Option<Vec<DoubleDouble>>)| {
+        let reference = reference.as_ref()?;
+        let values = evaluate::<f64>(&model, state).ok()?;
+        let (f64_error, k) = max_relative_error(&values, reference, &scales);
+        let single = evaluate::<f32>(&model, state).ok();
+        Some(StateRounding {
+            t: state.t,
+            f64_error,
+            quantity: named.get(k).map_or(String::new(), |n| n.0.clone()),
+            f32_error: single.map(|v| max_relative_error(&v, reference, &scales).0),
         })
-    }
-
-    /// The largest errors of `f64`, with its state, and of `f32`.
-    pub(crate) fn largest(&self) -> Option<(&StateRounding, Option<f64>)> {
-        let states = self.states.iter();
-        let f64_state = states.max_by(|a, b| a.f64_error.total_cmp(&b.f64_error))?;
-        let f32_errors = self.states.iter().filter_map(|s| s.f32_error);
-        Some((f64_state, f32_errors.reduce(f64::max)))
-    }
+    };
+    let evaluated = states.par_iter().zip(&reference).filter_map(rounding);
+    Ok(evaluated.collect())
 }
 
 /// The largest difference from the double-double values, and its index.
@@ -114,8 +99,11 @@ fn max_relative_error<T: Scalar>(
 }
 
 /// The one finding: the error of `f64`.
-pub(crate) fn finding(rounding: &RoundingCheck) -> Option<Finding> {
-    let (largest, f32_error) = rounding.largest()?;
+pub(crate) fn finding(rounding: &[StateRounding]) -> Option<Finding> {
+    let states = rounding.iter();
+    let largest = states.max_by(|a, b| a.f64_error.total_cmp(&b.f64_error))?;
+    let f32_errors = rounding.iter().filter_map(|s| s.f32_error);
+    let f32_error = f32_errors.reduce(f64::max);
     let condition_text = match f32_error {
         None => "no position in f32".to_owned(),
         Some(f32_error) => format!("f32 errs by {f32_error:.0e}, which shows the condition"),
@@ -123,7 +111,7 @@ pub(crate) fn finding(rounding: &RoundingCheck) -> Option<Finding> {
     Some(Finding {
         comparison: "actuator forces and reactions in f64 with the same in numbers of 32 digits"
             .into(),
-        domain: format!("{} states", rounding.states.len()),
+        domain: format!("{} states", rounding.len()),
         scale: "the largest of the same unit in all states".to_owned(),
         worst_at: format!("t = {} s, {}", largest.t, largest.quantity),
         tolerance_reason: format!("roundings of an evaluation; {condition_text}"),

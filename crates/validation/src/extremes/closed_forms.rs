@@ -64,10 +64,8 @@ impl UnitSpeedBody {
         let [_, v, a] = self.center_motion();
         let (mass, inertia) = (dd(self.mass.mass), dd(self.mass.inertia));
         let [w, e] = self.angular_rates;
-        [
-            mass * v.dot(v) + inertia * w * w,
-            mass * v.dot(a) + inertia * w * e,
-        ]
+        let half_dm = mass * v.dot(a) + inertia * w * e;
+        [mass * v.dot(v) + inertia * w * w, half_dm]
     }
 
     /// Rate of the angular momentum about a point that neither velocity nor acceleration of the body
@@ -77,10 +75,8 @@ impl UnitSpeedBody {
         let (mass, inertia) = (dd(self.mass.mass), dd(self.mass.inertia));
         let [w, e] = self.angular_rates;
         let moment_arm = position - about;
-        [
-            mass * moment_arm.cross(v) + inertia * w,
-            mass * moment_arm.cross(a) + inertia * e,
-        ]
+        let moment = |rate, angular| mass * moment_arm.cross(rate) + inertia * angular;
+        [moment(v, w), moment(a, e)]
     }
 }
 
@@ -100,12 +96,8 @@ pub(crate) struct FourBarCoefficients {
     pub(crate) b: Point,
 }
 
-/// By circle and circle, with the rocker's end C on the left (+1) or right (−1) of the line from B to D.
-pub(crate) fn four_bar(
-    mechanism: &FourBar,
-    branch_sign: f64,
-    q: DoubleDouble,
-) -> FourBarCoefficients {
+/// By circle and circle, with the rocker's end C on the left of the line from B to D.
+pub(crate) fn four_bar(mechanism: &FourBar, q: DoubleDouble) -> FourBarCoefficients {
     let [a, d] = mechanism.base.map(Vec2::cast::<DoubleDouble>);
     let [crank, coupler, rocker] = mechanism.lengths.map(dd);
     let [mass_1, mass_2, mass_3] = mechanism.masses;
@@ -117,7 +109,7 @@ pub(crate) fn four_bar(
     // Heron's product: the difference of squares would lose what is left near a limit position.
     let (sum, gap) = (coupler + rocker, coupler - rocker);
     let rest = (sum * sum - square) * (square - gap * gap);
-    let across = dd(branch_sign) * rest.sqrt() / (dd(2.0) * square);
+    let across = rest.sqrt() / (dd(2.0) * square);
     let bc = line * along + line.perp() * across;
     let c = b + bc;
     let dc = c - d;
@@ -180,16 +172,12 @@ pub(crate) fn parallelogram(mechanism: &FourBar) -> [DoubleDouble; 2] {
 }
 
 /// ∮ √m dq over a revolution of a four-bar's crank, by the trapezoid rule: spectral.
-pub(crate) fn root_inertia_integral(
-    mechanism: &FourBar,
-    branch_sign: f64,
-    points: usize,
-) -> DoubleDouble {
+pub(crate) fn root_inertia_integral(mechanism: &FourBar, points: usize) -> DoubleDouble {
     let step = DoubleDouble::PI * dd(2.0) / dd(points as f64);
     let mut sum = dd(0.0);
     for k in 0..points {
         let q = step * dd(k as f64);
-        sum += four_bar(mechanism, branch_sign, q).m.sqrt();
+        sum += four_bar(mechanism, q).m.sqrt();
     }
     sum * step
 }
@@ -254,7 +242,7 @@ mod tests {
     /// The rule has converged to the digits of the numbers.
     #[test]
     fn val_the_rule_of_a_turn() {
-        let by = |points| root_inertia_integral(&CRANK_ROCKER, 1.0, points);
+        let by = |points| root_inertia_integral(&CRANK_ROCKER, points);
         assert!((by(256) - by(512)).hi.abs() < 1e-28);
     }
 

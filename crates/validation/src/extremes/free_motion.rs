@@ -27,11 +27,9 @@ const QUANTITIES: [&str; 2] = ["angle", "energy"];
 
 /// m at the start, and the period at 1 rad/s there, of the crank-rocker's free motion: E_c is constant.
 static REFERENCE_REVOLUTION: LazyLock<[DoubleDouble; 2]> = LazyLock::new(|| {
-    let m = four_bar(&CRANK_ROCKER, 1.0, dd(START_ANGLE)).m;
-    [
-        m,
-        root_inertia_integral(&CRANK_ROCKER, 1.0, QUADRATURE_POINTS) / m.sqrt(),
-    ]
+    let m = four_bar(&CRANK_ROCKER, dd(START_ANGLE)).m;
+    let integral = root_inertia_integral(&CRANK_ROCKER, QUADRATURE_POINTS);
+    [m, integral / m.sqrt()]
 });
 
 /// Page of these rows, and its title.

@@ -26,12 +26,7 @@ fn required(_: f64, _: usize) -> Requirement {
 }
 
 /// A row that evaluates a four-bar for each value.
-fn base_series(
-    key: &str,
-    what: &str,
-    values: Vec<f64>,
-    make: fn(f64) -> FourBar,
-) -> ParameterSeries {
+fn base_series(key: &str, what: &str, values: Vec<f64>, of: fn(f64) -> FourBar) -> ParameterSeries {
     ParameterSeries {
         figure: FIGURE,
         key: key.into(),
@@ -43,10 +38,10 @@ fn base_series(
         reason: "",
         requirement: Box::new(required),
         run: Box::new(move |at| {
-            let four_bar = make(at);
+            let four_bar = of(at);
             let test = four_bar.build();
             let model = test.exact_model(&test.reactions("C"))?;
-            compare_four_bar(&four_bar, &model, 1.0, CRANK_ANGLE)
+            compare_four_bar(&four_bar, &model, CRANK_ANGLE)
         }),
     }
 }

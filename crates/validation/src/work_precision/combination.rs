@@ -232,11 +232,7 @@ impl WorkPrecision {
     }
 
     /// Whether an error of a point is below that of the reference.
-    pub fn is_below_reference_error(
-        &self,
-        point: &CombinationResult,
-        quantity: ErrorQuantity,
-    ) -> bool {
+    pub fn is_below_reference(&self, point: &CombinationResult, quantity: ErrorQuantity) -> bool {
         point.errors.of(quantity) < self.reference.error.of(quantity)
     }
 

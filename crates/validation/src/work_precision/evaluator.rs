@@ -127,13 +127,9 @@ impl<R: ReducedModel> ReducedModel for CountingModel<'_, R> {
         self.model.inertia(q, workspace)
     }
 
-    fn inertia_derivatives(
-        &self,
-        q: f64,
-        workspace: &mut R::Workspace,
-    ) -> Result<Inertia, PositionError> {
+    fn inertia_derivatives(&self, q: f64, at: &mut R::Workspace) -> Result<Inertia, PositionError> {
         self.count.fetch_add(2, Ordering::Relaxed);
-        self.model.inertia_derivatives(q, workspace)
+        self.model.inertia_derivatives(q, at)
     }
 
     fn coefficients(
@@ -181,13 +177,9 @@ impl ReducedModel for SinglePrecisionModel {
         self.exact.range()
     }
 
-    fn inertia(
-        &self,
-        q: f64,
-        (workspace, _): &mut Self::Workspace,
-    ) -> Result<(f64, f64), PositionError> {
+    fn inertia(&self, q: f64, (at, _): &mut Self::Workspace) -> Result<(f64, f64), PositionError> {
         let mut out = Coefficients::default();
-        self.inertia_model.reduce(q as f32, workspace, &mut out)?;
+        self.inertia_model.reduce(q as f32, at, &mut out)?;
         Ok((f64::from(out.m), f64::from(out.half_dm)))
     }
 

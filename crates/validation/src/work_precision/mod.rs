@@ -190,9 +190,7 @@ fn collect_trials<'e>(
         Some(run) => add(Integrator::Quadrature, run),
         None => {
             let name = evaluation.name();
-            omitted.push(format!(
-                "{name}, quadrature: not smooth enough, or not known"
-            ));
+            omitted.push(format!("{name}, quadrature: not smooth or not known"));
         }
     }
 }

@@ -94,7 +94,7 @@ fn numbers(found: &WorkPrecision) -> Table {
         row.extend([cost.jacobians, cost.weighted_evaluations].map(|count| count as f64));
         row.extend([cost.time, cost.of(CostMeasure::TimeWithBuild)]);
         row.extend(ErrorQuantity::ALL.map(|quantity| point.errors.of(quantity)));
-        let is_below = |quantity| found.is_below_reference_error(point, quantity);
+        let is_below = |quantity| found.is_below_reference(point, quantity);
         row.extend(ErrorQuantity::ALL.map(|q| f64::from(u8::from(is_below(q)))));
         row
     };
@@ -243,10 +243,8 @@ fn intro(scene: &Scene, found: &WorkPrecision) -> String {
 
 fn quadrature(found: &WorkPrecision) -> String {
     let error = |point: &CombinationResult, quantity| {
-        describe_error(
-            point.errors.of(quantity),
-            found.reference.error.of(quantity),
-        )
+        let floor = found.reference.error.of(quantity);
+        describe_error(point.errors.of(quantity), floor)
     };
     match found.quadrature() {
         Some(point) => format!(

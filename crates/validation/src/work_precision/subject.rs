@@ -168,9 +168,7 @@ fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, Stu
         }
     }
     let starts = texts.join(", ");
-    notes.push(format!(
-        "the scene has no [motion]: it is set free at {starts}"
-    ));
+    notes.push(format!("without [motion], it is set free at {starts}"));
     Ok(free_scene)
 }
 

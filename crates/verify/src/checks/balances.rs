@@ -26,7 +26,7 @@
 
 use super::row_step;
 use crate::comparison::{FindingSpec, LargestDifference};
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::context::{CheckContext, CheckedPosition, FORCE_MIN_SHARE};
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
 use crate::subject::SubjectError;
@@ -139,12 +139,8 @@ pub(crate) fn balances(context: &CheckContext<'_>) -> Vec<Finding> {
 }
 
 /// `phi = 1.3 rad, 1 rad/s, 0.7 rad/s2, coupler`.
-fn location(
-    context: &CheckContext<'_>,
-    q: f64,
-    [q_dot, q_ddot]: [f64; 2],
-    body: Option<usize>,
-) -> String {
+fn location(context: &CheckContext<'_>, q: f64, motion: [f64; 2], body: Option<usize>) -> String {
+    let [q_dot, q_ddot] = motion;
     let (location, unit) = (context.location(q), context.unit());
     let body = body.map(|body| format!(", {}", context.case.mechanism.bodies[body].name));
     let body = body.unwrap_or_default();
@@ -166,7 +162,7 @@ fn balances_in_motion(
     // The time it takes to go one step of q: |q̇| t + ½ |q̈| t² = h.
     let h = row_step(context, position.unit_velocity());
     let step = 2.0 * h / (q_dot.abs() + (q_dot * q_dot + 2.0 * q_ddot.abs() * h).sqrt());
-    let rate = |of: &dyn Fn(&ClosedConfiguration, &[f64]) -> Vec<f64>| {
+    let rate = |of: &dyn Fn(&Configuration, &[f64]) -> Vec<f64>| {
         derivatives(
             DerivativeOrder::First,
             step,
@@ -203,19 +199,13 @@ fn balances_in_motion(
 }
 
 /// Adds a balance of forces and moments: findings `first` and the next.
-fn push(
-    to: &mut Vec<Balance>,
-    first: usize,
-    body: Option<usize>,
-    net: NetWrench,
-    errors: [f64; 3],
-) {
+fn push(to: &mut Vec<Balance>, first: usize, body: Option<usize>, net: NetWrench, error: [f64; 3]) {
     to.extend([0, 1, 2].map(|c| Balance {
         finding: first + usize::from(c == 2),
         body,
         difference: net.sum[c],
         terms: net.terms[c],
-        reference_error: errors[c],
+        reference_error: error[c],
     }));
 }
 
@@ -225,7 +215,7 @@ fn state_at(
     position: &CheckedPosition,
     law: &Polynomial,
     t: f64,
-) -> Option<(ClosedConfiguration, Vec<f64>)> {
+) -> Option<(Configuration, Vec<f64>)> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
     let [q, q_dot, ..] = law.eval(t);
     let (from, direction) = (&position.configuration, position.unit_velocity());

@@ -123,20 +123,15 @@ pub fn published(
 fn scale(reactions: &[Reaction], samples: &[PublishedSample], kind: usize, k: usize) -> f64 {
     let is_moment = |k| component(reactions, k) == Some(Component::Moment);
     let values = |s: &PublishedSample| -> Vec<f64> {
-        let same = s
-            .reactions
-            .iter()
-            .filter(|r| is_moment(r.0) == is_moment(k));
+        let in_k = is_moment(k);
+        let same = s.reactions.iter().filter(|r| is_moment(r.0) == in_k);
         match kind {
             0 => s.m.into_iter().collect(),
             1 => s.half_dm.into_iter().collect(),
-            2 => same
-                .map(|r| r.1)
-                .chain(s.m.filter(|_| is_moment(k)))
-                .collect(),
+            2 => same.map(|r| r.1).chain(s.m.filter(|_| in_k)).collect(),
             3 => same
                 .map(|r| r.2)
-                .chain(s.half_dm.filter(|_| is_moment(k)))
+                .chain(s.half_dm.filter(|_| in_k))
                 .collect(),
             _ => {
                 let points = s.points.iter();

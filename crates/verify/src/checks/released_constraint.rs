@@ -64,7 +64,7 @@ pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
         let subject = context.subject.coefficients(position.q)?;
         if subject.a.len() != count || subject.b.len() != count {
             for worst in [a, b, power] {
-                worst.record_failure("the subject does not answer for every reaction".into());
+                worst.record_failure("the subject does not give every reaction".into());
             }
             return Ok(());
         }
@@ -90,9 +90,8 @@ pub(crate) fn released_constraint(context: &CheckContext<'_>) -> Vec<Finding> {
         domain += &format!("; {indeterminate} that joints share are not determined");
     }
     let findings = [(A, a), (B, b), (POWER, power)];
-    findings
-        .map(|(spec, worst)| spec.finding(domain.clone(), worst))
-        .into()
+    let finding = |(spec, worst): (FindingSpec<'_>, _)| spec.finding(domain.clone(), worst);
+    findings.map(finding).into()
 }
 
 /// Eq. (3) for every reaction that is determined.

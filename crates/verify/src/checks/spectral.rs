@@ -14,9 +14,9 @@
 //! mechanism comes back to where it started after a revolution.
 
 use crate::comparison::{FindingSpec, LargestDifference};
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::context::{CheckContext, CheckedPosition};
-use crate::error::DenseError;
+use crate::error::{DenseError, Result};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::Range;
 use rayon::prelude::*;
@@ -98,7 +98,7 @@ fn follow_revolution(
     context: &CheckContext<'_>,
     first: &CheckedPosition,
     count: usize,
-) -> Result<Vec<ClosedConfiguration>, DenseError> {
+) -> Result<Vec<Configuration>> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
     let mut nodes = vec![first.configuration.clone()];
     let mut here = first.configuration.clone();
@@ -121,24 +121,20 @@ fn follow_revolution(
 fn double_nodes(
     context: &CheckContext<'_>,
     start: f64,
-    nodes: &[ClosedConfiguration],
-) -> Result<Vec<ClosedConfiguration>, DenseError> {
+    nodes: &[Configuration],
+) -> Result<Vec<Configuration>> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
     let count = 2 * nodes.len();
-    let pair = |(j, node): (usize, &ClosedConfiguration)| {
+    let pair = |(j, node): (usize, &Configuration)| {
         let q = start + TAU * fraction(2 * j + 1, count);
         Ok([node.clone(), dense.follow(node, row, q)?])
     };
-    let pairs: Result<Vec<_>, DenseError> = nodes.par_iter().enumerate().map(pair).collect();
+    let pairs: Result<Vec<_>> = nodes.par_iter().enumerate().map(pair).collect();
     Ok(pairs?.into_iter().flatten().collect())
 }
 
 /// Eq. (2) at all positions.
-fn interpolant_slopes(
-    context: &CheckContext<'_>,
-    start: f64,
-    nodes: &[ClosedConfiguration],
-) -> Vec<f64> {
+fn interpolant_slopes(context: &CheckContext<'_>, start: f64, nodes: &[Configuration]) -> Vec<f64> {
     let row = context.dense.actuator_row();
     let count = nodes.len();
     let m = |node| 2.0 * context.dense.kinetic_energy(node, &[(row, 1.0)]);

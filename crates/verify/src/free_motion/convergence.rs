@@ -27,7 +27,7 @@ pub(super) fn check_convergence(slope: f64) -> Finding {
     let short = (0.6 - slope).max(0.0);
     Finding {
         comparison: format!(
-            "the fitted slope of log drift over log tolerance, {slope:.2}, with at least 0.6"
+            "the slope of log drift over log tolerance, {slope:.2}, with at least 0.6"
         ),
         domain: "BDF at tolerances 1e-13 to 1e-8".into(),
         unit: "(missing slope)".into(),

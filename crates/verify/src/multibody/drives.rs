@@ -1,7 +1,7 @@
 //! The forces of drives, from the definitions of their kinds.
 
 use super::state::MultibodyState;
-use super::{MultibodyError, MultibodySystem};
+use super::{MultibodyError, MultibodySystem, Result};
 use dwell_geometry::{Actuator, ActuatorKind, Coordinate, Mechanism};
 use dwell_kinetostatics::{Drive, DriveKind};
 
@@ -23,10 +23,7 @@ pub(super) fn rotor_inertia(kind: &DriveKind) -> f64 {
 
 /// The mechanism with one more actuator for each drive: its row gives the drive's coordinate, and the
 /// effect of a unit of its force on every body.
-pub(super) fn with_drives(
-    mechanism: &Mechanism,
-    drives: &[Drive],
-) -> Result<Mechanism, MultibodyError> {
+pub(super) fn with_drives(mechanism: &Mechanism, drives: &[Drive]) -> Result<Mechanism> {
     let mut extended = mechanism.clone();
     for (i, drive) in drives.iter().enumerate() {
         let what = "its coordinate is not there";
@@ -52,7 +49,7 @@ pub(super) fn with_drives(
 }
 
 impl MultibodySystem {
-    pub(super) fn check_drives(&self) -> Result<(), MultibodyError> {
+    pub(super) fn check_drives(&self) -> Result<()> {
         for (i, drive) in self.drives.iter().enumerate() {
             let magnitude = match &drive.kind {
                 DriveKind::AppliedForce(magnitude) => magnitude,

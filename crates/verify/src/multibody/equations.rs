@@ -3,7 +3,7 @@
 use super::drives::rotor_inertia;
 use super::friction::FrictionResponse;
 use super::state::MultibodyState;
-use super::{MotionSample, MultibodyError, MultibodySystem};
+use super::{MotionSample, MultibodyError, MultibodySystem, Result};
 use crate::dense::DenseMechanism;
 use crate::wrenches::BodyWrench;
 use dwell_geometry::{Vec2, vec2};
@@ -54,9 +54,8 @@ struct EvaluationPoint<'a> {
 type AugmentedSolution = (Vec<f64>, Vec<f64>);
 
 fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
-    to.iter_mut()
-        .zip(more)
-        .for_each(|(to, more)| *to += factor * more);
+    let both = to.iter_mut().zip(more);
+    both.for_each(|(to, more)| *to += factor * more);
 }
 
 impl MultibodyOde<'_> {
@@ -169,7 +168,7 @@ impl MultibodyOde<'_> {
     }
 
     /// Solves (1) at a state [x, v, states of the drives, work].
-    pub(super) fn solve(&self, t: f64, y: &[f64]) -> Result<MultibodySolution, MultibodyError> {
+    pub(super) fn solve(&self, t: f64, y: &[f64]) -> Result<MultibodySolution> {
         let frames = &self.frames;
         let n = frames.rows.columns();
         let not_finite = MultibodyError::NotFinite { t };
@@ -216,7 +215,7 @@ impl MultibodyOde<'_> {
         at: &MultibodyState,
         point: &EvaluationPoint<'_>,
         applied: &mut AppliedForces,
-    ) -> Result<AugmentedSolution, MultibodyError> {
+    ) -> Result<AugmentedSolution> {
         let not_finite = MultibodyError::NotFinite { t: at.t };
         let frictions = self.system.frictions();
         let mut forces = vec![std::mem::take(&mut applied.force)];
@@ -251,7 +250,7 @@ impl MultibodyOde<'_> {
         point: &EvaluationPoint<'_>,
         forces: &[Vec<f64>],
         t: f64,
-    ) -> Result<Vec<AugmentedSolution>, MultibodyError> {
+    ) -> Result<Vec<AugmentedSolution>> {
         let frames = &self.frames;
         let (n, m) = (frames.rows.columns(), self.active_rows.len());
         let scale = |c| frames.column_scale(c);
@@ -284,7 +283,7 @@ impl MultibodyOde<'_> {
     }
 
     /// The sample of a state.
-    pub(super) fn sample(&self, t: f64, y: &[f64]) -> Result<MotionSample, MultibodyError> {
+    pub(super) fn sample(&self, t: f64, y: &[f64]) -> Result<MotionSample> {
         let mut solution = self.solve(t, y)?;
         let [kinetic, potential] = self.system.energies(&solution.state);
         let mut tau = solution.multipliers.split_off(self.frames.actuator_row());

@@ -14,7 +14,7 @@
 //! its length makes worth while.
 
 use super::equations::MultibodyOde;
-use super::{MotionSample, MultibodyError};
+use super::{MotionSample, MultibodyError, Result};
 
 /// Error of a step, relative to the largest of its kind so far.
 const TOLERANCE: f64 = 1e-13;
@@ -58,7 +58,7 @@ impl<'a> ExtrapolationSolver<'a> {
         of: &'a MultibodyOde<'a>,
         start: &MotionSample,
         end: Option<f64>,
-    ) -> Result<Self, MultibodyError> {
+    ) -> Result<Self> {
         let mut y = of.frames.coordinates(&start.poses)?;
         y.extend(of.frames.velocities(&start.poses, &start.velocities));
         y.resize(of.dimension(), 0.0);
@@ -78,7 +78,7 @@ impl<'a> ExtrapolationSolver<'a> {
         Ok(solver)
     }
 
-    pub(super) fn sample(&self) -> Result<MotionSample, MultibodyError> {
+    pub(super) fn sample(&self) -> Result<MotionSample> {
         self.ode.sample(self.t, &self.y)
     }
 
@@ -104,7 +104,7 @@ impl<'a> ExtrapolationSolver<'a> {
     }
 
     /// Goes on to a time.
-    pub(super) fn advance_to(&mut self, to: f64) -> Result<(), MultibodyError> {
+    pub(super) fn advance_to(&mut self, to: f64) -> Result<()> {
         while self.t < to {
             let stuck = MultibodyError::AccuracyNotReached { t: self.t };
             self.steps_left = self.steps_left.checked_sub(1).ok_or(stuck)?;
@@ -132,12 +132,7 @@ impl<'a> ExtrapolationSolver<'a> {
         Ok(())
     }
 
-    fn try_step(
-        &self,
-        step: f64,
-        derivative: &[f64],
-        at_min_step: bool,
-    ) -> Result<StepResult, MultibodyError> {
+    fn try_step(&self, step: f64, derivative: &[f64], at_min_step: bool) -> Result<StepResult> {
         let mut previous_row: Vec<Vec<f64>> = vec![];
         let mut factor = 0.1;
         let mut cheapest = f64::INFINITY;
@@ -179,25 +174,19 @@ impl<'a> ExtrapolationSolver<'a> {
 
     fn error_norm(&self, one: &[f64], other: &[f64]) -> f64 {
         let errors = one.iter().zip(other).zip(&self.error_scale);
-        errors
-            .map(|((a, b), scale)| (a - b).abs() / (TOLERANCE * scale))
-            .fold(0.0, f64::max)
+        let errors = errors.map(|((a, b), scale)| (a - b).abs() / (TOLERANCE * scale));
+        errors.fold(0.0, f64::max)
     }
 
     /// The midpoint rule in `parts` parts.
-    fn midpoint(
-        &self,
-        step: f64,
-        parts: usize,
-        derivative: &[f64],
-    ) -> Result<Vec<f64>, MultibodyError> {
+    fn midpoint(&self, step: f64, parts: usize, rates: &[f64]) -> Result<Vec<f64>> {
         let h = step / parts as f64;
         let mut before = self.y.clone();
         let euler_step = |from: &[f64], by: f64, derivative: &[f64]| -> Vec<f64> {
             let both = from.iter().zip(derivative);
             both.map(|(y, r)| y + by * r).collect()
         };
-        let mut now = euler_step(&before, h, derivative);
+        let mut now = euler_step(&before, h, rates);
         for i in 1..parts {
             let derivative = self.ode.solve(self.t + h * i as f64, &now)?.derivative;
             let next = euler_step(&before, 2.0 * h, &derivative);

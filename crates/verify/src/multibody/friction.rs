@@ -8,7 +8,7 @@
 
 use super::equations::MultibodyOde;
 use super::state::MultibodyState;
-use super::{MultibodyError, MultibodySystem};
+use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::slide_axis;
 use crate::loads::tooth_row;
 use crate::lu::Lu;
@@ -159,7 +159,7 @@ impl MultibodyOde<'_> {
         frictions: &[(usize, ReactionLaw)],
         response: &FrictionResponse,
         at: &MultibodyState,
-    ) -> Result<Vec<f64>, MultibodyError> {
+    ) -> Result<Vec<f64>> {
         let n = frictions.len();
         if n == 0 {
             return Ok(vec![]);

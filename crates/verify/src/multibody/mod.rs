@@ -35,7 +35,10 @@ use extrapolation::ExtrapolationSolver;
 pub use motion_check::check_motion;
 use rows::centroidal_frames;
 
-/// Why the multibody equations cannot be written or followed.
+/// A result of the multibody equations.
+pub(crate) type Result<T, E = MultibodyError> = std::result::Result<T, E>;
+
+/// Why the multibody equations cannot be written or solved.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum MultibodyError {
     /// The mechanism or its start is not sound.
@@ -148,7 +151,7 @@ impl MultibodySystem {
         loads: &[Load],
         modes: &[CoordinateMode],
         drives: &[Drive],
-    ) -> Result<Self, MultibodyError> {
+    ) -> Result<Self> {
         let frames = centroidal_frames(&drives::with_drives(mechanism, drives)?, masses)?;
         if modes.len() != mechanism.actuators.len() {
             return Err(MultibodyError::CoordinateModes);
@@ -177,11 +180,7 @@ impl MultibodySystem {
     ///
     /// # Errors
     /// [`MultibodyError`] where the start does not close, or the motion cannot be followed.
-    pub fn integrate(
-        &self,
-        start: &MotionSample,
-        times: &[f64],
-    ) -> Result<Vec<MotionSample>, MultibodyError> {
+    pub fn integrate(&self, start: &MotionSample, times: &[f64]) -> Result<Vec<MotionSample>> {
         let rising = std::iter::once(&start.t).chain(times);
         let in_order = rising.clone().all(|t| t.is_finite())
             && rising.clone().zip(times).all(|(one, next)| one < next);

@@ -1,6 +1,6 @@
 //! A claimed motion against the multibody equations.
 
-use super::{MotionSample, MultibodyError, MultibodySystem};
+use super::{MotionSample, MultibodyError, MultibodySystem, Result};
 use crate::comparison::{Comparison, FindingSpec, LargestDifference};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Component, Reaction};
@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 pub fn check_motion(
     system: &MultibodySystem,
     claimed_motion: &[MotionSample],
-) -> Result<Vec<Finding>, MultibodyError> {
+) -> Result<Vec<Finding>> {
     let first = claimed_motion.first().ok_or(MultibodyError::InvalidStart)?;
     let times: Vec<f64> = claimed_motion.iter().skip(1).map(|claim| claim.t).collect();
     let reference_motion = system.integrate(first, &times)?;
@@ -122,15 +122,13 @@ impl MultibodySystem {
         &self,
         claimed_motion: &[MotionSample],
         reference_motion: &[MotionSample],
-    ) -> Result<Vec<Finding>, MultibodyError> {
+    ) -> Result<Vec<Finding>> {
         let first = reference_motion.first();
         let first = first.ok_or(MultibodyError::InvalidStart)?;
         let layout = |s: &MotionSample| {
             let bodies = [s.poses.len(), s.velocities.len()];
-            (
-                bodies,
-                [s.reactions.len(), s.tau.len(), s.drive_forces.len()],
-            )
+            let forces = [s.reactions.len(), s.tau.len(), s.drive_forces.len()];
+            (bodies, forces)
         };
         let pairs: Vec<_> = claimed_motion.iter().zip(reference_motion).collect();
         let alike = |(c, s): &(&MotionSample, &MotionSample)| c.t == s.t && layout(c) == layout(s);
@@ -178,7 +176,7 @@ impl MultibodySystem {
                 angles.record(one[2] - from[2], other[2] - from[2], t, name);
             }
         }
-        // Frames that all turn about their origins go nowhere, and those of slides do not turn.
+        // Frames may all rotate about their origins without moving, and those of slides do not rotate.
         let size = self.frames.size;
         (lengths.min_scale, angles.min_scale) =
             (angles.largest().min(1.0) * size, lengths.largest() / size);

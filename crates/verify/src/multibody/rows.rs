@@ -2,9 +2,8 @@
 //! back on them.
 
 use super::equations::MultibodyOde;
-use super::{MotionSample, MultibodyError, MultibodySystem};
+use super::{MotionSample, MultibodyError, MultibodySystem, Result};
 use crate::dense::DenseMechanism;
-use crate::error::DenseError;
 use crate::lu::Lu;
 use crate::rank::rank;
 use dwell_dynamics::CoordinateMode;
@@ -20,14 +19,12 @@ const CONVERGED_STEP: f64 = 1e-14;
 const MAX_RESIDUAL: f64 = 1e-9;
 
 /// The dense rows of a mechanism with its frames moved to the centres of mass, where a body has mass.
-pub(super) fn centroidal_frames(
-    mechanism: &Mechanism,
-    masses: &[Mass],
-) -> Result<DenseMechanism, DenseError> {
-    DenseMechanism::with_origins(mechanism, masses, |body, mean| match masses[body] {
+pub(super) fn centroidal_frames(mechanism: &Mechanism, masses: &[Mass]) -> Result<DenseMechanism> {
+    let origin = |body: usize, mean| match masses[body] {
         Mass { mass, center, .. } if mass > 0.0 && body != mechanism.ground => center,
         _ => mean,
-    })
+    };
+    Ok(DenseMechanism::with_origins(mechanism, masses, origin)?)
 }
 
 impl DenseMechanism {
@@ -84,7 +81,7 @@ impl MultibodySystem {
     }
 
     /// By reaction: whether the rows determine it where the bodies stand so.
-    pub(super) fn determinate(&self, bodies: &[[f64; 3]]) -> Result<Vec<bool>, MultibodyError> {
+    pub(super) fn determinate(&self, bodies: &[[f64; 3]]) -> Result<Vec<bool>> {
         let mut determinate = vec![true; self.frames.actuator_row()];
         let ranks = rank(&self.prescribed_mechanism().0, bodies)?;
         for row in ranks.with_actuators.dependent_rows {
@@ -96,7 +93,7 @@ impl MultibodySystem {
     }
 
     /// The equations with gears meshed and independent rows chosen at a start.
-    pub(super) fn ode_at(&self, start: &MotionSample) -> Result<MultibodyOde<'_>, MultibodyError> {
+    pub(super) fn ode_at(&self, start: &MotionSample) -> Result<MultibodyOde<'_>> {
         let x = self.frames.coordinates(&start.poses)?;
         let candidate_rows = self.prescribed_mechanism().1;
         let mut frames = self.frames.clone();
@@ -126,18 +123,13 @@ impl MultibodyOde<'_> {
     }
 
     /// The least change of the coordinates, a radian counted as a size, that changes the rows by
-    /// `change`.
-    fn min_norm_change(
-        &self,
-        x: &[f64],
-        change: &[f64],
-        t: f64,
-    ) -> Result<Vec<f64>, MultibodyError> {
+    /// `by`.
+    fn min_norm_change(&self, x: &[f64], by: &[f64], t: f64) -> Result<Vec<f64>> {
         let frames = &self.frames;
         let n = frames.rows.columns();
         let mut right = Mat::zeros(n + self.active_rows.len(), 1);
         for (k, &row) in self.active_rows.iter().enumerate() {
-            right[(n + k, 0)] = change[row] * frames.row_scale[row];
+            right[(n + k, 0)] = by[row] * frames.row_scale[row];
         }
         let unit = |i, j| if i == j { 1.0 } else { 0.0 };
         self.solve_bordered(unit, &frames.jacobian(x), &mut right, t)?;
@@ -152,7 +144,7 @@ impl MultibodyOde<'_> {
         jacobian: &[f64],
         right: &mut Mat<f64>,
         t: f64,
-    ) -> Result<(), MultibodyError> {
+    ) -> Result<()> {
         let (frames, n) = (&self.frames, self.frames.rows.columns());
         let entry = |k: usize, c: usize| {
             let row = self.active_rows[k];
@@ -170,7 +162,7 @@ impl MultibodyOde<'_> {
     }
 
     /// Puts coordinates and velocities back on the rows, by the least change.
-    pub(super) fn project(&self, t: f64, y: &mut [f64]) -> Result<(), MultibodyError> {
+    pub(super) fn project(&self, t: f64, y: &mut [f64]) -> Result<()> {
         let frames = &self.frames;
         let n = frames.rows.columns();
         let (x, rest) = y.split_at_mut(n);

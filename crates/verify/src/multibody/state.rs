@@ -1,6 +1,6 @@
 //! A state of the multibody equations: coordinates, magnitudes of loads, energies.
 
-use super::{MultibodyError, MultibodySystem};
+use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::{BodyMotion, slide_axis};
 use crate::loads::load_wrenches;
 use crate::wrenches::BodyWrench;
@@ -34,12 +34,8 @@ impl MultibodyState {
 
 impl MultibodySystem {
     /// Value and velocity of a coordinate; none if the mechanism does not have it.
-    pub(super) fn coordinate(
-        &self,
-        coordinate: Coordinate,
-        at: &MultibodyState,
-    ) -> Option<[f64; 2]> {
-        match coordinate {
+    pub(super) fn coordinate(&self, of: Coordinate, at: &MultibodyState) -> Option<[f64; 2]> {
+        match of {
             Coordinate::Angle(bodies) => at.motion().angle(bodies),
             Coordinate::Length { bodies, points } => at.motion().length(bodies, points),
             Coordinate::Travel(joint) => {
@@ -79,16 +75,11 @@ impl MultibodySystem {
     }
 
     /// The forces of a load of a given magnitude.
-    pub(super) fn wrenches(
-        &self,
-        load: usize,
-        magnitude: f64,
-        at: &MultibodyState,
-    ) -> Vec<BodyWrench> {
+    pub(super) fn wrenches(&self, load: usize, force: f64, at: &MultibodyState) -> Vec<BodyWrench> {
         let (ground, masses) = (self.mechanism.ground, &self.masses);
         let wrenches = self.loads.get(load).and_then(|load| {
             let (poses, velocities) = (&at.poses, &at.velocities);
-            load_wrenches(&load.kind, magnitude, ground, masses, poses, velocities)
+            load_wrenches(&load.kind, force, ground, masses, poses, velocities)
         });
         wrenches.unwrap_or_default()
     }
@@ -104,7 +95,7 @@ impl MultibodySystem {
     }
 
     /// Every load must find its bodies and coordinates.
-    pub(super) fn check_loads(&self) -> Result<(), MultibodyError> {
+    pub(super) fn check_loads(&self) -> Result<()> {
         let at = self.rest_state();
         for (i, load) in self.loads.iter().enumerate() {
             let wrong = |what| MultibodyError::Load { load: i, what };

@@ -1,8 +1,7 @@
 //! Comparisons of all states of one kind, gathered until their scale is known.
 
 use super::dense_state::DenseState;
-use crate::comparison::{Comparison, FindingSpec, LargestDifference};
-use dwell_findings::Finding;
+use crate::comparison::{Comparison, LargestDifference};
 
 /// Comparisons, most of whose scales are only known when all are there.
 pub(super) struct ComparisonSet {
@@ -46,12 +45,8 @@ impl ComparisonSet {
         self.comparisons.push((comparison, location));
     }
 
-    pub(super) fn finding(
-        self,
-        spec: &FindingSpec<'_>,
-        failures: &[String],
-        states: usize,
-    ) -> Finding {
+    /// The largest difference relative to the scale.
+    pub(super) fn largest(self) -> LargestDifference {
         let mut worst = LargestDifference::default();
         for (mut comparison, location) in self.comparisons {
             if !self.individual_scales {
@@ -59,9 +54,6 @@ impl ComparisonSet {
             }
             worst.record(&comparison, || location);
         }
-        for reason in failures {
-            worst.record_failure(reason.clone());
-        }
-        spec.finding(format!("{states} states"), worst)
+        worst
     }
 }

@@ -2,10 +2,10 @@
 
 use super::{ClaimedState, StateError};
 use crate::checks::MAX_DIFFERENCE_STEP;
-use crate::constraint_closing::ClosedConfiguration;
+use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::differences::Extrapolated;
-use crate::error::DenseError;
+use crate::error::Result;
 use crate::wrenches::{DenseWrench, NetWrench};
 use dwell_geometry::{Vec2, vec2};
 
@@ -13,41 +13,36 @@ use dwell_geometry::{Vec2, vec2};
 pub(super) struct DenseState<'a> {
     pub(super) dense: &'a DenseMechanism,
     pub(super) state: &'a ClaimedState,
-    pub(super) configuration: ClosedConfiguration,
+    pub(super) configuration: Configuration,
     /// How far closing moved the claimed poses, relative to the largest coordinate in them.
     pub(super) closing_correction: f64,
-    /// Dense velocities and accelerations of the moved frames, and the claimed ones.
-    pub(super) x_dot: Vec<f64>,
-    pub(super) x_ddot: Vec<f64>,
+    /// The dense solution, and how much rounding may have moved it.
+    pub(super) solution: DenseSolution,
+    pub(super) bounds: DenseSolution,
+    /// The claimed velocities and accelerations of the moved frames.
     pub(super) claimed_dot: Vec<f64>,
     pub(super) claimed_ddot: Vec<f64>,
-    /// Dense reactions, followed by the actuator forces.
-    pub(super) multipliers: Vec<f64>,
-    /// How much rounding may have moved the dense numbers.
     pub(super) pose_rounding_bound: f64,
-    pub(super) velocity_rounding_bound: Vec<f64>,
-    pub(super) acceleration_rounding_bound: Vec<f64>,
-    pub(super) multiplier_rounding_bound: Vec<f64>,
     pub(super) condition_number: f64,
     pub(super) load_wrenches: Vec<DenseWrench>,
     joint_wrenches: Vec<DenseWrench>,
 }
 
-/// Velocities, accelerations and multipliers at a configuration.
-struct DenseSolution {
-    x_dot: Vec<f64>,
-    x_ddot: Vec<f64>,
-    multipliers: Vec<f64>,
+/// Velocities and accelerations of the moved frames, and the multipliers: reactions, then actuator forces.
+pub(super) struct DenseSolution {
+    pub(super) x_dot: Vec<f64>,
+    pub(super) x_ddot: Vec<f64>,
+    pub(super) multipliers: Vec<f64>,
 }
 
 impl DenseSolution {
     fn new(
         dense: &DenseMechanism,
         state: &ClaimedState,
-        at: &ClosedConfiguration,
+        at: &Configuration,
         unit_velocities: &[Vec<f64>],
         loads: &[DenseWrench],
-    ) -> Result<Self, DenseError> {
+    ) -> Result<Self> {
         let actuator_row = dense.actuator_row();
         let mut x_dot = vec![0.0; dense.rows.columns()];
         for (u, rate) in unit_velocities[actuator_row..].iter().zip(&state.q_dot) {
@@ -74,7 +69,7 @@ impl DenseSolution {
 /// M ẍ + h − f in dense coordinates: what the joints and actuators have to exert.
 fn required_forces(
     dense: &DenseMechanism,
-    at: &ClosedConfiguration,
+    at: &Configuration,
     x_dot: &[f64],
     x_ddot: &[f64],
     loads: &[DenseWrench],
@@ -108,7 +103,7 @@ impl<'a> DenseState<'a> {
         state: &'a ClaimedState,
     ) -> Result<Self, StateError> {
         check_counts(dense, state)?;
-        let (configuration, closing_correction) = dense.close_poses(&state.poses, &state.q)?;
+        let (configuration, closing_correction) = dense.close_at(&state.poses, &state.q)?;
         dense.check_redundant_rows(&configuration)?;
         let loads = shifted_wrenches(dense, state);
         let velocities = dense.unit_velocities(&configuration);
@@ -127,15 +122,15 @@ impl<'a> DenseState<'a> {
             state,
             condition_number: dense.condition_number(&configuration.x),
             configuration,
-            x_dot: solution.x_dot,
-            x_ddot: solution.x_ddot,
-            multipliers: solution.multipliers,
+            solution,
             claimed_dot: dense.velocities(&state.poses, &state.velocities),
             claimed_ddot: shifted_accelerations(dense, state),
             pose_rounding_bound,
-            velocity_rounding_bound: bounds[..n].to_vec(),
-            acceleration_rounding_bound: bounds[n..2 * n].to_vec(),
-            multiplier_rounding_bound: bounds[2 * n..].to_vec(),
+            bounds: DenseSolution {
+                x_dot: bounds[..n].to_vec(),
+                x_ddot: bounds[n..2 * n].to_vec(),
+                multipliers: bounds[2 * n..].to_vec(),
+            },
             load_wrenches: loads,
         })
     }
@@ -158,8 +153,8 @@ impl<'a> DenseState<'a> {
             if bound == 0.0 { 0.0 } else { bound / value }
         };
         self.pose_rounding_bound
-            .max(of(&self.velocity_rounding_bound, &self.x_dot))
-            .max(of(&self.acceleration_rounding_bound, &self.x_ddot))
+            .max(of(&self.bounds.x_dot, &self.solution.x_dot))
+            .max(of(&self.bounds.x_ddot, &self.solution.x_ddot))
     }
 
     /// The largest force of inertia or of a load, moments over the size: what reactions are
@@ -214,7 +209,7 @@ impl<'a> DenseState<'a> {
 
     /// t with v t + ½ a t² = the longest step; a second where nothing moves.
     pub(super) fn time_step(&self) -> f64 {
-        let [v, a] = [&self.x_dot, &self.x_ddot].map(|x| self.scaled_norm(x));
+        let [v, a] = [&self.solution.x_dot, &self.solution.x_ddot].map(|x| self.scaled_norm(x));
         let step = 2.0 * MAX_DIFFERENCE_STEP / (v + (v * v + 2.0 * a * MAX_DIFFERENCE_STEP).sqrt());
         if step.is_finite() { step } else { 1.0 }
     }
@@ -230,7 +225,11 @@ impl<'a> DenseState<'a> {
         for (tau, rate) in self.state.tau.iter().zip(&self.state.q_dot) {
             add(tau * rate, (tau * rate).abs());
         }
-        let (at, u, a) = (&self.configuration, &self.x_dot, &self.x_ddot);
+        let (at, u, a) = (
+            &self.configuration,
+            &self.solution.x_dot,
+            &self.solution.x_ddot,
+        );
         for load in &self.load_wrenches {
             if let Some(c) = self.dense.bodies[load.body].column {
                 let arm = load.point - vec2(at.x[c], at.x[c + 1]);
@@ -266,7 +265,11 @@ impl<'a> DenseState<'a> {
             total.sum[c] -= on_ground.sum[c];
             total.terms[c] += on_ground.terms[c];
         }
-        let (at, u, a) = (&self.configuration, &self.x_dot, &self.x_ddot);
+        let (at, u, a) = (
+            &self.configuration,
+            &self.solution.x_dot,
+            &self.solution.x_ddot,
+        );
         for body in &self.dense.bodies {
             if let Some(c) = body.column {
                 let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;

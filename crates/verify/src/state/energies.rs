@@ -73,7 +73,7 @@ pub fn check_energies(
 ) -> Vec<Finding> {
     match DenseMechanism::with_meshed_gears(mechanism, masses, assembly_poses) {
         Ok(dense) => {
-            let checker = StateChecker::new(&dense, mechanism, states);
+            let checker = StateChecker::new(&dense, states);
             let mut findings = checker.energies(states, inertias).to_vec();
             findings.extend(checker.lagrange());
             findings
@@ -100,7 +100,7 @@ impl StateChecker<'_> {
             for i in 0..n {
                 for j in 0..n {
                     let scale = (dense[i][i] * dense[j][j]).sqrt();
-                    let [one, other] = [i, j].map(|k| &self.mechanism.actuators[k].name);
+                    let [one, other] = [i, j].map(|k| &self.dense.mechanism.actuators[k].name);
                     let error = m.relative_rounding_bound() * scale;
                     let numbers = [at(i, j) - dense[i][j], scale, error];
                     matrix.add(m, numbers, &format!("{one} {other}"));

@@ -248,7 +248,7 @@ fn val_motor_on_a_flywheel() {
     }
 }
 
-/// At its limit a regulator turns the wheel up evenly and does not integrate; from
+/// At its limit a speed controller accelerates the wheel uniformly and does not integrate; from
 /// P (w − ω) = limit on J ë + P ė + I e = 0, critically damped here.
 #[test]
 fn val_regulator_through_its_limit() {

@@ -23,7 +23,7 @@ fn let_go(setup: &Setup, prescribed_count: usize) -> Plant {
     for (i, (kind, magnitude)) in setup.loads.iter().enumerate() {
         plant.constant(&format!("load {i}"), *kind, *magnitude);
     }
-    // Two bars may close in two ways that turn no body.
+    // Two bars may close in two positions without rotating a body.
     plant.branch_hints = distance_hints(setup);
     // The last motion is at the start itself.
     let [q, _, _] = setup.motions.last().unwrap();

@@ -1,4 +1,4 @@
-//! Machines of the reduced equations, judged by the full ones; and faults found.
+//! Machines of the reduced equations, checked by the full ones; and faults detected.
 
 use crate::plant::{DOWN, GROUND, Plant, close};
 use dwell_findings::{Finding, all_pass};
@@ -105,7 +105,7 @@ fn four_bar() -> Plant {
 fn val_four_bar_under_loads() {
     let plant = four_bar();
     let claimed_motion = passes(&plant, 1.4, 14);
-    // It turns more than once.
+    // It makes more than one revolution.
     assert!(
         claimed_motion[14].poses[1][2] > 7.0,
         "{}",

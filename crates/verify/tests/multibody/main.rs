@@ -1,4 +1,4 @@
-//! The full multibody equations: against closed forms, and as the judge of machines in free motion.
+//! The full multibody equations: against closed forms, and as the check of machines in free motion.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test")]
 #![allow(

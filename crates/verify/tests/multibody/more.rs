@@ -1,4 +1,4 @@
-//! What is easily forgotten: repeated joints, turns, a slot that rubs, many bodies.
+//! Redundant joints, revolutions, a slot with friction, many bodies.
 
 use crate::machines::{describe, findings_for};
 use crate::plant::{DOWN, GROUND, Plant};
@@ -16,7 +16,7 @@ fn check(plant: &Plant, until: f64, count: usize) {
     assert!(all_pass(&findings), "{}", describe(&findings));
 }
 
-/// A coupler on three equal cranks: some reactions are not determined, the others are judged.
+/// A coupler on three equal cranks: some reactions are not determined, the others are checked.
 #[test]
 fn val_joints_that_repeat_each_other() {
     let mut plant = Plant::new();
@@ -37,7 +37,7 @@ fn val_joints_that_repeat_each_other() {
     check(&plant, 0.15, 3);
 }
 
-/// A drag link: its follower turns on and on, against a spiral spring and a law of its angle.
+/// A drag link: its follower rotates on and on, against a spiral spring and a law of its angle.
 #[test]
 fn val_turns_are_counted() {
     let mut plant = Plant::new();

@@ -1,4 +1,4 @@
-//! The truths of kinetic energy and virtual work on every mechanism of the tests: they agree with a plain
+//! The checks of kinetic energy and virtual work on every mechanism of the tests: they agree with a plain
 //! solution, and see every number of it that is wrong.
 
 use crate::mechanisms::all;
@@ -105,7 +105,7 @@ fn every_term_counts() {
             },
         ];
         for (term, detected) in terms.into_iter().zip(&mut detected) {
-            // Actions of the whole state, held against equations without the term.
+            // Forces of the whole state, compared with equations without the term.
             let mut wrong = states.clone();
             term(&mut wrong[1]);
             if wrong == states {

@@ -1,4 +1,4 @@
-//! Kinetostatic states with every joint, every drive and every load, judged; and faults found.
+//! Kinetostatic states with every joint, every drive and every load, checked; and faults detected.
 
 #![allow(
     clippy::unwrap_used,
@@ -54,7 +54,7 @@ fn val_plain_solutions_pass() {
             setup.name,
             describe(&findings)
         );
-        // No truth is so blunt that its tolerance gave way.
+        // No check is so inaccurate that its tolerance was widened.
         for f in &findings {
             assert!(
                 f.tolerance < 1e-10,
@@ -201,7 +201,7 @@ fn broken_states_are_refused() {
     assert!(findings_for(setup, &[]).iter().all(|f| !f.pass));
 }
 
-/// In a geared mechanism the arm a whole turn on is not where it was.
+/// In a geared mechanism the arm is elsewhere after a whole revolution.
 #[test]
 fn a_turn_that_was_lost_is_found() {
     use std::f64::consts::TAU;
@@ -230,9 +230,9 @@ fn val_mechanisms_far_away_pass() {
     }
 }
 
-/// The truths of the reduced model hold with every joint, and for a coordinate that is a length.
+/// The checks of the reduced model pass with every joint, and for a coordinate that is a length.
 #[test]
-fn val_reduced_truths_with_every_joint() {
+fn val_reduced_checks_with_every_joint() {
     for (name, range) in [
         ("epicyclic", Range::Limited(-1.0, 2.0)),
         ("wedge", Range::Limited(0.5, 0.7)),

@@ -80,6 +80,7 @@ fn motions(start: &[f64], steps: &[&[f64]]) -> Vec<[Vec<f64>; 3]> {
 }
 
 /// Two cranks with a drive each, two couplers, spring and damper: two degrees of freedom.
+// Long: the description of one mechanism.
 fn five_bar() -> Setup {
     let (a, e) = (vec2(0.1, -0.3), vec2(2.1, -0.2));
     let (near, far) = (vec2(0.2, 0.1), vec2(1.2, 0.1));
@@ -149,6 +150,7 @@ fn five_bar() -> Setup {
 }
 
 /// A boom raised by a massive cylinder, a stick on it drawn by a length, a bucket welded to it.
+// Long: the description of one mechanism.
 fn boom() -> Setup {
     let (o, p) = (vec2(0.0, 0.3), vec2(0.8, -0.4));
     let raised = 0.5;
@@ -223,6 +225,7 @@ fn boom() -> Setup {
 }
 
 /// A fixed sun, an arm that drives a planet, a ring around both, and a rack on the ring's outside.
+// Long: the description of one mechanism.
 fn epicyclic() -> Setup {
     let o = vec2(0.3, 0.2);
     let (sun, planet, outer) = (0.5, 0.25, 1.2);
@@ -294,7 +297,7 @@ fn epicyclic() -> Setup {
             (LoadKind::Torque { bodies: on([2, 3]) }, 4.0),
             (LoadKind::RotationalDamper { bodies: on([0, 2]) }, 0.6),
         ],
-        // More than a turn on, so that the planet's and the ring's turns are counted.
+        // More than a revolution on, so that the planet's and the ring's revolutions are counted.
         motions: motions(&[arm_angle], &[&[1.0], &[-2.0], &[9.0], &[0.0]]),
     }
 }
@@ -363,6 +366,7 @@ fn wedge() -> Setup {
 
 /// A crank whose angle moves a slide by one law; the slide's pin in a lever's slot; a flag turned
 /// by a law of the distance of two points, one on the crank.
+// Long: the description of one mechanism.
 fn cam() -> Setup {
     let (a, l, f) = (vec2(0.0, 0.0), vec2(1.5, -0.8), vec2(-1.0, 0.5));
     let hub = vec2(0.1, 0.05);

@@ -8,6 +8,7 @@ use dwell_kinetostatics::{LoadKind, Mass};
 use dwell_verify::{ClaimedState, load_wrenches};
 
 /// The state at the coordinates, closed from `start`, with loads of given magnitudes.
+// Long: the equations of a state in one piece, as in a textbook.
 pub(crate) fn state(
     mechanism: &Mechanism,
     masses: &[Mass],

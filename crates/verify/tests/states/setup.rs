@@ -1,4 +1,4 @@
-//! A mechanism ready to be judged, and the states and answers that a plain solution gives for it.
+//! A mechanism ready to be checked, and the states and results of a plain solution for it.
 
 use super::plain;
 use dwell_geometry::{ActuatorKind, BodyId, Coordinate, Mechanism, Vec2};

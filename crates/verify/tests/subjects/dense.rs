@@ -1,5 +1,5 @@
 //! A plain kinetostatic solution in dense rows, in the frames as they are described and with its
-//! own elimination: what the product's plan computes, by other means than the truths use.
+//! own elimination: what the plan computes, by other means than the checks use.
 //!
 //! ```text
 //! J ẋ = [0; q̇],  J ẍ = [0; q̈] − Φ̇ₓẋ,  Jᵀ [λ; τ] = M ẍ + h
@@ -68,7 +68,7 @@ impl DenseSubject {
         }
         subject.stored_solutions.sort_by(|a, b| a.0.total_cmp(&b.0));
         if range == Range::Full {
-            // Asked for any number of turns.
+            // Any number of revolutions may be asked for.
             subject.stored_solutions.pop();
         }
         subject

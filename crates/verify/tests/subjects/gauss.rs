@@ -1,4 +1,4 @@
-//! The elimination of the plain solutions, which is neither the product's nor the truths'.
+//! The elimination of the plain solutions, independent of the code and of the checks.
 
 /// The solution of a x = b, of n rows one after another, with row pivoting.
 pub(crate) fn gauss(mut a: Vec<f64>, b: &[f64], n: usize) -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! A subject for the tests, and mechanisms to judge it on.
+//! A subject for the tests, and mechanisms to check it on.
 
 #![allow(dead_code, reason = "each test binary uses its part")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test")]

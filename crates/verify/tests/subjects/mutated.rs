@@ -6,7 +6,7 @@ type AlterPoses<'a> = dyn Fn(f64, &mut [[f64; 3]]) + Sync + 'a;
 type AlterCoefficients<'a> = dyn Fn(&mut Coefficients) + Sync + 'a;
 type AlterForces<'a> = dyn Fn(&mut InverseDynamics, &Coefficients, [f64; 2]) + Sync + 'a;
 
-/// A subject whose answers are altered on the way out.
+/// A subject whose results are altered.
 pub(crate) struct MutatedSubject<'a> {
     subject: &'a dyn Subject,
     poses: Box<AlterPoses<'a>>,

@@ -66,8 +66,6 @@ fn row(finding: &Finding) -> Row {
     let mut difference = part(finding.relative_difference);
     difference.failed = !finding.pass;
     let tolerance = Some(part(finding.tolerance));
-    Row::new(
-        finding.key.clone(),
-        vec![Some(difference), tolerance, between],
-    )
+    let cells = vec![Some(difference), tolerance, between];
+    Row::new(finding.key.clone(), cells)
 }

@@ -11,11 +11,7 @@ const DRAWN_PERIODS: f64 = 2.0;
 const MAX_CURVES: usize = 6;
 
 /// The motion over two periods (or all of it, where it has none).
-pub(crate) fn history(
-    prepared: &PreparedScene<'_>,
-    history: &History,
-    accuracy: &SolverSettings,
-) -> Figure {
+pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure {
     let all = &history.run.samples;
     let drawn = history.period.map(|t| DRAWN_PERIODS * t * (1.0 + 1e-9));
     let drawn = drawn.unwrap_or(f64::INFINITY);
@@ -62,7 +58,7 @@ pub(crate) fn history(
         caption: caption(prepared, &text),
         columns: if panels.len() > 2 { 2 } else { 1 },
         panels,
-        provenance: format!("reduced model, {}", accuracy.describe()),
+        provenance: format!("reduced model, {}", SolverSettings::default().describe()),
     }
 }
 
@@ -74,10 +70,8 @@ fn reaction_panels(
 ) -> Vec<(String, String, Vec<(String, usize)>)> {
     let all = named.iter().enumerate().filter(|(_, (_, of))| *of == unit);
     let all: Vec<(String, usize)> = all.map(|(k, (name, _))| (name.clone(), k)).collect();
-    let per_panel = all
-        .len()
-        .div_ceil(all.len().div_ceil(MAX_CURVES).max(1))
-        .max(1);
+    let panels = all.len().div_ceil(MAX_CURVES).max(1);
+    let per_panel = all.len().div_ceil(panels).max(1);
     let panel = |group: &[(String, usize)]| match group {
         [(name, k)] => (
             format!("Reaction {name}"),

@@ -75,17 +75,17 @@ fn body_rotation(plan: &Plan, ground: usize, body: usize, pose: &Pose<f64>) -> V
 pub(crate) fn mechanism(
     prepared: &PreparedScene<'_>,
 ) -> Result<(Figure, Option<Dwell>), StudyError> {
-    let range_poses = RangePoses::new(prepared)?;
+    let poses = RangePoses::new(prepared)?;
     let scene = prepared.scene;
     let full = prepared.model.range() == Range::Full;
     let request = scene.requests.dwell.as_ref();
-    let dwell = request.map(|d| find_dwell(&range_poses, d.body, d.relative_band, full));
-    let mut shapes = paths(scene, &range_poses);
-    let faded = faded_positions(prepared, &range_poses, full, dwell.as_ref());
+    let dwell = request.map(|d| find_dwell(&poses, d.body, d.relative_band, full));
+    let mut shapes = paths(scene, &poses);
+    let faded = faded_positions(prepared, &poses, full, dwell.as_ref());
     shapes.extend(faded);
     let mut panels = vec![drawing(shapes)];
     if let Some(dwell) = &dwell {
-        panels.push(body_angle_panel(prepared, &range_poses, dwell));
+        panels.push(body_angle_panel(prepared, &poses, dwell));
     }
     let first = prepared.model.model().plan().assembly_coordinates()[0].to_degrees();
     let mut text = format!("Drawn in full at {}, lighter further on.", degrees(first));
@@ -98,7 +98,7 @@ pub(crate) fn mechanism(
             (d.to - d.from).to_degrees(),
         );
     }
-    let positions = count(range_poses.q.len(), "position");
+    let positions = count(poses.q.len(), "position");
     let figure = Figure {
         name: "mechanism".to_owned(),
         title: scene.title.clone(),
@@ -128,16 +128,16 @@ fn degrees(angle: f64) -> String {
 /// The bodies in several positions, the lightest at the back.
 fn faded_positions(
     prepared: &PreparedScene<'_>,
-    range_poses: &RangePoses,
+    poses: &RangePoses,
     full: bool,
     dwell: Option<&Dwell>,
 ) -> Vec<Shape> {
     let mut shapes = Vec::new();
-    let drawing = MechanismDrawing::new(prepared.scene, &range_poses.body_poses);
+    let drawing = MechanismDrawing::new(prepared.scene, &poses.body_poses);
     let start = prepared.model.model().plan().assembly_coordinates()[0];
-    let last = range_poses.q.len() - 1;
+    let last = poses.q.len() - 1;
     let nearest = |q: f64| {
-        let (from, span) = (range_poses.q[0], range_poses.q[last] - range_poses.q[0]);
+        let (from, span) = (poses.q[0], poses.q[last] - poses.q[0]);
         let fraction = match full {
             true => (q - from).rem_euclid(TAU) / span,
             false => ((q - from) / span).clamp(0.0, 1.0),
@@ -151,25 +151,25 @@ fn faded_positions(
             (_, false) => k * last / (DRAWN - 1),
         };
         if let (0, Some(dwell)) = (k, dwell) {
-            shapes.extend(dwell_paths(prepared.scene, range_poses, dwell));
+            shapes.extend(dwell_paths(prepared.scene, poses, dwell));
         }
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.04 * k as f64 };
-        drawing.draw(&range_poses.body_poses[position], lightness, &mut shapes);
+        drawing.draw(&poses.body_poses[position], lightness, &mut shapes);
     }
     shapes
 }
 
 /// The requested paths.
-pub(super) fn paths(scene: &Scene, range_poses: &RangePoses) -> Vec<Shape> {
+pub(super) fn paths(scene: &Scene, poses: &RangePoses) -> Vec<Shape> {
     let pen = Pen::new(Paint::Ink, 2.0).lightness(0.55);
-    let positions: Vec<usize> = (0..range_poses.body_poses.len()).collect();
-    path_shapes(scene, range_poses, &positions, pen, "paths")
+    let positions: Vec<usize> = (0..poses.body_poses.len()).collect();
+    path_shapes(scene, poses, &positions, pen, "paths")
 }
 
 /// The part of each path that is passed during the dwell, which may pass the end of the revolution.
-fn dwell_paths(scene: &Scene, range_poses: &RangePoses, dwell: &Dwell) -> Vec<Shape> {
+fn dwell_paths(scene: &Scene, poses: &RangePoses, dwell: &Dwell) -> Vec<Shape> {
     let pen = Pen::new(Paint::Ink, 5.0).lightness(0.1);
-    let all = range_poses.q.iter().enumerate();
+    let all = poses.q.iter().enumerate();
     let within = |offset: f64| {
         let passed = move |q: f64| (dwell.from..=dwell.to).contains(&(q + offset));
         let in_dwell = all.clone().filter(move |(_, q)| passed(**q));
@@ -177,18 +177,18 @@ fn dwell_paths(scene: &Scene, range_poses: &RangePoses, dwell: &Dwell) -> Vec<Sh
     };
     let positions: Vec<usize> = within(0.0).chain(within(TAU)).collect();
     let name = "paths during the dwell";
-    path_shapes(scene, range_poses, &positions, pen, name)
+    path_shapes(scene, poses, &positions, pen, name)
 }
 
 fn path_shapes(
     scene: &Scene,
-    range_poses: &RangePoses,
+    poses: &RangePoses,
     positions: &[usize],
     pen: Pen,
     name: &str,
 ) -> Vec<Shape> {
     let path = |path: &PathPoint| {
-        let at = |&i: &usize| range_poses.point(i, path.body.0, path.at);
+        let at = |&i: &usize| poses.point(i, path.body.0, path.at);
         let points = positions.iter().map(at);
         Shape::line(points.collect(), pen).named(name)
     };
@@ -196,13 +196,9 @@ fn path_shapes(
 }
 
 /// A body's angle over the range, the dwell marked.
-fn body_angle_panel(
-    prepared: &PreparedScene<'_>,
-    range_poses: &RangePoses,
-    dwell: &Dwell,
-) -> Panel {
-    let angles = unwrapped_angles(range_poses, dwell.body);
-    let points = range_poses.q.iter().zip(&angles);
+fn body_angle_panel(prepared: &PreparedScene<'_>, poses: &RangePoses, dwell: &Dwell) -> Panel {
+    let angles = unwrapped_angles(poses, dwell.body);
+    let points = poses.q.iter().zip(&angles);
     let points = points.map(|(q, a)| [q, a].map(|v| v.to_degrees()));
     let name = prepared.scene.mechanism.body_name(dwell.body);
     let (from, to) = (dwell.from.to_degrees(), dwell.to.to_degrees());
@@ -225,10 +221,10 @@ fn body_angle_panel(
     })
 }
 
-fn unwrapped_angles(range_poses: &RangePoses, body: BodyId) -> Vec<f64> {
-    let mut angles: Vec<f64> = Vec::with_capacity(range_poses.q.len());
-    for poses in &range_poses.body_poses {
-        let angle = poses[body.0].1.angle();
+fn unwrapped_angles(poses: &RangePoses, body: BodyId) -> Vec<f64> {
+    let mut angles: Vec<f64> = Vec::with_capacity(poses.q.len());
+    for bodies in &poses.body_poses {
+        let angle = bodies[body.0].1.angle();
         let last = angles.last();
         let revolutions = last.map_or(0.0, |last| ((last - angle) / TAU).round());
         angles.push(angle + revolutions * TAU);
@@ -237,20 +233,20 @@ fn unwrapped_angles(range_poses: &RangePoses, body: BodyId) -> Vec<f64> {
 }
 
 /// The longest interval in which a body's angle stays within `band` of its whole variation.
-fn find_dwell(range_poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell {
-    let mut angles = unwrapped_angles(range_poses, body);
+fn find_dwell(poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell {
+    let mut angles = unwrapped_angles(poses, body);
     let extent = |some: &[f64]| {
         let low = some.iter().copied().fold(f64::MAX, f64::min);
         some.iter().copied().fold(f64::MIN, f64::max) - low
     };
     let swing = extent(&angles);
-    let mut q = range_poses.q.clone();
+    let mut q = poses.q.clone();
     let n = q.len();
     if full {
         // A dwell may pass the end of the revolution.
         let gain = angles[n - 1] - angles[0];
         angles.extend(angles.clone().iter().skip(1).map(|a| a + gain));
-        q.extend(range_poses.q.iter().skip(1).map(|q| q + TAU));
+        q.extend(poses.q.iter().skip(1).map(|q| q + TAU));
     }
     let (mut best, mut from) = ((0, 0), 0);
     for to in 0..q.len() {

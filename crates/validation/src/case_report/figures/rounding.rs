@@ -1,6 +1,6 @@
 //! The effect of rounding on the kinetostatics of a case.
 
-use crate::checked::rounding_check::{RoundingCheck, StateRounding};
+use crate::checked::rounding_check::StateRounding;
 use crate::checked::states::CheckedStates;
 use dwell_report::{Axis, Chart, Figure, Mark, Panel, Series, Stroke};
 use dwell_scene::Scene;
@@ -11,8 +11,12 @@ use dwell_study::output::scene_caption;
 const MIN_DRAWN_ERROR: f64 = 1e-18;
 
 /// The errors of `f64` and `f32` along the motion that was checked.
-pub(crate) fn rounding(scene: &Scene, checked: &CheckedStates, rounding: &RoundingCheck) -> Figure {
-    let drawn = &rounding.states[..checked.drawn_count.min(rounding.states.len())];
+pub(crate) fn rounding(
+    scene: &Scene,
+    checked: &CheckedStates,
+    rounding: &[StateRounding],
+) -> Figure {
+    let drawn = &rounding[..checked.drawn_count.min(rounding.len())];
     let points = |of: &dyn Fn(&StateRounding) -> Option<f64>| -> Vec<[f64; 2]> {
         let at = |s: &StateRounding| of(s).map(|error| [s.t, error.max(MIN_DRAWN_ERROR)]);
         drawn.iter().filter_map(at).collect()

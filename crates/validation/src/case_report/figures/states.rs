@@ -18,16 +18,16 @@ pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
         let body_pose = |&[x, y, angle]: &[f64; 3]| (vec2(x, y), Vec2::from_angle(angle));
         bodies.iter().map(body_pose).collect()
     });
-    let range_poses = RangePoses {
+    let poses = RangePoses {
         q: Vec::new(),
         body_poses: body_poses.collect(),
     };
-    let mechanism = MechanismDrawing::new(scene, &range_poses.body_poses);
-    let mut shapes = paths(scene, &range_poses);
-    let positions = distinct_positions(&range_poses.body_poses);
+    let mechanism = MechanismDrawing::new(scene, &poses.body_poses);
+    let mut shapes = paths(scene, &poses);
+    let positions = distinct_positions(&poses.body_poses);
     for (k, &position) in positions.iter().enumerate().rev() {
         let lightness = if k == 0 { 0.0 } else { 0.62 + 0.05 * k as f64 };
-        mechanism.draw(&range_poses.body_poses[position], lightness, &mut shapes);
+        mechanism.draw(&poses.body_poses[position], lightness, &mut shapes);
     }
     let motion = checked.motion_text;
     let text = format!("Drawn in full at the beginning of {motion}, lighter further on.");
@@ -97,15 +97,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn positions_of_whole_turns_are_not_drawn_over_each_other() {
-        // Five turns in 120 steps: at equal distances all would be the first.
-        let turn = |k: usize| Vec2::from_angle(std::f64::consts::TAU * 5.0 * k as f64 / 120.0);
-        let frames: Vec<Vec<BodyPose>> = (0..=120).map(|k| vec![(turn(k), turn(k))]).collect();
+    fn positions_after_whole_revolutions_are_not_drawn_over_each_other() {
+        // Five revolutions in 120 steps: at equal distances all would be the first.
+        let rotation = |k: usize| Vec2::from_angle(std::f64::consts::TAU * 5.0 * k as f64 / 120.0);
+        let frames: Vec<Vec<BodyPose>> = (0..=120)
+            .map(|k| vec![(rotation(k), rotation(k))])
+            .collect();
         let chosen = distinct_positions(&frames);
         assert_eq!((chosen.len(), chosen[0]), (DRAWN_POSITIONS, 0));
         for (i, &a) in chosen.iter().enumerate() {
             for &b in &chosen[..i] {
-                assert!((turn(a) - turn(b)).norm() > 0.5);
+                assert!((rotation(a) - rotation(b)).norm() > 0.5);
             }
         }
         assert_eq!(distinct_positions(&frames[..1]), [0]);

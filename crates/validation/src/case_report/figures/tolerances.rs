@@ -97,10 +97,7 @@ pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeM
     };
     let evaluations = || {
         let count: Value = |r| (r.statistics.evaluations + r.statistics.jacobians) as f64;
-        (
-            Axis::log("evaluations of the equation of motion", ""),
-            count,
-        )
+        (Axis::log("evaluations of the equation", ""), count)
     };
     let tolerance = || (Axis::log("tolerance", ""), (|r| r.tolerance) as Value);
     let milliseconds: Value = |r| r.wall_time * 1e3;
