@@ -55,20 +55,15 @@
 //! More programs are in the folder `examples`: reactions of a four-bar, the single-dwell study, the flywheel of a press,
 //! equilibrium and eigenfrequencies, a tolerance study, and loads of one's own.
 
-mod builder;
 mod error;
-mod kinematics;
 mod machine;
 mod mechanism;
 mod motion;
-mod parts;
 mod reduced;
-mod scene;
 mod sweep;
 mod table;
 mod value;
 
-pub use builder::{BodyBuilder, MechanismBuilder};
 /// An integration method; see [`Solver::method`].
 ///
 /// ```
@@ -92,15 +87,16 @@ pub use dwell_dynamics::Mode;
 /// ```
 pub use dwell_dynamics::Stability;
 pub use error::Error;
-pub use kinematics::{InverseDynamics, Kinematics};
 pub use machine::{Cycle, Equilibrium, StateSpace};
 pub use mechanism::Mechanism;
-pub use motion::{MotionResults, Period, Solver};
-pub use parts::{
+pub use mechanism::builder::{BodyBuilder, MechanismBuilder};
+pub use mechanism::kinematics::{InverseDynamics, Kinematics};
+pub use mechanism::parts::{
     Actuator, Coordinate, Drive, Event, Friction, Joint, Law, Load, Magnitude, Motion,
 };
+pub use mechanism::scene::Scene;
+pub use motion::{MotionResults, Period, Solver};
 pub use reduced::{Coefficients, Evaluator, ReducedModel};
-pub use scene::Scene;
 pub use sweep::{Sweep, SweepResults};
 pub use table::Table;
 pub use value::Value;

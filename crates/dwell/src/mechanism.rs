@@ -1,9 +1,14 @@
 //! An assembled mechanism, and what can be asked of it at one position.
 
-use crate::builder::MechanismBuilder;
+pub(crate) mod builder;
+pub(crate) mod kinematics;
+pub(crate) mod parts;
+pub(crate) mod scene;
+
 use crate::error::Error;
-use crate::kinematics::{InverseDynamics, Kinematics};
-use crate::scene::Scene;
+use crate::mechanism::builder::MechanismBuilder;
+use crate::mechanism::kinematics::{InverseDynamics, Kinematics};
+use crate::mechanism::scene::Scene;
 use dwell_kinetostatics::Model;
 use dwell_study::explain::{explain_motion, explain_position};
 use std::sync::Arc;

@@ -27,7 +27,7 @@ impl Mechanism {
     /// ```
     pub fn kinetostatics(&self) -> Result<MotionResults, Error> {
         let (scene, analysis) = (self.scene.inner(), Analysis::Kinetostatics);
-        let (computed, _) = compute_trajectory(scene, analysis, None, &no_progress)?;
+        let computed = compute_trajectory(scene, analysis, None, &no_progress)?;
         Ok(MotionResults::new(computed))
     }
 

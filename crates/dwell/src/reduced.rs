@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::mechanism::Mechanism;
-use crate::scene::Scene;
+use crate::mechanism::scene::Scene;
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::{
     ExactModel, ExactWorkspace, InverseDynamics, Model, ReducedModel as _, Workspace,

@@ -1,7 +1,7 @@
 //! Many variants of one scene.
 
 use crate::error::Error;
-use crate::scene::Scene;
+use crate::mechanism::scene::Scene;
 use dwell_findings::Column;
 use dwell_study::sweep::compute_sweep;
 

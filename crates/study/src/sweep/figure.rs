@@ -161,7 +161,7 @@ fn chosen_values(rows: &[Row], axis: usize) -> Vec<f64> {
         .div_ceil(MAX_CURVES - 1)
         .max(1);
     let mut chosen: Vec<f64> = values.iter().copied().step_by(step).collect();
-    if (values.len().saturating_sub(1)) % step != 0 {
+    if !(values.len().saturating_sub(1)).is_multiple_of(step) {
         chosen.extend(values.last());
     }
     chosen

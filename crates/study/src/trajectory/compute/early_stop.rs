@@ -125,6 +125,7 @@ impl EarlyStop {
         }
     }
 
+    /// The error where the trajectory cannot go on. One arm for each cause, so longer than a screen.
     fn explain_limit(
         &self,
         scene: &Scene,

@@ -2,10 +2,10 @@
 
 use crate::error::Error;
 use crate::mechanism::Mechanism;
-use crate::parts::{
+use crate::mechanism::parts::{
     Actuator, Coordinate, Drive, Friction, Joint, Keys, Law, Load, LoadFunction, Motion,
 };
-use crate::scene::Scene;
+use crate::mechanism::scene::Scene;
 use crate::value::{Value, key, quoted};
 use std::fmt::Write as _;
 

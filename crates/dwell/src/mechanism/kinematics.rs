@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::mechanism::Mechanism;
-use crate::scene::Scene;
+use crate::mechanism::scene::Scene;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction, PointState};
 use dwell_geometry::{BodyId, Vec2};
 
