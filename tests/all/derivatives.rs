@@ -98,7 +98,10 @@ fn m_is_twice_the_energy_and_half_m_prime_the_power_of_every_case() {
         let (mut workspace, mut at) = (model.workspace::<f64>(), model.coefficient_buffer());
         for q in positions(model.plan().range(), 48) {
             model.reduce(q, &mut workspace, &mut at).expect("a pose");
-            let (energy, power) = model.workspace_inertia_sums(&workspace);
+            let mut state = model
+                .kinematic_state(&[q], &[1.0], &mut workspace)
+                .expect("a pose");
+            let [energy, power] = model.inertia_sums(state.bodies_at(&[0.0]));
             let size = energy.max(power.abs());
             assert!((at.m - energy).abs() < 1e-13 * size, "{}", case.name);
             assert!((at.half_dm - power).abs() < 1e-13 * size, "{}", case.name);

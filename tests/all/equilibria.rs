@@ -1,10 +1,7 @@
 //! Equilibria, linearised motions and jamming against closed forms.
 
 use crate::machine::{DOUBLE, everything, machine, parse};
-use dwell_dynamics::{
-    DynamicsError, Machine, MachineOde, OdeSystem, Stability, equilibria, equilibrium_near,
-    linearise,
-};
+use dwell_dynamics::{DynamicsError, Machine, Stability, equilibria, equilibrium_near, linearise};
 use dwell_geometry::JointId;
 use dwell_kinetostatics::{
     Drive, DriveKind, Friction, FrictionContact, Guide, KinetostaticsError, Load, LoadKind,
@@ -218,25 +215,27 @@ fn linearised_inputs_and_outputs_agree_with_differences() {
     let (machine, y) = everything();
     let linear = linearise(&machine, 0.0, &y).expect("a linearisation");
     let states = machine.work_offset();
-    let mut moving = MachineOde::new(&machine, 0.0, &y).expect("a start");
+    let mut workspace = machine.workspace();
     let h = 1e-4;
     let mut at = |column: usize, times: f64| {
         let mut perturbed = y.clone();
-        moving.workspace.input_offsets.fill(0.0);
+        workspace.input_offsets.fill(0.0);
         if column < states {
             perturbed[column] += times * h;
         } else {
-            moving.workspace.input_offsets[column - states] = times * h;
+            workspace.input_offsets[column - states] = times * h;
         }
         let mut rates = vec![0.0; machine.state_count()];
-        moving.rhs(0.0, &perturbed, &mut rates).expect("rates");
+        let state = machine
+            .evaluate(0.0, &perturbed, &mut workspace)
+            .expect("rates");
+        state.derivative(&mut rates);
         rates.truncate(states);
-        let workspace = &moving.workspace;
         let outputs = [
-            &workspace.q,
-            &workspace.q_dot,
-            &workspace.inverse_dynamics().reactions,
-            &workspace.drive_forces,
+            state.q(),
+            state.q_dot(),
+            &state.inverse_dynamics().reactions,
+            state.drive_forces(),
         ];
         rates.extend(outputs.into_iter().flatten());
         rates
@@ -348,7 +347,7 @@ fn a_pressed_block_jams() {
         let mut workspace = machine.workspace();
         machine
             .evaluate(0.0, &state, &mut workspace)
-            .map(|()| workspace.q_ddot[0])
+            .map(|state| state.q_ddot()[0])
     };
     for part in [0.0, 0.5, 0.9, 0.999] {
         for speed in [-0.2, 0.2] {

@@ -63,13 +63,12 @@ fn check(setup: &Setup, steps: &[f64]) {
 fn state(model: &Model, mechanism: &Mechanism, q: Vec<f64>, rates: [Vec<f64>; 2]) -> ClaimedState {
     let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
     let [q_dot, q_ddot] = rates;
-    if let Err(error) = model.kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut workspace, &mut result) {
-        panic!("{q:?}: {error}");
-    }
-    let bodies = model.plan().body_frames(mechanism, &workspace.pose);
+    let state = model.kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut workspace, &mut result);
+    let state = state.unwrap_or_else(|error| panic!("{q:?}: {error}"));
+    let bodies = model.plan().body_frames(mechanism, state.pose());
     let rates = |b: usize| {
-        let origin = workspace.states().point(BodyId(b), Vec2::ZERO);
-        let body = workspace.states().body(BodyId(b));
+        let origin = state.bodies().point(BodyId(b), Vec2::ZERO);
+        let body = state.bodies().body(BodyId(b));
         let (v, a) = (origin.velocity, origin.acceleration);
         (
             [v.x, v.y, body.angular_velocity],

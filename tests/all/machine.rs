@@ -144,13 +144,13 @@ fn a_double_pendulum_by_hand() {
     }
     // Nothing is lost: kinetic and potential energy stay.
     let mut workspace = machine.workspace();
-    machine.evaluate(0.0, &y, &mut workspace).expect("a state");
-    let before: f64 = machine.energy(&workspace).iter().sum();
+    let state = machine.evaluate(0.0, &y, &mut workspace).expect("a state");
+    let before: f64 = state.energy().iter().sum();
     let end = final_state(&machine, &y, 5.0, Method::Tsit45, 1e-13);
-    machine
+    let state = machine
         .evaluate(5.0, &end, &mut workspace)
         .expect("a state");
-    let after: f64 = machine.energy(&workspace).iter().sum();
+    let after: f64 = state.energy().iter().sum();
     // Tsit45 errs by some tens of its tolerance of the energies exchanged, about 10 J.
     assert!((after - before).abs() < 1e-10, "{before} {after}");
 }
@@ -324,30 +324,31 @@ fn reactions_are_the_sum_of_their_channels() {
         let q_ddot: Vec<f64> = (0..n).map(|i| -2.1 + 0.9 * i as f64).collect();
         let t = 0.01;
         let (mut workspace, mut total) = (model.workspace(), model.result_buffer());
-        model
+        let state = model
             .kinetostatics(t, &q, &q_dot, &q_ddot, &mut workspace, &mut total)
             .expect("a state");
-        let loads = workspace.loads().magnitude.clone();
+        let loads = state.loads().magnitude.clone();
         let resisted: Vec<f64> = model
             .loads()
             .iter()
             .zip(&loads)
             .map(|(load, &f)| match load.kind {
                 LoadKind::Damper { bodies, points } => {
-                    let between = workspace.states().separation(bodies, points);
+                    let between = state.bodies().separation(bodies, points);
                     f * between.direction.expect("a line").dot(between.velocity)
                 }
-                LoadKind::RotationalDamper { bodies } => f * workspace.states().angle(bodies)[1],
+                LoadKind::RotationalDamper { bodies } => f * state.bodies().angle(bodies)[1],
                 _ => f,
             })
             .collect();
         // What speeds alone make, without loads, by their products.
-        bare.set_state(t, &q, &q_dot, &mut empty.0)
+        let mut unloaded = bare
+            .kinematic_state(&q, &q_dot, &mut empty.0)
             .expect("a state");
         let mut sum = bare.result_buffer::<f64>();
         for i in 0..n {
             for j in i..n {
-                bare.christoffel_terms([i, j], &mut empty.0, &mut empty.1);
+                unloaded.christoffel_terms([i, j], &mut empty.1);
                 let times = q_dot[i] * q_dot[j];
                 let pairs = [
                     (&mut sum.tau, &empty.1.tau),
@@ -375,37 +376,30 @@ fn reactions_are_the_sum_of_their_channels() {
                 }
             }
         };
-        model
-            .set_state(t, &q, &q_dot, &mut workspace)
-            .expect("a state");
+        let mut state = state.into_kinematic_state();
+        let mut other = model.workspace();
         for (i, &q_ddot) in q_ddot.iter().enumerate() {
-            model.mass_matrix_column(i, &mut workspace, &mut run);
+            state.mass_matrix_column(i, &mut run);
             add(&run, q_ddot);
         }
         for (load, &f) in resisted.iter().enumerate() {
-            model
-                .unit_load_response(load, &mut workspace, &mut run)
+            state
+                .unit_load_response(load, &mut run)
                 .expect("a direction");
             add(&run, f);
             kinds.insert(std::mem::discriminant(&model.loads()[load].kind));
             if n == 1 && model.is_conservative(load) {
                 let h = 1e-4;
                 let mut potential = |x: f64| {
-                    model
-                        .set_state(t, &[q[0] + x], &q_dot, &mut workspace)
-                        .expect("a state");
-                    model
-                        .potential_energy(load, &workspace)
-                        .expect("a potential")
+                    let beside = model.kinematic_state(&[q[0] + x], &q_dot, &mut other);
+                    let potential = beside.expect("a state").potential_energy(load);
+                    potential.expect("a potential")
                 };
                 let slope = (8.0 * (potential(h) - potential(-h))
                     - (potential(2.0 * h) - potential(-2.0 * h)))
                     / (12.0 * h);
                 let w = -run.tau[0] * f;
                 let size = w.abs().max(1e-3 * potential(0.0).abs());
-                model
-                    .set_state(t, &q, &q_dot, &mut workspace)
-                    .expect("a state");
                 // Rounding of V over h, and h⁴ times its fifth derivative.
                 assert!(
                     (slope + w).abs() < 1e-8 * size.max(1e-6),

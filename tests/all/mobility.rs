@@ -54,7 +54,8 @@ fn a_parallelogram_with_a_third_bar_is_solved_and_says_what_is_not_unique() {
         model
             .inverse_dynamics(&[q], &[1.2], &[-0.3], &mut workspace, &mut result)
             .unwrap();
-        let poses = model.plan().body_frames(&setup.mechanism, &workspace.pose);
+        let state = model.kinematic_state(&[q], &[1.2], &mut workspace).unwrap();
+        let poses = model.plan().body_frames(&setup.mechanism, state.pose());
         for body in [1, 3, 4] {
             assert!((poses[body][2] - q).abs() < 1e-12);
         }

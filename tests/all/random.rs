@@ -159,11 +159,12 @@ impl BuiltMechanism {
             }
             let q_dot = rated(&|i| 0.9 - 0.5 * i as f64);
             let q_ddot = rated(&|i| -0.6 + 0.8 * i as f64);
-            self.model
+            let state = self
+                .model
                 .kinetostatics(0.0, &q, &q_dot, &q_ddot, &mut workspace, &mut result)
                 .map_err(|e| format!("{e} at {step:?}"))?;
-            let bodies = self.model.plan().body_frames(mechanism, &workspace.pose);
-            let states = workspace.states();
+            let bodies = self.model.plan().body_frames(mechanism, state.pose());
+            let states = state.bodies();
             let rates = |b: usize| {
                 let origin = states.point(BodyId(b), Vec2::ZERO);
                 let body = states.body(BodyId(b));

@@ -107,7 +107,8 @@ proptest! {
         let (mut workspace, mut at) = (model.workspace::<f64>(), model.coefficient_buffer());
         for phi in revolution(from) {
             model.reduce(phi, &mut workspace, &mut at).expect("a pose");
-            let (energy, power) = model.workspace_inertia_sums(&workspace);
+            let state = model.kinematic_state(&[phi], &[1.0], &mut workspace);
+            let [energy, power] = model.inertia_sums(state.expect("a pose").bodies_at(&[0.0]));
             prop_assert!(at.m > 0.0);
             prop_assert!((at.m - energy).abs() < 1e-13 * energy, "{} {}", at.m, energy);
             prop_assert!((at.half_dm - power).abs() < 1e-13 * energy, "{} {}", at.half_dm, power);

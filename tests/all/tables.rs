@@ -64,13 +64,11 @@ fn of_model(exact: &ExactModel, q: f64) -> Vec<f64> {
     );
     model.reduce(q, &mut workspace, &mut at).expect("a pose");
     let (mut w, mut c) = (Vec::new(), Vec::new());
-    model
-        .set_state(0.0, &[q], &[1.0], &mut workspace)
+    let mut state = model
+        .kinematic_state(&[q], &[1.0], &mut workspace)
         .expect("a pose");
     for load in 0..model.loads().len() {
-        model
-            .unit_load_response(load, &mut workspace, &mut result)
-            .expect("a run");
+        state.unit_load_response(load, &mut result).expect("a run");
         w.push(-result.tau[0]);
         c.extend(&result.reactions);
     }

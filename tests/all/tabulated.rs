@@ -264,8 +264,8 @@ fn val_energy_with_a_potential_does_not_drift_because_of_a_table() {
     let mut workspace = machine.workspace();
     let mut exact = MachineOde::new(&machine, 0.0, &y).expect("a start");
     let expected = states_per_step(&mut exact, |y| {
-        machine.evaluate(0.0, y, &mut workspace).expect("a pose");
-        machine.energy(&workspace).iter().sum()
+        let state = machine.evaluate(0.0, y, &mut workspace).expect("a pose");
+        state.energy().iter().sum()
     });
     assert!(
         expected[999].abs() > 1e-8,

@@ -176,11 +176,10 @@ fn energy(scene: &Scene, run: &dwell_validation::FreeMotionRun) -> Option<Findin
     let mut energies = Vec::new();
     for at in &run.coordinates {
         let [q, q_dot]: [Vec<f64>; 2] = [0, 1].map(|i| at.iter().map(|c| c[i]).collect());
-        model.set_state(0.0, &q, &q_dot, &mut workspace).ok()?;
-        let potential: f64 = (0..scene.loads.len())
-            .filter_map(|l| model.potential_energy(l, &workspace))
-            .sum();
-        energies.push((model.kinetic_energy(&workspace), potential));
+        let state = model.kinematic_state(&q, &q_dot, &mut workspace).ok()?;
+        let loads = 0..scene.loads.len();
+        let potential: f64 = loads.filter_map(|l| state.potential_energy(l)).sum();
+        energies.push((state.kinetic_energy(), potential));
     }
     let sums = energies
         .iter()

@@ -9,7 +9,7 @@ use super::positions::{POSITIONS, poses_along, positions};
 use super::to_f64::{accelerations, pose_to_f64, result_to_f64};
 use dwell_findings::Finding;
 use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::{InverseDynamics as Kinetostatic, Model, Workspace};
+use dwell_kinetostatics::{EvaluatedState, InverseDynamics as Kinetostatic, KinematicState, Model};
 use dwell_scene::Scene;
 use dwell_verify::{
     Case, ClaimedState, Subject, check_energies, check_states, load_wrenches, verify_all,
@@ -164,13 +164,12 @@ impl TestedMechanism {
                 .collect::<Vec<_>>()
         };
         let of = |state: &ClaimedState| {
-            let entered =
-                self.model
-                    .set_state(state.t, &lifted(&state.q), &zero_velocities, &mut workspace);
-            entered.expect("a pose");
-            self.model
-                .set_accelerations(&lifted(&state.q_ddot), &mut workspace);
-            accelerations(&workspace, state.poses.len())
+            let q = lifted(&state.q);
+            let entered = self
+                .model
+                .kinematic_state(&q, &zero_velocities, &mut workspace);
+            let mut entered = entered.expect("a pose");
+            accelerations(entered.bodies_at(&lifted(&state.q_ddot)), state.poses.len())
         };
         claimed.0.iter().map(of).collect()
     }
@@ -303,13 +302,12 @@ impl TestedMechanism {
                 self.model
                     .kinetostatics(t, &q, &v, &a, &mut workspace, &mut result)
             });
-            done.ok()?;
-            let state = with_mutation(mutation, || self.state(t, k, &workspace, &result));
+            let evaluated = done.ok()?;
+            let state = with_mutation(mutation, || self.state(t, k, &evaluated));
+            let mut evaluated = evaluated.into_kinematic_state();
             let mut runs = Vec::new();
             for i in 0..n {
-                with_mutation(mutation, || {
-                    self.model.mass_matrix_column(i, &mut workspace, &mut unit);
-                });
+                with_mutation(mutation, || evaluated.mass_matrix_column(i, &mut unit));
                 runs.push(result_to_f64(&unit));
             }
             // M_ij is the actuator force i at q̈ⱼ = 1 alone.
@@ -317,7 +315,7 @@ impl TestedMechanism {
             inertias.push((0..n * n).map(|k| at(k / n, k % n)).collect());
             states.push(state);
             if k + 1 == self.positions.len() && self.model.frictions().len() == 0 {
-                let mut free = self.free_state(mutation, states.last()?, &runs, &mut workspace)?;
+                let mut free = self.free_state(mutation, states.last()?, &runs, evaluated)?;
                 free.t += 1e-3;
                 inertias.push(inertias.last()?.clone());
                 states.push(free);
@@ -333,22 +331,20 @@ impl TestedMechanism {
         mutation: OperationMutation,
         state: &ClaimedState,
         runs: &[Kinetostatic<f64>],
-        workspace: &mut Workspace<MutatingScalar>,
+        evaluated: KinematicState<'_, MutatingScalar>,
     ) -> Option<ClaimedState> {
         let n = runs.len();
         let zero_accelerations = vec![MutatingScalar::default(); n];
         let mut without = self.model.result_buffer();
-        with_mutation(mutation, || {
-            self.model
-                .loaded_inverse_dynamics(&zero_accelerations, workspace, &mut without)
+        let mut free_forces = with_mutation(mutation, || {
+            let loaded = evaluated.apply_loads(state.t)?;
+            loaded.inverse_dynamics(&zero_accelerations, &mut without)
         })
         .ok()?;
         let without = result_to_f64(&without);
         let q_ddot = solve_accelerations(runs, &without.tau)?;
         let lifted: Vec<_> = q_ddot.iter().map(|&a| MutatingScalar::new(a)).collect();
-        with_mutation(mutation, || {
-            self.model.set_accelerations(&lifted, workspace);
-        });
+        let bodies = with_mutation(mutation, || free_forces.bodies_at(&lifted));
         let mut free = state.clone();
         free.reactions = without.reactions;
         for (run, a) in runs.iter().zip(&q_ddot) {
@@ -356,7 +352,7 @@ impl TestedMechanism {
                 *sum += one * a;
             }
         }
-        free.accelerations = with_mutation(mutation, || accelerations(workspace, free.poses.len()));
+        free.accelerations = with_mutation(mutation, || accelerations(bodies, free.poses.len()));
         free.tau = vec![0.0; n];
         free.q_ddot = q_ddot;
         Some(free)
@@ -366,15 +362,12 @@ impl TestedMechanism {
         &self,
         t: f64,
         k: usize,
-        workspace: &Workspace<MutatingScalar>,
-        result: &Kinetostatic<MutatingScalar>,
+        evaluated: &EvaluatedState<'_, MutatingScalar>,
     ) -> ClaimedState {
         let (mechanism, n) = (&self.scene.mechanism, self.model.plan().actuators());
-        let states = workspace.states();
-        let mut bodies = self
-            .model
-            .plan()
-            .body_frames(mechanism, &pose_to_f64(self.model.plan(), &workspace.pose));
+        let (states, result) = (evaluated.bodies(), evaluated.inverse_dynamics());
+        let plan = self.model.plan();
+        let mut bodies = plan.body_frames(mechanism, &pose_to_f64(plan, evaluated.pose()));
         for (pose, right) in bodies.iter_mut().zip(&self.body_poses[k]) {
             pose[2] += ((right[2] - pose[2]) / TAU).round() * TAU;
         }
@@ -387,7 +380,7 @@ impl TestedMechanism {
         let loads = match self.clean_states.get(k) {
             Some(clean) => clean.load_wrenches.clone(),
             None => {
-                let loads = self.scene.loads.iter().zip(&workspace.loads().magnitude);
+                let loads = self.scene.loads.iter().zip(&evaluated.loads().magnitude);
                 let wrenches = loads.filter_map(|(load, magnitude)| {
                     let masses = &self.scene.masses;
                     load_wrenches(
@@ -407,7 +400,7 @@ impl TestedMechanism {
             q: self.positions[k].clone(),
             q_dot: VELOCITIES[k][..n].to_vec(),
             q_ddot: ACCELERATIONS[k][..n].to_vec(),
-            accelerations: accelerations(workspace, bodies.len()),
+            accelerations: accelerations(states, bodies.len()),
             poses: bodies,
             velocities: velocity,
             reactions: result.reactions.iter().map(|r| r.0).collect(),

@@ -1,8 +1,9 @@
 //! Watched results as plain numbers.
 
 use super::mutating_scalar::MutatingScalar;
+use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, Plan, Pose, Vec2};
-use dwell_kinetostatics::{InverseDynamics, Workspace};
+use dwell_kinetostatics::InverseDynamics;
 
 /// A pose in plain numbers, for what only reads positions.
 pub(super) fn pose_to_f64(plan: &Plan, pose: &Pose<MutatingScalar>) -> Pose<f64> {
@@ -25,13 +26,13 @@ pub(super) fn pose_to_f64(plan: &Plan, pose: &Pose<MutatingScalar>) -> Pose<f64>
 }
 
 /// The second derivatives of the frames of all bodies.
-pub(super) fn accelerations(workspace: &Workspace<MutatingScalar>, bodies: usize) -> Vec<[f64; 3]> {
+pub(super) fn accelerations(states: &BodyStates<MutatingScalar>, bodies: usize) -> Vec<[f64; 3]> {
     let of = |b: usize| {
-        let origin = workspace.states().point(BodyId(b), Vec2::ZERO).acceleration;
+        let origin = states.point(BodyId(b), Vec2::ZERO).acceleration;
         [
             origin.x,
             origin.y,
-            workspace.states().body(BodyId(b)).angular_acceleration,
+            states.body(BodyId(b)).angular_acceleration,
         ]
         .map(|v| v.0)
     };

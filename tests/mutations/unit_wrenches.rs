@@ -1,7 +1,7 @@
 //! What a wrong inertia force does: the answer of the mechanism to forces on its bodies, which is linear.
 
 use dwell_geometry::{BodyId, JointId, JointKind, Mechanism, Vec2, vec2};
-use dwell_kinetostatics::{InverseDynamics, Load, LoadKind, Magnitude, Model};
+use dwell_kinetostatics::{InverseDynamics, KinetostaticsError, Load, LoadKind, Magnitude, Model};
 use dwell_scene::Scene;
 use dwell_verify::SubjectError;
 
@@ -75,31 +75,31 @@ impl UnitWrenches {
         q: f64,
         missing: impl Fn(&BodyMotion) -> Option<(Vec2, f64)>,
     ) -> Result<Option<[InverseDynamics<f64>; 2]>, SubjectError> {
-        let to_subject_error = |e: dwell_kinetostatics::KinetostaticsError| SubjectError {
+        let to_subject_error = |e: KinetostaticsError| SubjectError {
             q,
             message: e.to_string(),
         };
         let mut results = [self.model.result_buffer(), self.model.result_buffer()];
         for (out, [q_dot, q_ddot]) in results.iter_mut().zip([[1.0, 0.0], [0.0, 1.0]]) {
             let mut workspace = self.model.workspace();
-            self.model
-                .set_state(0.0, &[q], &[q_dot], &mut workspace)
-                .map_err(to_subject_error)?;
-            self.model.set_accelerations(&[q_ddot], &mut workspace);
+            let state = self.model.kinematic_state(&[q], &[q_dot], &mut workspace);
+            let mut state = state.map_err(|e| to_subject_error(e.into()))?;
+            let bodies = state.bodies_at(&[q_ddot]);
             let mut magnitudes = Vec::new();
             for b in 0..self.masses.len() {
-                let Some((force, couple)) = missing(&self.body_motion(b, workspace.states()))
-                else {
+                let Some((force, couple)) = missing(&self.body_motion(b, bodies)) else {
                     return Ok(None);
                 };
                 magnitudes.extend([force.x, force.y, couple]);
             }
+            let at_rest = self.model.kinematic_state(&[q], &[0.0], &mut workspace);
+            let at_rest = at_rest.map_err(KinetostaticsError::from);
+            let loaded = at_rest.and_then(|state| state.apply_loads(0.0));
+            let mut loaded = loaded.map_err(to_subject_error)?;
             for (load, magnitude) in magnitudes.into_iter().enumerate() {
-                workspace.set_magnitude(load, -magnitude);
+                loaded.set_magnitude(load, -magnitude);
             }
-            self.model
-                .statics(0.0, &[q], &mut workspace, out)
-                .map_err(to_subject_error)?;
+            loaded.evaluate(&[0.0], out).map_err(to_subject_error)?;
         }
         Ok(Some(results))
     }
@@ -146,14 +146,14 @@ impl UnitWrenches {
     /// The travel of a slide, m.
     pub(super) fn travel(&self, q: f64, joint: JointId) -> Result<f64, SubjectError> {
         let mut workspace = self.model.workspace::<f64>();
-        let evaluated = self.model.set_state(0.0, &[q], &[0.0], &mut workspace);
-        evaluated.map_err(|e| SubjectError {
+        let state = self.model.kinematic_state(&[q], &[0.0], &mut workspace);
+        let state = state.map_err(|e| SubjectError {
             q,
             message: e.to_string(),
         })?;
         let coordinate = dwell_geometry::Coordinate::Travel(joint);
         let function =
             dwell_geometry::body_states::CoordinateFunction::find(&self.mechanism, coordinate);
-        Ok(function.map_or(0.0, |m| workspace.states().coordinate(m)[0]))
+        Ok(function.map_or(0.0, |m| state.coordinate(m)[0]))
     }
 }

@@ -9,7 +9,6 @@ use crate::error::Error;
 use crate::mechanism::builder::MechanismBuilder;
 use crate::mechanism::kinematics::{InverseDynamics, Kinematics};
 use crate::mechanism::scene::Scene;
-use dwell_geometry::body_states::BodyStates;
 use dwell_kinetostatics::Model;
 use dwell_study::explain::{explain_motion, explain_position};
 use std::sync::Arc;
@@ -143,14 +142,11 @@ impl Mechanism {
     ) -> Result<Kinematics, Error> {
         self.check_counts([q, q_dot, q_ddot])?;
         let plan = self.model.plan();
-        let (mut pose, mut motion) = (plan.pose(), plan.motion());
-        let found = plan.positions(q, &mut pose);
-        found.map_err(|e| explain_position(self.scene.inner(), plan, &e))?;
-        plan.velocities(&pose, q_dot, &mut motion);
-        plan.accelerations(&pose, q_ddot, &mut motion);
-        let mut states = BodyStates::new(plan);
-        states.fill(plan, &pose, &motion);
-        Ok(Kinematics::new(self.scene.clone(), states))
+        let mut workspace = self.model.workspace();
+        let state = self.model.kinematic_state(q, q_dot, &mut workspace);
+        let mut state = state.map_err(|e| explain_position(self.scene.inner(), plan, &e))?;
+        let bodies = state.bodies_at(q_ddot).clone();
+        Ok(Kinematics::new(self.scene.clone(), bodies))
     }
 
     /// Inverse dynamics under all loads at time `t` (s): the actuators' forces and all reactions that the motion with
@@ -176,11 +172,12 @@ impl Mechanism {
     ) -> Result<InverseDynamics, Error> {
         self.check_counts([q, q_dot, q_ddot])?;
         let (mut workspace, mut result) = (self.model.workspace(), self.model.result_buffer());
-        let done = self
+        let state = self
             .model
             .kinetostatics(t, q, q_dot, q_ddot, &mut workspace, &mut result);
-        done.map_err(|e| explain_motion(self.scene.inner(), self.model.plan(), &e.into()))?;
-        let kinematics = Kinematics::new(self.scene.clone(), workspace.states().clone());
+        let explain = |e| explain_motion(self.scene.inner(), self.model.plan(), &e);
+        let bodies = state.map_err(|e| explain(e.into()))?.bodies().clone();
+        let kinematics = Kinematics::new(self.scene.clone(), bodies);
         Ok(InverseDynamics::new(self.clone(), kinematics, result))
     }
 

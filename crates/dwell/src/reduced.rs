@@ -239,12 +239,12 @@ impl Evaluator<'_> {
         };
         let explain = |e| Error::from(explain_motion(scene, model.plan(), &e));
         // At unit speed, so that a damper has a direction.
-        let set = model.set_kinematic_state(&[q], &[1.0], workspace);
-        set.map_err(|e| explain(e.into()))?;
+        let state = model.kinematic_state(&[q], &[1.0], workspace);
+        let mut state = state.map_err(|e| explain(e.into()))?;
         found.w.resize(model.loads().len(), 0.0);
         found.c.resize(model.loads().len(), Vec::new());
         for load in 0..model.loads().len() {
-            let done = model.unit_load_response(load, workspace, response);
+            let done = state.unit_load_response(load, response);
             done.map_err(|e| explain(e.into()))?;
             found.w[load] = -response.tau[0];
             found.c[load].clear();

@@ -3,8 +3,7 @@
 //! At a dead point a coordinate folds back (a slider at the end of its stroke), and its inertia tends to infinity.
 //! The motion then continues in another coordinate of the same mechanism: another *chart*, which replaces the
 //! actuator and keeps all else, loads and drives. A chart is left when some coordinate moves 8 times as fast as its
-//! own, lengths by the
-//! mechanism's size; the new one is the fastest, so that it is not left again soon.
+//! own, lengths by the mechanism's size; the new one is the fastest, so that it is not left again soon.
 //!
 //! A change point, where assembly branches meet, needs no other coordinate, but a chart on the branch
 //! behind it, and a [`ChangePointFit`] across.
@@ -16,14 +15,14 @@ mod monitor;
 mod revolutions;
 
 use crate::change_point_fit::{ChangePointFit, ChangePointFitError};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::{CoordinateMode, Machine, MachineError, loads_with_drives};
 use crate::machine_ode::MachineOde;
 use crate::ode::{DenseOutput, OdeState};
 use crate::options::Options;
 use crate::solve::{Event, ObservedMachine, RecorderState, Solution};
-use candidates::{Candidate, actuator, candidates, length_scale};
+use candidates::{Candidate, actuator, candidates};
 pub use continued_motion::{
     ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory, Segment,
 };
@@ -37,7 +36,7 @@ use dwell_kinetostatics::{Drive, Load, Mass, Model, ModelError};
 use monitor::{ChartExit, ChartMonitor};
 use revolutions::load_angles;
 
-/// A chart is left when another coordinate moves so many times as fast as its own.
+/// A chart is left when another coordinate moves this many times as fast as its own.
 const FOLD_SPEED_RATIO: f64 = 8.0;
 /// Coordinates tried for the next chart before the motion ends.
 const MAX_CANDIDATES: usize = 6;
@@ -76,9 +75,9 @@ pub struct Chart {
     pub coordinate: Coordinate,
     /// The machine that moves.
     pub machine: Machine,
-    /// The model with all loads (the drives' last) and the reactions asked for.
+    /// The model with all loads (the drives' last) and the requested reactions.
     pub output_model: Model,
-    /// By end of its range: whether a change-point fit was looked for.
+    /// By end of its range: whether a change-point fit was tried.
     limits_searched: [bool; 2],
 }
 
@@ -105,7 +104,8 @@ pub struct Atlas<'s> {
     tolerance: f64,
     /// By coordinate: the period, rad, after which its branches repeat, where known.
     periods: Vec<(Coordinate, f64)>,
-    length_scale: f64,
+    /// Of the mechanism: the length that lengths are compared with, m.
+    size: f64,
 }
 
 impl<'s> Atlas<'s> {
@@ -114,8 +114,8 @@ impl<'s> Atlas<'s> {
     /// # Errors
     /// [`AtlasError`] where that cannot be built.
     pub fn new(description: MachineDescription<'s>) -> Result<Self, AtlasError> {
-        let length_scale = length_scale(description.mechanism);
-        let candidates = candidates(description.mechanism, length_scale);
+        let size = description.mechanism.size();
+        let candidates = candidates(description.mechanism, size);
         let mut atlas = Self {
             description,
             candidates,
@@ -124,13 +124,13 @@ impl<'s> Atlas<'s> {
             uncrossable: Vec::new(),
             tolerance: f64::INFINITY,
             periods: Vec::new(),
-            length_scale,
+            size,
         };
         if description.mechanism.actuators.len() != 1 {
             return Err(MachineError::CoordinateModes.into());
         }
-        let home = atlas.build_chart(description.mechanism, description.assembly)?;
-        atlas.charts.push(home);
+        let first = atlas.build_chart(description.mechanism, description.assembly)?;
+        atlas.charts.push(first);
         Ok(atlas)
     }
 
@@ -160,7 +160,7 @@ impl<'s> Atlas<'s> {
             reactions,
             ..
         } = self.description;
-        // Witnesses have no mass.
+        // Auxiliary bodies have no mass.
         let mut masses = self.description.masses.to_vec();
         masses.resize(mechanism.bodies.len().max(masses.len()), Mass::default());
         let model = Model::new(mechanism, &masses, assembly, &[])?;
@@ -201,14 +201,15 @@ impl<'s> Atlas<'s> {
     ///
     /// # Errors
     /// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. What
-    /// ends the motion on the way is in [`ContinuedMotion::error`].
+    /// ends the motion later is in [`ContinuedMotion::error`].
+    // One loop: what ends a segment decides, by all that the loop knows, how the next one begins.
     pub fn solve(
         &mut self,
         start: &OdeState,
         end: f64,
         options: &Options,
         events: &[Event],
-    ) -> Result<ContinuedMotion, DynamicsError> {
+    ) -> Result<ContinuedMotion> {
         self.tighten_tolerance(options.rtol);
         let mut motion = ContinuedMotion::default();
         let mut recorder_state = RecorderState::new(start.t, events);
@@ -220,7 +221,7 @@ impl<'s> Atlas<'s> {
             self.prepare_crossings(chart);
             let (solution, exit) =
                 match self.solve_chart(chart, &at, end, &options, &mut recorder_state) {
-                    // What is left after a change is nothing.
+                    // Nothing is left of the duration after a change.
                     Err(DynamicsError::DurationTooShort) if !motion.segments.is_empty() => {
                         return Ok(motion);
                     }
@@ -228,13 +229,10 @@ impl<'s> Atlas<'s> {
                         motion.error = Some(error);
                         return Ok(motion);
                     }
-                    leg => leg?,
+                    found => found?,
                 };
-            idle = if solution.steps.len() > 1 {
-                0
-            } else {
-                idle + 1
-            };
+            let moved = solution.steps.len() > 1;
+            idle = if moved { 0 } else { idle + 1 };
             options.max_steps = options.max_steps.saturating_sub(solution.statistics.steps);
             if let Some(last) = solution.steps.last() {
                 at.clone_from(last);
@@ -258,8 +256,8 @@ impl<'s> Atlas<'s> {
                 exit => exit,
             };
             (max_step, options.max_step) = (None, requested.max_step);
-            // A chart that should be left and cannot be ends the motion; so do charts that lead from
-            // one to another and nowhere else.
+            // A chart that must be left and cannot be ends the motion; so do charts that only lead to
+            // each other.
             let exit = exit.filter(|_| idle < MAX_IDLE_CHARTS);
             let next = exit.and_then(|exit| self.switch_chart(chart, &at, &exit));
             let Some((to, y, reason)) = next else {
@@ -287,7 +285,7 @@ impl<'s> Atlas<'s> {
         end: f64,
         options: &Options,
         recorder_state: &mut RecorderState<'_>,
-    ) -> Result<(Solution, Option<ChartExit>), DynamicsError> {
+    ) -> Result<(Solution, Option<ChartExit>)> {
         let current = &self.charts[chart];
         let observed = ObservedMachine::new(&current.machine, &current.output_model);
         let mut recorder = recorder_state.recorder(observed, at)?;
@@ -309,7 +307,7 @@ impl<'s> Atlas<'s> {
         Ok((solution, exit))
     }
 
-    /// Shorter steps for a chart that failed, if it has a bridge that they may have led over.
+    /// Shorter steps for a chart that failed, if the last ones may have led over its fit window.
     fn shorten_steps(&self, chart: usize, at: &OdeState, max_step: &mut Option<f64>) -> bool {
         let windows = self.charts[chart].machine.fit_windows.iter();
         let min_radius = windows.map(|window| window.fit.fit_radius).reduce(f64::min);
@@ -323,13 +321,13 @@ impl<'s> Atlas<'s> {
         worth
     }
 
-    /// The best coordinates besides the present one where a chart ends, if there are better ones.
+    /// The fastest other coordinates where a chart ends, if they are faster than its own.
     fn fallback_exit(&self, chart: usize, at: &OdeState) -> Option<ChartExit> {
         let speeds = ChartMonitor::new(self, chart).candidate_speeds(at).ok()?;
         speeds.faster_than(1.0).map(ChartExit::SolutionEnds)
     }
 
-    /// The chart to which a motion turns, with its state there.
+    /// The chart in which a motion continues, with its state there.
     fn switch_chart(
         &mut self,
         from: usize,
@@ -375,8 +373,8 @@ impl<'s> Atlas<'s> {
         } = self.candidates[candidate].clone();
         let machine = &self.charts[from].machine;
         let mut workspace = machine.workspace();
-        machine.evaluate(at.t, &at.y, &mut workspace).ok()?;
-        let states = workspace.inner.states().clone();
+        let mut state = machine.evaluate(at.t, &at.y, &mut workspace).ok()?;
+        let states = state.bodies().clone();
         let [q, q_dot, _] = states.coordinate(measured);
         let mut y = at.y.clone();
         (y[0], y[1]) = (q, q_dot);
@@ -384,7 +382,7 @@ impl<'s> Atlas<'s> {
         for (to, chart) in self.charts.iter().enumerate() {
             if chart.coordinate == coordinate {
                 let mut target = target.clone();
-                // Within its own range: which bridge lies at which end depends on whole turns.
+                // Within its own range: which fit lies at which end depends on whole revolutions.
                 target.y[0] = chart.machine.model.plan().range().wrap(q).unwrap_or(q);
                 if self.matches_pose(chart, &target, &states) {
                     return Some((to, target.y));
@@ -411,13 +409,13 @@ impl<'s> Atlas<'s> {
         Some((self.charts.len() - 1, target.y))
     }
 
-    /// Whether a chart has the bodies where they are, and measures the angles that loads depend on alike.
+    /// Whether a chart has the same pose, and the same angles on which loads depend.
     fn matches_pose(&self, chart: &Chart, at: &OdeState, states: &BodyStates) -> bool {
         let mut workspace = chart.machine.workspace();
-        if chart.machine.evaluate(at.t, &at.y, &mut workspace).is_err() {
+        let Ok(mut state) = chart.machine.evaluate(at.t, &at.y, &mut workspace) else {
             return false;
-        }
-        let chart_states = workspace.inner.states();
+        };
+        let chart_states = state.bodies();
         // Beyond the mechanism's bodies come those that its actuator adds.
         let mut bodies = (0..self.description.mechanism.bodies.len()).map(BodyId);
         let counted = |s: &BodyStates, b: BodyId| s.body(b).angle.is_some();

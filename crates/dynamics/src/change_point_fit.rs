@@ -1,7 +1,7 @@
 //! Change points crossed on one assembly branch, such as a parallelogram passing its flat position.
 //!
-//! Dyad by dyad, ½m′/m errs there as N·eps/|sin θ|³ (N dyads, θ from the flat position), though the branch
-//! itself is smooth. So poses from both sides of a window, where that exceeds the tolerance, are fitted by
+//! Evaluated dyad by dyad, ½m′/m has an error of N·eps/|sin θ|³ there (N dyads, θ from the flat position), though the
+//! branch itself is smooth. So poses from both sides of a window, where that exceeds the tolerance, are fitted by
 //! polynomials orthogonal on their nodes, and within the window
 //!
 //! ```text
@@ -23,19 +23,22 @@ use std::sync::Arc;
 /// Nodes of a fit on each side of the window, and its highest degree.
 const NODES: usize = 24;
 const MAX_DEGREE: usize = 20;
-/// Degree of the fit from one side that leads to the other: it need only tell the branches apart.
+/// Degree of the fit from one side that is extrapolated to the other: it must only distinguish the branches.
 const EXTRAPOLATION_DEGREE: usize = 5;
 /// Half the widest window, rad, and the tightest tolerance that one is made for.
 const MAX_HALF_WIDTH: f64 = 0.2;
 const MIN_TOLERANCE: f64 = 1e-12;
-/// A looser tolerance is no reason for a window in which nothing is known.
+/// A looser tolerance does not make the window smaller.
 const MAX_TOLERANCE: f64 = 1e-9;
 /// How far from the change point poses are fitted, rad: the farthest of the good ones is taken.
 const FIT_RADII: [f64; 5] = [0.15, 0.3, 0.5, 0.8, 1.2];
-/// Largest gap between a bridge and the plan at its ends, in first and second derivatives.
+/// Largest gap between a fit and the plan at the window's ends, in first and second derivatives.
 const MAX_GAP: f64 = 1e-6;
 /// A gap below this is as good as any.
 const GAP_ROUNDING: f64 = 1e-11;
+
+/// A result that fails with a [`ChangePointFitError`] unless another error is named.
+pub(crate) type Result<T, E = ChangePointFitError> = std::result::Result<T, E>;
 
 /// Why a change point cannot be crossed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -43,13 +46,13 @@ pub enum ChangePointFitError {
     /// Friction depends on reactions that grow beyond all bounds there.
     #[error("friction depends on reactions that are not determined at the change point")]
     Friction,
-    /// Whole turns are counted in it.
-    #[error("a mechanism with gears or related coordinates is not carried through a change point")]
+    /// It has couplings, which count whole revolutions.
+    #[error("a motion with gears or coupled coordinates is not continued through a change point")]
     Couplings,
     /// There is no pose next to it.
     #[error(transparent)]
     Position(#[from] PositionError),
-    /// What comes on the other side does not go together.
+    /// The branch cannot be assembled on the other side.
     #[error("the branch cannot be assembled on the other side of the change point")]
     NoContinuation,
     /// The branch is not smooth.
@@ -81,7 +84,7 @@ pub struct ChangePointFit {
     pub(crate) polynomials: PolynomialFit,
 }
 
-/// The part of the coordinate on which a machine goes by a bridge.
+/// The part of the coordinate on which a machine uses a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct FitWindow {
     pub(crate) fit: Arc<ChangePointFit>,
@@ -90,12 +93,12 @@ pub(crate) struct FitWindow {
     pub(crate) above: bool,
     /// From and to, from the change point.
     pub(crate) bounds: [f64; 2],
-    /// After how much the branches before and behind follow each other again, rad.
+    /// The period after which the branches before and behind follow each other again, rad.
     pub(crate) period: Option<f64>,
 }
 
 impl FitWindow {
-    /// How far a coordinate is from the change point, if it is on the bridge.
+    /// The distance of a coordinate from the change point, if it is within the window.
     pub(crate) fn offset_within(&self, q: f64) -> Option<f64> {
         let x = self.offset(q);
         (self.bounds[0]..=self.bounds[1]).contains(&x).then_some(x)
@@ -157,7 +160,7 @@ pub(crate) fn extrapolate(
     upwards: bool,
     [from, to]: [f64; 2],
     x: f64,
-) -> Result<Vec<f64>, ChangePointFitError> {
+) -> Result<Vec<f64>> {
     let plan = model.plan();
     let direction = if upwards { 1.0 } else { -1.0 };
     let mut pose = plan.pose();
@@ -184,8 +187,8 @@ pub(crate) fn extrapolate(
 }
 
 impl ChangePointFit {
-    /// The bridge between the branch below and the one above a change point, with half its window; `unit`
-    /// is 1 for an angle and the mechanism's size for a length.
+    /// The fit between the branch below and the one above a change point, with half its window;
+    /// `coordinate_scale` is 1 for an angle and the mechanism's size for a length.
     ///
     /// # Errors
     /// [`ChangePointFitError`] where the branch is not smooth enough.
@@ -194,7 +197,7 @@ impl ChangePointFit {
         branches: [&Model; 2],
         center: f64,
         [half_width, coordinate_scale]: [f64; 2],
-    ) -> Result<Self, ChangePointFitError> {
+    ) -> Result<Self> {
         let available_radius = |model: &Model| match model.plan().range().limits() {
             Some((from, to)) => 0.45 * (to - from),
             None => f64::INFINITY,
@@ -212,7 +215,7 @@ impl ChangePointFit {
             fits.push((gap, fit_radius, fit));
         }
         let min_gap = fits.iter().map(|f| f.0).fold(f64::INFINITY, f64::min);
-        // A far reach catches steps that lead over the window.
+        // A large radius catches steps that lead over the window.
         let good = |gap: f64| gap <= (10.0 * min_gap).max(GAP_ROUNDING);
         let best = fits.into_iter().rev().find(|f| good(f.0));
         let Some((gap, fit_radius, fit)) = best.filter(|f| f.0 <= MAX_GAP) else {
@@ -237,12 +240,9 @@ impl ChangePointFit {
         center: f64,
         half_width: f64,
         fit_radius: f64,
-    ) -> Result<PolynomialFit, ChangePointFitError> {
-        let mut below: Vec<f64> = chebyshev_nodes(half_width, fit_radius, NODES)
-            .map(|d| -d)
-            .collect();
-        below.reverse();
+    ) -> Result<PolynomialFit> {
         let above: Vec<f64> = chebyshev_nodes(half_width, fit_radius, NODES).collect();
+        let below: Vec<f64> = above.iter().rev().map(|d| -d).collect();
         let mut samples: Vec<Vec<f64>> = Vec::with_capacity(2 * NODES);
         for (model, nodes) in branches.iter().zip([&below, &above]) {
             let mut pose = model.plan().pose();
@@ -260,19 +260,16 @@ impl ChangePointFit {
         let plan = self.branches[0].plan();
         let mut workspace = FitWorkspace::new(&self.branches[0]);
         let mut pose = plan.pose();
-        self.polynomials
-            .eval(0.0, &mut workspace.basis_values, &mut workspace.values);
+        let polynomials = &self.polynomials;
+        polynomials.eval(0.0, &mut workspace.basis_values, &mut workspace.values);
         workspace.set_pose(plan, &[self.center], &mut pose);
-        workspace
-            .unit_states
-            .fill(plan, &pose, &workspace.unit_motion);
-        if let Some(here) = mobility_at(mechanism, &workspace.unit_states) {
+        let states = &mut workspace.unit_states;
+        states.fill(plan, &pose, &workspace.unit_motion);
+        if let Some(here) = mobility_at(mechanism, states) {
             self.mobility = here.degrees_of_freedom();
             let all = mechanism.reactions().into_iter().zip(&here.determinate);
-            self.indeterminate = all
-                .filter(|(_, determinate)| !**determinate)
-                .map(|(r, _)| r)
-                .collect();
+            let indeterminate = all.filter(|(_, determinate)| !**determinate);
+            self.indeterminate = indeterminate.map(|(r, _)| r).collect();
         }
     }
 }
@@ -283,7 +280,7 @@ fn derivative_gap(
     branches: [&Model; 2],
     center: f64,
     [half_width, coordinate_scale]: [f64; 2],
-) -> Result<f64, ChangePointFitError> {
+) -> Result<f64> {
     let mut values = fit.workspace();
     let mut largest = 0.0_f64;
     for (model, direction) in branches.iter().zip([-1.0, 1.0]) {
@@ -293,36 +290,27 @@ fn derivative_gap(
         plan.velocities(&pose, &[1.0], &mut motion);
         plan.accelerations(&pose, &[0.0], &mut motion);
         fit.eval(direction * half_width, &mut Vec::new(), &mut values);
-        let (frames, slides) = values.split_at(motion.angular_velocity.len());
-        let frame_derivatives = frames.iter().zip(
-            motion
-                .angular_velocity
-                .iter()
-                .zip(&motion.angular_acceleration),
-        );
-        for ([_, first, second], (velocity, acceleration)) in frame_derivatives {
-            let difference = [
-                (first - velocity) * coordinate_scale,
-                (second - acceleration) * coordinate_scale * coordinate_scale,
-            ];
-            largest = difference
-                .iter()
-                .fold(largest, |max, difference| max.max(difference.abs()));
-        }
-        let slide_derivatives = slides
+        let scaled = |rates, factor: f64| (rates, [factor, coordinate_scale]);
+        let frames = motion
+            .angular_velocity
             .iter()
-            .zip(motion.slide_velocity.iter().zip(&motion.slide_acceleration));
-        for ([_, first, second], (velocity, acceleration)) in slide_derivatives {
-            let difference = [first - velocity, (second - acceleration) * coordinate_scale];
-            largest = difference
-                .iter()
-                .fold(largest, |max, difference| max.max(difference.abs()));
+            .zip(&motion.angular_acceleration);
+        let slides = motion.slide_velocity.iter().zip(&motion.slide_acceleration);
+        let frames = frames.map(|rates| scaled(rates, coordinate_scale));
+        let rates = frames.chain(slides.map(|rates| scaled(rates, 1.0)));
+        for ([_, first, second], ((velocity, acceleration), [one, two])) in values.iter().zip(rates)
+        {
+            let differences = [
+                (first - velocity) * one,
+                (second - acceleration) * one * two,
+            ];
+            largest = differences.iter().fold(largest, |max, d| max.max(d.abs()));
         }
     }
     Ok(largest)
 }
 
-/// Working memory for the way across a bridge.
+/// Working memory for the evaluation of a fit.
 #[derive(Debug, Clone)]
 pub(crate) struct FitWorkspace<T> {
     pub(crate) basis_values: Vec<[T; 3]>,
@@ -339,10 +327,8 @@ impl<T: Scalar> FitWorkspace<T> {
     pub(crate) fn new(model: &Model) -> Self {
         let plan = model.plan();
         let unit_motion = plan.motion();
-        let (frames, slides) = (
-            unit_motion.angular_velocity.len(),
-            unit_motion.slide_velocity.len(),
-        );
+        let frames = unit_motion.angular_velocity.len();
+        let slides = unit_motion.slide_velocity.len();
         Self {
             basis_values: Vec::with_capacity(MAX_DEGREE + 1),
             values: vec![[T::from_f64(0.0); 3]; frames + slides],
@@ -369,16 +355,11 @@ pub(crate) fn set_motion<T: Scalar>(
     [q_dot, q_ddot]: [T; 2],
     motion: &mut Motion<T>,
 ) {
-    let velocities = motion
-        .angular_velocity
-        .iter_mut()
-        .chain(&mut motion.slide_velocity);
-    let accelerations = motion
-        .angular_acceleration
-        .iter_mut()
-        .chain(&mut motion.slide_acceleration);
-    for ((velocity, acceleration), [_, first, second]) in velocities.zip(accelerations).zip(values)
-    {
+    let velocities = motion.angular_velocity.iter_mut();
+    let velocities = velocities.chain(&mut motion.slide_velocity);
+    let rates = motion.angular_acceleration.iter_mut();
+    let rates = velocities.zip(rates.chain(&mut motion.slide_acceleration));
+    for ((velocity, acceleration), [_, first, second]) in rates.zip(values) {
         *velocity = *first * q_dot;
         *acceleration = *first * q_ddot + *second * q_dot * q_dot;
     }

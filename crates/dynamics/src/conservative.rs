@@ -1,19 +1,15 @@
 //! A conservative system of one degree of freedom: its inertia, its potential V and the force −V′ as functions of
 //! its coordinate.
 
-use crate::error::{DynamicsError, positive_inertia};
+use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::machine::Machine;
+use crate::repetition::{PERIODICITY_TOLERANCE, repetition_angle};
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{InverseDynamics, Model, ReducedModel, Workspace};
 use std::f64::consts::TAU;
 
-/// Revolutions after which a mechanism that has not repeated itself counts as not periodic.
-const MAX_REVOLUTIONS: u32 = 8;
 /// Phases, as parts of a revolution, at which the mechanism is compared with itself some revolutions on.
 const PHASE_FRACTIONS: [f64; 7] = [0.0, 0.131, 0.292, 0.417, 0.583, 0.719, 0.877];
-/// Numbers that differ by less, relatively, count as equal: solutions of large groups differ by some rounding.
-const PERIODICITY_TOLERANCE: f64 = 1e-9;
-
 /// Inertia, potential and force at a coordinate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct EnergyTerms {
@@ -28,7 +24,7 @@ pub(crate) struct EnergyTerms {
 /// A system of one coordinate whose energy is constant.
 pub(crate) trait ConservativeSystem {
     /// Its inertia, potential and force at `q` (rad or m).
-    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError>;
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms>;
 
     /// The range of the coordinate.
     fn range(&self) -> Range;
@@ -42,37 +38,22 @@ pub(crate) trait ConservativeSystem {
     }
 
     /// The angle after which everything repeats itself, rad; none if it never does.
-    fn period(&mut self, q: f64) -> Result<Option<f64>, DynamicsError> {
+    fn period(&mut self, q: f64) -> Result<Option<f64>> {
         if !self.is_angle() || self.range().limits().is_some() {
             return Ok(None);
         }
         if self.is_potential_free() && self.range() == Range::Full {
             return Ok(Some(TAU));
         }
-        let mut here = Vec::with_capacity(PHASE_FRACTIONS.len());
-        for part in PHASE_FRACTIONS {
-            here.push(self.energy_terms(q + TAU * part)?);
-        }
-        let size =
-            |of: fn(&EnergyTerms) -> f64| here.iter().fold(0.0_f64, |s, h| s.max(of(h).abs()));
-        let (potential, force) = (size(|h| h.potential), size(|h| h.force));
-        for revolutions in 1..=MAX_REVOLUTIONS {
-            let period = TAU * f64::from(revolutions);
-            let mut same = true;
-            for (part, h) in PHASE_FRACTIONS.iter().zip(&here) {
-                // Outside its range it does not repeat itself.
-                let Ok(there) = self.energy_terms(q + TAU * part + period) else {
-                    return Ok(None);
-                };
-                same &= (there.m - h.m).abs() <= PERIODICITY_TOLERANCE * h.m
-                    && (there.potential - h.potential).abs() <= PERIODICITY_TOLERANCE * potential
-                    && (there.force - h.force).abs() <= PERIODICITY_TOLERANCE * force;
-            }
-            if same {
-                return Ok(Some(period));
-            }
-        }
-        Ok(None)
+        let close = |a: f64, b: f64, size: f64| (a - b).abs() <= PERIODICITY_TOLERANCE * size;
+        let same = |all: &[EnergyTerms], here: &EnergyTerms, there: &EnergyTerms| {
+            let size =
+                |of: fn(&EnergyTerms) -> f64| all.iter().fold(0.0_f64, |s, h| s.max(of(h).abs()));
+            close(there.m, here.m, here.m)
+                && close(there.potential, here.potential, size(|h| h.potential))
+                && close(there.force, here.force, size(|h| h.force))
+        };
+        repetition_angle(q, &PHASE_FRACTIONS, |q| self.energy_terms(q), same)
     }
 }
 
@@ -83,7 +64,7 @@ pub(crate) struct UnloadedSystem<'a, R: ReducedModel> {
 }
 
 impl<R: ReducedModel> ConservativeSystem for UnloadedSystem<'_, R> {
-    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError> {
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms> {
         let (m, _) = self.model.inertia(q, &mut self.workspace)?;
         Ok(EnergyTerms {
             m: positive_inertia(m, q)?,
@@ -114,7 +95,7 @@ pub(crate) struct LoadedSystem {
 }
 
 impl LoadedSystem {
-    pub(crate) fn new(machine: &Machine) -> Result<Self, DynamicsError> {
+    pub(crate) fn new(machine: &Machine) -> Result<Self> {
         if machine.model().plan().actuators() != 1 || machine.free() != [0] {
             return Err(DynamicsError::NotConservative {
                 what: "it has not one coordinate, which is free",
@@ -136,21 +117,20 @@ impl LoadedSystem {
 }
 
 impl ConservativeSystem for LoadedSystem {
-    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms, DynamicsError> {
+    fn energy_terms(&mut self, q: f64) -> Result<EnergyTerms> {
         let Self {
             model,
             workspace,
             inverse_dynamics: result,
             ..
         } = self;
-        model.set_state(0.0, &[q], &[0.0], workspace)?;
+        let state = model.kinematic_state(&[q], &[0.0], workspace)?;
+        let state = state.apply_loads(0.0)?;
         let loads = 0..model.loads().len();
-        let potential = loads
-            .filter_map(|load| model.potential_energy(load, workspace))
-            .sum();
-        model.loaded_inverse_dynamics(&[0.0], workspace, result)?;
+        let potential = loads.filter_map(|load| state.potential_energy(load)).sum();
+        let mut state = state.inverse_dynamics(&[0.0], result)?;
         let force = -result.tau[0];
-        model.mass_matrix_column(0, workspace, result);
+        state.mass_matrix_column(0, result);
         Ok(EnergyTerms {
             m: positive_inertia(result.tau[0] + self.flywheel, q)?,
             potential,
@@ -171,7 +151,7 @@ impl ConservativeSystem for LoadedSystem {
 ///
 /// # Errors
 /// [`PositionError::OutOfRange`] if `q` lies outside.
-pub(crate) fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>, DynamicsError> {
+pub(crate) fn limits(range: Range, q: f64) -> Result<Option<(f64, f64)>> {
     let Some((from, to)) = range.limits() else {
         return Ok(None);
     };

@@ -13,12 +13,13 @@
 
 mod variational;
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::Machine;
 use crate::machine_ode::MachineOde;
-use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, root_subintervals, state_at};
 use crate::options::Options;
+use crate::repetition::{PERIODICITY_TOLERANCE, repetition_angle};
 use crate::state_space::eigenvalues;
 use dwell_numerics::lu;
 use dwell_numerics::root;
@@ -30,15 +31,10 @@ const MAX_NEWTON_STEPS: usize = 30;
 const MAX_HALVINGS: usize = 8;
 /// Newton's method ends with a step below so many tolerances.
 const NEWTON_TOLERANCE_FACTOR: f64 = 10.0;
-/// Revolutions after which a machine that has not repeated itself counts as not periodic.
-const MAX_REVOLUTIONS: u32 = 8;
-/// Phases, as parts of a revolution, at which it is compared with itself, and the relative difference allowed.
+/// Phases, as parts of a revolution, at which a machine is compared with itself.
 const PHASE_FRACTIONS: [f64; 5] = [0.0, 0.192, 0.417, 0.583, 0.877];
-const PERIODICITY_TOLERANCE: f64 = 1e-9;
 /// An integration that fails below this part of the initial speed has come to rest.
 const STALL_FRACTION: f64 = 0.1;
-/// Points of a step between which a sign is looked at.
-const ROOT_SUBINTERVALS: usize = 4;
 /// Samples of a cycle.
 const SAMPLES: usize = 360;
 
@@ -84,11 +80,7 @@ impl Cycle {
 /// # Errors
 /// [`DynamicsError::NoCycle`], [`DynamicsError::ComesToRest`] where the guess does not complete a cycle, and as of
 /// [`Machine::evaluate`] and [`integrate`].
-pub fn steady_cycle(
-    machine: &Machine,
-    guess: &[f64],
-    options: &Options,
-) -> Result<Cycle, DynamicsError> {
+pub fn steady_cycle(machine: &Machine, guess: &[f64], options: &Options) -> Result<Cycle> {
     let problem = CycleProblem::new(machine, guess, options)?;
     let mut z: Vec<f64> = guess[1..machine.work_offset()].to_vec();
     let mut return_map = problem.return_map(&z)?;
@@ -139,7 +131,7 @@ pub fn initial_transient(
     start: &[f64],
     revolutions: u32,
     options: &Options,
-) -> Result<Vec<f64>, DynamicsError> {
+) -> Result<Vec<f64>> {
     let mut ode = MachineOde::new(machine, 0.0, start)?;
     let from = start[0];
     let distance = TAU * f64::from(revolutions);
@@ -148,30 +140,17 @@ pub fn initial_transient(
         if (now.y[0] - from).abs() < distance {
             return Ok(StepControl::Continue);
         }
-        reached.clone_from(&now.y);
-        let difference = |t: f64| -> Result<f64, DynamicsError> {
-            if t < now.t {
-                dense(t, &mut reached)?;
-            } else {
-                reached.clone_from(&now.y);
-            }
-            Ok((reached[0] - from).abs() - distance)
-        };
-        if let Some(t) = root::find(difference, before.t, now.t)?
-            && t < now.t
-        {
-            dense(t, &mut reached)?;
-        }
+        let difference =
+            |t: f64| -> Result<f64> { Ok((state_at(t, now, dense)?.y[0] - from).abs() - distance) };
+        let t = root::find(difference, before.t, now.t)?;
+        reached = state_at(t.unwrap_or(now.t), now, dense)?.y;
         Ok(StepControl::Stop)
     };
     let start = OdeState {
         t: 0.0,
         y: start.to_vec(),
     };
-    let termination = integrate(&mut ode, &start, None, options, &mut observer)?;
-    if let Some(error) = termination.error {
-        return Err(error);
-    }
+    integrate(&mut ode, &start, None, options, &mut observer)?.completed()?;
     // The works of the cycle start from zero.
     reached[machine.work_offset()..].fill(0.0);
     Ok(reached)
@@ -198,7 +177,7 @@ struct CycleProblem<'m> {
 }
 
 impl<'m> CycleProblem<'m> {
-    fn new(machine: &'m Machine, guess: &[f64], options: &Options) -> Result<Self, DynamicsError> {
+    fn new(machine: &'m Machine, guess: &[f64], options: &Options) -> Result<Self> {
         let none = |what| Err(DynamicsError::NoCycle { what });
         let [free] = *machine.free() else {
             return none("there is not just one free coordinate");
@@ -212,8 +191,8 @@ impl<'m> CycleProblem<'m> {
         if guess[1] == 0.0 {
             return none("the guess is at rest");
         }
-        let Some(cycle_angle) = repetition_angle(machine, guess)? else {
-            return none("the machine is not the same after any number of turns");
+        let Some(cycle_angle) = cycle_angle(machine, guess)? else {
+            return none("the machine does not repeat itself after any number of revolutions");
         };
         Ok(Self {
             machine,
@@ -236,7 +215,7 @@ impl<'m> CycleProblem<'m> {
         x
     }
 
-    fn return_map(&self, z: &[f64]) -> Result<ReturnMap, DynamicsError> {
+    fn return_map(&self, z: &[f64]) -> Result<ReturnMap> {
         let n = self.unknowns();
         let mut x = self.initial_values(z);
         let plain = x.len();
@@ -247,16 +226,11 @@ impl<'m> CycleProblem<'m> {
         let start = OdeState { t: 0.0, y: x };
         let mut observer =
             |_: &OdeState, _: &OdeState, _: DenseOutput<'_>| Ok(StepControl::Continue);
-        let termination = integrate(
-            &mut system,
-            &start,
-            Some(self.cycle_angle),
-            &self.options,
-            &mut observer,
-        )?;
+        let (end, options) = (Some(self.cycle_angle), &self.options);
+        let termination = integrate(&mut system, &start, end, options, &mut observer)?;
         let stalled = (termination.state.y[1] / z[0]).abs() < STALL_FRACTION;
         match termination.error {
-            // Rates over the way are infinite where the speed falls to zero.
+            // Rates by the coordinate are infinite where the speed falls to zero.
             Some(DynamicsError::NotFinite { .. } | DynamicsError::StepTooSmall { .. })
                 if stalled =>
             {
@@ -272,7 +246,7 @@ impl<'m> CycleProblem<'m> {
     }
 
     /// δz of (3).
-    fn newton_step(&self, z: &[f64], return_map: &ReturnMap) -> Result<Vec<f64>, DynamicsError> {
+    fn newton_step(&self, z: &[f64], return_map: &ReturnMap) -> Result<Vec<f64>> {
         let n = z.len();
         let mut matrix = return_map.sensitivity.clone();
         for i in 0..n {
@@ -294,7 +268,7 @@ impl<'m> CycleProblem<'m> {
         Ok(step)
     }
 
-    /// The state of the machine at a way from the start.
+    /// The state of the machine at a displacement from the start.
     fn machine_state(&self, displacement: f64, x: &[f64]) -> OdeState {
         let mut y = x[..self.machine.state_count()].to_vec();
         let t = y[0];
@@ -303,17 +277,12 @@ impl<'m> CycleProblem<'m> {
     }
 
     /// The cycle in full, once its start is known.
-    fn resolve_cycle(
-        &self,
-        z: &[f64],
-        return_map: &ReturnMap,
-        steps: Vec<f64>,
-    ) -> Result<Cycle, DynamicsError> {
+    fn resolve_cycle(&self, z: &[f64], return_map: &ReturnMap, steps: Vec<f64>) -> Result<Cycle> {
         let x = self.initial_values(z);
         let mut system = VariationalSystem::new(self, &x, 0)?;
         let mut ode = MachineOde::new(self.machine, 0.0, &self.machine_state(0.0, &x).y)?;
         let mut rates = vec![0.0; self.machine.state_count()];
-        let mut rise = |point: &OdeState| -> Result<f64, DynamicsError> {
+        let mut rise = |point: &OdeState| -> Result<f64> {
             ode.rhs(point.t, &point.y, &mut rates)?;
             Ok(self.direction * rates[1])
         };
@@ -323,16 +292,11 @@ impl<'m> CycleProblem<'m> {
         let mut extremes = vec![[first.y[0], first.y[1]]];
         let mut samples = vec![first.clone()];
         let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
-            let mut state_inside = |at: f64| -> Result<OdeState, DynamicsError> {
-                let mut x = now.y.clone();
-                if at < now.t {
-                    dense(at, &mut x)?;
-                }
-                Ok(self.machine_state(at, &x))
+            let mut state_inside = |at: f64| -> Result<OdeState> {
+                Ok(self.machine_state(at, &state_at(at, now, dense)?.y))
             };
             let mut from = before.t;
-            for k in 1..=ROOT_SUBINTERVALS {
-                let to = before.t + (now.t - before.t) * k as f64 / ROOT_SUBINTERVALS as f64;
+            for to in root_subintervals(before, now) {
                 let rises = rise(&state_inside(to)?)?;
                 if last * rises < 0.0
                     && let Some(at) = root::find(|at| rise(&state_inside(at)?), from, to)?
@@ -350,17 +314,9 @@ impl<'m> CycleProblem<'m> {
             }
             Ok(StepControl::Continue)
         };
-        let termination = integrate(
-            &mut system,
-            &start,
-            Some(self.cycle_angle),
-            &self.options,
-            &mut observer,
-        )?;
-        if let Some(error) = termination.error {
-            return Err(error);
-        }
-        let end = self.machine_state(self.cycle_angle, &termination.state.y);
+        let (end, options) = (Some(self.cycle_angle), &self.options);
+        let end = integrate(&mut system, &start, end, options, &mut observer)?.completed()?;
+        let end = self.machine_state(self.cycle_angle, &end.y);
         let by_speed = |x: &&[f64; 2], y: &&[f64; 2]| x[1].abs().total_cmp(&y[1].abs());
         let slowest = *extremes.iter().min_by(by_speed).unwrap_or(&extremes[0]);
         let fastest = *extremes.iter().max_by(by_speed).unwrap_or(&extremes[0]);
@@ -381,35 +337,21 @@ impl<'m> CycleProblem<'m> {
     }
 }
 
-/// After how many radians the machine moves as before; none if that never happens.
-fn repetition_angle(machine: &Machine, y: &[f64]) -> Result<Option<f64>, DynamicsError> {
+/// The angle after which the machine moves as before, rad; none if that never happens.
+fn cycle_angle(machine: &Machine, y: &[f64]) -> Result<Option<f64>> {
     let mut ode = MachineOde::new(machine, 0.0, y)?;
-    let mut rates = |q: f64| -> Result<Vec<f64>, DynamicsError> {
+    let rates = |q: f64| -> Result<Vec<f64>> {
         let mut there = y.to_vec();
         there[0] = q;
         let mut rates = vec![0.0; y.len()];
         ode.rhs(0.0, &there, &mut rates)?;
         Ok(rates)
     };
-    let mut here = Vec::with_capacity(PHASE_FRACTIONS.len());
-    for part in PHASE_FRACTIONS {
-        here.push(rates(y[0] + TAU * part)?);
-    }
-    let largest = |i: usize| here.iter().fold(0.0_f64, |max, r| max.max(r[i].abs()));
-    let sizes: Vec<f64> = (0..y.len()).map(largest).collect();
-    for revolutions in 1..=MAX_REVOLUTIONS {
-        let angle = TAU * f64::from(revolutions);
-        let mut same = true;
-        for (part, here) in PHASE_FRACTIONS.iter().zip(&here) {
-            let Ok(there) = rates(y[0] + TAU * part + angle) else {
-                return Ok(None);
-            };
-            let mut both = here.iter().zip(&there).zip(&sizes);
-            same &= both.all(|((a, b), size)| (a - b).abs() <= PERIODICITY_TOLERANCE * size);
-        }
-        if same {
-            return Ok(Some(angle));
-        }
-    }
-    Ok(None)
+    let same = |all: &[Vec<f64>], here: &Vec<f64>, there: &Vec<f64>| {
+        here.iter().zip(there).enumerate().all(|(i, (a, b))| {
+            let size = all.iter().fold(0.0_f64, |max, r| max.max(r[i].abs()));
+            (a - b).abs() <= PERIODICITY_TOLERANCE * size
+        })
+    };
+    repetition_angle(y[0], &PHASE_FRACTIONS, rates, same)
 }

@@ -1,5 +1,4 @@
-//! Integration of order 8, of Dormand and Prince with Hairer's control of the step (DOP853), for what is
-//! smooth.
+//! The method of order 8 of Dormand and Prince with Hairer's step-size control (DOP853), for smooth systems.
 //!
 //! ```text
 //! y₁ = y₀ + h Σ bᵢ kᵢ,   kᵢ = f(t₀ + cᵢ h, y₀ + h Σ aᵢⱼ kⱼ),   12 stages             (1)
@@ -7,42 +6,41 @@
 //! ```
 //!
 //! (Hairer, Nørsett and Wanner 1993, eq. II.10.17.) diffsol's explicit methods have at most 8 stages and one error
-//! formula, so this one has steps of its own. It fits where diffsol's stand: behind the same `integrate`, watched in
-//! the same way. An evaluation that fails shortens the step, and ends the motion where no step is short
-//! enough. Three more stages are evaluated where something is looked for within a step.
+//! formula, so this one has a step loop of its own, behind the same `integrate` and with the same observers. An
+//! evaluation that fails shortens the step, and ends the motion where no step is short
+//! enough. Three more stages are evaluated where dense output is needed within a step.
 
 mod coefficients;
 
-use crate::error::DynamicsError;
-
+use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Options, Statistics};
 use coefficients::{DENSE, ERRORS, EXTRA_NODES, EXTRA_STAGES, NODES, Row, STAGES, WEIGHTS};
 
 /// Stages, the interpolant's among them.
 const ALL_STAGES: usize = 16;
-/// The rates at the end of a step.
+/// The stage at the end of a step.
 const END_STAGE: usize = 12;
-/// A new step is this part of what the error allows, and no less or more than these times the last.
+/// A new step is this part of what the error allows, within these multiples of the last.
 const SAFETY: f64 = 0.9;
 const MIN_FACTOR: f64 = 1.0 / 3.0;
 const MAX_FACTOR: f64 = 6.0;
 /// Terms of the interpolant.
 const INTERPOLANT_TERMS: usize = 8;
-/// Exponents of a step's own error and of the one before in the choice of the next step (Gustafsson): against
-/// 1/8 and 0 a third fewer steps are rejected, at the same work for the same error.
+/// Exponents of a step's error and of the one before in the choice of the next step (Gustafsson): compared with
+/// 1/8 and 0, a third fewer steps are rejected, with the same work for the same error.
 const ERROR_EXPONENT: f64 = -(0.125 - 0.2 * PREVIOUS_ERROR_EXPONENT);
 const PREVIOUS_ERROR_EXPONENT: f64 = 0.04;
-/// Below this part of the tolerance an error is no guide.
+/// An error below this part of the tolerance does not control the step.
 const MIN_ERROR: f64 = 1e-4;
 /// h |λ| up to which the method is stable on the real axis (Hairer and Wanner 1996, IV.2).
 const STABILITY_LIMIT: f64 = 6.1;
-/// What is left of a step in which an evaluation failed.
+/// The factor of a step in which an evaluation failed.
 const FAILURE_REDUCTION: f64 = 0.25;
 /// A step that ends within this part of itself before the end is stretched to it.
 const STRETCH_FRACTION: f64 = 0.01;
 
-/// Integrates a system whose start has `rates`, by steps no shorter than `shortest` (s), each state to its own
+/// Integrates a system whose start has `rates`, by steps no shorter than `min_step` (s), each state to its own
 /// absolute tolerance.
 pub(crate) fn integrate(
     system: &mut dyn OdeSystem,
@@ -99,7 +97,7 @@ impl Stepper<'_> {
         end: Option<f64>,
         options: &Options,
         observer: StepObserver<'_>,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         let max_step = options.max_step.unwrap_or(f64::INFINITY);
         let remaining = |t: f64| end.map_or(f64::INFINITY, |end| end - t);
         let mut h = self.initial_step(remaining(self.from.t).min(max_step));
@@ -128,37 +126,35 @@ impl Stepper<'_> {
     }
 
     /// Takes one step of about `h`, or less, and returns what the next may be.
-    fn step(&mut self, mut h: f64, end: Option<f64>) -> Result<f64, DynamicsError> {
+    fn step(&mut self, mut h: f64, end: Option<f64>) -> Result<f64> {
         let t = self.from.t;
         let mut max_factor = MAX_FACTOR;
         let mut failure = None;
         loop {
             let end = end.filter(|end| end - t <= (1.0 + STRETCH_FRACTION) * h);
             self.to.t = end.unwrap_or(t + h);
-            // As long as rounding makes it.
+            // Its length after rounding.
             h = self.to.t - t;
             if !(h > self.min_step && t + 0.1 * h > t) {
                 return Err(failure.unwrap_or(DynamicsError::StepTooSmall { t }));
             }
             if let Err(error) = self.stages.take_step(&self.from, h, &mut self.to) {
-                // The first failure is the cause; what shorter steps then meet is not.
+                // The first failure is the cause; later ones of shorter steps are not.
                 failure.get_or_insert(error);
                 (h, max_factor) = (FAILURE_REDUCTION * h, 1.0);
                 continue;
             }
-            let error = self
-                .stages
-                .error_norm(h, self.tolerance, [&self.from.y, &self.to.y]);
-            // An error that is no number is not small.
+            let ends = [&self.from.y[..], &self.to.y[..]];
+            let error = self.stages.error_norm(h, self.tolerance, ends);
+            // NaN is not accepted.
             if error <= 1.0 {
                 let factor = SAFETY
                     * error.powf(ERROR_EXPONENT)
                     * self.previous_error.powf(PREVIOUS_ERROR_EXPONENT);
                 self.previous_error = error.max(MIN_ERROR);
                 self.accepted_steps += 1;
-                self.stiff_steps += usize::from(
-                    self.stages.stiffness(h, (self.tolerance.1, &self.to.y)) > STABILITY_LIMIT,
-                );
+                let stiffness = self.stages.stiffness(h, (self.tolerance.1, &self.to.y));
+                self.stiff_steps += usize::from(stiffness > STABILITY_LIMIT);
                 return Ok(factor.clamp(MIN_FACTOR, max_factor) * h);
             }
             self.rejected_steps += 1;
@@ -171,7 +167,7 @@ impl Stepper<'_> {
         }
     }
 
-    /// A first step of which an Euler step's curvature says that it fits (Hairer, Nørsett and Wanner 1993,
+    /// A first step from the curvature that an Euler step shows (Hairer, Nørsett and Wanner 1993,
     /// II.4).
     fn initial_step(&mut self, max_step: f64) -> f64 {
         let (rtol, atol) = self.tolerance;
@@ -216,10 +212,10 @@ struct Stages<'s> {
     system: &'s mut dyn OdeSystem,
     /// By state, the rates at all stages.
     stage_rhs: Vec<[f64; ALL_STAGES]>,
-    /// By state: the increment of the step, and what earlier sums have lost to rounding.
+    /// By state: the increment of the step, and the rounding of earlier sums.
     increment: Vec<f64>,
     compensation: Vec<f64>,
-    /// The same with that of the step just taken.
+    /// The same with that of the last step.
     next_compensation: Vec<f64>,
     /// The state at a stage, that of the twelfth, and rates.
     stage_state: Vec<f64>,
@@ -254,19 +250,14 @@ impl<'s> Stages<'s> {
     }
 
     /// A step of `h` by (1), and the rates at its end.
-    fn take_step(
-        &mut self,
-        from: &OdeState,
-        h: f64,
-        to: &mut OdeState,
-    ) -> Result<(), DynamicsError> {
+    fn take_step(&mut self, from: &OdeState, h: f64, to: &mut OdeState) -> Result<()> {
         for (k, (row, node)) in STAGES.iter().zip(&NODES).enumerate() {
             self.set_stage_state(row, from, h);
             self.evaluate_stage(k + 1, from.t + node * h)?;
         }
         self.stage_12_state.copy_from_slice(&self.stage_state);
         for (i, rates) in self.stage_rhs.iter().enumerate() {
-            // What rounding took off the sum before is put back (Kahan).
+            // The rounding of the sum before is compensated (Kahan).
             self.increment[i] = h * WEIGHTS.weighted_sum(rates) - self.compensation[i];
             self.stage_state[i] = from.y[i] + self.increment[i];
         }
@@ -280,18 +271,14 @@ impl<'s> Stages<'s> {
 
     /// The state at a stage.
     fn set_stage_state(&mut self, row: &Row, from: &OdeState, h: f64) {
-        for ((y, from), rates) in self
-            .stage_state
-            .iter_mut()
-            .zip(&from.y)
-            .zip(&self.stage_rhs)
-        {
+        let states = self.stage_state.iter_mut().zip(&from.y);
+        for ((y, from), rates) in states.zip(&self.stage_rhs) {
             *y = from + h * row.weighted_sum(rates);
         }
     }
 
-    /// The rates of a stage, whose state is in `stage`.
-    fn evaluate_stage(&mut self, k: usize, t: f64) -> Result<(), DynamicsError> {
+    /// Evaluates the rates of a stage, whose state is in `stage_state`.
+    fn evaluate_stage(&mut self, k: usize, t: f64) -> Result<()> {
         self.evaluations += 1;
         self.system.rhs(t, &self.stage_state, &mut self.rhs)?;
         for (rates, out) in self.stage_rhs.iter_mut().zip(&self.rhs) {
@@ -339,19 +326,15 @@ impl<'s> Stages<'s> {
         std::mem::swap(&mut self.compensation, &mut self.next_compensation);
     }
 
-    /// Makes the interpolant of the step taken, with three more stages.
-    fn build_interpolant(&mut self, from: &OdeState, to: &OdeState) -> Result<(), DynamicsError> {
+    /// Builds the interpolant of the last step, with three more stages.
+    fn build_interpolant(&mut self, from: &OdeState, to: &OdeState) -> Result<()> {
         let h = to.t - from.t;
         for (k, (row, node)) in EXTRA_STAGES.iter().zip(&EXTRA_NODES).enumerate() {
             self.set_stage_state(row, from, h);
             self.evaluate_stage(END_STAGE + 1 + k, from.t + node * h)?;
         }
-        for (i, (terms, rates)) in self
-            .interpolant_terms
-            .iter_mut()
-            .zip(&self.stage_rhs)
-            .enumerate()
-        {
+        let states = self.interpolant_terms.iter_mut().zip(&self.stage_rhs);
+        for (i, (terms, rates)) in states.enumerate() {
             let increment = to.y[i] - from.y[i];
             let slope_difference = h * rates[0] - increment;
             *terms = [
@@ -368,8 +351,8 @@ impl<'s> Stages<'s> {
         Ok(())
     }
 
-    /// The state at a part of the step, of which the interpolant is known: its terms are taken alternately by
-    /// what lies behind and what lies ahead.
+    /// The state at a fraction of the step by the interpolant: its terms are multiplied alternately by the fraction
+    /// behind and the fraction ahead.
     fn interpolate(&self, part: f64, y: &mut [f64]) {
         let factors = [part, 1.0 - part];
         for (y, terms) in y.iter_mut().zip(&self.interpolant_terms) {

@@ -6,7 +6,7 @@ use dwell_geometry::body_states::CoordinateFunction;
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude};
 use dwell_numerics::Scalar;
 
-/// A drive that cannot be taken into a machine.
+/// A drive that does not fit a machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("drive {drive}: {what}")]
 pub struct DriveError {
@@ -26,7 +26,7 @@ pub(crate) struct CompiledDrive {
     pub(crate) state: Option<usize>,
     /// N² J, kg m² or kg.
     pub(crate) reflected_inertia: f64,
-    /// What is given from outside: an action, a voltage, a wanted speed.
+    /// Its input: a force, a voltage or a reference speed.
     pub(crate) input: Magnitude,
     law: DriveLaw,
 }
@@ -41,7 +41,7 @@ enum DriveLaw {
 }
 
 impl CompiledDrive {
-    /// Takes drives into use.
+    /// Checks and compiles drives.
     ///
     /// # Errors
     /// The first [`DriveError`].
@@ -54,9 +54,8 @@ impl CompiledDrive {
         let mut found = Vec::with_capacity(drives.len());
         for (i, drive) in drives.iter().enumerate() {
             let wrong = |what| DriveError { drive: i, what };
-            let load = first_load + i;
-            let one = Self::new(mechanism, drive, load, &mut states).map_err(wrong)?;
-            found.push(one);
+            let compiled = Self::new(mechanism, drive, first_load + i, &mut states);
+            found.push(compiled.map_err(wrong)?);
         }
         Ok(found)
     }
@@ -83,30 +82,27 @@ impl CompiledDrive {
                 if !(finite && positive) || m.resistance == 0.0 {
                     return Err("a motor needs a resistance above zero, no number below zero");
                 }
-                let law =
-                    DriveLaw::Motor([m.torque_constant * m.gear_ratio, m.resistance, m.inductance]);
+                let constant = m.torque_constant * m.gear_ratio;
+                let law = DriveLaw::Motor([constant, m.resistance, m.inductance]);
                 let reflected_inertia = m.gear_ratio * m.gear_ratio * m.rotor_inertia;
                 (law, reflected_inertia, state(m.inductance > 0.0))
             }
             DriveKind::SpeedController(r) => {
-                if !not_negative(&[r.proportional_gain, r.integral_gain])
-                    || r.limit.is_nan()
-                    || r.limit <= 0.0
-                {
+                let [proportional, integral] = [r.proportional_gain, r.integral_gain];
+                if !(not_negative(&[proportional, integral]) && r.limit > 0.0) {
                     return Err(
                         "a speed controller needs gains of zero or more and a limit above zero",
                     );
                 }
-                let law =
-                    DriveLaw::SpeedController([r.proportional_gain, r.integral_gain, r.limit]);
-                (law, 0.0, state(r.integral_gain > 0.0))
+                let law = DriveLaw::SpeedController([proportional, integral, r.limit]);
+                (law, 0.0, state(integral > 0.0))
             }
         };
         let input = drive.kind.input().clone();
         match input {
             Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => {
                 return Err(
-                    "friction and separating forces act in joints alone, and a drive is not given by another",
+                    "the input of a drive is neither a force of a joint nor the force of another drive",
                 );
             }
             Magnitude::Constant(_)
@@ -124,8 +120,8 @@ impl CompiledDrive {
         })
     }
 
-    /// The action on the coordinate (without the rotor's inertia) and the rate of the drive's state, for
-    /// the action, voltage or speed that it is given and the coordinate's speed.
+    /// The force on the coordinate (without the rotor's inertia) and the rate of the drive's state, for
+    /// an input and the coordinate's speed.
     pub(crate) fn eval<T: Scalar>(&self, input: T, speed: T, state: Option<T>) -> (T, T) {
         let zero = T::from_f64(0.0);
         match self.law {
@@ -150,10 +146,8 @@ impl CompiledDrive {
                 }
                 let beyond = sum.value().signum();
                 let saturated = error.value() * beyond > 0.0;
-                (
-                    T::from_f64(limit * beyond),
-                    if saturated { zero } else { error },
-                )
+                let rate = if saturated { zero } else { error };
+                (T::from_f64(limit * beyond), rate)
             }
         }
     }

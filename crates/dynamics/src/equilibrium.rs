@@ -1,7 +1,7 @@
 //! Equilibria of a loaded machine: states with the coordinates at rest and constant drive states. Coulomb friction is
 //! regularised here and vanishes at rest, so it keeps nothing in place.
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::machine::Machine;
 use crate::machine_ode::MachineOde;
 use crate::ode::OdeSystem;
@@ -15,15 +15,15 @@ const SEARCH_STEPS: usize = 512;
 /// Steps of Newton's method, and halvings of one.
 const MAX_NEWTON_STEPS: usize = 100;
 const MAX_HALVINGS: usize = 40;
-/// Most that a coordinate is moved in a step, rad (or m): an angle further on is another place.
+/// Largest change of a coordinate in a step, rad or m.
 const MAX_COORDINATE_STEP: f64 = 0.5;
-/// A step this small, relatively, that comes no nearer is rounding.
+/// A step that does not reduce the residual and is smaller than this, relatively, is rounding.
 const STEP_TOLERANCE: f64 = 1e-9;
-/// A force below this part of the largest is none.
+/// A force below this part of the largest is zero.
 const FORCE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
-/// A real part below this part of the largest eigenvalue is none.
+/// A real part below this part of the largest eigenvalue is zero.
 const DAMPING_TOLERANCE: f64 = 1e-9;
-/// Pivots below this part of the largest leave a matrix without a solution.
+/// With pivots below this part of the largest a matrix is singular.
 const PIVOT_TOLERANCE: f64 = 1e-14;
 
 /// The stability of an equilibrium.
@@ -62,7 +62,7 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
-    fn new(machine: &Machine, y: Vec<f64>) -> Result<Self, DynamicsError> {
+    fn new(machine: &Machine, y: Vec<f64>) -> Result<Self> {
         let state_space = linearise(machine, 0.0, &y)?;
         let eigenvalues = state_space.eigenvalues()?;
         let stability = stability(&eigenvalues);
@@ -106,19 +106,16 @@ fn stability(eigenvalues: &[[f64; 2]]) -> Stability {
 
 /// All equilibria of a machine of one free coordinate between two values of it, in their order.
 ///
-/// Of a whole turn, from and to, only one end counts.
+/// Of a whole revolution only one end counts.
 ///
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`] where every position is one, or a drive never settles; and what stands
 /// in the way of an evaluation.
-pub fn equilibria(
-    machine: &Machine,
-    [from, to]: [f64; 2],
-) -> Result<Vec<Equilibrium>, DynamicsError> {
+pub fn equilibria(machine: &Machine, [from, to]: [f64; 2]) -> Result<Vec<Equilibrium>> {
     let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
         return Err(DynamicsError::NoEquilibrium {
-            what: "only the equilibria of one freedom can be found over an interval",
+            what: "equilibria over an interval can be found for one degree of freedom only",
         });
     }
     let mut samples = Vec::with_capacity(SEARCH_STEPS + 1);
@@ -135,10 +132,8 @@ pub fn equilibria(
     let mut zeros = problem.zeros(&samples, size)?;
     let revolutions = (to - from) / TAU;
     let at_both_ends = [zeros.first(), zeros.last()] == [Some(&from), Some(&to)];
-    if at_both_ends
-        && revolutions == revolutions.round()
-        && machine.model().plan().range().period().is_some()
-    {
+    let periodic = machine.model().plan().range().period().is_some();
+    if at_both_ends && revolutions == revolutions.round() && periodic {
         zeros.pop();
     }
     let mut found = Vec::with_capacity(zeros.len());
@@ -149,19 +144,16 @@ pub fn equilibria(
     Ok(found)
 }
 
-/// What a machine of one free coordinate has at rest at each of some coordinates, the drives settled: the
-/// generalised force, N·m or N, and the potential, J.
+/// The generalised force (N·m or N) and the potential (J) of a machine of one free coordinate at rest, at each of some
+/// coordinates, with the drives settled.
 ///
 /// # Errors
 /// As of [`equilibria`].
-pub fn static_force_and_potential(
-    machine: &Machine,
-    coordinates: &[f64],
-) -> Result<Vec<[f64; 2]>, DynamicsError> {
+pub fn static_force_and_potential(machine: &Machine, coordinates: &[f64]) -> Result<Vec<[f64; 2]>> {
     let mut problem = EquilibriumProblem::new(machine)?;
     if machine.free().len() != 1 {
         return Err(DynamicsError::NoEquilibrium {
-            what: "only one freedom has a single force over its coordinate",
+            what: "a single force over the coordinate exists for one degree of freedom only",
         });
     }
     let mut workspace = machine.workspace();
@@ -169,12 +161,12 @@ pub fn static_force_and_potential(
     for &q in coordinates {
         let acceleration = problem.acceleration(q)?;
         let mut state = problem.y.clone();
-        machine.evaluate(0.0, &state, &mut workspace)?;
-        let [kinetic_at_rest, potential] = machine.energy(&workspace);
+        let at_rest = machine.evaluate(0.0, &state, &mut workspace)?;
+        let [kinetic_at_rest, potential] = at_rest.energy();
         state[1] = 1.0;
-        machine.evaluate(0.0, &state, &mut workspace)?;
-        // Led coordinates stand still here, so that all kinetic energy is that of the free one.
-        let inertia = 2.0 * (machine.energy(&workspace)[0] - kinetic_at_rest);
+        let moving = machine.evaluate(0.0, &state, &mut workspace)?;
+        // Prescribed coordinates stand still here, so that all kinetic energy is that of the free one.
+        let inertia = 2.0 * (moving.energy()[0] - kinetic_at_rest);
         found.push([inertia * acceleration, potential]);
     }
     Ok(found)
@@ -184,7 +176,7 @@ pub fn static_force_and_potential(
 ///
 /// # Errors
 /// [`DynamicsError::NoEquilibrium`] where it finds none; and what stands in the way of an evaluation.
-pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium, DynamicsError> {
+pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium> {
     let mut problem = EquilibriumProblem::new(machine)?;
     problem.y.copy_from_slice(y);
     problem.set_at_rest();
@@ -199,14 +191,14 @@ pub fn equilibrium_near(machine: &Machine, y: &[f64]) -> Result<Equilibrium, Dyn
 /// A machine at rest.
 struct EquilibriumProblem<'m> {
     machine: &'m Machine,
-    ode: Option<MachineOde<'m>>,
+    ode: MachineOde<'m>,
     y: Vec<f64>,
     rhs: Vec<f64>,
     jacobian: Vec<f64>,
 }
 
 impl<'m> EquilibriumProblem<'m> {
-    fn new(machine: &'m Machine) -> Result<Self, DynamicsError> {
+    fn new(machine: &'m Machine) -> Result<Self> {
         if machine.depends_on_time() {
             return Err(DynamicsError::NoEquilibrium {
                 what: "a load, drive or prescribed motion changes with time",
@@ -215,7 +207,7 @@ impl<'m> EquilibriumProblem<'m> {
         let n = machine.state_count();
         Ok(Self {
             machine,
-            ode: None,
+            ode: MachineOde::unscaled(machine),
             y: vec![0.0; n],
             rhs: vec![0.0; n],
             jacobian: vec![0.0; n * n],
@@ -228,31 +220,12 @@ impl<'m> EquilibriumProblem<'m> {
         self.y[self.machine.work_offset()..].fill(0.0);
     }
 
-    fn ode(&mut self) -> Result<(), DynamicsError> {
-        if self.ode.is_none() {
-            self.ode = Some(MachineOde::new(self.machine, 0.0, &self.y)?);
-        }
-        Ok(())
-    }
-
-    fn rhs(&mut self) -> Result<(), DynamicsError> {
-        self.ode()?;
-        match &mut self.ode {
-            Some(ode) => ode.rhs(0.0, &self.y, &mut self.rhs),
-            None => Ok(()),
-        }
-    }
-
-    fn evaluate_jacobian(&mut self) -> Result<(), DynamicsError> {
-        self.ode()?;
-        match &mut self.ode {
-            Some(ode) => ode.jacobian(0.0, &self.y, &mut self.jacobian),
-            None => Ok(()),
-        }
+    fn rhs(&mut self) -> Result<()> {
+        self.ode.rhs(0.0, &self.y, &mut self.rhs)
     }
 
     /// q̈ at `q`, with the drives settled there.
-    fn acceleration(&mut self, q: f64) -> Result<f64, DynamicsError> {
+    fn acceleration(&mut self, q: f64) -> Result<f64> {
         self.y[0] = q;
         let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
         if drive_states.is_empty() {
@@ -264,14 +237,12 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// dq̈/dq at the last position, where the drives stay settled.
-    fn acceleration_slope(&mut self) -> Result<f64, DynamicsError> {
-        self.evaluate_jacobian()?;
+    fn acceleration_slope(&mut self) -> Result<f64> {
+        self.ode.jacobian(0.0, &self.y, &mut self.jacobian)?;
         let n = self.machine.state_count();
         let drive_states: Vec<usize> = (2..self.machine.work_offset()).collect();
-        let mut response: Vec<f64> = drive_states
-            .iter()
-            .map(|&i| -self.jacobian[i * n])
-            .collect();
+        let entries = drive_states.iter().map(|&i| -self.jacobian[i * n]);
+        let mut response: Vec<f64> = entries.collect();
         self.solve_block(&drive_states, &drive_states, &mut response)?;
         let through = drive_states.iter().zip(&response);
         let more: f64 = through.map(|(&j, dm)| self.jacobian[n + j] * dm).sum();
@@ -279,7 +250,7 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// The zeros of q̈ between (q, q̈, dq̈/dq) at many q; `size` is the largest q̈.
-    fn zeros(&mut self, samples: &[(f64, f64, f64)], size: f64) -> Result<Vec<f64>, DynamicsError> {
+    fn zeros(&mut self, samples: &[(f64, f64, f64)], size: f64) -> Result<Vec<f64>> {
         let mut zeros = Vec::new();
         zeros.extend((samples[0].1 == 0.0).then_some(samples[0].0));
         for pair in samples.windows(2) {
@@ -289,7 +260,7 @@ impl<'m> EquilibriumProblem<'m> {
             } else if before.1 * now.1 < 0.0 {
                 zeros.extend(root::find(|q| self.acceleration(q), before.0, now.0)?);
             } else if before.1 * before.2 < 0.0 && now.1 * now.2 > 0.0 {
-                // It comes nearer to zero, and goes away from it again.
+                // It approaches zero and leaves it again.
                 let slope = |q: f64| self.acceleration(q).and_then(|_| self.acceleration_slope());
                 let Some(nearest) = root::find(slope, before.0, now.0)? else {
                     continue;
@@ -307,12 +278,7 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// Solves with a block of the Jacobian in place.
-    fn solve_block(
-        &self,
-        rows: &[usize],
-        columns: &[usize],
-        b: &mut [f64],
-    ) -> Result<(), DynamicsError> {
+    fn solve_block(&self, rows: &[usize], columns: &[usize], b: &mut [f64]) -> Result<()> {
         let n = self.machine.state_count();
         let entry = |&i: &usize| columns.iter().map(move |&j| self.jacobian[i * n + j]);
         let mut block: Vec<f64> = rows.iter().flat_map(entry).collect();
@@ -329,7 +295,7 @@ impl<'m> EquilibriumProblem<'m> {
     }
 
     /// Newton's method: some rates to zero, by some states.
-    fn solve(&mut self, rows: &[usize], columns: &[usize]) -> Result<(), DynamicsError> {
+    fn solve(&mut self, rows: &[usize], columns: &[usize]) -> Result<()> {
         let size = |rates: &[f64]| {
             let squares = rows.iter().map(|&i| rates[i] * rates[i]);
             squares.sum::<f64>().sqrt()
@@ -338,7 +304,7 @@ impl<'m> EquilibriumProblem<'m> {
         self.rhs()?;
         let mut residual = size(&self.rhs);
         for _ in 0..MAX_NEWTON_STEPS {
-            self.evaluate_jacobian()?;
+            self.ode.jacobian(0.0, &self.y, &mut self.jacobian)?;
             let mut step: Vec<f64> = rows.iter().map(|&i| -self.rhs[i]).collect();
             self.solve_block(rows, columns, &mut step)?;
             let from = self.y.clone();
@@ -361,7 +327,7 @@ impl<'m> EquilibriumProblem<'m> {
                 factor *= 0.5;
             }
             if !nearer {
-                // Rounding if the whole step was small, else a dead end.
+                // Rounding if the whole step was small, else Newton's method fails.
                 self.y = from;
                 self.rhs()?;
                 if relative_step <= STEP_TOLERANCE {

@@ -5,6 +5,9 @@ use dwell_kinetostatics::KinetostaticsError;
 use dwell_numerics::panels::NotResolved;
 use thiserror::Error;
 
+/// A result that fails with a [`DynamicsError`] unless another error is named.
+pub type Result<T, E = DynamicsError> = std::result::Result<T, E>;
+
 impl From<KinetostaticsError> for DynamicsError {
     fn from(error: KinetostaticsError) -> Self {
         match error {
@@ -166,7 +169,7 @@ pub enum DynamicsError {
 }
 
 /// The inertia `m` (kg m² or kg) at `q`, if it is positive and finite.
-pub(crate) fn positive_inertia(m: f64, q: f64) -> Result<f64, DynamicsError> {
+pub(crate) fn positive_inertia(m: f64, q: f64) -> Result<f64> {
     if m > 0.0 && m.is_finite() {
         Ok(m)
     } else {

@@ -2,7 +2,7 @@
 //! a straight line over the inertia, δ ≈ ΔE / (J ω²), so that few cycles are solved for.
 
 use crate::cycle::{Cycle, steady_cycle};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::machine::Machine;
 use crate::options::Options;
 
@@ -42,7 +42,7 @@ pub fn size_flywheel(
     guess: &[f64],
     wanted: f64,
     options: &Options,
-) -> Result<Flywheel, DynamicsError> {
+) -> Result<Flywheel> {
     if !(wanted.is_finite() && wanted > 0.0) {
         return Err(DynamicsError::BadOption {
             what: "the coefficient of fluctuation",
@@ -52,7 +52,7 @@ pub fn size_flywheel(
     }
     let initial_inertia = machine.flywheel(0);
     let mut guess = guess.to_vec();
-    let mut with = |inertia: f64| -> Result<Cycle, DynamicsError> {
+    let mut with = |inertia: f64| -> Result<Cycle> {
         let heavier = machine.clone().with_flywheel(0, initial_inertia + inertia);
         let cycle = steady_cycle(&heavier, &guess, options)?;
         guess.clone_from(&cycle.initial_state);
@@ -68,8 +68,8 @@ pub fn size_flywheel(
     let difference = |cycle: &Cycle| wanted / cycle.fluctuation - 1.0;
     let mut before = (0.0, difference(&cycle));
     let mut workspace = machine.workspace();
-    machine.evaluate(0.0, &cycle.initial_state, &mut workspace)?;
-    let [kinetic, _] = machine.energy(&workspace);
+    let state = machine.evaluate(0.0, &cycle.initial_state, &mut workspace)?;
+    let [kinetic, _] = state.energy();
     let mean = 2.0 * kinetic / cycle.initial_state[1].powi(2);
     let mut inertia = mean * (cycle.fluctuation / wanted - 1.0);
     for _ in 0..MAX_TRIALS {

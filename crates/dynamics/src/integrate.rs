@@ -1,13 +1,13 @@
 //! Integration in time, by diffsol behind one guarded loop, or by DOP853.
 //!
-//! diffsol's own `solve` has no step budget and no finiteness check, and its explicit methods accept
-//! a step whose error is no number (`f64::max` discards a NaN). So every step is taken here, and
-//! after each one the state, the budget and the equation's own errors are looked at. An evaluation
-//! that fails leaves its error in a cell and a NaN in the derivative: the integrator then shrinks
-//! its step or gives up, and the caller gets the error of that evaluation.
+//! diffsol's own `solve` has no limit of steps and does not check for finite states, and its explicit methods accept
+//! a step whose error is NaN (`f64::max` discards it). So every step is taken here, and
+//! after each one the state, the number of steps and the errors of evaluations are checked. An evaluation
+//! that fails stores its error in a cell and NaN in the derivative: the integrator then shortens
+//! its step or fails, and the caller gets the error of that evaluation.
 
 use crate::dop853;
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
 use diffsol::{
@@ -23,21 +23,8 @@ type Solver = NalgebraLU<f64>;
 /// Smallest step, s, at a rate of 1 per s or less; at a higher one, in proportion shorter.
 const MIN_STEP: f64 = 1e-17;
 
-/// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
-/// observer is called after every step.
-///
-/// # Errors
-/// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. An error that
-/// ends the integration later is in [`Termination::error`].
-pub fn integrate(
-    system: &mut dyn OdeSystem,
-    start: &OdeState,
-    end: Option<f64>,
-    options: &Options,
-    observer: StepObserver<'_>,
-) -> Result<Termination, DynamicsError> {
-    options.check()?;
-    let n = system.size();
+/// Refuses a start or an end that is not finite, or an end before the start.
+fn check_interval(start: &OdeState, end: Option<f64>) -> Result<()> {
     for &value in std::iter::once(&start.t).chain(&start.y) {
         if !value.is_finite() {
             return Err(DynamicsError::BadOption {
@@ -47,17 +34,37 @@ pub fn integrate(
             });
         }
     }
-    if let Some(end) = end.filter(|end| !(end.is_finite() && *end > start.t)) {
-        return Err(DynamicsError::BadOption {
+    match end.filter(|end| !(end.is_finite() && *end > start.t)) {
+        Some(value) => Err(DynamicsError::BadOption {
             what: "the end of the motion",
             must: "time after its start",
-            value: end,
-        });
+            value,
+        }),
+        None => Ok(()),
     }
-    // What cannot even start is said at once, not after a futile search for a step size.
+}
+
+/// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
+/// observer is called after every step.
+///
+/// # Errors
+/// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. An error that
+/// ends the integration later is in [`Termination::error`].
+// One function: the problem is a type of closures, which has no name and borrows what is counted and kept here.
+pub fn integrate(
+    system: &mut dyn OdeSystem,
+    start: &OdeState,
+    end: Option<f64>,
+    options: &Options,
+    observer: StepObserver<'_>,
+) -> Result<Termination> {
+    options.check()?;
+    check_interval(start, end)?;
+    let n = system.size();
+    // A start that cannot be evaluated is an error at once, not after a search for a step size.
     let mut rates = vec![0.0; n];
     system.rhs(start.t, &start.y, &mut rates)?;
-    // At rest the rates say how soon something happens: a motor's current climbs within microseconds.
+    // At rest the rates show how soon something happens: a motor's current rises within microseconds.
     let started = start.y.iter().chain(&rates);
     let max_rate = started.fold(1.0_f64, |max, y| max.max(y.abs()));
     let atol: Vec<f64> = (0..n)
@@ -74,7 +81,7 @@ pub fn integrate(
     let system = RefCell::new(system);
     let failure: RefCell<Option<DynamicsError>> = RefCell::new(None);
     let (evaluations, jacobians) = (Cell::new(0), Cell::new(0));
-    // The Jacobian is asked for column by column at one state.
+    // diffsol requests the Jacobian column by column at one state.
     let last = RefCell::new((vec![f64::NAN; n + 1], vec![0.0; n * n]));
     let solver = |e: DiffsolError| solver_error(&e, start.t);
     let mut problem = OdeBuilder::<Matrix>::new()
@@ -104,7 +111,7 @@ pub fn integrate(
                     }
                 }
                 for (out, row) in jv.iter_mut().zip(matrix.chunks_exact(n)) {
-                    // A column that is not asked for must not spoil this one (0 × ∞).
+                    // Columns that are not requested must not enter (0 × ∞ is NaN).
                     let terms = row.iter().zip(v).filter(|(_, v)| **v != 0.0);
                     *out = terms.map(|(a, v)| a * v).sum();
                 }
@@ -191,12 +198,12 @@ impl StepLoop<'_> {
         solver: &mut S,
         at: &mut OdeState,
         observer: StepObserver<'_>,
-    ) -> Result<(), DynamicsError>
+    ) -> Result<()>
     where
         E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
         S: OdeSolverMethod<'a, E>,
     {
-        // What the last failed evaluation says, else the integrator's own words.
+        // The error of the last failed evaluation, else the integrator's own.
         let cause = |t: f64, e: DiffsolError| {
             let kept = self.failure.borrow_mut().take();
             kept.unwrap_or_else(|| solver_error(&e, t))
@@ -216,7 +223,7 @@ impl StepLoop<'_> {
             }
             // A trial point that step control recovered from is no failure.
             self.failure.borrow_mut().take();
-            let mut dense = |t: f64, out: &mut [f64]| -> Result<(), DynamicsError> {
+            let mut dense = |t: f64, out: &mut [f64]| -> Result<()> {
                 let inside = solver.interpolate_inplace(t, &mut scratch);
                 inside.map_err(|e| solver_error(&e, t))?;
                 out.copy_from_slice(scratch.inner().as_slice());

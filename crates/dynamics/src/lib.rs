@@ -66,6 +66,7 @@ pub mod ode;
 pub mod options;
 pub mod orbit;
 pub mod reduced_ode;
+mod repetition;
 pub mod solve;
 pub mod state_space;
 pub mod tabulated;
@@ -85,7 +86,7 @@ pub use error::DynamicsError;
 pub use flywheel::{Flywheel, size_flywheel};
 pub use integrate::integrate;
 pub use machine::{
-    CoordinateMode, Machine, MachineError, MachineWorkspace, NonconservativeSource,
+    CoordinateMode, Machine, MachineError, MachineState, MachineWorkspace, NonconservativeSource,
     loads_with_drives,
 };
 pub use machine_ode::MachineOde;

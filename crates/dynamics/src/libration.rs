@@ -14,7 +14,7 @@
 //! integral places the turning points: to the rounding of Q, not of V.
 
 use crate::conservative::{ConservativeSystem, EnergyTerms};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::time_density::TimeDensity;
 use dwell_numerics::fourier::{FourierSeries, MAX_POINTS, SHARP_POINTS, refine_samples};
 use dwell_numerics::panels::Panels;
@@ -39,14 +39,13 @@ impl Libration {
         q: f64,
         kinetic: f64,
         mut turning_points: [f64; 2],
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         for _ in 0..MAX_REFINEMENTS {
             let sampled = SampledLibration::new(system, turning_points, |_| true)?;
             let improved = sampled.improved_turning_points(q, kinetic);
             let size = turning_points[0].abs().max(turning_points[1].abs());
             let near = |a: f64, b: f64| (a - b).abs() <= 2.0 * f64::EPSILON * size;
-            let settled =
-                near(improved[0], turning_points[0]) && near(improved[1], turning_points[1]);
+            let settled = (0..2).all(|end| near(improved[end], turning_points[end]));
             turning_points = improved;
             if settled {
                 break;
@@ -55,11 +54,8 @@ impl Libration {
         let resolved =
             |s: &SampledLibration| s.samples.len() >= SHARP_POINTS || s.time_density().is_resolved;
         let sampled = SampledLibration::new(system, turning_points, resolved)?;
-        let (max_kinetic, points, series) = (
-            sampled.max_kinetic(),
-            sampled.samples.len(),
-            sampled.time_density(),
-        );
+        let (max_kinetic, points) = (sampled.max_kinetic(), sampled.samples.len());
+        let series = sampled.time_density();
         let (time_density, points) = if series.is_resolved {
             (TimeDensity::Fourier(series), points)
         } else {
@@ -75,7 +71,7 @@ impl Libration {
         })
     }
 
-    /// The phase on the way up.
+    /// The phase at which it passes `q` upwards.
     pub(crate) fn phase(&self, q: f64) -> f64 {
         let middle = if q < 0.5 * (self.turning_points[0] + self.turning_points[1]) {
             0.0
@@ -86,7 +82,7 @@ impl Libration {
     }
 }
 
-/// A swing by what it has at equally spaced phases of the way up and down.
+/// A libration sampled at equally spaced phases from the lower turning point up and back.
 struct SampledLibration {
     turning_points: [f64; 2],
     samples: Vec<EnergyTerms>,
@@ -98,7 +94,7 @@ impl SampledLibration {
         system: &mut dyn ConservativeSystem,
         turning_points: [f64; 2],
         resolved: impl Fn(&Self) -> bool,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let [a, b] = turning_points;
         let half = 0.5 * (b - a);
         let mut sampled = Self {
@@ -109,7 +105,7 @@ impl SampledLibration {
         loop {
             let samples = std::mem::take(&mut sampled.samples);
             sampled.samples = refine_samples(samples, |part| {
-                // 1 − cos s, and from the nearer end: the same on the way up and down.
+                // 1 − cos s, from the nearer end: the same upwards and downwards.
                 let sine = (PI * part).sin();
                 let cosine = (PI * part).cos();
                 let q = if sine.abs() < cosine.abs() {
@@ -159,10 +155,7 @@ impl SampledLibration {
         let phase = phase_of(q, self.turning_points).unwrap_or(if q < a { 0.0 } else { PI });
         let from_a = self.kinetic_gain(phase);
         let kinetic_left = [kinetic - from_a, kinetic - from_a + self.kinetic_gain(PI)];
-        let at = [
-            self.samples[0].force,
-            self.samples[self.samples.len() / 2].force,
-        ];
+        let at = [0, self.samples.len() / 2].map(|k| self.samples[k].force);
         // At the lower end the force must point up, at the upper one down; else the end is too near.
         let mut moved = [a - width, b + width];
         if at[0] > 0.0 {
@@ -207,13 +200,12 @@ impl SampledLibration {
         if mirrored { -sum } else { sum }
     }
 
-    /// By point of the way up: g, per (3).
+    /// By point upwards: g, by (3).
     fn quotients(&self) -> Vec<f64> {
         let n = self.samples.len();
         let half = 0.5 * (self.turning_points[1] - self.turning_points[0]);
-        let sines: Vec<f64> = (0..2 * n)
-            .map(|i| (PI * i as f64 / n as f64).sin())
-            .collect();
+        let sine = |i: usize| (PI * i as f64 / n as f64).sin();
+        let sines: Vec<f64> = (0..2 * n).map(sine).collect();
         let one = |j: usize| {
             let mirrored = j > n / 4;
             let phase = if mirrored { n / 2 - j } else { j };
@@ -227,33 +219,26 @@ impl SampledLibration {
     fn time_density(&self) -> FourierSeries {
         let n = self.samples.len();
         let quotients = self.quotients();
-        let values: Vec<f64> = (0..n)
-            .map(|j| {
-                let j = j.min(n - j);
-                (self.samples[j].m / (2.0 * quotients[j])).sqrt()
-            })
-            .collect();
+        let mirrored = (0..n).map(|j| j.min(n - j));
+        let value = |j: usize| (self.samples[j].m / (2.0 * quotients[j])).sqrt();
+        let values: Vec<f64> = mirrored.map(value).collect();
         let size = values.iter().sum::<f64>() / n as f64;
         FourierSeries::new(&values, size)
     }
 
     /// dt/ds where equal steps do not resolve it.
-    fn piecewise_time_density(
-        &self,
-        system: &mut dyn ConservativeSystem,
-    ) -> Result<Panels, DynamicsError> {
+    fn piecewise_time_density(&self, system: &mut dyn ConservativeSystem) -> Result<Panels> {
         let [a, b] = self.turning_points;
         let half = 0.5 * (b - a);
         Panels::new(|phase| {
-            // The way down is the way up.
+            // Downwards is as upwards.
             let phase = if phase > PI { TAU - phase } else { phase };
             let mirrored = phase > 0.5 * PI;
             let from_end = if mirrored { PI - phase } else { phase };
             let (sin, cos) = (0.5 * from_end).sin_cos();
             let distance = 2.0 * half * sin * sin;
-            let m = system
-                .energy_terms(if mirrored { b - distance } else { a + distance })?
-                .m;
+            let q = if mirrored { b - distance } else { a + distance };
+            let m = system.energy_terms(q)?.m;
             let quotient = self.sum(mirrored, |k| {
                 if sin == 0.0 {
                     return (k * k) as f64;

@@ -9,24 +9,25 @@
 //! of M are the responses to unit accelerations. A drive is a load along its coordinate s, and a rotor resists s̈
 //! through the drive's unit-load response. τ of a free coordinate is zero. Friction depends on the reactions, and
 //! these on q̈: the effect of each friction on the accelerations is added to its unit-load response before
-//! [`Model::solve_friction`] solves for all of them.
+//! [`ForceState::solve_friction`] solves for all of them.
 //!
 //! The state is [q, q̇ of the free coordinates; currents and integrals of the drives; work of the nonconservative
 //! sources], so that the energy balance is integrated with the motion.
 
 mod drives;
 mod on_fit;
+mod state;
 mod workspace;
 
 use crate::change_point_fit::FitWindow;
 use crate::drive::{CompiledDrive, DriveError};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use dwell_geometry::Mechanism;
-use dwell_kinetostatics::{
-    Drive, ForceSource, InverseDynamics, Load, LoadError, Model, Signal, Workspace,
-};
+use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, Model, Signal};
 use dwell_laws::Law;
 use dwell_numerics::{Scalar, lu};
+pub use state::MachineState;
+use workspace::EquationWorkspace;
 pub use workspace::MachineWorkspace;
 
 /// How a coordinate moves.
@@ -172,81 +173,93 @@ impl Machine {
         y
     }
 
-    /// Evaluates the machine at time `t` (s) and state `y`: coordinates, speeds and accelerations of all
-    /// actuators, the drives' forces and the states of bodies and loads are then in `workspace`.
+    /// Evaluates the machine at time `t` (s) and state `y`.
     ///
     /// # Errors
     /// [`DynamicsError`] where there is no pose, no inertia, or friction jams.
-    pub fn evaluate<T: Scalar>(
-        &self,
+    pub fn evaluate<'a, T: Scalar>(
+        &'a self,
         t: f64,
         y: &[T],
-        workspace: &mut MachineWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
+        workspace: &'a mut MachineWorkspace<T>,
+    ) -> Result<MachineState<'a, T>> {
+        let MachineWorkspace {
+            inner,
+            input_offsets: offsets,
+            equation,
+        } = workspace;
         let n = self.free.len();
-        self.set_actuator_motion(t, y, workspace);
-        if let Some(fit) = self.fit_at(workspace.q.first()) {
-            return self.evaluate_on_fit(fit, t, &y[2 * n..], workspace);
+        let drive_states = &y[2 * n..];
+        self.set_actuator_motion(t, y, equation);
+        let forces = if let Some(fit) = self.fit_at(equation.q.first()) {
+            self.evaluate_on_fit(fit, t, drive_states, offsets, inner, equation)?
+        } else {
+            let state = self
+                .model
+                .kinematic_state(&equation.q, &equation.q_dot, inner)?;
+            let mut state = state.apply_loads(t)?;
+            self.evaluate_drives(t, drive_states, offsets, &mut state, equation)?;
+            let result = &mut equation.inverse_dynamics;
+            let mut state = state.inverse_dynamics(&equation.q_ddot, result)?;
+            self.compose_equation(&mut state, equation)?;
+            self.solve_accelerations(&mut state, equation)?;
+            if self.has_rotors() {
+                self.read_drive_accelerations(state.bodies_at(&equation.q_ddot), equation);
+                self.set_net_drive_forces(&mut state, equation)?;
+            }
+            state
+        };
+        Ok(MachineState {
+            machine: self,
+            t,
+            forces,
+            equation,
+        })
+    }
+
+    /// The mass matrix and the forces of (1), with rotors and flywheels.
+    fn compose_equation<T: Scalar>(
+        &self,
+        state: &mut ForceState<'_, T>,
+        equation: &mut EquationWorkspace<T>,
+    ) -> Result<()> {
+        let n = self.free.len();
+        for (&i, column) in self.free.iter().zip(&mut equation.acceleration_responses) {
+            state.mass_matrix_column(i, column);
         }
-        self.model
-            .set_state(t, &workspace.q, &workspace.q_dot, &mut workspace.inner)?;
-        self.evaluate_drives(t, &y[2 * n..], workspace)?;
-        self.model.loaded_inverse_dynamics(
-            &workspace.q_ddot,
-            &mut workspace.inner,
-            &mut workspace.inverse_dynamics,
-        )?;
+        if self.has_rotors() {
+            self.add_rotor_inertia(state, equation)?;
+        }
+        let columns = equation.acceleration_responses.iter_mut();
+        for ((column, &i), &inertia) in columns.zip(&self.free).zip(&self.flywheels) {
+            column.tau[i] += T::from_f64(inertia);
+        }
         for (k, &i) in self.free.iter().enumerate() {
-            self.model.mass_matrix_column(
-                i,
-                &mut workspace.inner,
-                &mut workspace.acceleration_responses[k],
-            );
-        }
-        if self
-            .drives
-            .iter()
-            .any(|drive| drive.reflected_inertia > 0.0)
-        {
-            self.add_rotor_inertia(workspace)?;
-        }
-        for ((acceleration_response, &i), &inertia) in workspace
-            .acceleration_responses
-            .iter_mut()
-            .zip(&self.free)
-            .zip(&self.flywheels)
-        {
-            acceleration_response.tau[i] += T::from_f64(inertia);
-        }
-        for (k, &i) in self.free.iter().enumerate() {
-            workspace.free_accelerations[k] = -workspace.inverse_dynamics.tau[i];
-            for (column, acceleration_response) in
-                workspace.acceleration_responses.iter().enumerate()
-            {
-                workspace.mass_matrix[k * n + column] = acceleration_response.tau[i];
+            equation.free_accelerations[k] = -equation.inverse_dynamics.tau[i];
+            for (j, column) in equation.acceleration_responses.iter().enumerate() {
+                equation.mass_matrix[k * n + j] = column.tau[i];
             }
         }
-        self.solve_accelerations(workspace)?;
-        self.resolve_drive_forces(workspace)
+        Ok(())
     }
 
     /// Sets coordinates and speeds of all actuators, and the accelerations of the prescribed ones.
-    fn set_actuator_motion<T: Scalar>(&self, t: f64, y: &[T], workspace: &mut MachineWorkspace<T>) {
+    fn set_actuator_motion<T: Scalar>(&self, t: f64, y: &[T], equation: &mut EquationWorkspace<T>) {
         let n = self.free.len();
         let mut k = 0;
         for (i, mode) in self.modes.iter().enumerate() {
             match mode {
                 CoordinateMode::Free => {
-                    workspace.q[i] = y[k];
-                    workspace.q_dot[i] = y[n + k];
-                    workspace.q_ddot[i] = T::from_f64(0.0);
+                    equation.q[i] = y[k];
+                    equation.q_dot[i] = y[n + k];
+                    equation.q_ddot[i] = T::from_f64(0.0);
                     k += 1;
                 }
                 CoordinateMode::Prescribed(law) => {
                     let [q, q_dot, q_ddot, _] = law.eval(t).map(T::from_f64);
-                    workspace.q[i] = q;
-                    workspace.q_dot[i] = q_dot;
-                    workspace.q_ddot[i] = q_ddot;
+                    equation.q[i] = q;
+                    equation.q_dot[i] = q_dot;
+                    equation.q_ddot[i] = q_ddot;
                 }
             }
         }
@@ -255,177 +268,62 @@ impl Machine {
     /// Solves (1) for the free accelerations, with the frictions.
     fn solve_accelerations<T: Scalar>(
         &self,
-        workspace: &mut MachineWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
-        let MachineWorkspace {
-            inner,
+        state: &mut ForceState<'_, T>,
+        equation: &mut EquationWorkspace<T>,
+    ) -> Result<()> {
+        let EquationWorkspace {
+            q,
+            q_ddot,
             inverse_dynamics: result,
-            acceleration_responses,
+            acceleration_responses: columns,
             friction_responses,
             friction_accelerations,
             mass_matrix,
             pivots,
             free_accelerations,
             ..
-        } = workspace;
+        } = equation;
         let diagonal = mass_matrix.first().map_or(1.0, |m| m.value());
         let factored = lu::factor(mass_matrix, pivots);
         let inertia = factored.determinant_sign > 0.0 && factored.pivot_ratio > 0.0;
         let resists = inertia && diagonal > 0.0 && diagonal.is_finite();
         if !(self.free.is_empty() || resists) {
             return Err(DynamicsError::NoInertia {
-                q: workspace.q[self.free[0]].value(),
+                q: q[self.free[0]].value(),
                 m: diagonal,
             });
         }
         lu::solve(mass_matrix, pivots, free_accelerations);
-        for (load, (friction_response, unit_accelerations)) in self
-            .model
-            .frictions()
-            .zip(friction_responses.iter_mut().zip(friction_accelerations))
-        {
-            self.model
-                .unit_load_response(load, inner, friction_response)?;
-            for (value, &i) in unit_accelerations.iter_mut().zip(&self.free) {
-                *value = -friction_response.tau[i];
+        let responses = friction_responses
+            .iter_mut()
+            .zip(&mut *friction_accelerations);
+        for (load, (response, accelerations)) in self.model.frictions().zip(responses) {
+            state.unit_load_response(load, response)?;
+            for (value, &i) in accelerations.iter_mut().zip(&self.free) {
+                *value = -response.tau[i];
             }
-            lu::solve(mass_matrix, pivots, unit_accelerations);
-            for (acceleration_response, &q_ddot) in
-                acceleration_responses.iter().zip(unit_accelerations.iter())
-            {
-                add_scaled(friction_response, acceleration_response, q_ddot);
+            lu::solve(mass_matrix, pivots, accelerations);
+            for (column, &q_ddot) in columns.iter().zip(accelerations.iter()) {
+                response.add_scaled(column, q_ddot);
             }
         }
-        for (acceleration_response, &q_ddot) in
-            acceleration_responses.iter().zip(free_accelerations.iter())
-        {
-            add_scaled(result, acceleration_response, q_ddot);
+        for (column, &q_ddot) in columns.iter().zip(free_accelerations.iter()) {
+            result.add_scaled(column, q_ddot);
         }
         if self.model.frictions().len() > 0 {
-            self.model
-                .solve_friction(&result.reactions, friction_responses, inner)?;
+            state.solve_friction(&result.reactions, friction_responses)?;
         }
+        let frictions = || self.model.frictions().map(|load| state.magnitudes()[load]);
         for (k, &i) in self.free.iter().enumerate() {
-            let mut q_ddot = workspace.free_accelerations[k];
-            for (unit_accelerations, load) in workspace
-                .friction_accelerations
-                .iter()
-                .zip(self.model.frictions())
-            {
-                q_ddot += unit_accelerations[k] * workspace.inner.loads().magnitude[load];
+            q_ddot[i] = free_accelerations[k];
+            for (accelerations, friction) in friction_accelerations.iter().zip(frictions()) {
+                q_ddot[i] += accelerations[k] * friction;
             }
-            workspace.q_ddot[i] = q_ddot;
         }
-        for (friction_response, load) in workspace
-            .friction_responses
-            .iter()
-            .zip(self.model.frictions())
-        {
-            add_scaled(
-                &mut workspace.inverse_dynamics,
-                friction_response,
-                workspace.inner.loads().magnitude[load],
-            );
+        for (response, friction) in friction_responses.iter().zip(frictions()) {
+            result.add_scaled(response, friction);
         }
         Ok(())
-    }
-
-    /// ẏ of the state evaluated last, into `out` of length [`Machine::state_count`].
-    pub fn state_derivative<T: Scalar>(&self, workspace: &MachineWorkspace<T>, out: &mut [T]) {
-        let n = self.free.len();
-        for (k, &i) in self.free.iter().enumerate() {
-            out[k] = workspace.q_dot[i];
-            out[n + k] = workspace.q_ddot[i];
-        }
-        let (drive_state_rates, powers) = out[2 * n..].split_at_mut(self.drive_state_count);
-        drive_state_rates.copy_from_slice(&workspace.drive_state_rates);
-        for (power, &source) in powers.iter_mut().zip(&self.nonconservative_sources) {
-            *power = match source {
-                NonconservativeSource::Load(load) => {
-                    let mut sum = T::from_f64(0.0);
-                    for wrench in &workspace.inner.loads().wrenches {
-                        if wrench.source == ForceSource::Load(load) {
-                            sum += wrench.power(workspace.inner.states());
-                        }
-                    }
-                    sum
-                }
-                NonconservativeSource::Drive(d) => {
-                    let [_, speed, _] =
-                        workspace.inner.states().coordinate(self.drives[d].measured);
-                    workspace.drive_forces[d] * speed
-                }
-                NonconservativeSource::Prescribed(i) => {
-                    workspace.inverse_dynamics.tau[i] * workspace.q_dot[i]
-                }
-            };
-        }
-    }
-
-    /// Evaluates another model of the same mechanism and loads at the state evaluated last: its reactions are then
-    /// in `result`, the states of its bodies and loads in `output_workspace`. Within the window of a change-point
-    /// fit, a reaction that is not determined at the change point is not a number.
-    ///
-    /// # Errors
-    /// [`DynamicsError`] as of [`Machine::evaluate`].
-    pub fn evaluate_outputs(
-        &self,
-        output_model: &Model,
-        t: f64,
-        workspace: &MachineWorkspace<f64>,
-        output_workspace: &mut Workspace<f64>,
-        result: &mut InverseDynamics<f64>,
-    ) -> Result<(), DynamicsError> {
-        for drive in &self.drives {
-            output_workspace
-                .set_magnitude(drive.load, workspace.inner.loads().magnitude[drive.load]);
-        }
-        if let Some((fit, x)) = self.fit_at(workspace.q.first()) {
-            return on_fit::evaluate_outputs(
-                (fit, x),
-                output_model,
-                t,
-                workspace,
-                output_workspace,
-                result,
-            );
-        }
-        Ok(output_model.kinetostatics(
-            t,
-            &workspace.q,
-            &workspace.q_dot,
-            &workspace.q_ddot,
-            output_workspace,
-            result,
-        )?)
-    }
-
-    /// The kinetic energy, with that of rotors and flywheels, and the potential of the conservative loads, J, at the
-    /// state evaluated last.
-    pub fn energy(&self, workspace: &MachineWorkspace<f64>) -> [f64; 2] {
-        let rotors = self.drives.iter().map(|drive| {
-            let [_, speed, _] = workspace.inner.states().coordinate(drive.measured);
-            0.5 * drive.reflected_inertia * speed * speed
-        });
-        let wheels = self.free.iter().zip(&self.flywheels).map(|(&i, inertia)| {
-            let speed = workspace.q_dot[i];
-            0.5 * inertia * speed * speed
-        });
-        let kinetic =
-            self.model.kinetic_energy(&workspace.inner) + rotors.sum::<f64>() + wheels.sum::<f64>();
-        let potentials = (0..self.model.loads().len())
-            .filter_map(|load| self.model.potential_energy(load, &workspace.inner));
-        [kinetic, potentials.sum()]
-    }
-}
-
-/// Adds a multiple of one response to another.
-fn add_scaled<T: Scalar>(sum: &mut InverseDynamics<T>, other: &InverseDynamics<T>, factor: T) {
-    for (sum, more) in sum.reactions.iter_mut().zip(&other.reactions) {
-        *sum += *more * factor;
-    }
-    for (sum, more) in sum.tau.iter_mut().zip(&other.tau) {
-        *sum += *more * factor;
     }
 }
 

@@ -1,16 +1,15 @@
 //! A machine as an ODE system, with its exact Jacobian by dual numbers.
 
-use crate::error::DynamicsError;
-use crate::machine::{Machine, MachineWorkspace};
-use crate::ode::OdeSystem;
+use crate::error::Result;
+use crate::machine::{Machine, MachineState, MachineWorkspace};
+use crate::ode::{OdeSystem, dual_jacobian};
 use dwell_numerics::{Dual, Scalar};
 
 /// A machine with the working memory to integrate it, for one thread.
 #[derive(Debug)]
 pub struct MachineOde<'m> {
     machine: &'m Machine,
-    /// The last evaluation in plain numbers.
-    pub workspace: MachineWorkspace<f64>,
+    workspace: MachineWorkspace<f64>,
     dual_workspace: MachineWorkspace<Dual>,
     y: Vec<Dual>,
     out: Vec<Dual>,
@@ -21,22 +20,25 @@ impl<'m> MachineOde<'m> {
     /// A machine at its initial state, whose energies are the scale of the works.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the start cannot be evaluated.
-    pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self, DynamicsError> {
-        let mut workspace = machine.workspace();
-        machine.evaluate(t, y, &mut workspace)?;
-        let mut error_weights = vec![1.0; machine.state_count()];
-        let scale = machine.energy_scale(&workspace);
-        error_weights[machine.work_offset()..].fill(scale);
+    /// [`DynamicsError`](crate::DynamicsError) where the start cannot be evaluated.
+    pub fn new(machine: &'m Machine, t: f64, y: &[f64]) -> Result<Self> {
+        let mut ode = Self::unscaled(machine);
+        let scale = machine.evaluate(t, y, &mut ode.workspace)?.energy_scale();
+        ode.error_weights[machine.work_offset()..].fill(scale);
+        Ok(ode)
+    }
+
+    /// A machine whose works have no scale, where none is integrated.
+    pub(crate) fn unscaled(machine: &'m Machine) -> Self {
         let zero = vec![Dual::from_f64(0.0); machine.state_count()];
-        Ok(Self {
+        Self {
             machine,
-            workspace,
+            workspace: machine.workspace(),
             dual_workspace: machine.workspace(),
             y: zero.clone(),
             out: zero,
-            error_weights,
-        })
+            error_weights: vec![1.0; machine.state_count()],
+        }
     }
 
     /// The machine.
@@ -45,16 +47,16 @@ impl<'m> MachineOde<'m> {
     }
 }
 
-impl Machine {
+impl MachineState<'_> {
     /// The scale of works, J: the kinetic energy and the work of actuators and drives over one unit of their
     /// coordinates.
-    fn energy_scale(&self, workspace: &MachineWorkspace<f64>) -> f64 {
-        let [kinetic, _] = self.energy(workspace);
-        let forces = workspace
+    fn energy_scale(&self) -> f64 {
+        let [kinetic, _] = self.energy();
+        let forces = self
             .inverse_dynamics()
             .tau
             .iter()
-            .chain(&workspace.drive_forces);
+            .chain(self.drive_forces());
         let scale = kinetic + forces.map(|f| f.abs()).sum::<f64>();
         if scale.is_normal() { scale } else { 1.0 }
     }
@@ -65,33 +67,25 @@ impl OdeSystem for MachineOde<'_> {
         self.machine.state_count()
     }
 
-    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        self.machine.evaluate(t, y, &mut self.workspace)?;
-        self.machine.state_derivative(&self.workspace, out);
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        let state = self.machine.evaluate(t, y, &mut self.workspace)?;
+        state.derivative(out);
         Ok(())
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        let n = self.size();
-        out.fill(0.0);
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        let Self {
+            machine,
+            dual_workspace: workspace,
+            y: duals,
+            out: rates,
+            ..
+        } = self;
         // Nothing depends on the works.
-        for j in 0..self.machine.work_offset() {
-            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
-                *dual = if i == j {
-                    Dual::variable(value)
-                } else {
-                    Dual::from_f64(value)
-                };
-            }
-            self.machine
-                .evaluate(t, &self.y, &mut self.dual_workspace)?;
-            self.machine
-                .state_derivative(&self.dual_workspace, &mut self.out);
-            for (i, rate) in self.out.iter().enumerate() {
-                out[i * n + j] = rate.d;
-            }
-        }
-        Ok(())
+        dual_jacobian(machine.work_offset(), y, (duals, rates), out, |y, out| {
+            machine.evaluate(t, y, workspace)?.derivative(out);
+            Ok(())
+        })
     }
 
     fn error_weight(&self, state: usize) -> f64 {

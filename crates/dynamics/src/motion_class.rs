@@ -10,7 +10,7 @@
 //! ends shows a maximum of V within a step.
 
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, limits};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::machine::Machine;
 use crate::ode::ReducedState;
 use dwell_numerics::root;
@@ -70,7 +70,7 @@ pub enum MotionClass {
 ///
 /// # Errors
 /// [`DynamicsError::NotConservative`], or the error of an evaluation.
-pub fn motion_class(machine: &Machine, start: ReducedState) -> Result<MotionClass, DynamicsError> {
+pub fn motion_class(machine: &Machine, start: ReducedState) -> Result<MotionClass> {
     Ok(EnergyScan::new(&mut LoadedSystem::new(machine)?, start)?.1)
 }
 
@@ -81,10 +81,7 @@ enum ScanResult {
     PotentialMaximum(f64),
     Limit(f64),
     /// Neither over a whole period: the place of the highest potential, and the kinetic energy there.
-    FullPeriod {
-        potential_maximum_at: f64,
-        kinetic_at_maximum: f64,
-    },
+    FullPeriod(f64, f64),
     Undecided(f64),
 }
 
@@ -95,8 +92,10 @@ pub(crate) struct EnergyScan<'a> {
     pub(crate) initial_terms: EnergyTerms,
     /// Kinetic energy at the start, J.
     pub(crate) kinetic: f64,
-    /// The largest energy met so far, J: the scale of roundings.
+    /// The largest energy so far, J: the scale of roundings.
     energy_scale: f64,
+    range_limits: Option<(f64, f64)>,
+    period: Option<f64>,
 }
 
 impl<'a> EnergyScan<'a> {
@@ -104,7 +103,7 @@ impl<'a> EnergyScan<'a> {
     pub(crate) fn new(
         system: &'a mut dyn ConservativeSystem,
         at: ReducedState,
-    ) -> Result<(Self, MotionClass), DynamicsError> {
+    ) -> Result<(Self, MotionClass)> {
         let initial_terms = system.energy_terms(at.q)?;
         let kinetic = 0.5 * initial_terms.m * at.q_dot * at.q_dot;
         if at.q_dot != 0.0 && !kinetic.is_normal() {
@@ -114,6 +113,8 @@ impl<'a> EnergyScan<'a> {
             });
         }
         let mut scan = Self {
+            range_limits: limits(system.range(), at.q)?,
+            period: system.period(at.q)?,
             system,
             q: at.q,
             initial_terms,
@@ -124,30 +125,29 @@ impl<'a> EnergyScan<'a> {
         Ok((scan, class))
     }
 
-    fn motion_class(&mut self, q_dot: f64) -> Result<MotionClass, DynamicsError> {
-        let range_limits = limits(self.system.range(), self.q)?;
-        let period = self.system.period(self.q)?;
-        if self.kinetic == 0.0 && self.in_equilibrium(range_limits, period)? {
+    fn motion_class(&mut self, q_dot: f64) -> Result<MotionClass> {
+        if self.kinetic == 0.0 && self.in_equilibrium()? {
             return Ok(MotionClass::Equilibrium);
         }
-        if let (true, None, Some(period)) = (self.system.is_potential_free(), range_limits, period)
-            && self.kinetic > 0.0
-        {
-            return Ok(MotionClass::Rotation {
-                potential_maximum_at: self.q,
-                kinetic_at_maximum: self.kinetic,
-                period,
-            });
+        let rotation =
+            |potential_maximum_at, kinetic_at_maximum, period: Option<f64>| MotionClass::Rotation {
+                potential_maximum_at,
+                kinetic_at_maximum,
+                period: period.unwrap_or(TAU),
+            };
+        let rotates = self.range_limits.is_none() && self.period.is_some();
+        if self.system.is_potential_free() && rotates && self.kinetic > 0.0 {
+            return Ok(rotation(self.q, self.kinetic, self.period));
         }
         let direction = if q_dot == 0.0 {
             self.initial_terms.force.signum()
         } else {
             q_dot.signum()
         };
-        let first = self.scan(direction, range_limits, period)?;
+        let first = self.scan(direction)?;
         let back = match first {
             ScanResult::TurningPoint(_) if self.kinetic == 0.0 => ScanResult::TurningPoint(self.q),
-            ScanResult::TurningPoint(_) => self.scan(-direction, range_limits, period)?,
+            ScanResult::TurningPoint(_) => self.scan(-direction)?,
             other => other,
         };
         Ok(match (first, back) {
@@ -158,17 +158,7 @@ impl<'a> EnergyScan<'a> {
             }
             (_, ScanResult::PotentialMaximum(to)) => MotionClass::Asymptotic { to },
             (_, ScanResult::Limit(at)) => MotionClass::ReachesLimit { at },
-            (
-                _,
-                ScanResult::FullPeriod {
-                    potential_maximum_at: top,
-                    kinetic_at_maximum,
-                },
-            ) => MotionClass::Rotation {
-                potential_maximum_at: top,
-                kinetic_at_maximum,
-                period: period.unwrap_or(TAU),
-            },
+            (_, ScanResult::FullPeriod(at, kinetic)) => rotation(at, kinetic, self.period),
             (_, ScanResult::Undecided(to) | ScanResult::TurningPoint(to)) => {
                 MotionClass::Undecided { to }
             }
@@ -176,12 +166,9 @@ impl<'a> EnergyScan<'a> {
     }
 
     /// Whether the start is an equilibrium: the force there is below the rounding of the forces nearby.
-    fn in_equilibrium(
-        &mut self,
-        range_limits: Option<(f64, f64)>,
-        period: Option<f64>,
-    ) -> Result<bool, DynamicsError> {
-        let (from, to) = range_limits.unwrap_or((self.q, self.q + period.unwrap_or(TAU)));
+    fn in_equilibrium(&mut self) -> Result<bool> {
+        let one_period = (self.q, self.q + self.period.unwrap_or(TAU));
+        let (from, to) = self.range_limits.unwrap_or(one_period);
         let mut max_force = 0.0_f64;
         for k in 1..8 {
             let q = from + (to - from) * f64::from(k) / 8.0;
@@ -191,7 +178,7 @@ impl<'a> EnergyScan<'a> {
     }
 
     /// Kinetic energy, by (1), and the force.
-    fn kinetic_and_force(&mut self, q: f64) -> Result<(f64, f64), DynamicsError> {
+    fn kinetic_and_force(&mut self, q: f64) -> Result<(f64, f64)> {
         let terms = self.system.energy_terms(q)?;
         self.energy_scale = self.energy_scale.max(terms.potential.abs());
         let gained = self.initial_terms.potential - terms.potential;
@@ -199,12 +186,8 @@ impl<'a> EnergyScan<'a> {
     }
 
     /// The first step, the ratio of successive steps, and their highest number.
-    fn scan_steps(
-        &self,
-        range_limits: Option<(f64, f64)>,
-        period: Option<f64>,
-    ) -> (f64, f64, usize) {
-        match (range_limits, period) {
+    fn scan_steps(&self) -> (f64, f64, usize) {
+        match (self.range_limits, self.period) {
             (Some((from, to)), _) => ((to - from) / SCAN_STEPS as f64, 1.0, SCAN_STEPS),
             (None, Some(period)) => (period / SCAN_STEPS as f64, 1.0, SCAN_STEPS),
             (None, None) if self.system.is_angle() => {
@@ -219,14 +202,12 @@ impl<'a> EnergyScan<'a> {
     }
 
     /// Scans to one side until a turning point, a potential maximum that cannot be passed, or a limit.
-    fn scan(
-        &mut self,
-        direction: f64,
-        range_limits: Option<(f64, f64)>,
-        period: Option<f64>,
-    ) -> Result<ScanResult, DynamicsError> {
-        let end = range_limits.map(|(from, to)| if direction > 0.0 { to } else { from });
-        let (mut step, growth, max_steps) = self.scan_steps(range_limits, period);
+    fn scan(&mut self, direction: f64) -> Result<ScanResult> {
+        let period = self.period;
+        let end = self
+            .range_limits
+            .map(|(from, to)| if direction > 0.0 { to } else { from });
+        let (mut step, growth, max_steps) = self.scan_steps();
         let mut before = (self.q, self.kinetic, self.initial_terms.force * direction);
         let (mut potential_maximum_at, mut kinetic_at_maximum) = (self.q, self.kinetic);
         for k in 1..=max_steps {
@@ -273,10 +254,7 @@ impl<'a> EnergyScan<'a> {
             step *= growth;
         }
         Ok(match period {
-            Some(_) => ScanResult::FullPeriod {
-                potential_maximum_at,
-                kinetic_at_maximum,
-            },
+            Some(_) => ScanResult::FullPeriod(potential_maximum_at, kinetic_at_maximum),
             None => ScanResult::Undecided(before.0),
         })
     }
@@ -286,7 +264,7 @@ impl<'a> EnergyScan<'a> {
         &mut self,
         before: (f64, f64, f64),
         now: (f64, f64, f64),
-    ) -> Result<Option<f64>, DynamicsError> {
+    ) -> Result<Option<f64>> {
         if !(before.2 < 0.0 && now.2 >= 0.0) {
             return Ok(None);
         }
@@ -294,11 +272,7 @@ impl<'a> EnergyScan<'a> {
     }
 
     /// The turning point between a point and a coordinate where the kinetic energy is negative.
-    fn turning_point(
-        &mut self,
-        before: (f64, f64, f64),
-        beyond: f64,
-    ) -> Result<f64, DynamicsError> {
+    fn turning_point(&mut self, before: (f64, f64, f64), beyond: f64) -> Result<f64> {
         let from = before.0;
         if self.kinetic == 0.0 && from == self.q {
             // From rest, the kinetic energy over the distance has the force as its limit, and no zero at the
@@ -311,11 +285,7 @@ impl<'a> EnergyScan<'a> {
             };
             return Ok(root::find(&mut found, from, beyond)?.unwrap_or(beyond));
         }
-        let zero = root::find(
-            |q| Ok::<_, DynamicsError>(self.kinetic_and_force(q)?.0),
-            from,
-            beyond,
-        )?;
-        Ok(zero.unwrap_or(from))
+        let kinetic = |q| Ok::<_, DynamicsError>(self.kinetic_and_force(q)?.0);
+        Ok(root::find(kinetic, from, beyond)?.unwrap_or(from))
     }
 }

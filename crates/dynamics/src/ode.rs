@@ -1,7 +1,8 @@
 //! Systems of ordinary differential equations, and what their integration hands to an observer.
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
+use dwell_numerics::{Dual, Scalar};
 
 /// A time and a state.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -52,18 +53,43 @@ pub trait OdeSystem {
     ///
     /// # Errors
     /// [`DynamicsError`] where it cannot be evaluated.
-    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError>;
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()>;
 
     /// ∂fᵢ/∂yⱼ into `out`, row by row.
     ///
     /// # Errors
     /// As [`OdeSystem::rhs`].
-    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError>;
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()>;
 
     /// The factor of a state in the absolute tolerance.
     fn error_weight(&self, _state: usize) -> f64 {
         1.0
     }
+}
+
+/// The first columns of a Jacobian, row by row into `out`, by dual numbers: `duals` and `rates` are working memory.
+pub(crate) fn dual_jacobian(
+    columns: usize,
+    y: &[f64],
+    (duals, rates): (&mut [Dual], &mut [Dual]),
+    out: &mut [f64],
+    mut rhs: impl FnMut(&[Dual], &mut [Dual]) -> Result<()>,
+) -> Result<()> {
+    out.fill(0.0);
+    for j in 0..columns {
+        for (i, (dual, &value)) in duals.iter_mut().zip(y).enumerate() {
+            *dual = if i == j {
+                Dual::variable(value)
+            } else {
+                Dual::from_f64(value)
+            };
+        }
+        rhs(duals, rates)?;
+        for (i, rate) in rates.iter().enumerate() {
+            out[i * y.len() + j] = rate.d;
+        }
+    }
+    Ok(())
 }
 
 /// What an observer answers after a step.
@@ -76,12 +102,12 @@ pub enum StepControl {
 }
 
 /// The state at any time within the last step, by the method's interpolant.
-pub type DenseOutput<'d> = &'d mut dyn FnMut(f64, &mut [f64]) -> Result<(), DynamicsError>;
+pub type DenseOutput<'d> = &'d mut dyn FnMut(f64, &mut [f64]) -> Result<()>;
 
 /// A function called after each step with the state before it, the state after it, and the dense output
 /// between the two.
 pub type StepObserver<'w> =
-    &'w mut dyn FnMut(&OdeState, &OdeState, DenseOutput<'_>) -> Result<StepControl, DynamicsError>;
+    &'w mut dyn FnMut(&OdeState, &OdeState, DenseOutput<'_>) -> Result<StepControl>;
 
 /// How an integration ended, and the work it took.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +118,13 @@ pub struct Termination {
     pub error: Option<DynamicsError>,
     /// The work done.
     pub statistics: Statistics,
+}
+
+impl Termination {
+    /// The last state, if no error ended the integration early.
+    pub(crate) fn completed(self) -> Result<OdeState> {
+        self.error.map_or(Ok(self.state), Err)
+    }
 }
 
 /// The parts of a step between which a change of sign is looked for.
@@ -113,11 +146,7 @@ pub(crate) fn root_subintervals(
 }
 
 /// The state at a time within a step that ends at `now`.
-pub(crate) fn state_at(
-    t: f64,
-    now: &OdeState,
-    dense: DenseOutput<'_>,
-) -> Result<OdeState, DynamicsError> {
+pub(crate) fn state_at(t: f64, now: &OdeState, dense: DenseOutput<'_>) -> Result<OdeState> {
     let mut state = now.clone();
     if t < now.t {
         dense(t, &mut state.y)?;

@@ -1,6 +1,6 @@
 //! Options of an integration, and the work that it took.
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 
 /// An integration method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -75,7 +75,7 @@ impl Options {
     }
 
     /// Refuses options that would make the integrator loop endlessly.
-    pub(crate) fn check(&self) -> Result<(), DynamicsError> {
+    pub(crate) fn check(&self) -> Result<()> {
         let usable = |value: f64| value.is_finite() && value > 0.0;
         let refuse = |what, must, value| Err(DynamicsError::BadOption { what, must, value });
         if !(self.rtol.is_finite() && self.rtol >= 0.0) {

@@ -16,7 +16,7 @@
 //! maximum of V or where the inertia is small, it is integrated on panels.
 
 use crate::conservative::{ConservativeSystem, EnergyTerms, LoadedSystem, UnloadedSystem};
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::libration::{Libration, phase_of};
 use crate::machine::Machine;
 use crate::motion_class::{EnergyScan, MotionClass};
@@ -69,7 +69,7 @@ impl Orbit {
     /// [`DynamicsError::NoFullRevolution`], [`DynamicsError::AtRest`], [`DynamicsError::EnergyOutOfRange`],
     /// [`DynamicsError::NoInertia`], or [`DynamicsError::NotResolved`] when the inertia varies too
     /// sharply.
-    pub fn new<R: ReducedModel>(model: &R, start: ReducedState) -> Result<Self, DynamicsError> {
+    pub fn new<R: ReducedModel>(model: &R, start: ReducedState) -> Result<Self> {
         Self::to_accuracy(model, start, 0.0)
     }
 
@@ -82,17 +82,17 @@ impl Orbit {
         model: &R,
         start: ReducedState,
         accuracy: f64,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let workspace = model.workspace();
         Self::of_system(&mut UnloadedSystem { model, workspace }, start, accuracy)
     }
 
-    /// The motion of a machine of one freedom whose loads all have a potential.
+    /// The motion of a machine of one degree of freedom whose loads all have a potential.
     ///
     /// # Errors
     /// As [`Orbit::new`]; [`DynamicsError::NotConservative`], [`DynamicsError::AsymptoticMotion`],
     /// [`DynamicsError::Undecided`].
-    pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self, DynamicsError> {
+    pub fn loaded(machine: &Machine, start: ReducedState) -> Result<Self> {
         Self::of_system(&mut LoadedSystem::new(machine)?, start, 0.0)
     }
 
@@ -100,7 +100,7 @@ impl Orbit {
         system: &mut dyn ConservativeSystem,
         start: ReducedState,
         accuracy: f64,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let range = system.range();
         let (scan, class) = EnergyScan::new(&mut *system, start)?;
         let (terms, kinetic) = (scan.initial_terms, scan.kinetic);
@@ -132,21 +132,20 @@ impl Orbit {
         (start, terms, kinetic): (ReducedState, EnergyTerms, f64),
         (angle_per_period, class): (f64, MotionClass),
         accuracy: f64,
-    ) -> Result<Self, DynamicsError> {
-        // The same position without its whole turns, which would cost it digits.
+    ) -> Result<Self> {
+        // The same position without its whole revolutions, which would cost digits.
         let first = start.q % angle_per_period;
         let mut samples: Vec<EnergyTerms> = Vec::new();
         loop {
             samples = refine_samples(samples, |part| {
                 system.energy_terms(first + angle_per_period * part)
             })?;
-            let mut values = Vec::with_capacity(samples.len());
-            let mut max_kinetic = 0.0_f64;
-            for at in &samples {
-                let kinetic_left = kinetic + (terms.potential - at.potential);
-                max_kinetic = max_kinetic.max(kinetic_left);
-                values.push(angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left)).sqrt());
-            }
+            let kinetic_left = |at: &EnergyTerms| kinetic + (terms.potential - at.potential);
+            let density = |at: &EnergyTerms| {
+                angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left(at))).sqrt()
+            };
+            let values: Vec<f64> = samples.iter().map(density).collect();
+            let max_kinetic = samples.iter().map(kinetic_left).fold(0.0, f64::max);
             let points = samples.len();
             let size = values.iter().sum::<f64>() / points as f64;
             let series = FourierSeries::new(&values, size);
@@ -155,8 +154,7 @@ impl Orbit {
             } else if points >= SHARP_POINTS {
                 let panels = Panels::new::<DynamicsError>(|phase| {
                     let at = system.energy_terms(first + angle_per_period * (phase / TAU))?;
-                    let kinetic_left = kinetic + (terms.potential - at.potential);
-                    Ok(angle_per_period.abs() / TAU * (at.m / (2.0 * kinetic_left)).sqrt())
+                    Ok(density(&at))
                 })?;
                 let taken = points + panels.points;
                 (TimeDensity::Piecewise(panels), taken)
@@ -184,7 +182,7 @@ impl Orbit {
         start: ReducedState,
         (terms, kinetic): (EnergyTerms, f64),
         turning_points: [f64; 2],
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let libration = Libration::new(system, start.q, kinetic, turning_points)?;
         let up = libration.phase(start.q);
         let initial_phase = if start.q_dot < 0.0 { TAU - up } else { up };
@@ -223,9 +221,8 @@ impl Orbit {
             }
             OrbitKind::Libration(turning_points) => {
                 let up = phase_of(q, turning_points)?;
-                let first = [up, TAU - up, TAU + up]
-                    .into_iter()
-                    .find(|&phase| phase >= self.initial_phase);
+                let mut phases = [up, TAU - up, TAU + up].into_iter();
+                let first = phases.find(|&phase| phase >= self.initial_phase);
                 let [_, time] = self.time_density.eval(first.unwrap_or(2.0 * TAU - up));
                 Some(self.initial_state.t + time - self.time_offset)
             }

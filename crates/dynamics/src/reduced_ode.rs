@@ -10,7 +10,7 @@
 //! from a reduced model alone, exact or tabulated: one evaluation of m and ½m′ per evaluation of (1).
 
 use crate::conservative::limits;
-use crate::error::{DynamicsError, positive_inertia};
+use crate::error::{DynamicsError, Result, positive_inertia};
 use crate::ode::{OdeState, OdeSystem, ReducedState};
 use crate::options::Options;
 use crate::solve::{Event, EventKind, Observed, ObservedValue, Solution, solve_system};
@@ -54,7 +54,7 @@ impl<'a, R: ReducedModel> ReducedOde<'a, R> {
     ///
     /// # Errors
     /// [`DynamicsError::Position`] where there is no pose, [`DynamicsError::NoInertia`] where m is not positive.
-    pub fn acceleration(&mut self, q: f64, q_dot: f64) -> Result<f64, DynamicsError> {
+    pub fn acceleration(&mut self, q: f64, q_dot: f64) -> Result<f64> {
         let (m, half_dm) = self.model.inertia(q, &mut self.workspace)?;
         Ok(-half_dm * q_dot * q_dot / positive_inertia(m, q)?)
     }
@@ -63,7 +63,7 @@ impl<'a, R: ReducedModel> ReducedOde<'a, R> {
     ///
     /// # Errors
     /// As [`ReducedOde::acceleration`].
-    pub fn jacobian(&mut self, q: f64, q_dot: f64) -> Result<[f64; 2], DynamicsError> {
+    pub fn jacobian(&mut self, q: f64, q_dot: f64) -> Result<[f64; 2]> {
         let at = self.model.inertia_derivatives(q, &mut self.workspace)?;
         let m = positive_inertia(at.m, q)?;
         let by_q = -(at.half_ddm - 2.0 * at.half_dm * at.half_dm / m) * q_dot * q_dot / m;
@@ -74,7 +74,7 @@ impl<'a, R: ReducedModel> ReducedOde<'a, R> {
     ///
     /// # Errors
     /// As [`ReducedOde::acceleration`].
-    pub fn kinetic_energy(&mut self, q: f64, q_dot: f64) -> Result<f64, DynamicsError> {
+    pub fn kinetic_energy(&mut self, q: f64, q_dot: f64) -> Result<f64> {
         let (m, _) = self.model.inertia(q, &mut self.workspace)?;
         Ok(0.5 * m * q_dot * q_dot)
     }
@@ -85,13 +85,13 @@ impl<R: ReducedModel> OdeSystem for ReducedOde<'_, R> {
         2
     }
 
-    fn rhs(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn rhs(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         out[1] = self.acceleration(y[0], y[1])?;
         out[0] = y[1];
         Ok(())
     }
 
-    fn jacobian(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn jacobian(&mut self, _: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         let row = ReducedOde::jacobian(self, y[0], y[1])?;
         out.copy_from_slice(&[0.0, 1.0, row[0], row[1]]);
         Ok(())
@@ -136,7 +136,7 @@ impl<'a, R: ReducedModel> ReducedOutputs<'a, R> {
     ///
     /// # Errors
     /// [`DynamicsError::Position`] where there is no pose.
-    pub fn evaluate(&mut self, q: f64, q_dot: f64) -> Result<(), DynamicsError> {
+    pub fn evaluate(&mut self, q: f64, q_dot: f64) -> Result<()> {
         let at = &mut self.coefficients;
         self.model.coefficients(q, &mut self.workspace, at)?;
         let square = q_dot * q_dot;
@@ -155,11 +155,7 @@ pub struct ReducedCoordinate;
 impl<R: ReducedModel> Observed for ReducedOutputs<'_, R> {
     type Coordinate = ReducedCoordinate;
 
-    fn coordinate(
-        &mut self,
-        _: ReducedCoordinate,
-        at: &OdeState,
-    ) -> Result<ObservedValue, DynamicsError> {
+    fn coordinate(&mut self, _: ReducedCoordinate, at: &OdeState) -> Result<ObservedValue> {
         Ok(ObservedValue {
             value: at.y[0],
             rate: at.y[1],
@@ -167,7 +163,7 @@ impl<R: ReducedModel> Observed for ReducedOutputs<'_, R> {
         })
     }
 
-    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64, DynamicsError> {
+    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64> {
         self.evaluate(at.y[0], at.y[1])?;
         Ok(self.reactions[index])
     }
@@ -188,7 +184,7 @@ pub fn solve_reduced<R: ReducedModel>(
     end: Option<f64>,
     options: &Options,
     events: &[Event<ReducedCoordinate>],
-) -> Result<Solution, DynamicsError> {
+) -> Result<Solution> {
     let limits = limits(model.range(), start.q)?;
     if end.is_none() && start.q_dot == 0.0 {
         return Err(DynamicsError::AtRest);

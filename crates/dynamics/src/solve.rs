@@ -7,7 +7,7 @@
 mod event;
 mod observed;
 
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::integrate::integrate;
 use crate::machine::Machine;
 use crate::machine_ode::MachineOde;
@@ -45,7 +45,7 @@ impl Solution {
     ///
     /// # Errors
     /// [`Solution::error`].
-    pub fn completed(mut self) -> Result<Self, DynamicsError> {
+    pub fn completed(mut self) -> Result<Self> {
         match self.error.take() {
             Some(error) => Err(error),
             None => Ok(self),
@@ -68,7 +68,7 @@ pub fn solve(
     end: f64,
     options: &Options,
     events: &[Event],
-) -> Result<Solution, DynamicsError> {
+) -> Result<Solution> {
     let mut ode = MachineOde::new(machine, start.t, &start.y)?;
     let observed = ObservedMachine::new(machine, output_model);
     solve_system(&mut ode, observed, start, Some(end), options, events)
@@ -86,7 +86,7 @@ pub fn solve_system<O: Observed>(
     end: Option<f64>,
     options: &Options,
     events: &[Event<O::Coordinate>],
-) -> Result<Solution, DynamicsError> {
+) -> Result<Solution> {
     let mut recorder_state = RecorderState::new(start.t, events);
     let mut recorder = recorder_state.recorder(observed, start)?;
     let mut solution = recorder.begin_solution(start, options);
@@ -111,7 +111,7 @@ pub fn solve_orbit(
     end: f64,
     options: &Options,
     events: &[Event],
-) -> Result<Solution, DynamicsError> {
+) -> Result<Solution> {
     options.check()?;
     let point = |t: f64| OdeState::from(orbit.state_at(t));
     let start = point(orbit.initial_state().t);
@@ -166,7 +166,7 @@ impl<'e, C: Copy> RecorderState<'e, C> {
         &'m mut self,
         mut observed: O,
         from: &OdeState,
-    ) -> Result<SolutionRecorder<'m, 'e, O>, DynamicsError> {
+    ) -> Result<SolutionRecorder<'m, 'e, O>> {
         if self.trackers.is_empty() {
             for &event in self.events {
                 self.trackers
@@ -210,7 +210,7 @@ impl<O: Observed> SolutionRecorder<'_, '_, O> {
         before: &OdeState,
         now: &OdeState,
         dense: DenseOutput<'_>,
-    ) -> Result<StepControl, DynamicsError> {
+    ) -> Result<StepControl> {
         let Self { observed, state } = self;
         let mut found = Vec::new();
         for (i, tracker) in state.trackers.iter_mut().enumerate() {

@@ -9,8 +9,8 @@
 //!
 //! from dual numbers: exact to rounding.
 
-use crate::error::DynamicsError;
-use crate::machine::{Machine, MachineWorkspace};
+use crate::error::{DynamicsError, Result};
+use crate::machine::{Machine, MachineState, MachineWorkspace};
 use dwell_numerics::{Dual, Scalar};
 use faer::Mat;
 
@@ -35,7 +35,7 @@ pub struct StateSpace {
 ///
 /// # Errors
 /// As [`Machine::evaluate`].
-pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace, DynamicsError> {
+pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace> {
     let (states, inputs) = (machine.work_offset(), machine.drives());
     let mut workspace: MachineWorkspace<Dual> = machine.workspace();
     let mut at: Vec<Dual> = y.iter().map(|&y| Dual::from_f64(y)).collect();
@@ -56,9 +56,9 @@ pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace, Dyn
         } else if let Some(input) = workspace.input_offsets.get_mut(column - states) {
             input.d = 1.0;
         }
-        machine.evaluate(t, &at, &mut workspace)?;
-        machine.state_derivative(&workspace, &mut rates);
-        let outputs = outputs(machine, &workspace);
+        let state = machine.evaluate(t, &at, &mut workspace)?;
+        state.derivative(&mut rates);
+        let outputs = outputs(machine, &state);
         let plain = column == states + inputs;
         if plain {
             state_space.state_derivative = rates[..states].iter().map(|r| r.v).collect();
@@ -84,13 +84,13 @@ pub fn linearise(machine: &Machine, t: f64, y: &[f64]) -> Result<StateSpace, Dyn
     Ok(state_space)
 }
 
-/// z of the state last evaluated.
-fn outputs(machine: &Machine, workspace: &MachineWorkspace<Dual>) -> Vec<Dual> {
+/// z of a state.
+fn outputs(machine: &Machine, state: &MachineState<'_, Dual>) -> Vec<Dual> {
     let free = machine.free();
-    let coordinates = free.iter().map(|&i| workspace.q[i]);
-    let velocities = free.iter().map(|&i| workspace.q_dot[i]);
-    let reactions = workspace.inverse_dynamics().reactions.iter().copied();
-    let drive_forces = workspace.drive_forces.iter().copied();
+    let coordinates = free.iter().map(|&i| state.q()[i]);
+    let velocities = free.iter().map(|&i| state.q_dot()[i]);
+    let reactions = state.inverse_dynamics().reactions.iter().copied();
+    let drive_forces = state.drive_forces().iter().copied();
     let all = coordinates
         .chain(velocities)
         .chain(reactions)
@@ -103,7 +103,7 @@ impl StateSpace {
     ///
     /// # Errors
     /// [`DynamicsError::NoEigenvalues`].
-    pub fn eigenvalues(&self) -> Result<Vec<[f64; 2]>, DynamicsError> {
+    pub fn eigenvalues(&self) -> Result<Vec<[f64; 2]>> {
         let n = self.a.len();
         let flat: Vec<f64> = self.a.iter().flatten().copied().collect();
         eigenvalues(&flat, n)
@@ -111,7 +111,7 @@ impl StateSpace {
 }
 
 /// The eigenvalues of a row-major n×n matrix, the largest real part first.
-pub(crate) fn eigenvalues(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>, DynamicsError> {
+pub(crate) fn eigenvalues(matrix: &[f64], n: usize) -> Result<Vec<[f64; 2]>> {
     if !matrix.iter().all(|a| a.is_finite()) {
         return Err(DynamicsError::NoEigenvalues);
     }

@@ -1,18 +1,18 @@
-//! A machine of one freedom on a table: its equation of motion without the mechanism,
+//! A machine of one degree of freedom on a table: its equation of motion without the mechanism,
 //!
 //! ```text
 //! m q̈ + ½m′ q̇² = −V′ + Σ wₗ Fₗ(t, q, q̇)                              (1)
 //! ```
 //!
-//! m with that of rotors and flywheels, from ½m′; the potential V of all loads that have one, from ½V′; and
-//! by load or drive without a potential w, what one unit of it gives the coordinate. Of a damper the force is
-//! F ds/dt, and w = −ds/dq, so it takes F w² q̇. A drive along s has w = ds/dq, and sees the speed w q̇. What
-//! else magnitudes depend on is tabulated as s(q), or as ds/dq where its speed is meant.
+//! m includes rotors and flywheels and follows from ½m′, the potential V of all conservative loads from ½V′. By load
+//! or drive without a potential, w is the generalised force of one unit of it. The force of a damper is
+//! F ds/dt, and w = −ds/dq, so its generalised force is −F w² q̇. A drive along s has w = ds/dq and the speed w q̇.
+//! Other coordinates on which magnitudes depend are tabulated as s(q), or as ds/dq where only their speed occurs.
 //!
-//! V and m are integrals of what stands in (1), piece by piece, so ½ m q̇² + V is kept on the table as on
+//! V and m are integrals of the terms of (1), piece by piece, so ½ m q̇² + V is constant on the table as on
 //! the mechanism: it does not drift, however coarse the table is.
 //!
-//! Making it costs some hundred to some thousand evaluations of the exact machine in dual numbers: at 1e-9 0.2 ms
+//! Building it takes some hundred to some thousand evaluations of the exact machine in dual numbers: at 1e-9, 0.2 ms
 //! for a free four-bar, 1 to 5 ms with loads and drives (docs/performance.md).
 
 mod ode;
@@ -24,7 +24,7 @@ use crate::drive::CompiledDrive;
 use crate::machine::{Machine, NonconservativeSource};
 use dwell_geometry::PositionError;
 use dwell_geometry::body_states::CoordinateFunction;
-use dwell_kinetostatics::table::{Bound, IntegratedCurve, PiecewiseColumns, TableBuilder};
+use dwell_kinetostatics::table::{Bound, IntegratedCurve, PiecewiseColumns, Result, TableBuilder};
 use dwell_kinetostatics::{
     CompiledSignal, ExactModel, Load, LoadKind, Magnitude, TableDomain, TableError, TableQuantity,
 };
@@ -58,13 +58,13 @@ pub enum TabulationError {
     Table(#[from] TableError),
 }
 
-/// A machine of one freedom on a table: constant, shared between threads.
+/// A machine of one degree of freedom on a table: constant, shared between threads.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TabulatedMachine {
     inertia: IntegratedCurve,
     potential: Option<IntegratedCurve>,
     columns: PiecewiseColumns,
-    /// How many columns there are.
+    /// Number of columns.
     column_count: usize,
     /// In the order of the works.
     tabulated_loads: Vec<TabulatedLoad>,
@@ -75,7 +75,7 @@ pub struct TabulatedMachine {
     period: Option<f64>,
 }
 
-/// A load or drive without a potential. Its w is the column of its own place.
+/// A load or drive without a potential. Its w is the column of its own index.
 #[derive(Debug, Clone, PartialEq)]
 struct TabulatedLoad {
     load: usize,
@@ -84,14 +84,14 @@ struct TabulatedLoad {
     effect: LoadEffect,
 }
 
-/// What a magnitude is of.
+/// How a magnitude acts.
 #[derive(Debug, Clone, PartialEq)]
 enum LoadEffect {
     /// F itself acts.
     Force,
     /// F resists in proportion to the speed.
     Damper,
-    /// A drive makes an action of it.
+    /// It is the input of a drive.
     Drive(Box<CompiledDrive>),
 }
 
@@ -103,7 +103,7 @@ enum TabulatedSignal {
     Speed(TabulatedCoordinate),
 }
 
-/// slope · q + offset and what a column adds, of a coordinate; of a speed, that by q̇.
+/// slope · q + offset + a column, of a coordinate; of a speed, the same divided by q̇.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct TabulatedCoordinate {
     slope: f64,
@@ -134,25 +134,19 @@ impl TabulatedMachine {
         if let Some(load) = machine.model().loads().iter().position(dry) {
             return Err(TabulationError::Friction { load });
         }
-        let mut maker = TableBuilder::new(machine.model().plan().range(), domain, accuracy)?;
+        let mut builder = TableBuilder::new(machine.model().plan().range(), domain, accuracy)?;
         let exact = ExactModel::new(machine.model().without_reactions());
         let exact = exact.ok_or(TabulationError::DegreesOfFreedom { actuators, free })?;
-        let mut total_inertia = TotalInertia::new(machine, &exact);
-        let inertia = maker.curve(
-            [TableQuantity::M, TableQuantity::HalfDm],
-            &mut total_inertia,
-        )?;
-        let potential = match TotalPotential::new(machine) {
-            Some(mut source) => {
-                Some(maker.curve([TableQuantity::V, TableQuantity::HalfDv], &mut source)?)
-            }
-            None => None,
-        };
+        let both = [TableQuantity::M, TableQuantity::HalfDm];
+        let inertia = builder.curve(both, &mut TotalInertia::new(machine, &exact))?;
+        let both = [TableQuantity::V, TableQuantity::HalfDv];
+        let potential = TotalPotential::new(machine);
+        let potential = potential.map(|mut source| builder.curve(both, &mut source));
+        let potential = potential.transpose()?;
         let sources = machine.nonconservative_sources().iter();
-        let loads: Vec<usize> = sources
-            .filter_map(|&source| load_of(machine, source))
-            .collect();
-        let mut auxiliary = AuxiliaryColumns::new(machine, &maker, &loads);
+        let loads = sources.filter_map(|&source| load_of(machine, source));
+        let loads: Vec<usize> = loads.collect();
+        let mut auxiliary = AuxiliaryColumns::new(machine, &builder, &loads);
         let mut tabulated_loads = Vec::with_capacity(loads.len());
         for &load in &loads {
             tabulated_loads.push(TabulatedLoad::new(machine, load, &mut auxiliary)?);
@@ -160,7 +154,7 @@ impl TabulatedMachine {
         let entries = auxiliary.entries().to_vec();
         let columns = {
             let mut fill = |q: f64, out: &mut [_]| auxiliary.fill(q, out);
-            maker.columns(&entries, &|one, other| one == other, &mut fill)?
+            builder.columns(&entries, &|one, other| one == other, &mut fill)?
         };
         Ok(Self {
             inertia,
@@ -169,31 +163,28 @@ impl TabulatedMachine {
             column_count: entries.len(),
             tabulated_loads,
             drive_state_count: machine.work_offset() - 2,
-            domain: maker.domain(),
-            period: maker.period(),
-            bounds: maker.bounds(),
+            domain: builder.domain(),
+            period: builder.period(),
+            bounds: builder.bounds(),
         })
     }
 
-    /// The largest of all bounds: every function of the coordinate is off by no more than this part of its
+    /// The largest of all bounds: every function of the coordinate has an error of at most this part of its
     /// largest value.
     pub fn bound(&self) -> f64 {
         self.bounds.iter().fold(0.0, |max, b| max.max(b.error))
     }
 
-    /// How far each function may be off. Loads are those of the machine's model; measured coordinates are
-    /// counted as they are met in the loads' magnitudes.
+    /// The error bound of each function. Loads are those of the machine's model; measured coordinates are
+    /// numbered in the order in which the loads' magnitudes name them.
     pub fn bounds(&self) -> &[Bound] {
         &self.bounds
     }
 
-    /// Cells of m, of V, of all else; none where there is nothing.
+    /// Cells of m, of V, of the columns; zero where there are none.
     pub fn cells(&self) -> [usize; 3] {
-        [
-            self.inertia.cells(),
-            self.potential.as_ref().map_or(0, IntegratedCurve::cells),
-            self.columns.cells(),
-        ]
+        let potential = self.potential.as_ref().map_or(0, IntegratedCurve::cells);
+        [self.inertia.cells(), potential, self.columns.cells()]
     }
 
     /// Bytes in memory.
@@ -202,13 +193,13 @@ impl TabulatedMachine {
         self.inertia.bytes() + potential + self.columns.bytes()
     }
 
-    /// From where to where it reaches, rad or m; of one that comes back, one period. A motion that leaves it
+    /// Its domain, rad or m; one period if it is periodic. A motion that leaves it
     /// ends there with [`PositionError::OutOfRange`].
     pub fn domain(&self) -> [f64; 2] {
         self.domain
     }
 
-    /// After how many radians everything comes back, if it does.
+    /// The period, rad, if there is one.
     pub fn period(&self) -> Option<f64> {
         self.period
     }
@@ -240,7 +231,7 @@ impl TabulatedMachine {
     }
 }
 
-/// The load through which something works.
+/// The load of a nonconservative source.
 fn load_of(machine: &Machine, source: NonconservativeSource) -> Option<usize> {
     match source {
         NonconservativeSource::Load(load) => Some(load),
@@ -250,29 +241,27 @@ fn load_of(machine: &Machine, source: NonconservativeSource) -> Option<usize> {
 }
 
 impl TabulatedLoad {
-    fn new(
-        machine: &Machine,
-        load: usize,
-        auxiliary: &mut AuxiliaryColumns,
-    ) -> Result<Self, TableError> {
+    fn new(machine: &Machine, load: usize, auxiliary: &mut AuxiliaryColumns) -> Result<Self> {
         let model = machine.model();
         let drive = machine.drives.iter().find(|drive| drive.load == load);
         let (effect, magnitude) = match (drive, &model.loads()[load]) {
-            (Some(drive), _) => (
-                LoadEffect::Drive(Box::new(drive.clone())),
-                drive.input.clone(),
-            ),
+            (Some(drive), _) => {
+                let effect = LoadEffect::Drive(Box::new(drive.clone()));
+                (effect, drive.input.clone())
+            }
             (None, found) => {
-                let is_damper = matches!(
-                    found.kind,
+                let effect = match found.kind {
                     LoadKind::Damper { .. }
-                        | LoadKind::RotationalDamper { .. }
-                        | LoadKind::SlideDamper(_)
-                );
-                let effect = if is_damper {
-                    LoadEffect::Damper
-                } else {
-                    LoadEffect::Force
+                    | LoadKind::RotationalDamper { .. }
+                    | LoadKind::SlideDamper(_) => LoadEffect::Damper,
+                    LoadKind::Gravity { .. }
+                    | LoadKind::Force { .. }
+                    | LoadKind::Torque { .. }
+                    | LoadKind::Spring { .. }
+                    | LoadKind::TorsionSpring { .. }
+                    | LoadKind::PointToPointForce { .. }
+                    | LoadKind::SlideForce(_)
+                    | LoadKind::SeparatingForce(_) => LoadEffect::Force,
                 };
                 (effect, found.magnitude.clone())
             }

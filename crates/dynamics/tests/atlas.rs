@@ -30,10 +30,10 @@ impl Pair {
         let machine = &atlas.charts()[0].machine;
         let mut workspace = machine.workspace();
         let initial_state = crank.initial_state(&atlas, speed);
-        machine
+        let mut state = machine
             .evaluate(0.0, &initial_state.y, &mut workspace)
             .expect("a state");
-        let states = workspace.inner.states();
+        let states = state.bodies();
         let coordinate = other.coordinate();
         let measured =
             CoordinateFunction::find(&crank.mechanism, coordinate).expect("a coordinate");

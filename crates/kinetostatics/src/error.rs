@@ -3,6 +3,9 @@
 use dwell_geometry::{AssemblyError, PositionError, Reaction};
 use thiserror::Error;
 
+/// A result that fails with a [`KinetostaticsError`] unless another error is named.
+pub type Result<T, E = KinetostaticsError> = std::result::Result<T, E>;
+
 /// Why a model cannot be built.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ModelError {

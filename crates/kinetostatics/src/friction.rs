@@ -13,7 +13,7 @@
 //! determinant of its Jacobian is 1 without friction; where it is no longer positive the mechanism jams:
 //! the same state has two accelerations, or none.
 
-use crate::error::KinetostaticsError;
+use crate::error::{KinetostaticsError, Result};
 use crate::load::{Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle};
 use crate::pass::InverseDynamics;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
@@ -224,7 +224,7 @@ pub(crate) fn solve<T: Scalar>(
     frictionless: &[T],
     responses: &[InverseDynamics<T>],
     workspace: &mut FrictionWorkspace<T>,
-) -> Result<(), KinetostaticsError> {
+) -> Result<()> {
     let load = dependent_loads
         .first()
         .map_or(0, |dependent| dependent.load);

@@ -1,5 +1,6 @@
 //! Masses, loads, joint reactions and actuator actions of a mechanism, and its reduced model m(q) q̈ + ½m′(q) q̇² = Q. A
-//! [`Model`] is constant and shared between threads; an evaluation writes into a [`Workspace`] of one thread.
+//! [`Model`] is constant and shared between threads; an evaluation writes into a [`Workspace`] of one thread, by
+//! [stages](model::stages) that cannot be called in a wrong order.
 //!
 //! The reduced model of a uniform bar of 2 kg and 1 m that swings about its end: m is its moment of inertia
 //! about the joint, mL²/3, and the horizontal reaction at q = 90° is −m L/2 per unit of q̈.
@@ -54,7 +55,7 @@ pub use load::{
     Signal,
 };
 pub use mass::Mass;
-pub use model::{Model, Workspace};
+pub use model::{EvaluatedState, ForceState, KinematicState, LoadedState, Model, Workspace};
 pub use pass::InverseDynamics;
 pub use reduced::{Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
 pub use results::{

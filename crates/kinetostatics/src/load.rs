@@ -168,7 +168,7 @@ pub enum Magnitude {
     Friction(Friction),
     /// The separating force of teeth, from the tooth force of their joint.
     Separating(PressureAngle),
-    /// The value that [`Workspace::set_magnitude`](crate::Workspace::set_magnitude) was given last: of a drive,
+    /// The value given by [`LoadedState::set_magnitude`](crate::LoadedState::set_magnitude), zero until then: of a drive,
     /// which is evaluated outside the model from these signals.
     External(Vec<Signal>),
 }

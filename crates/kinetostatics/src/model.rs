@@ -1,17 +1,18 @@
 //! A mechanism with masses and loads, ready to be evaluated.
 
-mod equation_terms;
 mod kinetostatics;
 mod revolutions;
+pub mod stages;
 mod workspace;
 
+pub use stages::{EvaluatedState, ForceState, KinematicState, LoadedState};
 pub use workspace::Workspace;
 
 use crate::error::ModelError;
 use crate::friction::{DependentLoad, required_reactions};
 use crate::load::CompiledLoads;
 use crate::mass::Mass;
-use crate::pass::{GivenMotion, InertialBody, InverseDynamics, PassModel, ReactionSources};
+use crate::pass::{GivenMotion, InverseDynamics, PassModel, ReactionSources};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{AssemblyConfiguration, BodyId, Mechanism, Plan, PositionError, Reaction};
 use dwell_numerics::Scalar;
@@ -30,6 +31,8 @@ pub struct Model {
     pub(crate) masses: Vec<Mass>,
     pub(crate) loads: CompiledLoads,
     dependent_loads: Vec<DependentLoad>,
+    /// By actuator: zero, the velocity and acceleration of statics.
+    rest: Vec<f64>,
     /// The configuration in which it was assembled.
     assembly: AssemblyConfiguration,
 }
@@ -45,13 +48,9 @@ impl Model {
         assembly: &AssemblyConfiguration,
         reactions: &[Reaction],
     ) -> Result<Self, ModelError> {
-        let valid = |m: &Mass| {
-            m.mass >= 0.0
-                && m.inertia >= 0.0
-                && m.mass.is_finite()
-                && m.inertia.is_finite()
-                && m.center.is_finite()
-        };
+        let not_negative = |value: f64| value >= 0.0 && value.is_finite();
+        let valid =
+            |m: &Mass| not_negative(m.mass) && not_negative(m.inertia) && m.center.is_finite();
         if masses.len() != mechanism.bodies.len() || !masses.iter().all(valid) {
             return Err(ModelError::Masses);
         }
@@ -68,6 +67,7 @@ impl Model {
             masses,
             loads: CompiledLoads::default(),
             dependent_loads: Vec::new(),
+            rest: vec![0.0; mechanism.actuators.len()],
             assembly: assembly.clone(),
         };
         model.compile_reactions(reactions);
@@ -189,28 +189,6 @@ impl Model {
         Ok(())
     }
 
-    /// Kinetic energy ½ Σ m v² + I ω² at the state set last, J.
-    pub fn kinetic_energy(&self, workspace: &Workspace<f64>) -> f64 {
-        let states = workspace.states();
-        let energy = |body: &InertialBody| {
-            let id = BodyId(body.body);
-            let velocity = states.point(id, self.masses[id.0].center).velocity;
-            let angular_velocity = states.body(id).angular_velocity;
-            0.5 * (body.mass * velocity.dot(velocity)
-                + body.inertia * angular_velocity * angular_velocity)
-        };
-        self.pass_model.inertial_bodies.iter().map(energy).sum()
-    }
-
-    /// [`Model::inertia_sums`] at the pose, velocities and accelerations of the workspace: m and ½m′ by another method,
-    /// in which no reaction takes part.
-    pub fn workspace_inertia_sums(&self, workspace: &Workspace<f64>) -> (f64, f64) {
-        let mut states = BodyStates::new(&self.pass_model.plan);
-        states.fill(&self.pass_model.plan, &workspace.pose, &workspace.motion);
-        let [energy, power] = self.inertia_sums(&states);
-        (energy, power)
-    }
-
     /// Σ m v² + I ω² and Σ m v·a + I ω α of some states of the bodies: at unit speed and zero
     /// acceleration of one coordinate, m and ½m′.
     pub fn inertia_sums<T: Scalar>(&self, states: &BodyStates<T>) -> [T; 2] {
@@ -218,10 +196,8 @@ impl Model {
         for body in &self.pass_model.inertial_bodies {
             let id = BodyId(body.body);
             let center = states.point(id, self.masses[id.0].center);
-            let (w, a) = (
-                states.body(id).angular_velocity,
-                states.body(id).angular_acceleration,
-            );
+            let body_state = states.body(id);
+            let (w, a) = (body_state.angular_velocity, body_state.angular_acceleration);
             let (mass, inertia) = (T::from_f64(body.mass), T::from_f64(body.inertia));
             energy += mass * center.velocity.dot(center.velocity) + inertia * w * w;
             power += mass * center.velocity.dot(center.acceleration) + inertia * w * a;

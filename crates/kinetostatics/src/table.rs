@@ -1,13 +1,13 @@
 //! Tables of the reduced model: m, ½m′, a, b, w and c as piecewise polynomials of the coordinate, in place
 //! of the mechanism.
 //!
-//! The number of cells follows from how fast the coefficients of a global series fall (`sizing`:
-//! trigonometric over full turns, Chebyshev's over a limited domain); values come from cells of equal
+//! The number of cells follows from the decay of the coefficients of a global series (`sizing`:
+//! trigonometric over full revolutions, Chebyshev's over a limited domain); values come from cells of equal
 //! size at a constant cost (`piecewise`); the error is measured, not estimated (`bound`).
 //!
 //! A limited range ends at limit positions, where all coefficients grow without bound, so a table covers an inner
-//! part of it. Outside it returns an error: a table that is read from a file has no mechanism to
-//! evaluate instead, and a motion that changed from one to the other would change its energy.
+//! part of it. Outside its domain it returns an error: a table that is read from a file has no mechanism to
+//! evaluate instead, and a motion that passed from one to the other would change its energy.
 
 mod bound;
 mod build;
@@ -30,10 +30,13 @@ use sampler::ModelSampler;
 use std::fmt;
 use thiserror::Error;
 
+/// A result that fails with a [`TableError`] unless another error is named.
+pub type Result<T, E = TableError> = std::result::Result<T, E>;
+
 /// The domain of a table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum TableDomain {
-    /// All turns of a mechanism that turns fully; of a limited range all but 2 % of it at each end.
+    /// All revolutions of a mechanism that turns fully; of a limited range all but 2 % of it at each end.
     Full,
     /// From one coordinate to another, rad or m.
     Between(f64, f64),
@@ -95,12 +98,8 @@ impl fmt::Display for TableQuantity {
             Self::C { load, reaction } => write!(f, "c of load {load} and reaction {reaction}"),
             Self::V => write!(f, "the potential V"),
             Self::HalfDv => write!(f, "the slope of the potential, ½V′"),
-            Self::S {
-                coordinate: measured,
-            } => write!(f, "measured coordinate {measured}"),
-            Self::Ds {
-                coordinate: measured,
-            } => write!(f, "the slope of measured coordinate {measured}"),
+            Self::S { coordinate } => write!(f, "measured coordinate {coordinate}"),
+            Self::Ds { coordinate } => write!(f, "the slope of measured coordinate {coordinate}"),
         }
     }
 }
@@ -111,11 +110,11 @@ pub enum TableError {
     /// An accuracy that cannot be kept in double precision, or none at all.
     #[error("a table's accuracy is between 1e-14 and 1e-2, not {accuracy:e}")]
     Accuracy {
-        /// What was asked for.
+        /// The one requested.
         accuracy: f64,
     },
     /// A domain that is empty, not finite or not inside the range.
-    #[error("a table cannot reach from {from} to {to}: that is empty, or leaves the range")]
+    #[error("a table cannot have the domain from {from} to {to}: it is empty, or leaves the range")]
     Domain {
         /// Lower end, rad or m.
         from: f64,
@@ -123,19 +122,17 @@ pub enum TableError {
         to: f64,
     },
     /// The range has no end and the mechanism is not periodic.
-    #[error("the range has no ends: say from where to where the table is to reach")]
+    #[error("the range has no ends: give the limits of the table's domain")]
     Unbounded,
-    /// A coefficient that is not the same a period later, such as that of a spring that winds up.
-    #[error(
-        "{what} does not come back after a turn: say from where to where the table is to reach"
-    )]
+    /// A coefficient that is not periodic, such as that of a spring that winds up.
+    #[error("{what} is not periodic: give the limits of the table's domain")]
     NotPeriodic {
         /// Which.
         what: TableQuantity,
     },
     /// The coefficients of the series do not fall to the accuracy.
     #[error(
-        "not smooth enough for a table over so much: {points} samples leave {residual:.1e} of the largest value"
+        "not smooth enough for a table over this domain: {points} samples leave {residual:.1e} of the largest value"
     )]
     NotSmooth {
         /// Samples taken.
@@ -144,7 +141,9 @@ pub enum TableError {
         residual: f64,
     },
     /// No number of cells reaches the accuracy.
-    #[error("no table of {accuracy:e}: {what} is known to {reached:.1e} of its largest value")]
+    #[error(
+        "no table of accuracy {accuracy:e}: {what} has an error of {reached:.1e} of its largest value"
+    )]
     NotReached {
         /// The coefficient that is furthest off.
         what: TableQuantity,
@@ -204,8 +203,8 @@ impl TabulatedModel {
     /// of its largest value.
     ///
     /// # Errors
-    /// [`TableError`] when there is nothing to reach over, or the accuracy cannot be kept.
-    pub fn new(exact: &ExactModel, accuracy: f64, domain: TableDomain) -> Result<Self, TableError> {
+    /// [`TableError`] for a domain that is empty or unbounded, or an accuracy that cannot be kept.
+    pub fn new(exact: &ExactModel, accuracy: f64, domain: TableDomain) -> Result<Self> {
         let mut builder = TableBuilder::new(exact.range(), domain, accuracy)?;
         let mut sampler = ModelSampler::new(exact);
         let model = exact.model();
@@ -228,7 +227,7 @@ impl TabulatedModel {
         })
     }
 
-    /// The accuracy asked for.
+    /// The requested accuracy.
     pub fn accuracy(&self) -> f64 {
         self.accuracy
     }
@@ -256,20 +255,15 @@ impl TabulatedModel {
 
     /// Cells of m and ½m′, of the reactions, of the loads; none where there are none.
     pub fn cells(&self) -> [usize; 3] {
-        [
-            self.inertia.cells(),
-            self.reactions.cells(),
-            self.loads.cells(),
-        ]
+        let (reactions, loads) = (self.reactions.cells(), self.loads.cells());
+        [self.inertia.cells(), reactions, loads]
     }
 
     /// Bytes in memory: of m and ½m′, and of everything.
     pub fn bytes(&self) -> [usize; 2] {
         let inertia = self.inertia.bytes();
-        [
-            inertia,
-            inertia + self.reactions.bytes() + self.loads.bytes(),
-        ]
+        let all = inertia + self.reactions.bytes() + self.loads.bytes();
+        [inertia, all]
     }
 
     /// A buffer for the responses to all loads.
@@ -307,7 +301,7 @@ impl ReducedModel for TabulatedModel {
         match (self.revolutions(), self.domain()) {
             (Some(1), _) => Range::Full,
             (Some(revolutions), _) => Range::Revolutions(revolutions),
-            // Nothing is known beyond its ends, which are no limit positions.
+            // It is unknown beyond its ends, which are no limit positions.
             (None, [from, to]) => Range::Unresolved(from, to),
         }
     }
@@ -339,8 +333,8 @@ fn table_quantities(
     let a = (0..reactions).map(|reaction| TableQuantity::A { reaction });
     let b = (0..reactions).map(|reaction| TableQuantity::B { reaction });
     let w = (0..loads).map(|load| TableQuantity::W { load });
-    let c = (0..loads)
-        .flat_map(|load| (0..reactions).map(move |reaction| TableQuantity::C { load, reaction }));
+    let of_load = |load| (0..reactions).map(move |reaction| TableQuantity::C { load, reaction });
+    let c = (0..loads).flat_map(of_load);
     let inertia = [TableQuantity::M, TableQuantity::HalfDm];
     (inertia, a.chain(b).collect(), w.chain(c).collect())
 }

@@ -34,7 +34,7 @@ pub(super) fn actuator(
 }
 
 /// The mechanism's own coordinate, the angles of all bodies and of all hinges, and all travels.
-pub(super) fn candidates(mechanism: &Mechanism, length_scale: f64) -> Vec<Candidate> {
+pub(super) fn candidates(mechanism: &Mechanism, size: f64) -> Vec<Candidate> {
     let mut found: Vec<Candidate> = Vec::new();
     let ground = BodyId(mechanism.ground);
     let mut add = |name: String, coordinate: Coordinate| {
@@ -50,7 +50,7 @@ pub(super) fn candidates(mechanism: &Mechanism, length_scale: f64) -> Vec<Candid
         let weight = match coordinate {
             Coordinate::Angle(bodies) if bodies.contains(&ground) => 1.0,
             Coordinate::Angle(_) => RELATIVE_ANGLE_WEIGHT,
-            _ => 1.0 / length_scale,
+            _ => 1.0 / size,
         };
         if let Some(measured) = CoordinateFunction::find(mechanism, coordinate) {
             found.push(Candidate {
@@ -89,24 +89,4 @@ pub(super) fn candidates(mechanism: &Mechanism, length_scale: f64) -> Vec<Candid
         }
     }
     found
-}
-
-/// The largest distance of two points of one body, m.
-pub(super) fn length_scale(mechanism: &Mechanism) -> f64 {
-    let mut largest = 0.0_f64;
-    let mut first = vec![None; mechanism.bodies.len()];
-    let joints = mechanism.joints.iter().map(|j| (j.bodies, j.points));
-    let lengths = mechanism.actuators.iter().filter_map(|a| match a.kind {
-        ActuatorKind::Length(points) => Some((a.bodies, points)),
-        _ => None,
-    });
-    for (bodies, points) in joints.chain(lengths) {
-        for (body, point) in bodies.iter().zip(points) {
-            if let Some(first) = first.get_mut(body.0) {
-                let first = first.get_or_insert(point);
-                largest = largest.max((point - *first).norm());
-            }
-        }
-    }
-    if largest > 0.0 { largest } else { 1.0 }
 }

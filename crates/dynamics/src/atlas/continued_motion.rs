@@ -1,12 +1,11 @@
 //! A motion through several charts.
 
 use super::Atlas;
-use crate::error::DynamicsError;
-use crate::ode::OdeState;
+use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
 use crate::solve::{EventOccurrence, Solution};
 use dwell_geometry::BodyId;
-use dwell_geometry::body_states::CoordinateFunction;
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use std::f64::consts::TAU;
 
 /// A motion through one or more charts.
@@ -14,11 +13,11 @@ use std::f64::consts::TAU;
 pub struct ContinuedMotion {
     /// The parts of it in one chart each, in order; samples go on from one to the next.
     pub segments: Vec<Segment>,
-    /// Where and why the chart was changed: one fewer than the legs, or as many if it ended with one.
+    /// Where and why the chart was changed: one fewer than the segments, or as many if it ended with one.
     pub changes: Vec<ChartChange>,
     /// Whether an event ended it.
     pub terminated_by_event: bool,
-    /// Why it could not go on, if it could not.
+    /// The error that ended it early, if one did.
     pub error: Option<DynamicsError>,
 }
 
@@ -27,8 +26,8 @@ pub struct ContinuedMotion {
 pub struct Segment {
     /// Index in [`Atlas::charts`].
     pub chart: usize,
-    /// The motion, in states of that chart's machine. Its `failed` is set too where another chart
-    /// then went on.
+    /// The motion, in states of that chart's machine. Its `error` is set too where another chart
+    /// continues the motion.
     pub solution: Solution,
 }
 
@@ -48,12 +47,12 @@ pub struct ChartChange {
 /// Why a chart was left.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ChartChangeReason {
-    /// Its coordinate folds back: another was so many times as fast.
+    /// Its coordinate folds back: another moved many times as fast.
     CoordinateFold {
-        /// How many times, lengths by the mechanism's size.
+        /// The ratio of their speeds, lengths by the mechanism's size.
         speed_ratio: f64,
     },
-    /// It could not be followed any further.
+    /// It could not be continued.
     SolutionEnds,
     /// A change point was crossed, to the same coordinate on the branch behind.
     CrossesChangePoint {
@@ -65,60 +64,43 @@ pub enum ChartChangeReason {
 /// A coordinate along a motion: value, speed and acceleration, rad or m, per s, per s².
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CoordinateHistory {
-    /// By leg, at its steps.
+    /// By segment, at its steps.
     pub steps: Vec<Vec<[f64; 3]>>,
-    /// By leg, at its samples.
+    /// By segment, at its samples.
     pub samples: Vec<Vec<[f64; 3]>>,
 }
 
 impl ContinuedMotion {
-    /// Adds what one chart made of the motion; it goes on from the last leg if the chart is the same.
+    /// Adds the solution in one chart; it continues the last segment if the chart is the same.
     pub(super) fn append(&mut self, chart: usize, solution: Solution) {
         let same = self.segments.len() == self.changes.len() + 1;
         let Some(segment) = self.segments.last_mut().filter(|_| same) else {
             self.segments.push(Segment { chart, solution });
             return;
         };
-        segment
-            .solution
-            .steps
-            .extend(solution.steps.into_iter().skip(1));
-        segment.solution.samples.extend(solution.samples);
-        segment
-            .solution
-            .event_occurrences
-            .extend(solution.event_occurrences);
-        segment.solution.terminated_by_event = solution.terminated_by_event;
-        segment.solution.error = solution.error;
-        segment.solution.statistics =
-            add_statistics(segment.solution.statistics, solution.statistics);
+        let whole = &mut segment.solution;
+        whole.steps.extend(solution.steps.into_iter().skip(1));
+        whole.samples.extend(solution.samples);
+        let occurrences = solution.event_occurrences;
+        whole.event_occurrences.extend(occurrences);
+        whole.terminated_by_event = solution.terminated_by_event;
+        whole.error = solution.error;
+        whole.statistics = add_statistics(whole.statistics, solution.statistics);
     }
 
-    /// What happened, in order, with the leg it happened in.
+    /// The events in order, each with its segment.
     pub fn event_occurrences(&self) -> impl Iterator<Item = (usize, &EventOccurrence)> {
         let segments = self.segments.iter().enumerate();
         segments.flat_map(|(i, segment)| {
-            segment
-                .solution
-                .event_occurrences
-                .iter()
-                .map(move |o| (i, o))
+            let occurrences = segment.solution.event_occurrences.iter();
+            occurrences.map(move |o| (i, o))
         })
     }
 
-    /// The work of all legs together.
+    /// The work of all segments together.
     pub fn statistics(&self) -> Statistics {
-        let segments = self
-            .segments
-            .iter()
-            .map(|segment| segment.solution.statistics);
-        segments.fold(Statistics::default(), add_statistics)
-    }
-
-    /// The last state, with the chart it is of.
-    pub fn last_state(&self) -> Option<(usize, &OdeState)> {
-        let segment = self.segments.last()?;
-        Some((segment.chart, segment.solution.steps.last()?))
+        let each = self.segments.iter().map(|s| s.solution.statistics);
+        each.fold(Statistics::default(), add_statistics)
     }
 }
 
@@ -128,8 +110,8 @@ impl Atlas<'_> {
         self.candidates[0].measured
     }
 
-    /// A coordinate along a motion. Angles have no jumps: where no chart counts their turns, they go on
-    /// from what they were; the first is in the chart's own count.
+    /// A coordinate along a motion. Angles have no jumps: where no chart counts their revolutions, they continue
+    /// from the last value; the first is in the chart's own count.
     ///
     /// # Errors
     /// [`DynamicsError`] where a state cannot be evaluated.
@@ -137,14 +119,14 @@ impl Atlas<'_> {
         &self,
         motion: &ContinuedMotion,
         measured: CoordinateFunction,
-    ) -> Result<CoordinateHistory, DynamicsError> {
+    ) -> Result<CoordinateHistory> {
         let mut history = CoordinateHistory::default();
         let mut last: Option<(f64, [f64; 3])> = None;
         for Segment { chart, solution } in &motion.segments {
             let machine = &self.charts[*chart].machine;
             let mut workspace = machine.workspace();
             let mut found = [Vec::new(), Vec::new()];
-            // Whole turns that this chart's count is off, if it counts.
+            // The whole revolutions by which this chart's count differs, if it counts.
             let mut revolution_offset: Option<f64> = None;
             let (steps, samples) = (&solution.steps, &solution.samples);
             let (mut i, mut k) = (0, 0);
@@ -154,13 +136,8 @@ impl Atlas<'_> {
                     (step, _) => step.is_some(),
                 };
                 let point = if first { &steps[i] } else { &samples[k] };
-                machine.evaluate(point.t, &point.y, &mut workspace)?;
-                if machine.fit_at(point.y.first()).is_none() {
-                    machine
-                        .model
-                        .set_accelerations(&workspace.q_ddot, &mut workspace.inner);
-                }
-                let states = workspace.inner.states();
+                let mut state = machine.evaluate(point.t, &point.y, &mut workspace)?;
+                let states = state.bodies();
                 let mut now = states.coordinate(measured);
                 if let (CoordinateFunction::Angle(bodies), Some((t, before))) = (measured, last) {
                     let counts = |b: BodyId| states.body(b).angle.is_some();
@@ -204,11 +181,8 @@ fn add_statistics(a: Statistics, b: Statistics) -> Statistics {
     }
 }
 
-/// Whether the whole turns of an angle are counted.
-fn counts_revolutions(
-    measured: CoordinateFunction,
-    states: &dwell_geometry::body_states::BodyStates,
-) -> bool {
+/// Whether the whole revolutions of an angle are counted.
+fn counts_revolutions(measured: CoordinateFunction, states: &BodyStates) -> bool {
     match measured {
         CoordinateFunction::Angle(bodies) => {
             bodies.into_iter().all(|b| states.body(b).angle.is_some())

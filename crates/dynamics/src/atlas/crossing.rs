@@ -3,17 +3,17 @@
 use super::candidates::actuator;
 use super::{Atlas, Chart};
 use crate::change_point_fit::{
-    ChangePointFit, ChangePointFitError, FitWindow, extrapolate, half_width_for,
+    ChangePointFit, ChangePointFitError, FitWindow, Result, extrapolate, half_width_for,
 };
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{AssemblyConfiguration, BodyId, Mechanism, RangeLimit};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Two branches part by about the distance from their change point; one is known to this part of it.
+/// Two branches separate by about the distance from their change point; one is known to this part of it.
 const SEPARATION_FRACTION: f64 = 0.1;
 
-/// A bridge with the charts below and above it.
+/// A change-point fit with the charts below and above it.
 #[derive(Debug, Clone)]
 pub(super) struct ChangePointCrossing {
     pub(super) fit: Arc<ChangePointFit>,
@@ -21,12 +21,12 @@ pub(super) struct ChangePointCrossing {
 }
 
 impl Atlas<'_> {
-    /// Looks for bridges at the change points in which a chart's range ends.
+    /// Makes fits for the change points in which a chart's range ends.
     pub(super) fn prepare_crossings(&mut self, chart: usize) {
         for (e, upwards) in [(0, false), (1, true)] {
             let current = &mut self.charts[chart];
-            let limit =
-                current.machine.model.plan().range_limits()[e].filter(|limit| limit.change_point);
+            let limit = current.machine.model.plan().range_limits()[e];
+            let limit = limit.filter(|limit| limit.change_point);
             let searched = std::mem::replace(&mut current.limits_searched[e], true);
             let known = self.crossings.iter();
             let mut known = known.filter(|c| c.charts[usize::from(!upwards)] == chart);
@@ -39,13 +39,8 @@ impl Atlas<'_> {
         }
     }
 
-    /// Builds the bridge across a change point, with the chart behind it.
-    fn build_crossing(
-        &mut self,
-        chart: usize,
-        limit: RangeLimit,
-        upwards: bool,
-    ) -> Result<(), ChangePointFitError> {
+    /// Builds the fit across a change point, with the chart behind it.
+    fn build_crossing(&mut self, chart: usize, limit: RangeLimit, upwards: bool) -> Result<()> {
         let current = &self.charts[chart];
         let plan = current.machine.model.plan();
         if current.machine.model.frictions().len() > 0 {
@@ -54,48 +49,31 @@ impl Atlas<'_> {
         if plan.couplings() > 0 {
             return Err(ChangePointFitError::Couplings);
         }
-        let coordinate_scale = if current.coordinate.is_angle() {
-            1.0
-        } else {
-            self.length_scale
-        };
-        let half_width = coordinate_scale * half_width_for(plan, self.tolerance);
-        // Far enough for the branches to have parted.
-        let beyond = (1.5 * half_width).max(0.05 * coordinate_scale);
+        let is_angle = current.coordinate.is_angle();
+        let scale = if is_angle { 1.0 } else { self.size };
+        let half_width = scale * half_width_for(plan, self.tolerance);
+        // Far enough for the branches to have separated.
+        let beyond = (1.5 * half_width).max(0.05 * scale);
         let direction = if upwards { 1.0 } else { -1.0 };
-        let to = (4.0 * half_width).max(0.1 * coordinate_scale);
-        let mut angles = extrapolate(
-            &current.machine.model,
-            limit.q,
-            upwards,
-            [half_width, to],
-            beyond,
-        )?;
+        let nodes = [half_width, (4.0 * half_width).max(0.1 * scale)];
+        let model = &current.machine.model;
+        let mut angles = extrapolate(model, limit.q, upwards, nodes, beyond)?;
         angles.truncate(self.description.mechanism.bodies.len());
         let q = limit.q + direction * beyond;
-        let next_chart = self.next_branch(
-            chart,
-            q,
-            &angles,
-            SEPARATION_FRACTION * beyond / coordinate_scale,
-        )?;
-        let (center, angle_shift) =
-            self.change_point_between(limit, next_chart, upwards, half_width)?;
+        let tolerance = SEPARATION_FRACTION * beyond / scale;
+        let next = self.next_branch(chart, q, &angles, tolerance)?;
+        let (center, angle_shift) = self.change_point_between(limit, next, upwards, half_width)?;
         let period = self.record_period(chart, angle_shift)?;
         let charts = if upwards {
-            [chart, next_chart]
+            [chart, next]
         } else {
-            [next_chart, chart]
+            [next, chart]
         };
         let branches = charts.map(|c| &self.charts[c].output_model);
-        let fit = ChangePointFit::new(
-            self.description.mechanism,
-            branches,
-            center,
-            [half_width, coordinate_scale],
-        )?;
+        let mechanism = self.description.mechanism;
+        let fit = ChangePointFit::new(mechanism, branches, center, [half_width, scale])?;
         let fit = Arc::new(fit);
-        let far_bound = if next_chart == chart {
+        let far_bound = if next == chart {
             half_width
         } else {
             fit.fit_radius
@@ -116,13 +94,9 @@ impl Atlas<'_> {
         Ok(())
     }
 
-    /// Notes that a coordinate comes back to a chart after some turns (rad); the period that is known
+    /// Records that a coordinate returns to a chart after some revolutions (rad); the period that is known
     /// then, if one is.
-    fn record_period(
-        &mut self,
-        chart: usize,
-        angle_shift: f64,
-    ) -> Result<Option<f64>, ChangePointFitError> {
+    fn record_period(&mut self, chart: usize, angle_shift: f64) -> Result<Option<f64>> {
         let coordinate = self.charts[chart].coordinate;
         let mut known = self.periods.iter().filter(|(c, _)| *c == coordinate);
         let known = known.next().map(|(_, period)| *period);
@@ -134,10 +108,8 @@ impl Atlas<'_> {
             Some(_) => Err(ChangePointFitError::NoContinuation),
             None => {
                 self.periods.push((coordinate, angle_shift.abs()));
-                let charts = self
-                    .charts
-                    .iter_mut()
-                    .filter(|c| c.coordinate == coordinate);
+                let charts = self.charts.iter_mut();
+                let charts = charts.filter(|c| c.coordinate == coordinate);
                 for window in charts.flat_map(|c| &mut c.machine.fit_windows) {
                     window.period = Some(angle_shift.abs());
                 }
@@ -146,15 +118,15 @@ impl Atlas<'_> {
         }
     }
 
-    /// The change point between the end of one range and the beginning of the next: both stop equally
-    /// far from it. The second number is the turns between the two, rad.
+    /// The change point between the end of one range and the beginning of the next, which are equally
+    /// far from it. The second number is the whole revolutions between the two, rad.
     fn change_point_between(
         &self,
         limit: RangeLimit,
         next_chart: usize,
         upwards: bool,
         half_width: f64,
-    ) -> Result<(f64, f64), ChangePointFitError> {
+    ) -> Result<(f64, f64)> {
         let plan = self.charts[next_chart].machine.model.plan();
         let [low, high] = plan.range_limits();
         let opposite = if upwards { low } else { high };
@@ -174,14 +146,14 @@ impl Atlas<'_> {
         Ok((limit.q + 0.5 * difference, angle_shift))
     }
 
-    /// The chart of the same coordinate on the branch with these angles of the bodies, to so much.
+    /// The chart of the same coordinate on the branch with these angles of the bodies, to a tolerance.
     fn next_branch(
         &mut self,
         chart: usize,
         q: f64,
         angles: &[f64],
         tolerance: f64,
-    ) -> Result<usize, ChangePointFitError> {
+    ) -> Result<usize> {
         let current = &self.charts[chart];
         let (name, coordinate) = (current.name.clone(), current.coordinate);
         let on_branch = |chart: &Chart| {

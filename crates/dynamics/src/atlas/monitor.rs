@@ -1,8 +1,7 @@
-//! Watches the steps in a chart: whether its coordinate folds, or a change point is passed.
+//! Monitors the steps in a chart: whether its coordinate folds, or a change point is passed.
 
 use super::{Atlas, Chart, FOLD_SPEED_RATIO, POSE_TOLERANCE};
-use crate::error::DynamicsError;
-
+use crate::error::{DynamicsError, Result};
 use crate::machine::MachineWorkspace;
 use crate::ode::{DenseOutput, OdeState, StepControl, root_subintervals, state_at};
 use dwell_geometry::Motion;
@@ -17,23 +16,23 @@ const FOLD_OVERSHOOT: f64 = 2.0;
 pub(super) enum ChartExit {
     /// Its coordinate folds back.
     CoordinateFold(CandidateSpeeds),
-    /// It ends, for whatever reason.
+    /// The solution in it ends.
     SolutionEnds(CandidateSpeeds),
-    /// It is not left: a step of so many seconds was too rough to tell a return from a fold.
+    /// It is not left: a step of this length (s) is too long to distinguish a reversal from a fold.
     StepTooLong(f64),
-    /// It goes on behind a change point.
+    /// The motion continues behind a change point.
     CrossesChangePoint { crossing: usize, above: bool },
 }
 
-/// How fast the candidates move, against the present coordinate.
+/// How fast the candidates move, relative to the present coordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct CandidateSpeeds {
-    /// Candidates with how many times as fast they are, the fastest first, without the present one.
+    /// Candidates with the ratios of their speeds, the fastest first, without the present one.
     ratios: Vec<(usize, f64)>,
 }
 
 impl CandidateSpeeds {
-    /// How many times the fastest is as fast.
+    /// The ratio of the fastest.
     pub(super) fn max_ratio(&self) -> f64 {
         self.ratios.first().map_or(0.0, |(_, ratio)| *ratio)
     }
@@ -44,7 +43,7 @@ impl CandidateSpeeds {
         moving.map(|&(candidate, _)| candidate)
     }
 
-    /// These, if there is one that is so many times as fast.
+    /// These, if the ratio of the fastest exceeds a factor.
     pub(super) fn faster_than(self, factor: f64) -> Option<Self> {
         (self.max_ratio() > factor).then_some(self)
     }
@@ -53,7 +52,7 @@ impl CandidateSpeeds {
 pub(super) struct ChartMonitor<'a, 's> {
     atlas: &'a Atlas<'s>,
     chart: &'a Chart,
-    /// Whether its coordinate has ends at all.
+    /// Whether the range of its coordinate has limits.
     has_limits: bool,
     workspace: MachineWorkspace<f64>,
     unit_motion: Motion<f64>,
@@ -75,10 +74,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
     }
 
     /// Whether the coordinate folds at a state.
-    pub(super) fn exit_at_fold(
-        &mut self,
-        at: &OdeState,
-    ) -> Result<Option<ChartExit>, DynamicsError> {
+    pub(super) fn exit_at_fold(&mut self, at: &OdeState) -> Result<Option<ChartExit>> {
         if !self.has_limits || self.is_in_fit_window(at) {
             return Ok(None);
         }
@@ -88,30 +84,30 @@ impl<'a, 's> ChartMonitor<'a, 's> {
             .map(ChartExit::CoordinateFold))
     }
 
-    /// Looks at one step, and takes it by `step` where it is good. `left` is then how the chart is left,
-    /// from the end of the last step that was taken.
+    /// Checks a step, and takes it by `step` where it is good. `exit` is then how the chart is left
+    /// from the end of the last step taken.
     pub(super) fn observe(
         &mut self,
         before: &OdeState,
         now: &OdeState,
         dense: DenseOutput<'_>,
         exit: &mut Option<ChartExit>,
-        step: impl FnOnce(DenseOutput<'_>) -> Result<StepControl, DynamicsError>,
-    ) -> Result<StepControl, DynamicsError> {
+        step: impl FnOnce(DenseOutput<'_>) -> Result<StepControl>,
+    ) -> Result<StepControl> {
         if !self.has_limits {
             return step(dense);
         }
         if let Some(fold) = self.fold_within(before, now, dense)? {
-            // What comes after the fold is on another branch: the step is thrown away.
+            // What follows the fold is on another branch: the step is discarded.
             *exit = Some(fold);
             return Ok(StepControl::Stop);
         }
-        // An explicit method may take a step to where nothing can be evaluated; it is not good.
+        // An explicit method may step to where nothing can be evaluated: that step is not good.
         let exit_after = self.exit_after_step(now)?;
         if let Some(ChartExit::CoordinateFold(speeds)) = &exit_after
             && speeds.max_ratio() > FOLD_OVERSHOOT * FOLD_SPEED_RATIO
         {
-            // The nearer the fold, the more an error of the coordinate does to all others.
+            // The nearer the fold, the more an error of the coordinate changes all others.
             *exit = Some(ChartExit::StepTooLong(now.t - before.t));
             return Ok(StepControl::Stop);
         }
@@ -127,7 +123,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
     }
 
     /// How the chart is left after a good step, if it is.
-    fn exit_after_step(&mut self, now: &OdeState) -> Result<Option<ChartExit>, DynamicsError> {
+    fn exit_after_step(&mut self, now: &OdeState) -> Result<Option<ChartExit>> {
         let q = now.y[0];
         let mut windows = self.chart.machine.fit_windows.iter();
         if let Some(window) = windows.find(|window| window.has_passed(q)) {
@@ -139,7 +135,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         self.exit_at_fold(now)
     }
 
-    /// How far the range's next end is from a coordinate.
+    /// The distance of a coordinate from the nearest limit of the range.
     fn distance_to_limit(&self, q: f64) -> f64 {
         let range = self.chart.machine.model.plan().range();
         match (range.limits(), range.wrap(q)) {
@@ -152,14 +148,14 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         self.chart.machine.fit_at(at.y.first()).is_some()
     }
 
-    /// Whether the coordinate folds within a step: its speed changes sign where others go on. A step that is
-    /// longer than the way from there to the range's end is not believed to have returned.
+    /// Whether the coordinate folds within a step: its speed changes sign while others continue. A step that is
+    /// longer than the distance from there to the range's end does not prove a reversal.
     fn fold_within(
         &mut self,
         before: &OdeState,
         now: &OdeState,
         dense: DenseOutput<'_>,
-    ) -> Result<Option<ChartExit>, DynamicsError> {
+    ) -> Result<Option<ChartExit>> {
         let mut last = before.clone();
         for t in root_subintervals(before, now) {
             let point = state_at(t, now, dense)?;
@@ -170,9 +166,8 @@ impl<'a, 's> ChartMonitor<'a, 's> {
                 if !self.is_in_fit_window(&at) {
                     match self.candidate_speeds(&at) {
                         Ok(speeds) if speeds.max_ratio() <= FOLD_SPEED_RATIO => {
-                            let distance = (at.y[0] - before.y[0])
-                                .abs()
-                                .max((at.y[0] - now.y[0]).abs());
+                            let [to_start, to_end] = [before, now].map(|p| at.y[0] - p.y[0]);
+                            let distance = to_start.abs().max(to_end.abs());
                             if distance > self.distance_to_limit(at.y[0]) {
                                 return Ok(Some(ChartExit::StepTooLong(now.t - before.t)));
                             }
@@ -180,9 +175,8 @@ impl<'a, 's> ChartMonitor<'a, 's> {
                         Ok(speeds) => return Ok(Some(ChartExit::CoordinateFold(speeds))),
                         // The zero lies beyond the range's end, by the error of the step.
                         Err(_) => {
-                            let speeds = self
-                                .candidate_speeds(&last)
-                                .or_else(|_| self.candidate_speeds(before))?;
+                            let speeds = self.candidate_speeds(&last);
+                            let speeds = speeds.or_else(|_| self.candidate_speeds(before))?;
                             return Ok(Some(ChartExit::CoordinateFold(speeds)));
                         }
                     }
@@ -193,17 +187,13 @@ impl<'a, 's> ChartMonitor<'a, 's> {
         Ok(None)
     }
 
-    /// How fast the candidates are at a state, from the motion at unit speed.
-    pub(super) fn candidate_speeds(
-        &mut self,
-        at: &OdeState,
-    ) -> Result<CandidateSpeeds, DynamicsError> {
+    /// The speeds of the candidates at a state, from the motion at unit speed.
+    pub(super) fn candidate_speeds(&mut self, at: &OdeState) -> Result<CandidateSpeeds> {
         let machine = &self.chart.machine;
         let plan = machine.model.plan();
-        machine.evaluate(at.t, &at.y, &mut self.workspace)?;
-        plan.velocities(&self.workspace.inner.pose, &[1.0], &mut self.unit_motion);
-        self.unit_states
-            .fill(plan, &self.workspace.inner.pose, &self.unit_motion);
+        let state = machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        plan.velocities(state.pose(), &[1.0], &mut self.unit_motion);
+        self.unit_states.fill(plan, state.pose(), &self.unit_motion);
         let candidates = &self.atlas.candidates;
         let present = candidates
             .iter()
@@ -214,7 +204,7 @@ impl<'a, 's> ChartMonitor<'a, 's> {
             if candidate.coordinate != self.chart.coordinate {
                 let [_, speed, _] = self.unit_states.coordinate(candidate.measured);
                 let ratio = (speed * candidate.weight).abs() / present;
-                // A coordinate that others only move by rounding carries nothing.
+                // A coordinate that moves only by rounding is no candidate.
                 ratios.push((i, if ratio > POSE_TOLERANCE { ratio } else { 0.0 }));
             }
         }

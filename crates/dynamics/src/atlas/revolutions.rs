@@ -3,12 +3,12 @@
 use super::{Atlas, MachineDescription};
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Body, BodyId, Coordinate, Coupling, Joint, JointKind, Mechanism, Vec2};
-use dwell_kinetostatics::{DriveKind, LoadKind, Magnitude, Signal};
+use dwell_kinetostatics::{LoadKind, Magnitude, Signal};
 use dwell_laws::{Law, Polynomial};
 
 impl Atlas<'_> {
-    /// A mechanism in which the turns of all angles are counted whose values loads depend on, and the
-    /// angles of its bodies. Each such angle turns a massless witness.
+    /// A mechanism in which the revolutions of all angles are counted whose values loads depend on, and the
+    /// angles of its bodies. Each such angle turns an auxiliary body without mass.
     pub(super) fn with_counted_revolutions(
         &self,
         mut mechanism: Mechanism,
@@ -25,13 +25,13 @@ impl Atlas<'_> {
             if mechanism.actuators.iter().any(|a| a.coordinate() == by) {
                 continue;
             }
-            let witness = BodyId(mechanism.bodies.len());
+            let auxiliary = BodyId(mechanism.bodies.len());
             let name = format!("turns of {}", mechanism.body_name(bodies[1]));
             mechanism.bodies.push(Body { name: name.clone() });
             initial_guess.push(Some(states.angle(bodies)[0]));
             let joint = |kind| Joint {
                 name: name.clone(),
-                bodies: [ground, witness],
+                bodies: [ground, auxiliary],
                 points: [Vec2::ZERO; 2],
                 kind,
             };
@@ -40,7 +40,7 @@ impl Atlas<'_> {
                 .joints
                 .extend([joint(JointKind::Revolute), joint(relation)]);
             mechanism.couplings.push(Coupling {
-                dependent: Coordinate::Angle([ground, witness]),
+                dependent: Coordinate::Angle([ground, auxiliary]),
                 independent: by,
                 law: Law::Polynomial(Polynomial {
                     coefficients: vec![0.0, 1.0],
@@ -53,35 +53,15 @@ impl Atlas<'_> {
 
 /// The angles whose values, not only speeds, a load or drive depends on.
 pub(super) fn load_angles(description: &MachineDescription<'_>) -> Vec<[BodyId; 2]> {
-    let mut angles = Vec::new();
-    let mut of = |magnitude: &Magnitude| {
-        let signals = match magnitude {
-            Magnitude::Law(signal, _) => std::slice::from_ref(signal),
-            Magnitude::Expression(_, signals) | Magnitude::Function(_, signals) => {
-                signals.as_slice()
-            }
-            // A drive's input is looked at with the drive.
-            Magnitude::Constant(_)
-            | Magnitude::Friction(_)
-            | Magnitude::Separating(_)
-            | Magnitude::External(_) => &[],
-        };
-        for signal in signals {
-            if let Signal::Value(Coordinate::Angle(bodies)) = signal {
-                angles.push(*bodies);
-            }
-        }
-    };
-    for load in description.loads {
-        of(&load.magnitude);
-    }
-    for drive in description.drives {
-        match &drive.kind {
-            DriveKind::AppliedForce(magnitude) => of(magnitude),
-            DriveKind::Motor(motor) => of(&motor.voltage),
-            DriveKind::SpeedController(regulator) => of(&regulator.reference_speed),
-        }
-    }
+    let loads = description.loads.iter().map(|load| &load.magnitude);
+    let drives = description.drives.iter().map(|drive| drive.kind.input());
+    let signals = loads.chain(drives).flat_map(Magnitude::signals);
+    let mut angles: Vec<[BodyId; 2]> = signals
+        .filter_map(|signal| match signal {
+            Signal::Value(Coordinate::Angle(bodies)) => Some(*bodies),
+            _ => None,
+        })
+        .collect();
     angles.extend(description.loads.iter().filter_map(|load| match load.kind {
         LoadKind::TorsionSpring { bodies, .. } => Some(bodies),
         LoadKind::Gravity { .. }

@@ -2,7 +2,7 @@
 //! its sensitivity S to the initial speed and drive states (Hairer, Nørsett and Wanner 1993, I.14).
 
 use super::CycleProblem;
-use crate::error::DynamicsError;
+use crate::error::{DynamicsError, Result};
 use crate::machine_ode::MachineOde;
 use crate::ode::OdeSystem;
 
@@ -12,6 +12,8 @@ pub(super) struct VariationalSystem<'t, 'm> {
     ode: MachineOde<'m>,
     /// Number of columns of S that are integrated.
     sensitivity_columns: usize,
+    /// |q̇| of the last evaluation.
+    speed: f64,
     y: Vec<f64>,
     rhs: Vec<f64>,
     jacobian: Vec<f64>,
@@ -22,12 +24,13 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
         problem: &'t CycleProblem<'m>,
         x: &[f64],
         sensitivity_columns: usize,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let n = problem.machine.state_count();
-        let ode = MachineOde::new(problem.machine, 0.0, &problem.machine_state(0.0, x).y)?;
+        let start = problem.machine_state(0.0, x).y;
         Ok(Self {
             problem,
-            ode,
+            ode: MachineOde::new(problem.machine, 0.0, &start)?,
+            speed: start[1].abs(),
             sensitivity_columns,
             y: vec![0.0; n],
             rhs: vec![0.0; n],
@@ -36,7 +39,7 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
     }
 
     /// Evaluates ẏ at a displacement from the start; returns 1/|q̇|.
-    fn evaluate(&mut self, displacement: f64, x: &[f64]) -> Result<f64, DynamicsError> {
+    fn evaluate(&mut self, displacement: f64, x: &[f64]) -> Result<f64> {
         let CycleProblem {
             start_angle: from,
             direction,
@@ -48,6 +51,7 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
         if speed.is_nan() || speed <= 0.0 {
             return Err(DynamicsError::ComesToRest { q: self.y[0] });
         }
+        self.speed = speed;
         self.ode.rhs(x[0], &self.y, &mut self.rhs)?;
         // dt/dt, where the coordinate's rate stood.
         self.rhs[0] = 1.0;
@@ -55,7 +59,7 @@ impl<'t, 'm> VariationalSystem<'t, 'm> {
     }
 
     /// ∂(ẋ/|q̇|)/∂x of the machine's states, row by row, and 1/|q̇|.
-    fn evaluate_jacobian(&mut self, displacement: f64, x: &[f64]) -> Result<f64, DynamicsError> {
+    fn evaluate_jacobian(&mut self, displacement: f64, x: &[f64]) -> Result<f64> {
         let time_density = self.evaluate(displacement, x)?;
         let n = self.rhs.len();
         self.ode.jacobian(x[0], &self.y, &mut self.jacobian)?;
@@ -77,7 +81,7 @@ impl OdeSystem for VariationalSystem<'_, '_> {
         self.rhs.len() + self.sensitivity_columns * self.problem.unknowns()
     }
 
-    fn rhs(&mut self, displacement: f64, x: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn rhs(&mut self, displacement: f64, x: &[f64], out: &mut [f64]) -> Result<()> {
         let n = self.rhs.len();
         let time_density = if self.sensitivity_columns > 0 {
             let time_density = self.evaluate_jacobian(displacement, x)?;
@@ -101,12 +105,7 @@ impl OdeSystem for VariationalSystem<'_, '_> {
     }
 
     /// The derivatives of S by the state are left out: implicit methods then take a few more Newton iterations.
-    fn jacobian(
-        &mut self,
-        displacement: f64,
-        x: &[f64],
-        out: &mut [f64],
-    ) -> Result<(), DynamicsError> {
+    fn jacobian(&mut self, displacement: f64, x: &[f64], out: &mut [f64]) -> Result<()> {
         self.evaluate_jacobian(displacement, x)?;
         let (n, size, unknowns) = (self.rhs.len(), self.size(), self.problem.unknowns());
         out.fill(0.0);
@@ -127,10 +126,7 @@ impl OdeSystem for VariationalSystem<'_, '_> {
     fn error_weight(&self, state: usize) -> f64 {
         match state {
             // The scale of time is about the duration of a cycle.
-            0 => {
-                self.problem.cycle_angle
-                    / self.ode.workspace.q_dot[self.problem.machine.free()[0]].abs()
-            }
+            0 => self.problem.cycle_angle / self.speed,
             state if state < self.rhs.len() => self.ode.error_weight(state),
             _ => 1.0,
         }

@@ -1,100 +1,99 @@
 //! Drives and their rotors in the equation of motion.
 
-use super::{Machine, MachineWorkspace, add_scaled};
-use crate::error::DynamicsError;
+use super::Machine;
+use super::workspace::EquationWorkspace;
+use crate::error::Result;
+use dwell_geometry::body_states::BodyStates;
+use dwell_kinetostatics::{ForceState, KinetostaticsError, LoadedState};
 use dwell_numerics::Scalar;
 
 impl Machine {
-    /// Evaluates the drives' forces and the rates of their states at the state of the bodies in `workspace`.
+    /// Whether a drive has a rotor, whose inertia resists.
+    pub(super) fn has_rotors(&self) -> bool {
+        self.drives
+            .iter()
+            .any(|drive| drive.reflected_inertia > 0.0)
+    }
+
+    /// Evaluates the drives' forces and the rates of their states.
     ///
     /// # Errors
-    /// [`DynamicsError::Load`] where a drive's input has no finite value.
+    /// [`DynamicsError::Load`](crate::DynamicsError::Load) where a drive's input has no finite value.
     pub(super) fn evaluate_drives<T: Scalar>(
         &self,
         t: f64,
         drive_states: &[T],
-        workspace: &mut MachineWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
+        input_offsets: &[T],
+        state: &mut LoadedState<'_, T>,
+        equation: &mut EquationWorkspace<T>,
+    ) -> Result<()> {
         for (d, drive) in self.drives.iter().enumerate() {
-            let state = drive.state.map(|s| drive_states[s]);
-            let input =
-                self.model
-                    .eval_magnitude(drive.load, &drive.input, t, &mut workspace.inner)?;
-            let [_, speed, _] = workspace.inner.states().coordinate(drive.measured);
-            let (force, rate) = drive.eval(input + workspace.input_offsets[d], speed, state);
-            workspace.drive_forces[d] = force;
-            workspace.inner.set_magnitude(drive.load, force);
+            let drive_state = drive.state.map(|s| drive_states[s]);
+            let input = state.eval_magnitude(drive.load, &drive.input, t)?;
+            let [_, speed] = state.coordinate(drive.measured);
+            let (force, rate) = drive.eval(input + input_offsets[d], speed, drive_state);
+            equation.drive_forces[d] = force;
+            state.set_magnitude(drive.load, force);
             if let Some(s) = drive.state {
-                workspace.drive_state_rates[s] = rate;
+                equation.drive_state_rates[s] = rate;
             }
         }
         Ok(())
+    }
+
+    /// Reads the accelerations of the drives' coordinates.
+    pub(super) fn read_drive_accelerations<T: Scalar>(
+        &self,
+        bodies: &BodyStates<T>,
+        equation: &mut EquationWorkspace<T>,
+    ) {
+        for (drive, acceleration) in self.drives.iter().zip(&mut equation.drive_accelerations) {
+            [_, _, *acceleration] = bodies.coordinate(drive.measured);
+        }
     }
 
     /// Adds the rotors: N² J times the unit-load responses of their drives and s̈ = S q̈ + bias acceleration.
     pub(super) fn add_rotor_inertia<T: Scalar>(
         &self,
-        workspace: &mut MachineWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
-        workspace.inner.update_body_accelerations(&self.model);
-        for drive in self
-            .drives
-            .iter()
-            .filter(|drive| drive.reflected_inertia > 0.0)
-        {
-            let [_, _, bias_acceleration] = workspace.inner.states().coordinate(drive.measured);
-            self.model.unit_load_response(
-                drive.load,
-                &mut workspace.inner,
-                &mut workspace.rotor_response,
-            )?;
+        state: &mut ForceState<'_, T>,
+        equation: &mut EquationWorkspace<T>,
+    ) -> Result<()> {
+        self.read_drive_accelerations(state.bodies(), equation);
+        for (drive, &bias) in self.drives.iter().zip(&equation.drive_accelerations) {
+            if drive.reflected_inertia <= 0.0 {
+                continue;
+            }
+            let response = &mut equation.rotor_response;
+            state.unit_load_response(drive.load, response)?;
             let inertia = T::from_f64(drive.reflected_inertia);
-            add_scaled(
-                &mut workspace.inverse_dynamics,
-                &workspace.rotor_response,
-                -(inertia * bias_acceleration),
-            );
-            for (acceleration_response, &i) in
-                workspace.acceleration_responses.iter_mut().zip(&self.free)
-            {
+            let result = &mut equation.inverse_dynamics;
+            result.add_scaled(response, -(inertia * bias));
+            for (column, &i) in equation.acceleration_responses.iter_mut().zip(&self.free) {
                 // S = −τ of the unit-load response: virtual work.
-                add_scaled(
-                    acceleration_response,
-                    &workspace.rotor_response,
-                    inertia * workspace.rotor_response.tau[i],
-                );
+                column.add_scaled(response, inertia * response.tau[i]);
             }
         }
         Ok(())
     }
 
-    /// The drives' forces without those that accelerate their rotors, once the accelerations are known.
-    pub(super) fn resolve_drive_forces<T: Scalar>(
-        &self,
-        workspace: &mut MachineWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
-        if self
-            .drives
-            .iter()
-            .all(|drive| drive.reflected_inertia == 0.0)
-        {
-            return Ok(());
-        }
-        self.model
-            .set_accelerations(&workspace.q_ddot, &mut workspace.inner);
-        self.set_net_drive_forces(workspace)
-    }
-
-    /// Sets the drives' forces less N² J s̈ at the accelerations in `workspace`.
+    /// The drives' forces without those that accelerate their rotors, at `drive_accelerations`.
     pub(super) fn set_net_drive_forces<T: Scalar>(
         &self,
-        workspace: &mut MachineWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
-        for (drive, &force) in self.drives.iter().zip(&workspace.drive_forces) {
-            let [_, _, s_ddot] = workspace.inner.states().coordinate(drive.measured);
-            let net_force = force - T::from_f64(drive.reflected_inertia) * s_ddot;
-            workspace.inner.set_magnitude(drive.load, net_force);
-        }
-        Ok(self.model.update_load_wrenches(&mut workspace.inner)?)
+        state: &mut ForceState<'_, T>,
+        equation: &EquationWorkspace<T>,
+    ) -> Result<(), KinetostaticsError> {
+        let forces = equation
+            .drive_forces
+            .iter()
+            .zip(&equation.drive_accelerations);
+        let net_forces = self
+            .drives
+            .iter()
+            .zip(forces)
+            .map(|(drive, (&force, &s_ddot))| {
+                let inertia = T::from_f64(drive.reflected_inertia);
+                (drive.load, force - inertia * s_ddot)
+            });
+        state.set_magnitudes(net_forces)
     }
 }

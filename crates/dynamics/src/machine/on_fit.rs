@@ -1,9 +1,13 @@
 //! A machine within the window of a change-point fit, by eq. (1) of [`crate::change_point_fit`].
 
-use super::{Machine, MachineWorkspace};
+use super::workspace::EquationWorkspace;
+use super::{Machine, MachineState};
 use crate::change_point_fit::{ChangePointFit, FitWorkspace, set_motion};
-use crate::error::DynamicsError;
-use dwell_kinetostatics::{InverseDynamics, Magnitude, Model, Workspace};
+use crate::error::{Result, positive_inertia};
+use dwell_geometry::{Motion, Pose};
+use dwell_kinetostatics::{
+    EvaluatedState, ForceState, InverseDynamics, Magnitude, Model, Workspace,
+};
 use dwell_numerics::Scalar;
 use dwell_numerics::polynomial_fit::{PolynomialFit, chebyshev_nodes};
 
@@ -24,151 +28,118 @@ impl Machine {
     }
 
     /// Whether a state is within the window of a change-point fit. There [`Machine::evaluate`] yields the states of
-    /// bodies and loads, but no reactions; [`Machine::evaluate_outputs`] does.
+    /// bodies and loads, but no reactions; [`MachineState::outputs`] does.
     pub fn is_in_fit_window(&self, y: &[f64]) -> bool {
         self.fit_at(y.first()).is_some()
     }
 
     /// As [`Machine::evaluate`] within the window of a fit.
-    pub(crate) fn evaluate_on_fit<T: Scalar>(
-        &self,
+    pub(super) fn evaluate_on_fit<'a, T: Scalar>(
+        &'a self,
         (fit, x): (&ChangePointFit, f64),
         t: f64,
         drive_states: &[T],
-        workspace: &mut MachineWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
-        let new = || Box::new(FitWorkspace::new(&self.model));
-        let mut fit_workspace = workspace.fit_workspace.take().unwrap_or_else(new);
-        let result =
-            self.evaluate_on_fit_with((fit, x), t, drive_states, workspace, &mut fit_workspace);
-        workspace.fit_workspace = Some(fit_workspace);
-        result
-    }
-
-    fn evaluate_on_fit_with<T: Scalar>(
-        &self,
-        (fit, x): (&ChangePointFit, f64),
-        t: f64,
-        drive_states: &[T],
-        workspace: &mut MachineWorkspace<T>,
-        fit_workspace: &mut FitWorkspace<T>,
-    ) -> Result<(), DynamicsError> {
+        input_offsets: &[T],
+        inner: &'a mut Workspace<T>,
+        equation: &mut EquationWorkspace<T>,
+    ) -> Result<ForceState<'a, T>> {
         let plan = self.model.plan();
-        let (q, q_dot) = (workspace.q[0], workspace.q_dot[0]);
+        let new = || Box::new(FitWorkspace::new(&self.model));
+        let mut workspace = equation.fit_workspace.take().unwrap_or_else(new);
+        let (q, q_dot) = (equation.q[0], equation.q_dot[0]);
         let x = q - T::from_f64(q.value() - x);
         let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        fit.polynomials.eval(
-            x,
-            &mut fit_workspace.basis_values,
-            &mut fit_workspace.values,
-        );
-        fit_workspace.set_pose(plan, &workspace.q, &mut workspace.inner.pose);
-        set_motion(
-            &fit_workspace.values,
-            [one, zero],
-            &mut fit_workspace.unit_motion,
-        );
-        fit_workspace
-            .unit_states
-            .fill(plan, &workspace.inner.pose, &fit_workspace.unit_motion);
-        set_motion(
-            &fit_workspace.values,
-            [q_dot, zero],
-            &mut workspace.inner.motion,
-        );
-        self.model
-            .set_state_from_pose(t, &workspace.q_dot, &mut workspace.inner)?;
-        self.evaluate_drives(t, drive_states, workspace)?;
-        self.model.update_load_wrenches(&mut workspace.inner)?;
-        let [mut m, mut half_dm] = self.model.inertia_sums(&fit_workspace.unit_states);
+        let polynomials = &fit.polynomials;
+        polynomials.eval(x, &mut workspace.basis_values, &mut workspace.values);
+        let set = |pose: &mut Pose<T>, motion: &mut Motion<T>| {
+            workspace.set_pose(plan, &equation.q, pose);
+            let FitWorkspace {
+                values,
+                unit_motion,
+                unit_states,
+                ..
+            } = &mut *workspace;
+            set_motion(values, [one, zero], unit_motion);
+            unit_states.fill(plan, pose, unit_motion);
+            set_motion(values, [q_dot, zero], motion);
+        };
+        let state = self
+            .model
+            .given_kinematic_state(&equation.q_dot, inner, set);
+        let mut state = state.apply_loads(t)?;
+        self.evaluate_drives(t, drive_states, input_offsets, &mut state, equation)?;
+        let mut state = state.wrenches()?;
+        let unit_states = &workspace.unit_states;
+        let [mut m, mut half_dm] = self.model.inertia_sums(unit_states);
         for drive in &self.drives {
-            let [_, first, second] = fit_workspace.unit_states.coordinate(drive.measured);
+            let [_, first, second] = unit_states.coordinate(drive.measured);
             m += T::from_f64(drive.reflected_inertia) * first * first;
             half_dm += T::from_f64(drive.reflected_inertia) * first * second;
         }
-        let inertia = m.value();
-        if !(inertia > 0.0 && inertia.is_finite()) {
-            return Err(DynamicsError::NoInertia {
-                q: q.value(),
-                m: inertia,
-            });
-        }
+        positive_inertia(m.value(), q.value())?;
         let mut force = zero;
-        for wrench in &workspace.inner.loads().wrenches {
-            force += wrench.power(&fit_workspace.unit_states);
+        for wrench in state.wrenches() {
+            force += wrench.power(unit_states);
         }
         let q_ddot = (force - half_dm * q_dot * q_dot) / m;
-        workspace.q_ddot[0] = q_ddot;
-        set_motion(
-            &fit_workspace.values,
-            [q_dot, q_ddot],
-            &mut workspace.inner.motion,
-        );
-        workspace.inner.update_body_accelerations(&self.model);
-        self.set_net_drive_forces(workspace)
+        equation.q_ddot[0] = q_ddot;
+        let set = |motion: &mut Motion<T>| set_motion(&workspace.values, [q_dot, q_ddot], motion);
+        self.read_drive_accelerations(state.bodies_with(set), equation);
+        self.set_net_drive_forces(&mut state, equation)?;
+        equation.fit_workspace = Some(workspace);
+        Ok(state)
     }
 }
 
-/// As [`Machine::evaluate_outputs`] within the window. A reaction that is not determined at the change point is
-/// not a number.
-pub(super) fn evaluate_outputs(
-    (fit, x): (&ChangePointFit, f64),
-    output_model: &Model,
-    t: f64,
-    workspace: &MachineWorkspace<f64>,
-    output_workspace: &mut Workspace<f64>,
-    result: &mut InverseDynamics<f64>,
-) -> Result<(), DynamicsError> {
-    // The bodies and loads are as the machine has them.
-    output_workspace.pose.clone_from(&workspace.inner.pose);
-    output_workspace.motion.clone_from(&workspace.inner.motion);
-    output_model.set_state_from_pose(t, &workspace.q_dot, output_workspace)?;
-    for (load, &magnitude) in workspace.inner.loads().magnitude.iter().enumerate() {
-        output_workspace.set_magnitude(load, magnitude);
-    }
-    output_model.update_load_wrenches(output_workspace)?;
-    result.tau.fill(0.0);
-    let q = workspace.q.first().copied().unwrap_or(fit.center);
-    let center = q - x;
-    // Reactions are known worse than poses, and needed in the window alone.
-    let fit_radius = fit.fit_radius.min(3.0 * fit.half_width);
-    let (mut at, mut samples) = (Vec::new(), Vec::new());
-    for (model, direction) in fit.branches.iter().zip([-1.0, 1.0]) {
-        let mut branch_workspace = model.workspace();
-        let mut branch_result = model.result_buffer();
-        for d in chebyshev_nodes(fit.half_width, fit_radius, REACTION_NODES) {
-            for (load, one) in model.loads().iter().enumerate() {
-                if matches!(one.magnitude, Magnitude::External(_)) {
-                    branch_workspace.set_magnitude(load, workspace.inner.loads().magnitude[load]);
+impl MachineState<'_> {
+    /// As [`MachineState::outputs`] within the window. A reaction that is not determined at the change point is
+    /// not a number.
+    pub(super) fn outputs_on_fit<'o>(
+        &self,
+        (fit, x): (&ChangePointFit, f64),
+        output_model: &'o Model,
+        workspace: &'o mut Workspace<f64>,
+        result: &'o mut InverseDynamics<f64>,
+    ) -> Result<EvaluatedState<'o>> {
+        let (q_dot, q_ddot) = (&self.equation.q_dot, &self.equation.q_ddot);
+        result.tau.fill(0.0);
+        let q = self.equation.q.first().copied().unwrap_or(fit.center);
+        let center = q - x;
+        // Reactions are known worse than poses, and needed in the window alone.
+        let fit_radius = fit.fit_radius.min(3.0 * fit.half_width);
+        let (mut at, mut samples) = (Vec::new(), Vec::new());
+        for (model, direction) in fit.branches.iter().zip([-1.0, 1.0]) {
+            let (mut inner, mut branch_result) = (model.workspace(), model.result_buffer());
+            for d in chebyshev_nodes(fit.half_width, fit_radius, REACTION_NODES) {
+                let state = model.kinematic_state(&[center + direction * d], q_dot, &mut inner)?;
+                let mut state = state.apply_loads(self.t)?;
+                for (load, one) in model.loads().iter().enumerate() {
+                    if matches!(one.magnitude, Magnitude::External(_)) {
+                        state.set_magnitude(load, self.magnitudes()[load]);
+                    }
                 }
+                state.evaluate(q_ddot, &mut branch_result)?;
+                at.push(direction * d);
+                samples.push(branch_result.reactions.clone());
             }
-            let q = [center + direction * d];
-            let rates = (&workspace.q_dot, &workspace.q_ddot);
-            model.kinetostatics(
-                t,
-                &q,
-                rates.0,
-                rates.1,
-                &mut branch_workspace,
-                &mut branch_result,
-            )?;
-            at.push(direction * d);
-            samples.push(branch_result.reactions.clone());
         }
-    }
-    let reactions = PolynomialFit::new(&at, &samples, fit_radius, REACTION_DEGREE);
-    let mut values = reactions.workspace();
-    reactions.eval(x, &mut Vec::new(), &mut values);
-    for (value, reaction) in result.reactions.iter_mut().zip(output_model.reactions()) {
-        let index = fit.branches[0]
-            .reactions()
-            .iter()
-            .position(|r| r == reaction);
-        let determined = !fit.indeterminate.contains(reaction);
-        *value = match index.filter(|_| determined) {
-            Some(k) => values[k][0],
-            None => f64::NAN,
+        let reactions = PolynomialFit::new(&at, &samples, fit_radius, REACTION_DEGREE);
+        let mut values = reactions.workspace();
+        reactions.eval(x, &mut Vec::new(), &mut values);
+        let branch_reactions = fit.branches[0].reactions();
+        for (value, reaction) in result.reactions.iter_mut().zip(output_model.reactions()) {
+            let index = branch_reactions.iter().position(|r| r == reaction);
+            let determined = !fit.indeterminate.contains(reaction);
+            *value = match index.filter(|_| determined) {
+                Some(k) => values[k][0],
+                None => f64::NAN,
+            };
+        }
+        // The bodies and loads are as the machine has them.
+        let set = |pose: &mut Pose<f64>, motion: &mut Motion<f64>| {
+            pose.clone_from(self.pose());
+            motion.clone_from(self.forces.motion());
         };
+        Ok(output_model.given_state(q_dot, self.magnitudes(), workspace, result, set)?)
     }
-    Ok(())
 }

@@ -1,7 +1,7 @@
 //! Events: zeros of functions of the state, located to rounding on the dense output of a step.
 
 use super::observed::{Observed, ObservedValue};
-use crate::error::DynamicsError;
+use crate::error::Result;
 use crate::ode::{DenseOutput, OdeState, root_subintervals, state_at};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_numerics::root;
@@ -64,7 +64,7 @@ impl<C: Copy> EventTracker<C> {
         event: Event<C>,
         observed: &mut impl Observed<Coordinate = C>,
         start: &OdeState,
-    ) -> Result<Self, DynamicsError> {
+    ) -> Result<Self> {
         let value = event.kind.eval(observed, start)?;
         Ok(Self {
             event,
@@ -81,7 +81,7 @@ impl<C: Copy> EventTracker<C> {
         &mut self,
         observed: &mut impl Observed<Coordinate = C>,
         at: &OdeState,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         let mut value = self.event.kind.eval(observed, at)?;
         self.revolution_offset = 0.0;
         if value.revolutions_counted.is_some() {
@@ -99,7 +99,7 @@ impl<C: Copy> EventTracker<C> {
         last: (f64, ObservedValue),
         observed: &mut impl Observed<Coordinate = C>,
         at: &OdeState,
-    ) -> Result<ObservedValue, DynamicsError> {
+    ) -> Result<ObservedValue> {
         let mut value = self.event.kind.eval(observed, at)?;
         value.value += match value.revolutions_counted {
             None => 0.0,
@@ -121,7 +121,7 @@ impl<C: Copy> EventTracker<C> {
         dense: DenseOutput<'_>,
         observed: &mut impl Observed<Coordinate = C>,
         found: &mut Vec<FoundEvent>,
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         for t in root_subintervals(before, now) {
             let point = state_at(t, now, dense)?;
             let last = self.previous;
@@ -129,7 +129,7 @@ impl<C: Copy> EventTracker<C> {
             let value = self.eval_unwrapped(last, observed, &point)?;
             let v1 = value.value;
             while let Some(target) = self.target(v0, v1) {
-                let mut difference = |t: f64| -> Result<f64, DynamicsError> {
+                let mut difference = |t: f64| -> Result<f64> {
                     let at = state_at(t, now, dense)?;
                     Ok(self.eval_unwrapped(last, observed, &at)?.value - target)
                 };
@@ -181,7 +181,7 @@ impl<C: Copy> EventKind<C> {
         self,
         observed: &mut impl Observed<Coordinate = C>,
         at: &OdeState,
-    ) -> Result<ObservedValue, DynamicsError> {
+    ) -> Result<ObservedValue> {
         let uncounted = |value| ObservedValue {
             value,
             rate: 0.0,

@@ -1,6 +1,6 @@
 //! The quantities of a moving system that events are functions of.
 
-use crate::error::DynamicsError;
+use crate::error::Result;
 use crate::machine::{Machine, MachineWorkspace};
 use crate::ode::OdeState;
 use dwell_geometry::BodyId;
@@ -15,18 +15,14 @@ pub trait Observed {
     /// A coordinate at a state.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the state cannot be evaluated.
-    fn coordinate(
-        &mut self,
-        coordinate: Self::Coordinate,
-        at: &OdeState,
-    ) -> Result<ObservedValue, DynamicsError>;
+    /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
+    fn coordinate(&mut self, coordinate: Self::Coordinate, at: &OdeState) -> Result<ObservedValue>;
 
     /// A reaction by its index, N or N·m, at a state.
     ///
     /// # Errors
-    /// [`DynamicsError`] where the state cannot be evaluated.
-    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64, DynamicsError>;
+    /// [`DynamicsError`](crate::DynamicsError) where the state cannot be evaluated.
+    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64>;
 }
 
 /// A value and its rate of change.
@@ -71,11 +67,10 @@ impl Observed for ObservedMachine<'_> {
         &mut self,
         coordinate: CoordinateFunction,
         at: &OdeState,
-    ) -> Result<ObservedValue, DynamicsError> {
-        self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
-        let states = self.workspace.inner.states();
-        let [value, rate, _] = states.coordinate(coordinate);
-        let counted = |b: BodyId| states.body(b).angle.is_some();
+    ) -> Result<ObservedValue> {
+        let state = self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        let [value, rate] = state.coordinate(coordinate);
+        let counted = |b: BodyId| state.counts_revolutions(b);
         Ok(ObservedValue {
             value,
             rate,
@@ -86,15 +81,10 @@ impl Observed for ObservedMachine<'_> {
         })
     }
 
-    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64, DynamicsError> {
-        self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
-        self.machine.evaluate_outputs(
-            self.output_model,
-            at.t,
-            &self.workspace,
-            &mut self.output_workspace,
-            &mut self.inverse_dynamics,
-        )?;
-        Ok(self.inverse_dynamics.reactions[index])
+    fn reaction(&mut self, index: usize, at: &OdeState) -> Result<f64> {
+        let state = self.machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        let (workspace, result) = (&mut self.output_workspace, &mut self.inverse_dynamics);
+        let outputs = state.outputs(self.output_model, workspace, result)?;
+        Ok(outputs.inverse_dynamics().reactions[index])
     }
 }

@@ -1,8 +1,8 @@
 //! A machine's table as a system to be integrated, with its exact Jacobian: dual numbers through the pieces.
 
 use super::{LoadEffect, TabulatedCoordinate, TabulatedLoad, TabulatedMachine, TabulatedSignal};
-use crate::error::{DynamicsError, positive_inertia};
-use crate::ode::OdeSystem;
+use crate::error::{DynamicsError, Result, positive_inertia};
+use crate::ode::{OdeSystem, dual_jacobian};
 use dwell_kinetostatics::KinetostaticsError;
 use dwell_numerics::{Dual, Scalar};
 
@@ -15,7 +15,7 @@ pub struct TabulatedMachineOde<'t> {
     dual_workspace: TableWorkspace<Dual>,
     y: Vec<Dual>,
     out: Vec<Dual>,
-    /// What works are measured by.
+    /// The scale of works, J.
     energy_scale: f64,
 }
 
@@ -29,10 +29,8 @@ struct TableWorkspace<T> {
 
 impl<T: Scalar> TableWorkspace<T> {
     fn new(machine: &TabulatedMachine) -> Self {
-        let counts = machine
-            .tabulated_loads
-            .iter()
-            .map(|load| load.signals.len());
+        let loads = machine.tabulated_loads.iter();
+        let counts = loads.map(|load| load.signals.len());
         let max = counts.max().unwrap_or(0);
         Self {
             columns: vec![T::from_f64(0.0); machine.column_count],
@@ -42,13 +40,13 @@ impl<T: Scalar> TableWorkspace<T> {
     }
 }
 
-/// What a load or drive does at one state.
+/// The contribution of a load or drive at one state.
 struct LoadContribution<T> {
-    /// F of a load, the action of a drive.
+    /// F of a load, or the force of a drive.
     force: T,
-    /// What that gives the coordinate.
+    /// The generalised force.
     generalised_force: T,
-    /// Of a drive with a state of its own: its place among such states, and its rate.
+    /// Of a drive with a state of its own: the index of that state, and its rate.
     drive_state_rate: Option<(usize, T)>,
 }
 
@@ -58,11 +56,11 @@ impl TabulatedMachine {
         2 + self.drive_state_count + self.tabulated_loads.len()
     }
 
-    /// The machine about to move on its table, from a state whose energies give the works their scale.
+    /// The ODE system of the table, from a state whose energies are the scale of the works.
     ///
     /// # Errors
     /// [`DynamicsError`] where the start cannot be evaluated.
-    pub fn ode(&self, t: f64, y: &[f64]) -> Result<TabulatedMachineOde<'_>, DynamicsError> {
+    pub fn ode(&self, t: f64, y: &[f64]) -> Result<TabulatedMachineOde<'_>> {
         let mut workspace = TableWorkspace::new(self);
         let [q, q_dot] = [y[0], y[1]];
         let [kinetic, _] = self.energy(q, q_dot)?;
@@ -81,11 +79,7 @@ impl TabulatedMachine {
             dual_workspace: TableWorkspace::new(self),
             y: zero.clone(),
             out: zero,
-            energy_scale: if energy_scale.is_normal() {
-                energy_scale
-            } else {
-                1.0
-            },
+            energy_scale: Some(energy_scale).filter(|e| e.is_normal()).unwrap_or(1.0),
         })
     }
 
@@ -96,7 +90,7 @@ impl TabulatedMachine {
         y: &[T],
         workspace: &mut TableWorkspace<T>,
         out: &mut [T],
-    ) -> Result<(), DynamicsError> {
+    ) -> Result<()> {
         let (q, q_dot) = (y[0], y[1]);
         let [m, half_dm] = self.inertia.eval(q)?;
         let mut force = -(half_dm * q_dot * q_dot);
@@ -126,7 +120,7 @@ impl TabulatedMachine {
         t: f64,
         y: &[T],
         workspace: &mut TableWorkspace<T>,
-    ) -> Result<LoadContribution<T>, DynamicsError> {
+    ) -> Result<LoadContribution<T>> {
         let TabulatedLoad {
             load,
             magnitude,
@@ -193,29 +187,23 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         self.machine.state_count()
     }
 
-    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
+    fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
         self.machine.rhs(t, y, &mut self.workspace, out)
     }
 
-    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
-        let n = self.size();
-        out.fill(0.0);
+    fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()> {
+        let Self {
+            machine,
+            dual_workspace: workspace,
+            y: duals,
+            out: rates,
+            ..
+        } = self;
         // No rate depends on the works.
-        for j in 0..2 + self.machine.drive_state_count {
-            for (i, (dual, &value)) in self.y.iter_mut().zip(y).enumerate() {
-                *dual = if i == j {
-                    Dual::variable(value)
-                } else {
-                    Dual::from_f64(value)
-                };
-            }
-            self.machine
-                .rhs(t, &self.y, &mut self.dual_workspace, &mut self.out)?;
-            for (i, rate) in self.out.iter().enumerate() {
-                out[i * n + j] = rate.d;
-            }
-        }
-        Ok(())
+        let columns = 2 + machine.drive_state_count;
+        dual_jacobian(columns, y, (duals, rates), out, |y, out| {
+            machine.rhs(t, y, workspace, out)
+        })
     }
 
     fn error_weight(&self, state: usize) -> f64 {

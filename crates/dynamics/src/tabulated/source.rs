@@ -1,18 +1,18 @@
-//! What a table of a machine is made from: the exact machine, with exact derivatives.
+//! The functions from which a table of a machine is built: the exact machine with exact derivatives.
 
 use super::{CoordinateFunction, TabulatedCoordinate};
 use crate::machine::Machine;
-use dwell_kinetostatics::table::{InertiaSampler, SlopeSampler, TableBuilder};
+use dwell_kinetostatics::table::{InertiaSampler, Result, SlopeSampler, TableBuilder};
 use dwell_kinetostatics::{
-    ExactModel, Inertia, InverseDynamics, KinetostaticsError, Magnitude, Model, TableError,
+    ExactModel, Inertia, InverseDynamics, KinematicState, KinetostaticsError, Magnitude, Model,
     TableQuantity, Workspace,
 };
 use dwell_numerics::{Dual, Scalar};
 use std::f64::consts::TAU;
 
-/// Where a measured coordinate is looked at, in parts of the extent.
+/// Points at which a measured coordinate is compared with a straight line, in parts of the domain.
 const DOMAIN_FRACTIONS: [f64; 7] = [0.0, 0.131, 0.292, 0.417, 0.583, 0.719, 0.877];
-/// Slopes nearer than this, as a part of the largest, are one: roundings of a pose.
+/// Slopes that differ by less than this part of the largest are equal to rounding.
 const SLOPE_TOLERANCE: f64 = 1e-12;
 
 /// A model in dual numbers at one coordinate and unit speed.
@@ -32,29 +32,36 @@ impl DualModel {
         }
     }
 
-    fn set_configuration(&mut self, q: f64) -> Result<(), TableError> {
-        let one = Dual::from_f64(1.0);
-        self.model
-            .set_kinematic_state(&[Dual::variable(q)], &[one], &mut self.workspace)?;
-        Ok(())
+    fn at(&mut self, q: f64) -> Result<DualState<'_>> {
+        let (q, one) = (Dual::variable(q), Dual::from_f64(1.0));
+        Ok(DualState {
+            state: self
+                .model
+                .kinematic_state(&[q], &[one], &mut self.workspace)?,
+            inverse_dynamics: &mut self.inverse_dynamics,
+        })
     }
+}
 
-    /// What one unit of a load gives the coordinate.
-    fn unit_load_response(&mut self, load: usize) -> Result<Dual, KinetostaticsError> {
-        self.model
-            .unit_load_response(load, &mut self.workspace, &mut self.inverse_dynamics)?;
-        Ok(-self.inverse_dynamics.tau[0])
-    }
+/// The state at that coordinate.
+struct DualState<'a> {
+    state: KinematicState<'a, Dual>,
+    inverse_dynamics: &'a mut InverseDynamics<Dual>,
+}
 
-    fn measure(&self, measured: CoordinateFunction) -> [Dual; 3] {
-        self.workspace.states().coordinate(measured)
+impl DualState<'_> {
+    /// The generalised force of one unit of a load.
+    fn unit_load_force(&mut self, load: usize) -> Result<Dual, KinetostaticsError> {
+        let result = &mut *self.inverse_dynamics;
+        self.state.unit_load_response(load, result)?;
+        Ok(-result.tau[0])
     }
 }
 
 /// m and ½m′ of the bodies, rotors and flywheel.
 pub(super) struct TotalInertia<'a> {
     bodies: InertiaSampler<'a>,
-    /// N² J of each rotor, and the coordinate it turns with.
+    /// N² J of each rotor, and the coordinate of its drive.
     rotors: Vec<(f64, CoordinateFunction)>,
     flywheel: f64,
     dual_model: DualModel,
@@ -76,8 +83,8 @@ impl<'a> TotalInertia<'a> {
         }
     }
 
-    /// What the rotors and the flywheel add: N² J (ds/dq)² each.
-    fn rotors_and_flywheel(&mut self, q: f64) -> Result<Inertia, TableError> {
+    /// The inertia of rotors, N² J (ds/dq)² each, and flywheel.
+    fn rotors_and_flywheel(&mut self, q: f64) -> Result<Inertia> {
         let mut sum = Inertia {
             m: self.flywheel,
             ..Inertia::default()
@@ -85,14 +92,11 @@ impl<'a> TotalInertia<'a> {
         if self.rotors.is_empty() {
             return Ok(sum);
         }
-        self.dual_model.set_configuration(q)?;
         // At unit speed and no acceleration s̈ is d²s/dq².
-        let DualModel {
-            model, workspace, ..
-        } = &mut self.dual_model;
-        model.set_accelerations(&[Dual::from_f64(0.0)], workspace);
+        let mut state = self.dual_model.at(q)?.state;
+        let bodies = state.bodies_at(&[Dual::from_f64(0.0)]);
         for &(inertia, measured) in &self.rotors {
-            let [_, slope, bend] = self.dual_model.measure(measured);
+            let [_, slope, bend] = bodies.coordinate(measured);
             sum.m += inertia * slope.v * slope.v;
             sum.half_dm += inertia * slope.v * bend.v;
             sum.half_ddm += inertia * (bend.v * bend.v + slope.v * bend.d);
@@ -102,7 +106,7 @@ impl<'a> TotalInertia<'a> {
 }
 
 impl SlopeSampler for TotalInertia<'_> {
-    fn sample(&mut self, q: f64) -> Result<Inertia, TableError> {
+    fn sample(&mut self, q: f64) -> Result<Inertia> {
         let (bodies, added) = (self.bodies.sample(q)?, self.rotors_and_flywheel(q)?);
         Ok(Inertia {
             m: bodies.m + added.m,
@@ -111,7 +115,7 @@ impl SlopeSampler for TotalInertia<'_> {
         })
     }
 
-    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>, TableError> {
+    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>> {
         let mut found = self.bodies.sample_many(q)?;
         for ([m, half_dm], &q) in found.iter_mut().zip(q) {
             let added = self.rotors_and_flywheel(q)?;
@@ -155,18 +159,18 @@ impl TotalPotential {
 }
 
 impl SlopeSampler for TotalPotential {
-    fn sample(&mut self, q: f64) -> Result<Inertia, TableError> {
+    fn sample(&mut self, q: f64) -> Result<Inertia> {
         let model = &self.dual_model.model;
-        model.set_kinematic_state(&[q], &[1.0], &mut self.workspace)?;
+        let state = model.kinematic_state(&[q], &[1.0], &mut self.workspace)?;
         let all = self.loads.iter();
-        let potentials = all.filter_map(|&(load, _)| model.potential_energy(load, &self.workspace));
+        let potentials = all.filter_map(|&(load, _)| state.potential_energy(load));
         let mut sum = Inertia {
             m: potentials.sum(),
             ..Inertia::default()
         };
-        self.dual_model.set_configuration(q)?;
+        let mut state = self.dual_model.at(q)?;
         for &(load, magnitude) in &self.loads {
-            let w = self.dual_model.unit_load_response(load)?;
+            let w = state.unit_load_force(load)?;
             sum.half_dm -= 0.5 * magnitude * w.v;
             sum.half_ddm -= 0.5 * magnitude * w.d;
         }
@@ -174,22 +178,22 @@ impl SlopeSampler for TotalPotential {
     }
 }
 
-/// Everything else: w of what has no potential, and what magnitudes depend on.
+/// Everything else: w of loads without a potential, and the coordinates on which magnitudes depend.
 pub(super) struct AuxiliaryColumns {
     dual_model: DualModel,
     domain: [f64; 2],
     period: Option<f64>,
     entries: Vec<TableQuantity>,
-    /// By measured entry: the coordinate, and what it gains evenly with q.
+    /// By measured entry: the coordinate, and the slope of its uniform growth with q.
     measured: Vec<(CoordinateFunction, f64)>,
 }
 
 impl AuxiliaryColumns {
-    pub(super) fn new(machine: &Machine, maker: &TableBuilder, loads: &[usize]) -> Self {
+    pub(super) fn new(machine: &Machine, builder: &TableBuilder, loads: &[usize]) -> Self {
         Self {
             dual_model: DualModel::new(machine),
-            domain: maker.domain(),
-            period: maker.period(),
+            domain: builder.domain(),
+            period: builder.period(),
             entries: loads
                 .iter()
                 .map(|&load| TableQuantity::W { load })
@@ -203,30 +207,23 @@ impl AuxiliaryColumns {
     }
 
     /// The value and the slope of a coordinate.
-    fn value_and_slope(
-        &mut self,
-        measured: CoordinateFunction,
-        q: f64,
-    ) -> Result<[f64; 2], TableError> {
-        self.dual_model.set_configuration(q)?;
-        let [value, slope, _] = self.dual_model.measure(measured);
+    fn value_and_slope(&mut self, measured: CoordinateFunction, q: f64) -> Result<[f64; 2]> {
+        let [value, slope] = self.dual_model.at(q)?.state.coordinate(measured);
         Ok([value.v, slope.v])
     }
 
-    /// A coordinate that follows q in a line, as q itself does; none if it does not.
+    /// A coordinate that is linear in q, as q itself is; none if it is not.
     fn linear_coordinate(
         &mut self,
         measured: CoordinateFunction,
-    ) -> Result<Option<TabulatedCoordinate>, TableError> {
+    ) -> Result<Option<TabulatedCoordinate>> {
         let [from, to] = self.domain;
         let [value, slope] = self.value_and_slope(measured, from)?;
         let (mut max_difference, mut largest) = (0.0_f64, slope.abs());
         for part in DOMAIN_FRACTIONS {
             let [_, other] = self.value_and_slope(measured, from + part * (to - from))?;
-            (max_difference, largest) = (
-                max_difference.max((other - slope).abs()),
-                largest.max(other.abs()),
-            );
+            max_difference = max_difference.max((other - slope).abs());
+            largest = largest.max(other.abs());
         }
         let coordinate = TabulatedCoordinate {
             slope,
@@ -236,15 +233,12 @@ impl AuxiliaryColumns {
         Ok((max_difference <= SLOPE_TOLERANCE * largest).then_some(coordinate))
     }
 
-    /// How to know a coordinate.
-    pub(super) fn value(
-        &mut self,
-        measured: CoordinateFunction,
-    ) -> Result<TabulatedCoordinate, TableError> {
+    /// How a coordinate is evaluated.
+    pub(super) fn value(&mut self, measured: CoordinateFunction) -> Result<TabulatedCoordinate> {
         if let Some(line) = self.linear_coordinate(measured)? {
             return Ok(line);
         }
-        // An angle may gain whole turns with each turn of q.
+        // An angle may gain whole revolutions in each period of q.
         let slope = match (self.period, measured) {
             (Some(period), CoordinateFunction::Angle(_)) => {
                 let [from, _] = self.domain;
@@ -266,11 +260,8 @@ impl AuxiliaryColumns {
         })
     }
 
-    /// How to know its slope.
-    pub(super) fn speed(
-        &mut self,
-        measured: CoordinateFunction,
-    ) -> Result<TabulatedCoordinate, TableError> {
+    /// How its slope is evaluated.
+    pub(super) fn speed(&mut self, measured: CoordinateFunction) -> Result<TabulatedCoordinate> {
         if let Some(line) = self.linear_coordinate(measured)? {
             return Ok(TabulatedCoordinate {
                 slope: 0.0,
@@ -290,7 +281,7 @@ impl AuxiliaryColumns {
         })
     }
 
-    /// One more column; its place.
+    /// Adds a column and returns its index.
     fn add_column(&mut self, coordinate: CoordinateFunction, slope: f64, value: bool) -> usize {
         let measured = self.measured.len();
         self.measured.push((coordinate, slope));
@@ -307,21 +298,21 @@ impl AuxiliaryColumns {
     }
 
     /// All columns at a coordinate.
-    pub(super) fn fill(&mut self, q: f64, out: &mut [Dual]) -> Result<(), TableError> {
-        self.dual_model.set_configuration(q)?;
+    pub(super) fn fill(&mut self, q: f64, out: &mut [Dual]) -> Result<()> {
+        let mut state = self.dual_model.at(q)?;
         for (out, entry) in out.iter_mut().zip(&self.entries) {
             *out = match *entry {
-                TableQuantity::W { load } => self.dual_model.unit_load_response(load)?,
+                TableQuantity::W { load } => state.unit_load_force(load)?,
                 TableQuantity::S {
                     coordinate: measured,
                 } => {
                     let (coordinate, slope) = self.measured[measured];
-                    let [value, ..] = self.dual_model.measure(coordinate);
+                    let [value, _] = state.state.coordinate(coordinate);
                     value - Dual::variable(q) * Dual::from_f64(slope)
                 }
                 TableQuantity::Ds {
                     coordinate: measured,
-                } => self.dual_model.measure(self.measured[measured].0)[1],
+                } => state.state.coordinate(self.measured[measured].0)[1],
                 _ => Dual::default(),
             };
         }

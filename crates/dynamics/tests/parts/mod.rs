@@ -232,10 +232,8 @@ pub(crate) fn energy_lost(atlas: &Atlas<'_>, motion: &ContinuedMotion) -> f64 {
         let machine = &atlas.charts()[segment.chart].machine;
         let mut workspace = machine.workspace();
         for point in &segment.solution.steps {
-            machine
-                .evaluate(point.t, &point.y, &mut workspace)
-                .expect("a state");
-            let [kinetic, potential] = machine.energy(&workspace);
+            let state = machine.evaluate(point.t, &point.y, &mut workspace);
+            let [kinetic, potential] = state.expect("a state").energy();
             max_kinetic = max_kinetic.max(kinetic);
             low = low.min(kinetic + potential);
             high = high.max(kinetic + potential);

@@ -6,7 +6,7 @@ use super::{
     AppliedWrench, CompiledSignal, ForceSource, Load, LoadKind, LoadState, Magnitude,
     find_couple_points,
 };
-use crate::error::{KinetostaticsError, LoadError};
+use crate::error::{KinetostaticsError, LoadError, Result};
 use crate::mass::Mass;
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{BodyId, Mechanism, Plan, PositionError, Vec2};
@@ -55,10 +55,8 @@ impl CompiledLoads {
             let mass = masses.get(body.0).copied()?;
             (mass.mass > 0.0).then_some((body, mass))
         };
-        let weighted_bodies = plan
-            .moving_bodies()
-            .iter()
-            .filter_map(|c| weight(BodyId(c.body)));
+        let bodies = plan.moving_bodies().iter();
+        let weighted_bodies = bodies.filter_map(|c| weight(BodyId(c.body)));
         Ok(Self {
             loads,
             compiled_signals: signals,
@@ -82,6 +80,7 @@ impl CompiledLoads {
             | LoadKind::SlideDamper(_)
             | LoadKind::SeparatingForce(_) => 2,
         });
+        let signal_counts = self.compiled_signals.iter().map(Vec::len);
         LoadState {
             magnitude: vec![T::from_f64(0.0); self.loads.len()],
             wrenches: Vec::with_capacity(wrench_counts.sum()),
@@ -89,38 +88,29 @@ impl CompiledLoads {
             force: vec![Vec2::zero(); bodies],
             moment: vec![T::from_f64(0.0); bodies],
             subtree_force: vec![Vec2::zero(); plan.moving_bodies().len()],
-            signal_workspace: SignalWorkspace::new(
-                self.compiled_signals
-                    .iter()
-                    .map(Vec::len)
-                    .max()
-                    .unwrap_or(0),
-            ),
+            signal_workspace: SignalWorkspace::new(signal_counts.max().unwrap_or(0)),
         }
     }
 
-    /// The magnitudes at time `t` (s). Friction and separating forces are zero until their reactions are known; an
-    /// external magnitude keeps its value.
+    /// The magnitudes at time `t` (s). Friction and separating forces are zero until their reactions are known, an
+    /// external magnitude until it is set.
     pub(crate) fn update_magnitudes<T: Scalar>(
         &self,
         t: f64,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         if T::LANES > 1 && !self.loads.is_empty() {
             // Laws, dry friction and slack springs decide by one value.
             return Err(PositionError::LanesDiverge { q: f64::NAN }.into());
         }
         for (i, load) in self.loads.iter().enumerate() {
             if matches!(load.magnitude, Magnitude::External(_)) {
+                out.magnitude[i] = T::from_f64(0.0);
                 continue;
             }
-            let magnitude = load.magnitude.eval_at_state(
-                t,
-                &self.compiled_signals[i],
-                states,
-                &mut out.signal_workspace,
-            );
+            let (signals, workspace) = (&self.compiled_signals[i], &mut out.signal_workspace);
+            let magnitude = load.magnitude.eval_at_state(t, signals, states, workspace);
             if !magnitude.value().is_finite() {
                 return Err(KinetostaticsError::MagnitudeNotFinite { load: i });
             }
@@ -134,7 +124,7 @@ impl CompiledLoads {
         &self,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
         for (i, load) in self.loads.iter().enumerate() {
@@ -150,7 +140,7 @@ impl CompiledLoads {
         load: usize,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         out.wrenches.clear();
         out.gravity = Vec2::zero();
         let (kind, sign) = match self.loads[load].kind {
@@ -180,7 +170,7 @@ impl CompiledLoads {
         f: T,
         states: &BodyStates<T>,
         out: &mut LoadState<T>,
-    ) -> Result<(), KinetostaticsError> {
+    ) -> Result<()> {
         if let LoadKind::Gravity { direction } = kind {
             let pull = direction.cast() * f;
             out.gravity += pull;

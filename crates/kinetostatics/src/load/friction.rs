@@ -45,12 +45,9 @@ impl Friction {
         };
         let (FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size }) =
             self.contact;
+        let mut sizes = [self.coefficient, size].into_iter();
         let regularized = self.regularization_speed > 0.0;
-        if !(regularized
-            && [self.coefficient, size]
-                .iter()
-                .all(|n| n.is_finite() && *n >= 0.0))
-        {
+        if !(regularized && sizes.all(|n| n.is_finite() && n >= 0.0)) {
             return Err(
                 "its coefficient of friction and its size must be finite and not negative, its speed positive",
             );
@@ -69,11 +66,8 @@ impl Friction {
                 slides && matches!(kind, LoadKind::SlideForce(g) if g.bodies == joint.bodies)
             }
         };
-        if fits {
-            Ok(())
-        } else {
-            Err("its joint is no revolute joint, prismatic joint or slot between its bodies")
-        }
+        let misfit = "its joint is no revolute joint, prismatic joint or slot between its bodies";
+        fits.then_some(()).ok_or(misfit)
     }
 
     /// The reactions it depends on.
@@ -82,9 +76,8 @@ impl Friction {
         let presses_at_ends =
             matches!(self.contact, FrictionContact::Guide { length } if length > 0.0);
         let components = mechanism.components(joint).iter();
-        components
-            .filter(|c| **c != Component::Moment || presses_at_ends)
-            .map(|&component| Reaction { joint, component })
-            .collect()
+        let components = components.filter(|c| **c != Component::Moment || presses_at_ends);
+        let reactions = components.map(|&component| Reaction { joint, component });
+        reactions.collect()
     }
 }

@@ -21,14 +21,12 @@ impl Model {
         };
         let wrong = |what| LoadError { load, what };
         let assembly = self.assembly_with_angles(&angle_pairs.concat());
-        let assembly = assembly.ok_or(wrong(
-            "it depends on an angle that has no value at the start",
-        ))?;
+        let undefined = wrong("it depends on an angle that has no value at the start");
+        let assembly = assembly.ok_or(undefined)?;
         let bodies = angle_pairs.concat().concat();
-        self.pass_model.plan =
-            Plan::compile_counting_revolutions(&self.mechanism, &assembly, &bodies).map_err(
-                |_| wrong("it depends on an angle whose whole revolutions cannot be counted"),
-            )?;
+        let plan = Plan::compile_counting_revolutions(&self.mechanism, &assembly, &bodies);
+        let uncounted = "it depends on an angle whose whole revolutions cannot be counted";
+        self.pass_model.plan = plan.map_err(|_| wrong(uncounted))?;
         Ok(())
     }
 
@@ -36,19 +34,17 @@ impl Model {
     /// within half a revolution of the other's; none where there is no pose.
     fn assembly_with_angles(&self, pairs: &[[BodyId; 2]]) -> Option<AssemblyConfiguration> {
         let mut assembly = self.assembly.clone();
-        let mut pose = self.pass_model.plan.pose::<f64>();
-        self.pass_model
-            .plan
-            .positions(&assembly.q, &mut pose)
-            .ok()?;
+        let plan = self.plan();
+        let mut pose = plan.pose::<f64>();
+        plan.positions(&assembly.q, &mut pose).ok()?;
         let nearest_angle = |body: BodyId, to: f64| {
-            let angle = self.pass_model.plan.body_angle(body, &pose);
+            let angle = plan.body_angle(body, &pose);
             angle + TAU * ((to - angle) / TAU).round()
         };
         for &[one, two] in pairs {
             let initial_angle = |body: BodyId| {
-                if self.pass_model.plan.counts_revolutions(body) {
-                    return Some(self.pass_model.plan.body_angle(body, &pose));
+                if plan.counts_revolutions(body) {
+                    return Some(plan.body_angle(body, &pose));
                 }
                 assembly.initial_guess[body.0].map(|guess| nearest_angle(body, guess))
             };
@@ -60,7 +56,7 @@ impl Model {
                 }
             };
             for (body, angle) in [(one, first), (two, second)] {
-                if !self.pass_model.plan.counts_revolutions(body) {
+                if !plan.counts_revolutions(body) {
                     assembly.initial_guess[body.0] = Some(angle);
                 }
             }

@@ -8,13 +8,12 @@ use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Motion, Pose};
 use dwell_numerics::Scalar;
 
-/// Working memory for evaluations of a model in one thread.
+/// Working memory for evaluations of a model in one thread. What it holds is read through the [stages](super::stages)
+/// of an evaluation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Workspace<T> {
-    /// The last pose.
-    pub pose: Pose<T>,
-    /// The last motion.
-    pub motion: Motion<T>,
+    pub(crate) pose: Pose<T>,
+    pub(crate) motion: Motion<T>,
     pub(crate) unit_passes: RecursivePass<T, 2>,
     pub(crate) pass: RecursivePass<T, 1>,
     pub(crate) load_workspace: LoadWorkspace<T>,
@@ -37,61 +36,28 @@ pub(crate) struct LoadWorkspace<T> {
     pub(crate) unit_velocity: Vec<T>,
 }
 
-impl<T: Scalar> LoadWorkspace<T> {
-    pub(crate) fn new(model: &Model) -> Self {
-        let plan = &model.pass_model.plan;
-        let rest = vec![T::from_f64(0.0); plan.actuators()];
-        Self {
-            states: BodyStates::new(plan),
-            loads: model.loads.state(plan),
-            single_load: model.loads.state(plan),
-            friction_workspace: FrictionWorkspace::new(model.dependent_loads.len()),
-            friction_responses: vec![model.result_buffer(); model.dependent_loads.len()],
-            q_dot: rest.clone(),
-            virtual_motion: plan.motion(),
-            virtual_states: BodyStates::new(plan),
-            unit_velocity: rest,
-        }
-    }
-}
-
-impl<T: Scalar> Workspace<T> {
-    /// Updates the states of the bodies from the last pose and motion, with the accelerations of the last evaluation.
-    pub fn update_body_accelerations(&mut self, model: &Model) {
-        let Self {
-            pose,
-            motion,
-            load_workspace: loaded,
-            ..
-        } = self;
-        loaded.states.fill(&model.pass_model.plan, pose, motion);
-    }
-
-    /// Sets the magnitude of a load of [`Magnitude::External`](crate::Magnitude::External) until it is set again.
-    pub fn set_magnitude(&mut self, load: usize, magnitude: T) {
-        self.load_workspace.loads.magnitude[load] = magnitude;
-    }
-
-    /// The states of the bodies that were evaluated last.
-    pub fn states(&self) -> &BodyStates<T> {
-        &self.load_workspace.states
-    }
-
-    /// The loads at the state that was evaluated last.
-    pub fn loads(&self) -> &LoadState<T> {
-        &self.load_workspace.loads
-    }
-}
-
 impl Model {
     /// Working memory for one thread.
     pub fn workspace<T: Scalar>(&self) -> Workspace<T> {
+        let plan = self.plan();
+        let rest = vec![T::from_f64(0.0); plan.actuators()];
+        let frictions = self.dependent_loads.len();
         Workspace {
-            pose: self.plan().pose(),
-            motion: self.plan().motion(),
+            pose: plan.pose(),
+            motion: plan.motion(),
             unit_passes: RecursivePass::new(&self.pass_model),
             pass: RecursivePass::new(&self.pass_model),
-            load_workspace: LoadWorkspace::new(self),
+            load_workspace: LoadWorkspace {
+                states: BodyStates::new(plan),
+                loads: self.loads.state(plan),
+                single_load: self.loads.state(plan),
+                friction_workspace: FrictionWorkspace::new(frictions),
+                friction_responses: vec![self.result_buffer(); frictions],
+                q_dot: rest.clone(),
+                virtual_motion: plan.motion(),
+                virtual_states: BodyStates::new(plan),
+                unit_velocity: rest,
+            },
         }
     }
 }

@@ -118,9 +118,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
     ) {
         let moments = self.balance.moment.iter_mut().zip(&model.frame_inertia);
         for (frame, (moment, &inertia)) in moments.enumerate() {
-            *moment = map_array(accelerations.angular_acceleration(frame), |rate| {
-                rate * T::from_f64(inertia)
-            });
+            let rates = accelerations.angular_acceleration(frame);
+            *moment = map_array(rates, |rate| rate * T::from_f64(inertia));
         }
         for (i, accelerated) in model.accelerated_bodies.iter().enumerate() {
             let mut acceleration = match accelerated.parent {
@@ -128,34 +127,24 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                 None => [Vec2::zero(); N],
             };
             if let Some((vector, frame)) = accelerated.joint_vector {
-                add(
-                    &mut acceleration,
-                    accelerations.vector_acceleration(frame, pose.vector[vector]),
-                );
+                let more = accelerations.vector_acceleration(frame, pose.vector[vector]);
+                add(&mut acceleration, more);
             }
             if let Some((slide, direction)) = accelerated.slide {
                 let along = pose.vector[direction];
-                add(
-                    &mut acceleration,
-                    accelerations.slide_acceleration(slide, accelerated.frame, along),
-                );
-                add(
-                    &mut acceleration,
-                    accelerations
-                        .vector_acceleration(accelerated.frame, along * pose.slide_travel[slide]),
-                );
+                let more = accelerations.slide_acceleration(slide, accelerated.frame, along);
+                add(&mut acceleration, more);
+                let more = accelerations
+                    .vector_acceleration(accelerated.frame, along * pose.slide_travel[slide]);
+                add(&mut acceleration, more);
             }
             let mut force = map_array(acceleration, |a| a * T::from_f64(accelerated.mass));
             if let Some(first_moment) = accelerated.first_moment {
                 let first_moment = first_moment.cast().rotate(pose.rotation[accelerated.frame]);
-                add(
-                    &mut force,
-                    accelerations.vector_acceleration(accelerated.frame, first_moment),
-                );
-                add(
-                    &mut self.balance.moment[accelerated.frame],
-                    map_array(acceleration, |a| first_moment.cross(a)),
-                );
+                let more = accelerations.vector_acceleration(accelerated.frame, first_moment);
+                add(&mut force, more);
+                let more = map_array(acceleration, |a| first_moment.cross(a));
+                add(&mut self.balance.moment[accelerated.frame], more);
             }
             self.origin_acceleration[i] = acceleration;
             self.inertia_force[i] = force;
@@ -184,10 +173,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                 let along = pose.vector[direction];
                 let offset = along * pose.slide_travel[slide];
                 slide_force[slide] = map_array(force, |f| along.dot(f));
-                add(
-                    &mut moment[accelerated.frame],
-                    map_array(force, |f| offset.cross(f)),
-                );
+                let more = map_array(force, |f| offset.cross(f));
+                add(&mut moment[accelerated.frame], more);
             }
         }
     }
@@ -201,10 +188,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         for (i, body) in moving_bodies.iter().enumerate() {
             let force = loads.force[body.body];
             loads.subtree_force[i] = force;
-            subtract(
-                &mut self.balance.moment[body.frame],
-                loads.moment[body.body],
-            );
+            let moment = loads.moment[body.body];
+            subtract(&mut self.balance.moment[body.frame], moment);
             if model.reaction_sources.needs_joint_forces {
                 subtract(&mut self.joint_forces[i], force);
             }
@@ -243,11 +228,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             self.joint_forces[accelerated.moving_body] = *force;
         }
         for body in &model.inertial_bodies {
-            if let (true, true, Some(first_moment)) = (
-                body.fixed_origin,
-                needed[body.moving_body],
-                body.first_moment,
-            ) {
+            let required = body.fixed_origin && needed[body.moving_body];
+            if let (true, Some(first_moment)) = (required, body.first_moment) {
                 let first_moment = first_moment.cast().rotate(pose.rotation[body.frame]);
                 self.joint_forces[body.moving_body] =
                     accelerations.vector_acceleration(body.frame, first_moment);
@@ -264,10 +246,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
                 if let (true, Some(body)) = (sources.end_force_needed(end), end.moving_body) {
                     let force = self.loop_joint_force(model, pose, c);
-                    add(
-                        &mut self.joint_forces[body],
-                        map_array(force, |f| f * T::from_f64(sign)),
-                    );
+                    let more = map_array(force, |f| f * T::from_f64(sign));
+                    add(&mut self.joint_forces[body], more);
                 }
             }
         }
@@ -301,6 +281,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// The couples that prismatic joints and actuators exert, where they are needed: each body's moment balance
     /// about its origin, before [`Self::transfer_joint_moments`].
+    // One function: it is inlined whole, and each part needs the same sources.
     #[inline(always)]
     pub(crate) fn accumulate_joint_moments(
         &mut self,
@@ -311,35 +292,24 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         self.joint_moments.fill([T::from_f64(0.0); N]);
         let sources = &model.reaction_sources;
         let moving_bodies = model.plan.moving_bodies();
-        for body in model
-            .inertial_bodies
-            .iter()
-            .filter(|m| sources.joint_moment_needed[m.body])
-        {
-            let angular_acceleration = accelerations.angular_acceleration(body.frame);
-            self.joint_moments[body.body] = map_array(angular_acceleration, |a| {
-                a * T::from_f64(body.inertia_about_joint)
-            });
+        let needed = &sources.joint_moment_needed;
+        for body in model.inertial_bodies.iter().filter(|m| needed[m.body]) {
+            let inertia = T::from_f64(body.inertia_about_joint);
+            let rates = accelerations.angular_acceleration(body.frame);
+            self.joint_moments[body.body] = map_array(rates, |rate| rate * inertia);
         }
-        for (accelerated, &acceleration) in model
-            .accelerated_bodies
-            .iter()
-            .zip(&self.origin_acceleration)
-        {
+        let accelerated_bodies = model.accelerated_bodies.iter();
+        for (accelerated, &acceleration) in accelerated_bodies.zip(&self.origin_acceleration) {
             let body = moving_bodies[accelerated.moving_body].body;
-            if let (true, Some(first_moment)) =
-                (sources.joint_moment_needed[body], accelerated.first_moment)
-            {
+            if let (true, Some(first_moment)) = (needed[body], accelerated.first_moment) {
                 let first_moment = first_moment.cast().rotate(pose.rotation[accelerated.frame]);
-                add(
-                    &mut self.joint_moments[body],
-                    map_array(acceleration, |a| first_moment.cross(a)),
-                );
+                let more = map_array(acceleration, |a| first_moment.cross(a));
+                add(&mut self.joint_moments[body], more);
             }
         }
         for (c, ends) in sources.loop_joint_ends.iter().enumerate() {
             for (end, sign) in ends.iter().zip([1.0, -1.0]) {
-                if !sources.joint_moment_needed[end.body] {
+                if !needed[end.body] {
                     continue;
                 }
                 let mut moment_arm = match end.moment_arm {
@@ -360,23 +330,17 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
             model
                 .plan
                 .coupling_angle_derivatives(r, pose, |body, factor| {
-                    add(
-                        &mut self.joint_moments[body],
-                        map_array(multiplier, |m| -(factor * m)),
-                    );
+                    let more = map_array(multiplier, |m| -(factor * m));
+                    add(&mut self.joint_moments[body], more);
                 });
         }
         for (i, body) in moving_bodies.iter().enumerate() {
             let force = self.joint_forces[i];
             let parent = sources.parent_body[i];
-            if let (true, Some(moment_arm)) =
-                (sources.joint_moment_needed[parent], body.joint_vector)
-            {
+            if let (true, Some(moment_arm)) = (needed[parent], body.joint_vector) {
                 let moment_arm = pose.vector[moment_arm];
-                add(
-                    &mut self.joint_moments[parent],
-                    map_array(force, |f| moment_arm.cross(f)),
-                );
+                let more = map_array(force, |f| moment_arm.cross(f));
+                add(&mut self.joint_moments[parent], more);
             }
             if let Some((slide, direction)) = body.slide {
                 // The force acts at the second body's point: the origin of the body itself, or
@@ -386,12 +350,10 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
                 } else {
                     body.body
                 };
-                if sources.joint_moment_needed[on] {
+                if needed[on] {
                     let offset = pose.vector[direction] * pose.slide_travel[slide];
-                    add(
-                        &mut self.joint_moments[on],
-                        map_array(force, |f| offset.cross(f)),
-                    );
+                    let more = map_array(force, |f| offset.cross(f));
+                    add(&mut self.joint_moments[on], more);
                 }
             }
         }
@@ -414,10 +376,8 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
         let mut sum = [T::from_f64(0.0); N];
         for &(frame, sign) in &model.reaction_sources.actuated_frames[actuator] {
-            add(
-                &mut sum,
-                map_array(self.balance.moment[frame], |m| m * T::from_f64(sign)),
-            );
+            let more = map_array(self.balance.moment[frame], |m| m * T::from_f64(sign));
+            add(&mut sum, more);
         }
         sum
     }

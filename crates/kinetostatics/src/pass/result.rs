@@ -14,6 +14,16 @@ pub struct InverseDynamics<T> {
 }
 
 impl<T: Scalar> InverseDynamics<T> {
+    /// Adds a multiple of other results of the same model.
+    pub fn add_scaled(&mut self, other: &Self, factor: T) {
+        for (sum, more) in self.reactions.iter_mut().zip(&other.reactions) {
+            *sum += *more * factor;
+        }
+        for (sum, more) in self.tau.iter_mut().zip(&other.tau) {
+            *sum += *more * factor;
+        }
+    }
+
     /// Copies them from a pass.
     pub(crate) fn read_from(
         &mut self,

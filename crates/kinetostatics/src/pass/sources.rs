@@ -96,14 +96,13 @@ impl ReactionSources {
             })
         });
         let second = |c: &dwell_geometry::tree::TreeJoint| plan.pairs()[c.pair].bodies[1] == c.body;
+        let actuators = 0..plan.actuators();
         let mut found = Self {
             loop_joint_ends: loop_joint_ends.collect(),
             parent_body: tree.joints.iter().map(|c| c.parent).collect(),
             child_is_second: tree.joints.iter().map(second).collect(),
             actuated_frames: find_actuated_frames(plan),
-            actuated_slides: (0..plan.actuators())
-                .map(|a| plan.slide_of_actuator(a))
-                .collect(),
+            actuated_slides: actuators.map(|a| plan.slide_of_actuator(a)).collect(),
             ..Self::default()
         };
         for &reaction in reactions {
@@ -144,7 +143,7 @@ impl ReactionSources {
     /// Whether the force of the joint that carries a loop joint's end is needed.
     pub(crate) fn end_force_needed(&self, end: &LoopJointEnd) -> bool {
         end.moving_body
-            .is_some_and(|moving_body| self.joint_force_needed[moving_body])
+            .is_some_and(|body| self.joint_force_needed[body])
     }
 
     fn source_of(&self, mechanism: &Mechanism, plan: &Plan, reaction: Reaction) -> ReactionSource {
@@ -180,26 +179,19 @@ impl ReactionSources {
             (Component::Axial, _) => in_frame(kinematic_pair.bodies[1], Vec2::IDENTITY),
             _ => ForceDirection::X(1.0),
         };
-        let closure = match plan.pair_role(pair) {
-            PairRole::LoopJoint(closure) => closure,
-            PairRole::TreeJoint(moving_body) => {
-                return self.tree_joint_force(moving_body, direction);
-            }
-        };
-        if plan.loop_closures()[closure].axis.is_some() {
-            ReactionSource::Normal(closure)
-        } else {
-            ReactionSource::LoopJoint(closure, direction)
+        match plan.pair_role(pair) {
+            PairRole::TreeJoint(moving_body) => self.tree_joint_force(moving_body, direction),
+            PairRole::LoopJoint(closure) => match plan.loop_closures()[closure].axis {
+                Some(_) => ReactionSource::Normal(closure),
+                None => ReactionSource::LoopJoint(closure, direction),
+            },
         }
     }
 
     /// A component of the force on a moving body, as the action of its joint's first body.
     fn tree_joint_force(&self, moving_body: usize, direction: ForceDirection) -> ReactionSource {
-        let sign = if self.child_is_second[moving_body] {
-            1.0
-        } else {
-            -1.0
-        };
+        let is_second = self.child_is_second[moving_body];
+        let sign = if is_second { 1.0 } else { -1.0 };
         let signed = match direction {
             ForceDirection::X(_) => ForceDirection::X(sign),
             ForceDirection::Y(_) => ForceDirection::Y(sign),
@@ -212,11 +204,8 @@ impl ReactionSources {
 /// The couple in a pair that holds an angle.
 fn angular_constraint_moment(plan: &Plan, pair: usize) -> ReactionSource {
     let source = AngularConstraintSource::Pair(pair);
-    let constraint = plan
-        .frames()
-        .angular_constraints
-        .iter()
-        .find(|h| h.source == source);
+    let mut constraints = plan.frames().angular_constraints.iter();
+    let constraint = constraints.find(|h| h.source == source);
     constraint.map_or(ReactionSource::Redundant, |constraint| {
         ReactionSource::AngularConstraint {
             body: constraint.body,

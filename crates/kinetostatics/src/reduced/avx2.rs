@@ -4,9 +4,9 @@
 //! single-dwell 37 for 59, four-bar 24 for 41, slider-crank 28 for 44. Compiling [`Lanes`] for AVX2 gains half of
 //! that at best: sums over several steps it takes apart into pieces of 8, 16 and 8 bytes.
 //!
-//! This is the only unsafe code of the project. It is sound as long as there are such numbers only on
-//! processors with AVX2: the type is private, and [`reduce`] asks the processor first. No operation is fused
-//! with another, so each number has the bits of a plain evaluation.
+//! This is the only unsafe code of the project. It is sound as long as such numbers exist only on
+//! processors with AVX2: the type is private, and [`reduce`] checks the processor first. No operation is fused
+//! with another, so each number has the bits of a scalar evaluation.
 #![allow(unsafe_code, reason = "the gain measured above")]
 
 use super::batch::{BatchSlice, LANES, LaneScalar};
@@ -27,7 +27,7 @@ pub(crate) fn reduce<'a>(
     slice: BatchSlice<'a>,
 ) -> Result<Vec<(usize, PositionError)>, BatchSlice<'a>> {
     if model.plan().is_dyadic() && is_x86_feature_detected!("avx2") {
-        // Sound: it has just been asked for.
+        // Sound: AVX2 has just been detected.
         Ok(unsafe { reduce_with_avx2(model, slice) })
     } else {
         Err(slice)
@@ -95,7 +95,7 @@ impl Scalar for Avx2Lanes {
         sin_cos::sin_cos(self, Self::to_array, Self::from_array)
     }
 
-    // The rest is for counted turns and laws, which are evaluated one by one.
+    // The rest is for counted revolutions and laws, which are evaluated one by one.
 
     fn atan2(self, other: Self) -> Self {
         let (y, x) = (self.to_array(), other.to_array());

@@ -7,11 +7,11 @@ use dwell_geometry::PositionError;
 use dwell_numerics::{Lanes, Scalar};
 use std::ops::Range;
 
-/// Poses side by side: two registers of the plainest x86-64, one where there is AVX2.
+/// Poses side by side: two registers of any x86-64, one with AVX2.
 pub(crate) const LANES: usize = 4;
-/// Fewest coordinates that one thread does at a time: the working memory it takes is small beside them.
+/// Smallest block of one thread: its working memory is small in comparison.
 const MIN_BLOCK: usize = 1024;
-/// Blocks for each thread, so that none waits long for the last one.
+/// Blocks for each thread, so that all end at about the same time.
 const BLOCKS_PER_THREAD: usize = 4;
 
 /// The coefficients at many coordinates, each kind in one piece.
@@ -35,11 +35,8 @@ impl Batch {
         let reactions = self.a.len() / self.m.len().max(1);
         let one = |of: &[f64]| of.get(i).copied().unwrap_or(f64::NAN);
         let all = |of: &[f64]| {
-            of.iter()
-                .skip(i * reactions)
-                .take(reactions)
-                .copied()
-                .collect()
+            let here = of.iter().skip(i * reactions).take(reactions);
+            here.copied().collect()
         };
         Coefficients {
             m: one(&self.m),
@@ -75,10 +72,8 @@ impl<'a> BatchSlice<'a> {
             a,
             b,
         };
-        [
-            part(self.first, q0, m0, half_dm0, a0, b0),
-            part(self.first + at, q1, m1, half_dm1, a1, b1),
-        ]
+        let first = part(self.first, q0, m0, half_dm0, a0, b0);
+        [first, part(self.first + at, q1, m1, half_dm1, a1, b1)]
     }
 }
 
@@ -124,15 +119,16 @@ impl ExactModel {
 
 impl Model {
     fn reduce_batch(&self, q: &[f64], out: &mut Batch) {
-        let each = q.len() * self.reactions().len();
-        for (values, count) in [
-            (&mut out.m, q.len()),
-            (&mut out.half_dm, q.len()),
+        let each = self.reactions().len();
+        let columns = [
+            (&mut out.m, 1),
+            (&mut out.half_dm, 1),
             (&mut out.a, each),
             (&mut out.b, each),
-        ] {
+        ];
+        for (values, width) in columns {
             values.clear();
-            values.resize(count, f64::NAN);
+            values.resize(width * q.len(), f64::NAN);
         }
         let slice = BatchSlice {
             first: 0,
@@ -178,13 +174,13 @@ impl Model {
         self.reduce_block::<Lanes<LANES>>(slice)
     }
 
-    /// Four poses at a time; one by one those that are left over or whose computations diverge.
+    /// Four poses at a time; singly those that remain or whose computations diverge.
     #[inline(always)]
     pub(crate) fn reduce_block<S: LaneScalar>(
         &self,
         mut slice: BatchSlice<'_>,
     ) -> Vec<(usize, PositionError)> {
-        // For several poses at once, and for one where they diverge; few blocks need both.
+        // For several poses at once, and for single ones where they diverge; few blocks need both.
         let mut lanes: Option<ReductionWorkspace<S>> = None;
         let in_lanes = self.plan().supports_lanes();
         let mut scalar = None;
@@ -233,7 +229,7 @@ impl Model {
         true
     }
 
-    // Not for wider registers: alone, a pose has no use for them.
+    // Not compiled for wider registers: a single pose does not use them.
     #[inline(never)]
     fn reduce_scalar(
         &self,

@@ -2,8 +2,7 @@
 
 use super::FreeBodyForces;
 use crate::load::{AppliedWrench, ForceSource};
-use crate::model::{Model, Workspace};
-use crate::pass::InverseDynamics;
+use crate::model::EvaluatedState;
 use dwell_geometry::{BodyId, Vec2};
 
 /// The power balance at one state: actuators + loads = dE_c/dt, W.
@@ -55,31 +54,26 @@ pub struct ShakingForce {
     pub loads_on_ground: Wrench,
 }
 
-impl Model {
-    /// The power balance at the state that [`Model::kinetostatics`] evaluated last.
-    pub fn power_balance(
-        &self,
-        workspace: &Workspace<f64>,
-        result: &InverseDynamics<f64>,
-    ) -> PowerBalance {
-        let states = workspace.states();
+impl EvaluatedState<'_> {
+    /// The power balance.
+    pub fn power_balance(&self) -> PowerBalance {
+        let states = self.bodies();
         let mut sum = PowerBalance::default();
-        for (tau, q_dot) in result.tau.iter().zip(&workspace.load_workspace.q_dot) {
+        let q_dot = &self.workspace.load_workspace.q_dot;
+        for (tau, q_dot) in self.inverse_dynamics().tau.iter().zip(q_dot) {
             sum.actuators += tau * q_dot;
             sum.scale += (tau * q_dot).abs();
         }
-        for wrench in &workspace.loads().wrenches {
+        for wrench in &self.loads().wrenches {
             let power = wrench.power(states);
             sum.loads += power;
             sum.scale += power.abs();
         }
-        for body in &self.pass_model.inertial_bodies {
+        for body in &self.model.pass_model.inertial_bodies {
             let id = BodyId(body.body);
-            let center = states.point(id, self.masses[id.0].center);
-            let (w, a) = (
-                states.body(id).angular_velocity,
-                states.body(id).angular_acceleration,
-            );
+            let center = states.point(id, self.model.masses[id.0].center);
+            let state = states.body(id);
+            let (w, a) = (state.angular_velocity, state.angular_acceleration);
             let [v, v_dot] = [center.velocity, center.acceleration];
             let terms = [body.mass * v.dot(v_dot), body.inertia * w * a];
             sum.kinetic_energy += 0.5 * (body.mass * v.dot(v) + body.inertia * w * w);
@@ -91,13 +85,12 @@ impl Model {
         sum
     }
 
-    /// The power of each load at the state that [`Model::kinetostatics`] evaluated last, W, into
-    /// `powers`, one for each load.
-    pub fn load_powers(&self, workspace: &Workspace<f64>, powers: &mut [f64]) {
+    /// The power of each load, W, into `powers`, one for each load.
+    pub fn load_powers(&self, powers: &mut [f64]) {
         powers.fill(0.0);
-        for wrench in &workspace.loads().wrenches {
+        for wrench in &self.loads().wrenches {
             if let ForceSource::Load(load) = wrench.source {
-                powers[load] += wrench.power(workspace.states());
+                powers[load] += wrench.power(self.bodies());
             }
         }
     }
@@ -107,11 +100,10 @@ impl FreeBodyForces {
     /// The shaking force and moment, by both methods, from the result of [`FreeBodyForces::wrenches`].
     pub fn shaking_force(
         &self,
-        model: &Model,
-        workspace: &Workspace<f64>,
+        state: &EvaluatedState<'_>,
         wrenches: &[AppliedWrench],
     ) -> ShakingForce {
-        let states = workspace.states();
+        let (model, states) = (state.model(), state.bodies());
         let mut shaking = ShakingForce::default();
         for wrench in wrenches {
             let total = match (wrench.body == self.ground, wrench.source) {

@@ -3,8 +3,7 @@
 
 use crate::error::ModelError;
 use crate::load::{AppliedWrench, ForceSource, find_couple_points};
-use crate::model::{Model, Workspace};
-use crate::pass::InverseDynamics;
+use crate::model::{EvaluatedState, Model};
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Reaction, Vec2};
 
@@ -93,16 +92,9 @@ impl FreeBodyForces {
         })
     }
 
-    /// Replaces `wrenches` by those of all joints, actuators and loads on all bodies and the ground, at the state that
-    /// [`Model::kinetostatics`] evaluated last into `workspace` and `result`.
-    pub fn wrenches(
-        &self,
-        model: &Model,
-        workspace: &Workspace<f64>,
-        result: &InverseDynamics<f64>,
-        wrenches: &mut Vec<AppliedWrench>,
-    ) {
-        let states = workspace.states();
+    /// Replaces `wrenches` by those of all joints, actuators and loads on all bodies and the ground at a state.
+    pub fn wrenches(&self, state: &EvaluatedState<'_>, wrenches: &mut Vec<AppliedWrench>) {
+        let (states, result) = (state.bodies(), state.inverse_dynamics());
         wrenches.clear();
         for (j, entry) in self.joints.iter().enumerate() {
             let source = ForceSource::Joint(JointId(j));
@@ -112,7 +104,8 @@ impl FreeBodyForces {
                     // In a pruned group the law has not been evaluated.
                     continue;
                 }
-                let slope = model.plan().coupling_slope(JointId(j), &workspace.pose);
+                let plan = state.model().plan();
+                let slope = plan.coupling_slope(JointId(j), state.pose());
                 coupling_wrenches(
                     coupling,
                     value(0),
@@ -136,7 +129,7 @@ impl FreeBodyForces {
                 );
             }
         }
-        wrenches.extend_from_slice(&workspace.loads().wrenches);
+        wrenches.extend_from_slice(&state.loads().wrenches);
     }
 }
 

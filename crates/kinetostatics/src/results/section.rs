@@ -3,7 +3,7 @@
 use super::FreeBodyForces;
 use crate::load::{AppliedWrench, ForceSource, LoadKind};
 use crate::mass::Mass;
-use crate::model::{Model, Workspace};
+use crate::model::{EvaluatedState, Model};
 use dwell_geometry::{BodyId, Vec2};
 
 /// The assumed distribution of a link's mass along the line.
@@ -66,18 +66,18 @@ impl FreeBodyForces {
     /// end. A couple between two bodies acts at the joint between them.
     pub fn link_forces(
         &self,
-        model: &Model,
+        evaluated: &EvaluatedState<'_>,
         body: BodyId,
         [from, to]: [Vec2; 2],
-        workspace: &Workspace<f64>,
         wrenches: &[AppliedWrench],
     ) -> Option<LinkForces> {
         let length = (to - from).norm();
+        let model = evaluated.model();
         let mass = model.masses.get(body.0).copied()?;
         if body == self.ground || length <= 0.0 || !length.is_finite() {
             return None;
         }
-        let state = workspace.states().body(body);
+        let state = evaluated.bodies().body(body);
         let along = ((to - from) * (1.0 / length)).rotate(state.rotation);
         let start = state.moment_arm(from);
         let mut found = LinkForces {
@@ -93,7 +93,7 @@ impl FreeBodyForces {
                 found.add_force(wrench.moment_arm - start, wrench.force, wrench.couple);
             }
         }
-        let gravity = workspace.loads().gravity;
+        let gravity = evaluated.loads().gravity;
         if is_uniform(mass, [from, to], length) {
             let w = state.angular_velocity;
             found.distribution = Distribution::UniformBar;
@@ -158,7 +158,6 @@ impl LinkForces {
     /// action that stands between the ends, in the order of their stations.
     pub fn sections(&self, intervals: usize) -> Vec<Section> {
         let n = intervals.max(1);
-        #[allow(clippy::cast_precision_loss, reason = "a number of stations")]
         let even = (0..=n).map(|i| self.length * (i as f64 / n as f64));
         let acted = || {
             let stations = self.point_forces.iter().map(|&(station, ..)| station);

@@ -4,41 +4,37 @@
 use super::build::{ColumnSampler, SlopeSampler};
 use super::piecewise::{BETWEEN_NODES, Grid, IntegratedCurve, PiecewiseColumns, TERMS};
 use super::sizing::{MIN_CELLS, Sizing};
-use super::{TableError, TableQuantity};
+use super::{Result, TableError, TableQuantity};
 use dwell_numerics::Dual;
 
 /// Ratio of the bound to the largest error found. Over all cases of validation/ the largest at 10 000
 /// other points was 1.7 times that; where the rounding of the exact model decides most,
 /// next to change points, 3.2 times.
 const SAFETY_FACTOR: f64 = 4.0;
-/// Points at which the pieces are looked at again, steps of the golden section: so many by cell, but no
-/// fewer and no more than these.
+/// Further points at which the errors are measured, steps of the golden section: so many for each cell, within
+/// these bounds.
 const CHECK_POINTS_PER_CELL: usize = 32;
 const MIN_CHECK_POINTS: usize = 256;
 const MAX_CHECK_POINTS: usize = 4096;
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// Most cells: 10 megabytes for m and ½m′.
+/// Highest number of cells: 10 megabytes for m and ½m′.
 pub(super) const MAX_CELLS: usize = 65_536;
 /// Sizes that are tried.
 const MAX_ATTEMPTS: usize = 10;
-/// A table is made again with fewer cells if its bound is this part of the accuracy.
+/// A table is built again with fewer cells if its bound is below this part of the accuracy.
 const OVERSIZED: f64 = 0.05;
 
 /// A part of a table that can be built with any number of cells and compared with its sampler.
 pub(super) trait Piecewise<S: ?Sized>: Sized {
     /// Builds it on a grid.
-    fn build(grid: Grid, width: usize, source: &mut S) -> Result<Self, TableError>;
+    fn build(grid: Grid, width: usize, source: &mut S) -> Result<Self>;
 
     /// Raises `max_errors` to its errors at some coordinates where these are larger.
-    fn raise_errors(&self, q: &[f64], source: &mut S, most: &mut [f64]) -> Result<(), TableError>;
+    fn raise_errors(&self, q: &[f64], source: &mut S, most: &mut [f64]) -> Result<()>;
 }
 
 impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
-    fn build(
-        grid: Grid,
-        _: usize,
-        sampler: &mut (dyn SlopeSampler + 'a),
-    ) -> Result<Self, TableError> {
+    fn build(grid: Grid, _: usize, sampler: &mut (dyn SlopeSampler + 'a)) -> Result<Self> {
         Self::new(grid, sampler)
     }
 
@@ -47,15 +43,13 @@ impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
         q: &[f64],
         sampler: &mut (dyn SlopeSampler + 'a),
         max_errors: &mut [f64],
-    ) -> Result<(), TableError> {
+    ) -> Result<()> {
         for (&q, exact) in q.iter().zip(sampler.sample_many(q)?) {
             let tabulated = self.eval(q)?;
+            let pairs = tabulated.into_iter().zip(exact);
             raise_to(
                 max_errors,
-                tabulated
-                    .into_iter()
-                    .zip(exact)
-                    .map(|(tabulated, exact)| tabulated - exact),
+                pairs.map(|(tabulated, exact)| tabulated - exact),
             );
         }
         Ok(())
@@ -63,11 +57,7 @@ impl<'a> Piecewise<dyn SlopeSampler + 'a> for IntegratedCurve {
 }
 
 impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
-    fn build(
-        grid: Grid,
-        width: usize,
-        sampler: &mut ColumnSampler<'a>,
-    ) -> Result<Self, TableError> {
+    fn build(grid: Grid, width: usize, sampler: &mut ColumnSampler<'a>) -> Result<Self> {
         Self::new(grid, width, sampler)
     }
 
@@ -76,17 +66,15 @@ impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
         q: &[f64],
         sampler: &mut ColumnSampler<'a>,
         max_errors: &mut [f64],
-    ) -> Result<(), TableError> {
+    ) -> Result<()> {
         let (mut exact, mut tabulated) = (vec![Dual::default(); self.width], vec![0.0; self.width]);
         for &q in q {
             sampler(q, &mut exact)?;
             self.eval(q, &mut tabulated, &mut [])?;
+            let pairs = tabulated.iter().zip(&exact);
             raise_to(
                 max_errors,
-                tabulated
-                    .iter()
-                    .zip(&exact)
-                    .map(|(tabulated, exact)| tabulated - exact.v),
+                pairs.map(|(tabulated, exact)| tabulated - exact.v),
             );
         }
         Ok(())
@@ -96,16 +84,12 @@ impl<'a> Piecewise<ColumnSampler<'a>> for PiecewiseColumns {
 fn raise_to(max_errors: &mut [f64], errors: impl Iterator<Item = f64>) {
     for (max_errors, error) in max_errors.iter_mut().zip(errors) {
         // NaN counts as the largest error.
-        let error = if error.is_nan() {
-            f64::INFINITY
-        } else {
-            error.abs()
-        };
-        *max_errors = max_errors.max(error);
+        let finite = !error.is_nan();
+        *max_errors = max_errors.max(if finite { error.abs() } else { f64::INFINITY });
     }
 }
 
-/// The smallest table met whose bound is within the accuracy, and the bounds by entry, as parts of the
+/// The smallest table tried whose bound is within the accuracy, and the bounds by quantity, as parts of the
 /// scales.
 pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     grid: Grid,
@@ -113,7 +97,7 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     sizing: &Sizing,
     accuracy: f64,
     sampler: &mut S,
-) -> Result<(P, Vec<f64>), TableError> {
+) -> Result<(P, Vec<f64>)> {
     let mut cells = sizing.cells;
     let mut best: Option<(P, Vec<f64>, usize)> = None;
     let mut smallest = (f64::INFINITY, TableQuantity::M);
@@ -133,13 +117,13 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
         if enough && best.as_ref().is_none_or(|(.., known)| cells < *known) {
             best = Some((piecewise, bounds, cells));
         }
-        // The error goes as the size of a cell to the number of terms; aimed at is half the accuracy.
+        // The error is proportional to the cell's size to the power of the number of terms; half the accuracy is aimed at.
         let next = cells as f64 * (2.0 * part).powf(1.0 / TERMS as f64);
         let next = (next.ceil() as usize).max(MIN_CELLS);
         cells = match (enough, &best) {
             (true, _) if part > OVERSIZED || next >= cells => break,
             (true, _) => next,
-            // One that was too small follows one that was large enough.
+            // A smaller one after one that was large enough does not reach the accuracy.
             (false, Some(_)) => break,
             (false, None) => next.max(cells + cells / 8 + 1),
         };
@@ -154,13 +138,13 @@ pub(super) fn build_to_accuracy<S: ?Sized, P: Piecewise<S>>(
     }
 }
 
-/// The bounds by entry as parts of the scales: from points between the nodes of every cell, and others.
+/// The bounds by quantity as parts of the scales: from points between the nodes of every cell, and others.
 fn bounds<S: ?Sized, P: Piecewise<S>>(
     piecewise: &P,
     grid: Grid,
     sizing: &Sizing,
     sampler: &mut S,
-) -> Result<Vec<f64>, TableError> {
+) -> Result<Vec<f64>> {
     let mut max_errors = vec![0.0; sizing.scales.len()];
     let cells = 0..grid.cells;
     let between = cells.flat_map(|cell| BETWEEN_NODES.map(|x| grid.coordinate(cell, x)));

@@ -1,10 +1,10 @@
 //! Builds the parts of tables: curves from their slopes and columns side by side, over one domain and to one
 //! accuracy.
 
-use super::bound;
+use super::bound::{self, Piecewise};
 use super::piecewise::{Grid, IntegratedCurve, PiecewiseColumns};
 use super::sizing::{self, RowSampler, Sizing};
-use super::{Bound, TableDomain, TableError, TableQuantity};
+use super::{Bound, Result, TableDomain, TableError, TableQuantity};
 use crate::reduced::Inertia;
 use dwell_geometry::Range;
 use dwell_numerics::Dual;
@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// Part of a limited range that is left out at each end, if no domain is given: the inertia grows as one
 /// over the distance to a limit position, and everything is measured by its largest value.
 const END_MARGIN: f64 = 0.02;
-/// A coefficient that a whole turn changes by more than this part of its scale does not come back.
+/// A coefficient that a period changes by more than this part of its scale is not periodic.
 const PERIODICITY_TOLERANCE: f64 = 1e-9;
 /// Where they are compared, in parts of a period.
 const PERIODICITY_POINTS: [f64; 5] = [0.0, 0.131, 0.292, 0.583, 0.877];
@@ -24,20 +24,20 @@ pub trait SlopeSampler {
     ///
     /// # Errors
     /// [`TableError::Exact`] where it has no value.
-    fn sample(&mut self, q: f64) -> Result<Inertia, TableError>;
+    fn sample(&mut self, q: f64) -> Result<Inertia>;
 
     /// The function and half its slope at many coordinates.
     ///
     /// # Errors
     /// [`TableError::Exact`] where it has no value.
-    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>, TableError> {
+    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>> {
         let both = |&q: &f64| self.sample(q).map(|at| [at.m, at.half_dm]);
         q.iter().map(both).collect()
     }
 }
 
 /// Functions with exact derivatives at a coordinate, from which [`PiecewiseColumns`] are built.
-pub type ColumnSampler<'a> = dyn FnMut(f64, &mut [Dual]) -> Result<(), TableError> + 'a;
+pub type ColumnSampler<'a> = dyn FnMut(f64, &mut [Dual]) -> Result<()> + 'a;
 
 /// Builds parts of one table, and records their error bounds.
 #[derive(Debug)]
@@ -51,8 +51,8 @@ impl TableBuilder {
     /// For tables over a domain within a range, to an accuracy.
     ///
     /// # Errors
-    /// [`TableError`] when there is nothing to reach over, or the accuracy cannot be kept.
-    pub fn new(range: Range, domain: TableDomain, accuracy: f64) -> Result<Self, TableError> {
+    /// [`TableError`] for a domain that is empty or unbounded, or an accuracy that cannot be kept.
+    pub fn new(range: Range, domain: TableDomain, accuracy: f64) -> Result<Self> {
         if !(1e-14..=1e-2).contains(&accuracy) {
             return Err(TableError::Accuracy { accuracy });
         }
@@ -77,13 +77,13 @@ impl TableBuilder {
     /// A curve: a function and half its slope.
     ///
     /// # Errors
-    /// [`TableError`] when it does not come back after a turn, or the accuracy cannot be reached.
+    /// [`TableError`] when it is not periodic, or the accuracy cannot be reached.
     pub fn curve(
         &mut self,
         quantities: [TableQuantity; 2],
         sampler: &mut dyn SlopeSampler,
-    ) -> Result<IntegratedCurve, TableError> {
-        // The function over a radian of a turn, or as much of an extent, is of the kind of its half slope.
+    ) -> Result<IntegratedCurve> {
+        // The function over a radian of a revolution, or that part of the domain, is of the kind of its half slope.
         let per_revolution = TAU / self.grid.length;
         let scale = |largest: &[f64]| {
             let weighted = [largest[0], largest[1] / per_revolution];
@@ -91,21 +91,11 @@ impl TableBuilder {
             vec![weighted[0], slope * per_revolution]
         };
         let mut values = |q: &[f64]| {
-            Ok(sampler
-                .sample_many(q)?
-                .into_iter()
-                .map(|at| at.to_vec())
-                .collect())
+            let rows = sampler.sample_many(q)?.into_iter();
+            Ok(rows.map(|at| at.to_vec()).collect())
         };
         let sizing = self.size(&quantities, &scale, &mut values)?;
-        let made = bound::build_to_accuracy::<dyn SlopeSampler, IntegratedCurve>(
-            self.grid,
-            &quantities,
-            &sizing,
-            self.accuracy,
-            sampler,
-        )?;
-        Ok(self.record_bounds(&quantities, &sizing, made))
+        self.build(&quantities, &sizing, sampler)
     }
 
     /// Columns side by side; `same_kind` compares the kinds of two quantities.
@@ -117,7 +107,7 @@ impl TableBuilder {
         quantities: &[TableQuantity],
         same_kind: &dyn Fn(TableQuantity, TableQuantity) -> bool,
         sampler: &mut ColumnSampler<'_>,
-    ) -> Result<PiecewiseColumns, TableError> {
+    ) -> Result<PiecewiseColumns> {
         if quantities.is_empty() {
             return Ok(PiecewiseColumns::empty(self.grid));
         }
@@ -133,14 +123,7 @@ impl TableBuilder {
             q.iter().map(&mut row).collect()
         };
         let sizing = self.size(quantities, &scale, &mut values)?;
-        let made = bound::build_to_accuracy::<ColumnSampler<'_>, PiecewiseColumns>(
-            self.grid,
-            quantities,
-            &sizing,
-            self.accuracy,
-            sampler,
-        )?;
-        Ok(self.record_bounds(quantities, &sizing, made))
+        self.build(quantities, &sizing, sampler)
     }
 
     /// The error bounds, in the order in which the parts were built.
@@ -153,33 +136,35 @@ impl TableBuilder {
         quantities: &[TableQuantity],
         scale: &dyn Fn(&[f64]) -> Vec<f64>,
         values: &mut RowSampler<'_>,
-    ) -> Result<Sizing, TableError> {
+    ) -> Result<Sizing> {
         if self.grid.revolutions > 0 {
             require_periodic(self.grid, quantities, scale, values)?;
         }
         sizing::estimate_sizing(self.grid, quantities.len(), self.accuracy, scale, values)
     }
 
-    /// Records the error bounds of a part.
-    fn record_bounds<P>(
+    /// Builds a part and records its error bounds.
+    fn build<S: ?Sized, P: Piecewise<S>>(
         &mut self,
         quantities: &[TableQuantity],
         sizing: &Sizing,
-        (piecewise, errors): (P, Vec<f64>),
-    ) -> P {
-        let known = quantities.iter().zip(&sizing.scales).zip(errors);
-        self.bounds
-            .extend(known.map(|((&quantity, &scale), error)| Bound {
-                quantity,
-                scale,
-                error,
-            }));
-        piecewise
+        sampler: &mut S,
+    ) -> Result<P> {
+        let (part, errors) =
+            bound::build_to_accuracy(self.grid, quantities, sizing, self.accuracy, sampler)?;
+        let scaled = quantities.iter().zip(&sizing.scales).zip(errors);
+        let bounds = scaled.map(|((&quantity, &scale), error)| Bound {
+            quantity,
+            scale,
+            error,
+        });
+        self.bounds.extend(bounds);
+        Ok(part)
     }
 }
 
 /// The domain as a grid of one cell.
-fn domain_grid(range: Range, domain: TableDomain) -> Result<Grid, TableError> {
+fn domain_grid(range: Range, domain: TableDomain) -> Result<Grid> {
     let (from, to) = match (domain, range.period(), range.limits()) {
         (TableDomain::Full, Some(period), _) => {
             let revolutions = (period / TAU).round() as u32;
@@ -207,7 +192,7 @@ fn require_periodic(
     quantities: &[TableQuantity],
     scale: &dyn Fn(&[f64]) -> Vec<f64>,
     values: &mut RowSampler<'_>,
-) -> Result<(), TableError> {
+) -> Result<()> {
     let here = PERIODICITY_POINTS.map(|part| grid.from + part * grid.length);
     let later = here.map(|q| q + grid.length);
     let (here, later) = (values(&here)?, values(&later)?);
@@ -215,17 +200,13 @@ fn require_periodic(
         let pairs = here.iter().zip(&later);
         pairs.fold(0.0_f64, |max, (here, later)| max.max(of(here[k], later[k])))
     };
-    let largest: Vec<f64> = (0..quantities.len())
-        .map(|k| max(k, &|here, _| here.abs()))
-        .collect();
+    let all = 0..quantities.len();
+    let largest: Vec<f64> = all.clone().map(|k| max(k, &|here, _| here.abs())).collect();
     let difference = |k: usize| max(k, &|here, later| (here - later).abs());
     let scales = scale(&largest);
-    let aperiodic =
-        (0..quantities.len()).find(|&k| difference(k) > PERIODICITY_TOLERANCE * scales[k]);
-    match aperiodic {
-        Some(k) => Err(TableError::NotPeriodic {
-            what: quantities[k],
-        }),
+    let mut aperiodic = all.filter(|&k| difference(k) > PERIODICITY_TOLERANCE * scales[k]);
+    match aperiodic.next().map(|k| quantities[k]) {
+        Some(what) => Err(TableError::NotPeriodic { what }),
         None => Ok(()),
     }
 }

@@ -1,6 +1,6 @@
-//! Tables as files: text, one thing a line, described in docs/table-format.md. Numbers are written with as
-//! many digits as it takes to read the same bits again. Of m only its values in the middles of the cells
-//! are kept: the rest is made from ½m′ as when the table was new.
+//! Tables as text files, described in docs/table-format.md. Numbers are written with as many digits as it takes to
+//! read the same bits again. Of m only its values in the middles of the cells are stored: the rest is integrated
+//! from ½m′, as when the table was built.
 
 use super::bound::MAX_CELLS;
 use super::piecewise::{Grid, IntegratedCurve, PiecewiseColumns, TERMS};
@@ -10,17 +10,19 @@ use std::fmt::Write as _;
 use std::str::{FromStr, Lines};
 use thiserror::Error;
 
+type Result<T> = std::result::Result<T, FileError>;
+
 /// First word of every file.
 const MAGIC: &str = "dwell-table";
 /// The only version so far.
 const VERSION: u32 = 1;
-/// Most turns after which a mechanism comes back.
+/// Highest number of revolutions after which a mechanism repeats itself.
 const MAX_REVOLUTIONS: u32 = 8;
 
-/// What a table is of: names that a model does not know. None may hold a line break.
+/// The names in a table, which a model does not know. None may contain a line break.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Labels {
-    /// Tells the scene's text from every other: its hash.
+    /// Hash of the scene's text.
     pub scene: String,
     /// The coordinate.
     pub coordinate: String,
@@ -41,10 +43,10 @@ pub enum FileError {
         /// Loads of the table.
         loads: usize,
     },
-    /// Not a table at all.
+    /// The text is no table.
     #[error("this is no table: its first line is not `dwell-table` and a version")]
     NotATable,
-    /// A version that is not known here.
+    /// An unknown version.
     #[error("a table of version {found}: version {VERSION} is known")]
     Version {
         /// What the file says.
@@ -71,7 +73,7 @@ impl TabulatedModel {
     ///
     /// # Errors
     /// [`FileError::Labels`] for names that do not fit.
-    pub fn to_text(&self, labels: &Labels) -> Result<String, FileError> {
+    pub fn to_text(&self, labels: &Labels) -> Result<String> {
         let [reactions, loads] = self.counts;
         let lists = [&labels.reactions, &labels.loads];
         let mut names = lists.into_iter().flatten();
@@ -90,11 +92,10 @@ impl TabulatedModel {
             ..
         } = self.inertia.grid;
         let unit = if self.is_angle { "rad" } else { "m" };
-        let [inertia, forces, pushes] = self.cells();
-        let mut text = format!(
-            "{MAGIC} {VERSION}\nscene {}\ncoordinate {unit} {}\n",
-            labels.scene, labels.coordinate
-        );
+        let cells = self.cells().map(|n| n as f64);
+        let (scene, coordinate) = (&labels.scene, &labels.coordinate);
+        let mut text =
+            format!("{MAGIC} {VERSION}\nscene {scene}\ncoordinate {unit} {coordinate}\n");
         for (keyword, list) in ["reaction", "load"].into_iter().zip(lists) {
             write_line(&mut text, &format!("{keyword}s"), [list.len() as f64]);
             for name in list {
@@ -104,11 +105,7 @@ impl TabulatedModel {
         write_line(&mut text, "accuracy", [self.accuracy]);
         write_line(&mut text, "extent", [from, length]);
         write_line(&mut text, "turns", [f64::from(revolutions)]);
-        write_line(
-            &mut text,
-            "cells",
-            [inertia, forces, pushes].map(|n| n as f64),
-        );
+        write_line(&mut text, "cells", cells);
         write_line(&mut text, "scales", self.bounds.iter().map(|b| b.scale));
         write_line(&mut text, "errors", self.bounds.iter().map(|b| b.error));
         for (m, slope) in self.inertia.cell_data() {
@@ -124,11 +121,11 @@ impl TabulatedModel {
         Ok(text)
     }
 
-    /// The table that a text holds, and what it is of.
+    /// The table in a text, with its names.
     ///
     /// # Errors
-    /// [`FileError`] for anything that is not a whole table as it was written.
-    pub fn from_text(text: &str) -> Result<(Self, Labels), FileError> {
+    /// [`FileError`] where it is not a complete, unaltered table.
+    pub fn from_text(text: &str) -> Result<(Self, Labels)> {
         let first = text.lines().next().unwrap_or_default();
         let version = first.strip_prefix(MAGIC).and_then(|v| v.strip_prefix(' '));
         let version = version.ok_or(FileError::NotATable)?;
@@ -152,7 +149,7 @@ impl TabulatedModel {
     }
 }
 
-/// A line of a word and numbers.
+/// Writes a keyword and numbers as a line.
 fn write_line(text: &mut String, keyword: &str, numbers: impl IntoIterator<Item = f64>) {
     text.push_str(keyword);
     for number in numbers {
@@ -170,14 +167,14 @@ fn fnv1a_64(bytes: &[u8]) -> u64 {
     })
 }
 
-/// Takes a text line by line.
+/// Reads a text line by line.
 struct Reader<'a> {
     lines: Lines<'a>,
     line: usize,
 }
 
 impl<'a> Reader<'a> {
-    fn table(mut self) -> Result<(TabulatedModel, Labels), FileError> {
+    fn table(mut self) -> Result<(TabulatedModel, Labels)> {
         self.after_keyword(MAGIC)?;
         let scene = self.after_keyword("scene")?.to_owned();
         let coordinate = self.after_keyword("coordinate")?;
@@ -185,22 +182,22 @@ impl<'a> Reader<'a> {
             .split_once(' ')
             .filter(|(unit, _)| ["rad", "m"].contains(unit))
             .ok_or_else(|| self.line_error("rad or m, and a name"))?;
-        let (is_angle, coordinate) = (unit == "rad", coordinate.to_owned());
-        let reactions = self.names("reactions", "reaction")?;
-        let loads = self.names("loads", "load")?;
+        let labels = Labels {
+            scene,
+            coordinate: coordinate.to_owned(),
+            reactions: self.names("reactions", "reaction")?,
+            loads: self.names("loads", "load")?,
+        };
         let accuracy = self.numbers("accuracy", 1)?[0];
         let domain = self.numbers("extent", 2)?;
         let revolutions = self.count("turns", MAX_REVOLUTIONS as usize)? as u32;
-        let one = self.grid(&domain, revolutions)?;
+        let grid = self.grid(&domain, revolutions)?;
         let cells = self.counts("cells", 3, MAX_CELLS)?;
-        let counts = [reactions.len(), loads.len()];
+        let counts = [labels.reactions.len(), labels.loads.len()];
         let widths = [2 * counts[0], counts[1] * (1 + counts[0])];
         let none = [false, widths[0] == 0, widths[1] == 0];
-        if cells
-            .iter()
-            .zip(none)
-            .any(|(&cells, none)| (cells == 0) != none)
-        {
+        let mut pairs = cells.iter().zip(none);
+        if pairs.any(|(&cells, none)| (cells == 0) != none) {
             return Err(self.line_error("cells of whatever there is"));
         }
         let (both, ab, wc) = table_quantities(counts);
@@ -222,13 +219,10 @@ impl<'a> Reader<'a> {
         }
         let table = TabulatedModel {
             accuracy,
-            is_angle,
-            inertia: IntegratedCurve::from_cell_data(
-                one.with_cells(cells[0]),
-                cell_data.into_iter(),
-            ),
-            reactions: self.columns("ab", one.with_cells(cells[1].max(1)), widths[0])?,
-            loads: self.columns("wc", one.with_cells(cells[2].max(1)), widths[1])?,
+            is_angle: unit == "rad",
+            inertia: IntegratedCurve::from_cell_data(grid.with_cells(cells[0]), cell_data),
+            reactions: self.columns("ab", grid.with_cells(cells[1].max(1)), widths[0])?,
+            loads: self.columns("wc", grid.with_cells(cells[2].max(1)), widths[1])?,
             counts,
             bounds: bounds.collect(),
         };
@@ -236,24 +230,18 @@ impl<'a> Reader<'a> {
             self.line += 1;
             return Err(self.line_error("nothing after the last cell but `check`"));
         }
-        let labels = Labels {
-            scene,
-            coordinate,
-            reactions,
-            loads,
-        };
         Ok((table, labels))
     }
 
     /// The extent as a grid of one cell.
-    fn grid(&self, domain: &[f64], revolutions: u32) -> Result<Grid, FileError> {
+    fn grid(&self, domain: &[f64], revolutions: u32) -> Result<Grid> {
         let (from, length) = (domain[0], domain[1]);
         let whole = revolutions == 0 || (from == 0.0 && length == TAU * f64::from(revolutions));
         if whole && length > 0.0 && (from + length).is_finite() {
             Ok(Grid::new(from, length, revolutions, 1))
         } else {
-            Err(self
-                .line_error("an extent that is not empty, and of whole turns if it repeats itself"))
+            let expected = "an extent that is not empty, and of whole turns if it repeats itself";
+            Err(self.line_error(expected))
         }
     }
 
@@ -262,7 +250,7 @@ impl<'a> Reader<'a> {
         keyword: &'static str,
         grid: Grid,
         width: usize,
-    ) -> Result<PiecewiseColumns, FileError> {
+    ) -> Result<PiecewiseColumns> {
         let mut terms = Vec::new();
         if width > 0 {
             for _ in 0..grid.cells {
@@ -279,8 +267,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What follows the word that the next line begins with.
-    fn after_keyword(&mut self, keyword: &'static str) -> Result<&'a str, FileError> {
+    /// The rest of the next line after its keyword.
+    fn after_keyword(&mut self, keyword: &'static str) -> Result<&'a str> {
         self.line += 1;
         let line = self.lines.next().unwrap_or_default();
         let rest = line.strip_prefix(keyword).and_then(|l| l.strip_prefix(' '));
@@ -293,64 +281,38 @@ impl<'a> Reader<'a> {
         count: usize,
         fits: impl Fn(&T) -> bool,
         expected: &'static str,
-    ) -> Result<Vec<T>, FileError> {
-        let rest = match count {
+    ) -> Result<Vec<T>> {
+        if count == 0 {
             // Without a number there is no blank either.
-            0 => {
-                self.line += 1;
-                let empty = self.lines.next() == Some(keyword);
-                return if empty {
-                    Ok(Vec::new())
-                } else {
-                    Err(self.line_error(keyword))
-                };
-            }
-            _ => self.after_keyword(keyword)?,
-        };
-        let numbers: Option<Vec<T>> = rest
-            .split(' ')
-            .map(|number| number.parse().ok().filter(&fits))
-            .collect();
-        numbers
-            .filter(|numbers| numbers.len() == count)
-            .ok_or_else(|| self.line_error(expected))
+            self.line += 1;
+            let empty = self.lines.next() == Some(keyword);
+            return empty.then(Vec::new).ok_or_else(|| self.line_error(keyword));
+        }
+        let words = self.after_keyword(keyword)?.split(' ');
+        let numbers: Option<Vec<T>> = words.map(|n| n.parse().ok().filter(&fits)).collect();
+        let complete = numbers.filter(|numbers| numbers.len() == count);
+        complete.ok_or_else(|| self.line_error(expected))
     }
 
-    fn numbers(&mut self, keyword: &'static str, count: usize) -> Result<Vec<f64>, FileError> {
+    fn numbers(&mut self, keyword: &'static str, count: usize) -> Result<Vec<f64>> {
         let expected = "finite numbers, as many as the counts say";
         self.list(keyword, count, |n: &f64| n.is_finite(), expected)
     }
 
-    fn counts(
-        &mut self,
-        keyword: &'static str,
-        count: usize,
-        max: usize,
-    ) -> Result<Vec<usize>, FileError> {
+    fn counts(&mut self, keyword: &'static str, count: usize, max: usize) -> Result<Vec<usize>> {
         let whole = |n: &f64| n.fract() == 0.0 && (0.0..=max as f64).contains(n);
-        let found = self.list(
-            keyword,
-            count,
-            whole,
-            "whole numbers that are not too large",
-        )?;
+        let expected = "whole numbers that are not too large";
+        let found = self.list(keyword, count, whole, expected)?;
         Ok(found.into_iter().map(|n| n as usize).collect())
     }
 
-    fn count(&mut self, keyword: &'static str, max: usize) -> Result<usize, FileError> {
+    fn count(&mut self, keyword: &'static str, max: usize) -> Result<usize> {
         Ok(self.counts(keyword, 1, max)?[0])
     }
 
-    fn names(
-        &mut self,
-        keyword: &'static str,
-        each: &'static str,
-    ) -> Result<Vec<String>, FileError> {
+    fn names(&mut self, keyword: &'static str, each: &'static str) -> Result<Vec<String>> {
         let count = self.count(keyword, u32::MAX as usize)?;
-        let mut names = Vec::new();
-        for _ in 0..count {
-            names.push(self.after_keyword(each)?.to_owned());
-        }
-        Ok(names)
+        let names = (0..count).map(|_| self.after_keyword(each).map(str::to_owned));
+        names.collect()
     }
 }

@@ -1,34 +1,34 @@
 //! Pieces of a table: equal cells, each with one polynomial about its middle. Finding the cell and
 //! evaluating it cost the same everywhere.
 //!
-//! A piece is Hermite's polynomial through values and slopes at [`NODES`] places of its cell, the ends
-//! among them, so that neighbours meet in value and slope. Of m only ½m′ is interpolated; m is its
-//! integral, and continuous, and so it is with V and ½V′. What a motion gains on the table where it leaves
-//! a cell it has therefore lost where it came in: energy cannot drift.
+//! A piece is Hermite's polynomial through values and slopes at [`NODES`] points of its cell, the ends
+//! included, so that neighbours agree in value and slope. Of m only ½m′ is interpolated; m is its
+//! continuous integral, and so it is with V and ½V′. Therefore m and V are single-valued functions of the
+//! coordinate, and the energy of a motion on the table cannot drift.
 
-use super::TableError;
+use super::Result;
 use super::build::{ColumnSampler, SlopeSampler};
 use crate::reduced::Inertia;
 use dwell_geometry::PositionError;
 use dwell_numerics::{Dual, Scalar};
 use std::f64::consts::TAU;
 
-/// Places of a cell where a function and its slope are taken from the exact model.
+/// Points of a cell at which a function and its slope are taken from the exact model.
 pub(super) const NODES: usize = 4;
 /// Coefficients of a piece: its degree is one less.
 pub(super) const TERMS: usize = 2 * NODES;
-/// The zeros of (1 − x²) P₃′(x), Gauss's and Lobatto's places: between them the error is nearly even.
+/// The zeros of (1 − x²) P₃′(x), the Gauss–Lobatto points: between them the error is nearly uniform.
 const LOBATTO_NODES: [f64; NODES] = [-1.0, -0.447_213_595_499_957_9, 0.447_213_595_499_957_9, 1.0];
-/// Near the middles between places, where a piece is furthest off.
+/// Near the middles between these points, where the error of a piece is largest.
 pub(super) const BETWEEN_NODES: [f64; NODES - 1] = [-0.76, 0.0, 0.76];
-/// Turns that can be taken off without a rounding: 2π is split after 30 bits, and a machine may take 8 turns.
+/// Revolutions that can be subtracted without a rounding: 2π is split after 30 bits, and a period may have 8 revolutions.
 const MAX_REVOLUTIONS: f64 = 1_048_576.0;
 /// 2π to 30 bits, and the rest of it.
 const TAU_COARSE: f64 = 6.283_185_306_936_502_5;
 const TAU_FINE: f64 = 2.430_840_202_602_477e-10;
 
-/// Added to a number below 2^31 it leaves no room for a fraction, and the whole part in the last bits: a
-/// rounding to the nearest without a call.
+/// Added to a number below 2³¹, it leaves no room for a fraction, and the integer in the last bits: rounds to
+/// the nearest integer without a function call.
 const ROUND_TO_NEAREST: f64 = 6_755_399_441_055_744.0;
 
 /// Splits a count of cells, at least zero, into a cell and where in it from −1 to 1.
@@ -42,13 +42,13 @@ fn cell_and_offset(part: f64) -> (usize, f64) {
     )
 }
 
-/// Equal cells over an extent.
+/// Equal cells over a domain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grid {
-    /// Where it begins, rad or m; zero of a full turn.
+    /// Its lower end, rad or m; zero of a full revolution.
     pub(super) from: f64,
     pub(super) length: f64,
-    /// Turns after which everything comes back; zero if that never happens.
+    /// Revolutions after which everything repeats itself; zero if it never does.
     pub(super) revolutions: u32,
     pub(super) cells: usize,
     per_period: f64,
@@ -57,8 +57,8 @@ pub(super) struct Grid {
     per_cell: f64,
     /// The largest number below that of the cells.
     last: f64,
-    /// Parts of a cell by which a rounding may leave the extent: of a coordinate of many turns, those of
-    /// the turns it has.
+    /// Parts of a cell by which rounding may leave the domain; more for a coordinate of many
+    /// revolutions.
     rounding_margin: f64,
 }
 
@@ -83,7 +83,7 @@ impl Grid {
         }
     }
 
-    /// The same extent in other cells.
+    /// The same domain with another number of cells.
     pub(super) fn with_cells(self, cells: usize) -> Self {
         Self::new(self.from, self.length, self.revolutions, cells)
     }
@@ -93,7 +93,7 @@ impl Grid {
         0.5 * self.length / self.cells as f64
     }
 
-    /// The coordinate at `x` from −1 to 1 of a cell; both cells at an end find the same number.
+    /// The coordinate at `x` from −1 to 1 of a cell; neighbours have the same number at their common end.
     pub(super) fn coordinate(&self, cell: usize, x: f64) -> f64 {
         let part = cell as f64 + 0.5 * (x + 1.0);
         let part = if self.revolutions > 0 && part >= self.cells as f64 {
@@ -104,7 +104,7 @@ impl Grid {
         self.from + self.length * (part / self.cells as f64)
     }
 
-    /// The cell of a coordinate, and where in it from −1 to 1.
+    /// The cell of a coordinate, and the position in it from −1 to 1.
     #[inline]
     pub(super) fn locate(&self, q: f64) -> Result<(usize, f64), PositionError> {
         let part = (q - self.from) * self.per_cell;
@@ -119,12 +119,12 @@ impl Grid {
     #[inline]
     fn locate_scalar<T: Scalar>(&self, q: T) -> Result<(usize, T), PositionError> {
         let (cell, x) = self.locate(q.value())?;
-        // The place in a cell as a function of q: its slope is all that is left of it.
+        // The position in a cell is linear in q: only its slope remains.
         let x = q.compose(&[x, 2.0 * self.per_cell, 0.0, 0.0]);
         Ok((cell, x))
     }
 
-    /// The same for a coordinate that lies turns away, or at the very end, or nowhere.
+    /// The same for a coordinate outside the domain by whole periods or rounding; else an error.
     #[inline]
     fn locate_wrapped(&self, q: f64) -> Result<(usize, f64), PositionError> {
         let periods = (q * self.per_period - 0.5 + ROUND_TO_NEAREST) - ROUND_TO_NEAREST;
@@ -135,7 +135,7 @@ impl Grid {
         if !(inside && periods.abs() < MAX_REVOLUTIONS) {
             return Err(self.out_of_range(q));
         }
-        // A rounding beyond an end is still in the cell at the end.
+        // A coordinate beyond an end by rounding belongs to the last cell.
         let (cell, x) = cell_and_offset(part.clamp(0.0, self.last));
         Ok((cell, x + 2.0 * (part - part.clamp(0.0, self.last))))
     }
@@ -155,8 +155,8 @@ impl Grid {
 }
 
 /// The coefficients, of rising powers of x, of Hermite's polynomial through `[value, slope]` (by x) at
-/// [`LOBATTO_NODES`]. Newton's divided differences: what neighbours have in common is taken off first, so
-/// rounding is that of the differences.
+/// [`LOBATTO_NODES`], by Newton's divided differences: common parts of neighbours are subtracted first, so that
+/// rounding is relative to the differences.
 fn hermite(data: &[[f64; 2]; NODES]) -> [f64; TERMS] {
     let node = |i: usize| LOBATTO_NODES[i / 2];
     let mut difference = [0.0; TERMS];
@@ -186,22 +186,21 @@ fn hermite(data: &[[f64; 2]; NODES]) -> [f64; TERMS] {
 /// Coefficients of a function and half its slope side by side, of rising powers.
 type CellCoefficients = [[f64; 2]; TERMS + 1];
 
-/// A function of the coordinate put together from half its slope: m from ½m′, V from ½V′.
+/// A function of the coordinate integrated from half its slope: m from ½m′, V from ½V′.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IntegratedCurve {
     pub(super) grid: Grid,
     cells: Vec<CellCoefficients>,
 }
 
-/// The function at the middle of a cell and the coefficients of half its slope: all that a cell is made
-/// from.
+/// The function at the middle of a cell and the coefficients of half its slope, which define the cell.
 pub(super) type CellData = (f64, [f64; TERMS]);
 
 impl IntegratedCurve {
-    pub(super) fn new(grid: Grid, sampler: &mut dyn SlopeSampler) -> Result<Self, TableError> {
+    pub(super) fn new(grid: Grid, sampler: &mut dyn SlopeSampler) -> Result<Self> {
         let half = grid.half();
         let mut slopes: Vec<[f64; TERMS]> = Vec::with_capacity(grid.cells);
-        // By cell: the function at all places but the first, which the cell before has.
+        // By cell: the function at its points; the first belongs to the cell before.
         let mut known = Vec::with_capacity(grid.cells);
         let first = sampler.sample(grid.coordinate(0, LOBATTO_NODES[0]))?;
         let mut left = first;
@@ -209,7 +208,7 @@ impl IntegratedCurve {
             let mut at = [left; NODES];
             for (at, &x) in at.iter_mut().zip(&LOBATTO_NODES).skip(1) {
                 let q = grid.coordinate(cell, x);
-                // A turn ends where it began.
+                // A period ends where it began.
                 let again = grid.revolutions > 0 && q == grid.from;
                 *at = if again { first } else { sampler.sample(q)? };
             }
@@ -218,16 +217,14 @@ impl IntegratedCurve {
             slopes.push(hermite(&at.map(|at| [at.half_dm, at.half_ddm * half])));
         }
         if grid.revolutions > 0 {
-            // What a whole turn would gain is truncation and rounding: its mean is taken out.
-            let gain: f64 = slopes
-                .iter()
-                .map(|g| integrate_slope(g, half, [-1.0, 1.0]))
-                .sum();
+            // The gain over a period is truncation and rounding: its mean is subtracted.
+            let gains = slopes.iter().map(|g| integrate_slope(g, half, [-1.0, 1.0]));
+            let gain: f64 = gains.sum();
             for slope in &mut slopes {
                 slope[0] -= gain / (2.0 * grid.length);
             }
         }
-        // From middle to middle, so that the ends meet; then all of it to the mean of what is known.
+        // From middle to middle, so that the ends agree; then shifted to the mean of the exact values.
         let mut middle = Vec::with_capacity(grid.cells);
         let (mut m, mut shift) = (0.0, 0.0);
         for (cell, slope) in slopes.iter().enumerate() {
@@ -241,15 +238,16 @@ impl IntegratedCurve {
             }
         }
         let shift = shift / ((NODES - 1) * grid.cells) as f64;
-        let cell_data = middle
-            .iter()
-            .zip(&slopes)
-            .map(|(m, slope)| (m + shift, *slope));
+        let cells = middle.iter().zip(&slopes);
+        let cell_data = cells.map(|(m, slope)| (m + shift, *slope));
         Ok(Self::from_cell_data(grid, cell_data))
     }
 
     /// The cells from m in their middles and ½m′.
-    pub(super) fn from_cell_data(grid: Grid, cell_data: impl Iterator<Item = CellData>) -> Self {
+    pub(super) fn from_cell_data(
+        grid: Grid,
+        cell_data: impl IntoIterator<Item = CellData>,
+    ) -> Self {
         let half = grid.half();
         let cell = |(m, slope): CellData| {
             let mut cell = [[0.0; 2]; TERMS + 1];
@@ -262,7 +260,7 @@ impl IntegratedCurve {
         };
         Self {
             grid,
-            cells: cell_data.map(cell).collect(),
+            cells: cell_data.into_iter().map(cell).collect(),
         }
     }
 
@@ -315,7 +313,7 @@ impl IntegratedCurve {
     }
 }
 
-/// What m gains between two places of a cell of which ½m′ is known.
+/// The change of m between two positions in a cell, from ½m′.
 fn integrate_slope(slope: &[f64; TERMS], half: f64, [from, to]: [f64; 2]) -> f64 {
     let integral = |x: f64| {
         let terms = slope.iter().enumerate().rev();
@@ -324,7 +322,7 @@ fn integrate_slope(slope: &[f64; TERMS], half: f64, [from, to]: [f64; 2]) -> f64
     2.0 * half * (integral(to) - integral(from))
 }
 
-/// Both polynomials at once, in pairs of terms (Estrin): the pairs do not wait for each other.
+/// Both polynomials at once, in pairs of terms (Estrin's scheme), which are independent of each other.
 #[inline]
 fn eval_cell<T: Scalar>(c: &CellCoefficients, x: T) -> [T; 2] {
     let lift = |[a, b]: [f64; 2]| [T::from_f64(a), T::from_f64(b)];
@@ -354,11 +352,7 @@ impl PiecewiseColumns {
         }
     }
 
-    pub(super) fn new(
-        grid: Grid,
-        width: usize,
-        sampler: &mut ColumnSampler<'_>,
-    ) -> Result<Self, TableError> {
+    pub(super) fn new(grid: Grid, width: usize, sampler: &mut ColumnSampler<'_>) -> Result<Self> {
         let mut terms = Vec::with_capacity(grid.cells * TERMS * width);
         let half = grid.half();
         let mut nodes = vec![vec![Dual::default(); width]; NODES];

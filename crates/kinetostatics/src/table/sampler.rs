@@ -1,7 +1,7 @@
 //! Samplers of the exact model, with exact derivatives.
 
 use super::build::SlopeSampler;
-use super::{TableError, TableQuantity};
+use super::{Result, TableQuantity};
 use crate::model::Workspace;
 use crate::pass::InverseDynamics;
 use crate::reduced::{Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
@@ -26,11 +26,11 @@ impl ExactModel {
 }
 
 impl SlopeSampler for InertiaSampler<'_> {
-    fn sample(&mut self, q: f64) -> Result<Inertia, TableError> {
+    fn sample(&mut self, q: f64) -> Result<Inertia> {
         Ok(self.exact.inertia_derivatives(q, &mut self.workspace)?)
     }
 
-    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>, TableError> {
+    fn sample_many(&mut self, q: &[f64]) -> Result<Vec<[f64; 2]>> {
         self.exact.inertia_batch(q, &mut self.batch);
         if let Some(&(_, error)) = self.batch.errors.first() {
             return Err(error.into());
@@ -68,9 +68,10 @@ impl<'a> ModelSampler<'a> {
         quantities: &[TableQuantity],
         q: f64,
         out: &mut [Dual],
-    ) -> Result<(), TableError> {
+    ) -> Result<()> {
         let model = self.exact.model();
         let q = Dual::variable(q);
+        let mut state = None;
         match quantities.first() {
             None => return Ok(()),
             Some(TableQuantity::A { .. }) => {
@@ -78,15 +79,16 @@ impl<'a> ModelSampler<'a> {
             }
             Some(_) => {
                 let unit = Dual::from_f64(1.0);
-                model.set_kinematic_state(&[q], &[unit], &mut self.workspace)?;
+                state = Some(model.kinematic_state(&[q], &[unit], &mut self.workspace)?);
             }
         }
         let mut evaluated = None;
         for (out, quantity) in out.iter_mut().zip(quantities) {
             if let TableQuantity::W { load } | TableQuantity::C { load, .. } = *quantity
                 && evaluated != Some(load)
+                && let Some(state) = &mut state
             {
-                model.unit_load_response(load, &mut self.workspace, &mut self.result)?;
+                state.unit_load_response(load, &mut self.result)?;
                 evaluated = Some(load);
             }
             *out = match *quantity {
@@ -117,15 +119,12 @@ pub(super) fn same_kind(exact: &ExactModel, one: TableQuantity, other: TableQuan
             unit(j) == unit(k)
         }
         (
+            TableQuantity::C { load, reaction: j },
             TableQuantity::C {
-                load: l,
-                reaction: j,
-            },
-            TableQuantity::C {
-                load: n,
+                load: other,
                 reaction: k,
             },
-        ) => l == n && unit(j) == unit(k),
+        ) => load == other && unit(j) == unit(k),
         (one, other) => one == other,
     }
 }

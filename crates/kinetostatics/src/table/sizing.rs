@@ -12,8 +12,8 @@
 //! (an ellipse about the extent with half axes (ρ ± 1/ρ)/2; Trefethen 2013, chapter 8), and a piece of p
 //! terms on a cell of half width h errs as (h/2σ)^p.
 
-use super::TableError;
 use super::piecewise::{Grid, TERMS};
+use super::{Result, TableError};
 use std::f64::consts::TAU;
 
 /// Samples of the first try and of the last, powers of two.
@@ -26,7 +26,7 @@ pub(super) const MIN_CELLS: usize = 4;
 const MIN_RELATIVE_SCALE: f64 = 1e-3;
 
 /// What a function of several values gives at many coordinates, one row each.
-pub(super) type RowSampler<'a> = dyn FnMut(&[f64]) -> Result<Vec<Vec<f64>>, TableError> + 'a;
+pub(super) type RowSampler<'a> = dyn FnMut(&[f64]) -> Result<Vec<Vec<f64>>> + 'a;
 
 /// What the values of a table are measured by, and how many cells their coefficients ask for.
 pub(super) struct Sizing {
@@ -42,7 +42,7 @@ pub(super) fn estimate_sizing(
     accuracy: f64,
     scale: &dyn Fn(&[f64]) -> Vec<f64>,
     values: &mut RowSampler<'_>,
-) -> Result<Sizing, TableError> {
+) -> Result<Sizing> {
     let mut samples: Vec<Vec<f64>> = Vec::new();
     loop {
         samples = refine_samples(grid, samples, values)?;
@@ -50,9 +50,7 @@ pub(super) fn estimate_sizing(
         let largest = |k: usize| samples.iter().fold(0.0_f64, |s, at| s.max(at[k].abs()));
         let scales = scale(&(0..width).map(largest).collect::<Vec<f64>>());
         let magnitudes = harmonic_magnitudes(&samples, &scales);
-        let last = magnitudes
-            .iter()
-            .rposition(|&magnitude| magnitude > accuracy);
+        let last = magnitudes.iter().rposition(|&m| m > accuracy);
         let harmonics = last.map_or(1, |k| k + 1);
         // The last quarter of what was sampled must be below: else it is folded into the rest.
         if 8 * harmonics <= 3 * points {
@@ -62,9 +60,8 @@ pub(super) fn estimate_sizing(
             });
         }
         if points >= MAX_SAMPLES {
-            let residual = magnitudes[3 * magnitudes.len() / 4..]
-                .iter()
-                .fold(0.0, |s: f64, x| s.max(*x));
+            let last_quarter = &magnitudes[3 * magnitudes.len() / 4..];
+            let residual = last_quarter.iter().fold(0.0, |s: f64, x| s.max(*x));
             return Err(TableError::NotSmooth { points, residual });
         }
     }
@@ -86,13 +83,9 @@ fn refine_samples(
     grid: Grid,
     known: Vec<Vec<f64>>,
     values: &mut RowSampler<'_>,
-) -> Result<Vec<Vec<f64>>, TableError> {
-    let count = if known.is_empty() {
-        MIN_SAMPLES
-    } else {
-        2 * known.len()
-    };
+) -> Result<Vec<Vec<f64>>> {
     let fresh = known.is_empty();
+    let count = if fresh { MIN_SAMPLES } else { 2 * known.len() };
     // Of an even function the second half is the first.
     let mirrored = |i: usize| grid.revolutions == 0 && 2 * i > count;
     let coordinate = |i: usize| {
@@ -108,11 +101,7 @@ fn refine_samples(
     let mut finer: Vec<Vec<f64>> = Vec::with_capacity(count);
     for i in 0..count {
         // Those that are known hold their mirrored ones.
-        let old = if !fresh && i % 2 == 0 {
-            known.next()
-        } else {
-            None
-        };
+        let old = (!fresh && i % 2 == 0).then(|| known.next()).flatten();
         let row = match old {
             Some(row) => Some(row),
             None if mirrored(i) => finer.get(count - i).cloned(),
@@ -126,10 +115,8 @@ fn refine_samples(
 /// By harmonic, the largest coefficient of all values, each as a part of its scale.
 fn harmonic_magnitudes(samples: &[Vec<f64>], scales: &[f64]) -> Vec<f64> {
     let n = samples.len();
-    let roots_of_unity: Vec<[f64; 2]> = (0..n / 2)
-        .map(|k| (-TAU * k as f64 / n as f64).sin_cos())
-        .map(|(sin, cos)| [cos, sin])
-        .collect();
+    let angles = (0..n / 2).map(|k| -TAU * k as f64 / n as f64);
+    let roots_of_unity: Vec<[f64; 2]> = angles.map(|a| [a.cos(), a.sin()]).collect();
     let mut magnitudes = vec![0.0_f64; n / 2];
     let (mut line, mut buffer) = (vec![[0.0; 2]; n], vec![[0.0; 2]; n]);
     for (k, &scale) in scales.iter().enumerate().filter(|(_, s)| **s > 0.0) {
@@ -152,10 +139,10 @@ fn fft(line: &mut [[f64; 2]], buffer: &mut [[f64; 2]], roots_of_unity: &[[f64; 2
     let mut stride = 1;
     let mut in_line = true;
     while stride < n {
-        let (from, to): (&[[f64; 2]], &mut [[f64; 2]]) = if in_line {
-            (line, buffer)
+        let (from, to) = if in_line {
+            (&*line, &mut *buffer)
         } else {
-            (buffer, line)
+            (&*buffer, &mut *line)
         };
         let groups = n / (2 * stride);
         for group in 0..groups {

@@ -2,40 +2,37 @@
 
 use crate::scenes::{Case, all};
 use dwell_geometry::{BodyId, Vec2};
-use dwell_kinetostatics::{AppliedWrench, ForceSource, FreeBodyForces, Wrench};
+use dwell_kinetostatics::{AppliedWrench, EvaluatedState, ForceSource, FreeBodyForces, Wrench};
 
 /// Visits every case in all its states, with what acts on its bodies there.
-fn each_state(mut check: impl FnMut(&Case, &FreeBodyForces, &[AppliedWrench])) {
-    for mut case in all() {
+fn each_state(check: impl Fn(&Case, &EvaluatedState<'_>, &FreeBodyForces, &[AppliedWrench])) {
+    for case in all() {
         let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
-        let mut wrenches = Vec::new();
+        let (mut memory, mut wrenches) = (case.memory(), Vec::new());
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.evaluate(t, &q, &q_dot, &q_ddot);
-            free_body_forces.wrenches(&case.model, &case.workspace, &case.result, &mut wrenches);
-            check(&case, &free_body_forces, &wrenches);
+            let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+            free_body_forces.wrenches(&state, &mut wrenches);
+            check(&case, &state, &free_body_forces, &wrenches);
         }
     }
 }
 
 #[test]
 fn power_is_balanced() {
-    for mut case in all() {
-        for (t, q, q_dot, q_ddot) in case.states() {
-            case.evaluate(t, &q, &q_dot, &q_ddot);
-            let power = case.model.power_balance(&case.workspace, &case.result);
-            assert!(power.scale > 0.1 && power.loads != 0.0);
-            let difference = power.residual().abs() / power.scale;
-            assert!(difference < 1e-13, "{}: {difference:e}", case.name);
-        }
-    }
+    each_state(|case, state, _, _| {
+        let power = state.power_balance();
+        assert!(power.scale > 0.1 && power.loads != 0.0);
+        let difference = power.residual().abs() / power.scale;
+        assert!(difference < 1e-13, "{}: {difference:e}", case.name);
+    });
 }
 
 /// Newton's and Euler's equations of every moving body, from what joints, actuators and loads do to
 /// it: force and moment about its root.
 #[test]
 fn every_body_is_balanced() {
-    each_state(|case, _, wrenches| {
-        let states = case.workspace.states();
+    each_state(|case, state, _, wrenches| {
+        let states = state.bodies();
         for b in 0..case.mechanism.bodies.len() {
             let id = BodyId(b);
             if b == case.mechanism.ground {
@@ -74,8 +71,8 @@ fn every_body_is_balanced() {
 /// Joints do no work; what they do to their two bodies is opposite.
 #[test]
 fn joints_are_ideal() {
-    each_state(|case, _, wrenches| {
-        let states = case.workspace.states();
+    each_state(|case, state, _, wrenches| {
+        let states = state.bodies();
         for j in 0..case.mechanism.joints.len() {
             let of_joint =
                 |a: &&AppliedWrench| a.source == ForceSource::Joint(dwell_geometry::JointId(j));
@@ -98,10 +95,10 @@ fn joints_are_ideal() {
 
 #[test]
 fn the_frame_feels_the_same_by_momentum_and_by_reactions() {
-    each_state(|case, free_body_forces, wrenches| {
-        let shaking = free_body_forces.shaking_force(&case.model, &case.workspace, wrenches);
+    each_state(|case, state, free_body_forces, wrenches| {
+        let shaking = free_body_forces.shaking_force(state, wrenches);
         let [one, two] = [shaking.from_momentum, shaking.from_reactions];
-        let states = case.workspace.states();
+        let states = state.bodies();
         let forces = wrenches.iter().map(|a| a.force.norm()).sum::<f64>();
         let moment = |a: &AppliedWrench| a.point(states).norm() * a.force.norm() + a.couple.abs();
         let moments = wrenches.iter().map(moment).sum::<f64>();

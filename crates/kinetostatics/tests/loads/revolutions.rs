@@ -55,13 +55,13 @@ fn drag_link(follower_angle: f64, loads: fn(&Mechanism) -> Vec<Load>) -> Case {
 }
 
 /// The couple on the follower and its counted angle, at rest.
-fn couple(case: &mut Case, q: &[f64]) -> [f64; 2] {
-    let rest = vec![0.0; q.len()];
-    case.evaluate(0.0, q, &rest, &rest);
+fn couple(case: &Case, q: &[f64]) -> [f64; 2] {
+    let (mut memory, rest) = (case.memory(), vec![0.0; q.len()]);
+    let state = case.evaluate(&mut memory, (0.0, q, &rest, &rest));
     let [ground, follower] = pair(&case.mechanism);
-    let wrenches = &case.workspace.loads().wrenches;
+    let wrenches = &state.loads().wrenches;
     let on_follower = wrenches.iter().find(|wrench| wrench.body == follower);
-    let angle = case.workspace.states().angle([ground, follower])[0];
+    let angle = state.bodies().angle([ground, follower])[0];
     [on_follower.expect("an act").couple, angle]
 }
 
@@ -69,19 +69,19 @@ fn couple(case: &mut Case, q: &[f64]) -> [f64; 2] {
 #[test]
 fn a_spring_winds_up_turn_by_turn() {
     for loads in [torsion, commanded] {
-        let mut case = drag_link(2.0, loads);
-        let [_, assembled] = couple(&mut case, &[2.0]);
+        let case = drag_link(2.0, loads);
+        let [_, assembled] = couple(&case, &[2.0]);
         for revolutions in [-2.0, -1.0, 1.0, 3.0] {
-            let [_, angle] = couple(&mut case, &[2.0 + TAU * revolutions]);
+            let [_, angle] = couple(&case, &[2.0 + TAU * revolutions]);
             // Rounding of angles up to 20 rad.
             assert!(
                 (angle - assembled - TAU * revolutions).abs() < 2e-14,
                 "{revolutions}"
             );
         }
-        let [mut before, mut last] = couple(&mut case, &[2.0]);
+        let [mut before, mut last] = couple(&case, &[2.0]);
         for k in 1..200 {
-            let [now, angle] = couple(&mut case, &[2.0 + 0.05 * f64::from(k)]);
+            let [now, angle] = couple(&case, &[2.0 + 0.05 * f64::from(k)]);
             // The follower turns by at most twice what the crank does.
             assert!((angle - last).abs() < 0.1, "{k}: {last} to {angle}");
             let wound = -STIFFNESS * (angle - last);
@@ -96,8 +96,8 @@ fn a_spring_winds_up_turn_by_turn() {
 #[test]
 fn a_spring_is_wound_as_the_rough_angle_says() {
     let mut about = [0.0, TAU, -TAU].map(|more| {
-        let mut case = drag_link(2.0 + more, torsion);
-        couple(&mut case, &[2.0])
+        let case = drag_link(2.0 + more, torsion);
+        couple(&case, &[2.0])
     });
     let [couple, angle] = about[0];
     assert!((angle - 2.0).abs() < PI && (couple + STIFFNESS * (angle - FREE)).abs() < 1e-14);
@@ -113,12 +113,11 @@ fn a_spring_is_wound_as_the_rough_angle_says() {
 /// By virtual work: the generalised force is the fall of ½ k (θ − free)² next to θ = π too.
 #[test]
 fn a_spring_gives_back_what_it_took_across_the_half_turn() {
-    let mut case = drag_link(2.0, torsion);
+    let case = drag_link(2.0, torsion);
+    let mut memory = case.memory();
     let mut energy = |q: f64| {
-        couple(&mut case, &[q]);
-        case.model
-            .potential_energy(0, &case.workspace)
-            .expect("it has one")
+        let state = case.evaluate(&mut memory, (0.0, &[q], &[0.0], &[0.0]));
+        state.potential_energy(0).expect("it has one")
     };
     let around: Vec<f64> = (0..=400)
         .map(|k| energy(2.0 + 0.01 * f64::from(k)))
@@ -128,12 +127,12 @@ fn a_spring_gives_back_what_it_took_across_the_half_turn() {
         let h = 0.01;
         let fall =
             (8.0 * (around[k - 1] - around[k + 1]) - (around[k - 2] - around[k + 2])) / (12.0 * h);
-        #[allow(clippy::cast_precision_loss, reason = "a position")]
-        let [_, angle] = couple(&mut case, &[2.0 + h * k as f64]);
+        let q = 2.0 + h * k as f64;
+        let [_, angle] = couple(&case, &[q]);
         crossed |= (angle - PI).abs() < 0.02;
         let mut force = [0.0];
-        case.model
-            .generalised_forces(&mut case.workspace, &mut force);
+        let mut state = case.evaluate(&mut memory, (0.0, &[q], &[0.0], &[0.0]));
+        state.generalised_forces(&mut force);
         // h⁴/30 times the fifth derivative of the energy; 1.4e-8 W is met.
         assert!((fall - force[0]).abs() < 3e-8, "{k}: {fall} {}", force[0]);
     }
@@ -149,12 +148,12 @@ fn turns_are_counted_with_several_actuators() {
         .replace("    [joints]\n", "    base.points.D = [0, 0]\n    [joints]\n    guide = { prismatic = [\"ground.D\", \"base.D\"], axis = [1, 0] }\n");
     let text =
         format!("{text}    x = {{ length = \"guide\" }}\n[assembly]\nphi = 2.0\nfollower = 2.0\n");
-    let mut fixed_pivot = drag_link(2.0, torsion);
-    let mut case = Case::parse(&text, torsion);
+    let fixed_pivot = drag_link(2.0, torsion);
+    let case = Case::parse(&text, torsion);
     let mut wound = false;
     for q in [2.0, 3.5, 5.0, 8.0, -3.0] {
-        let [one, _] = couple(&mut fixed_pivot, &[q]);
-        let [two, angle] = couple(&mut case, &[q, 0.0]);
+        let [one, _] = couple(&fixed_pivot, &[q]);
+        let [two, angle] = couple(&case, &[q, 0.0]);
         wound |= angle > PI;
         // Rounding of couples up to 40 N m.
         assert!((one - two).abs() < 4e-14, "{q}: {one} {two}");
@@ -175,11 +174,11 @@ fn an_angle_that_is_not_told_is_within_half_a_turn() {
     };
     // The follower points to 3.03 rad and the coupler to -2.02, 1.24 rad before it.
     for guess in ["follower = 3.0", "coupler = -2.0", "follower = 9.3"] {
-        let mut case = Case::parse(
+        let case = Case::parse(
             &format!("{DRAG_LINK}[assembly]\nphi = 2.0\n{guess}\n"),
             between,
         );
-        let [torque, _] = couple(&mut case, &[2.0]);
+        let [torque, _] = couple(&case, &[2.0]);
         assert!(
             (torque / STIFFNESS - 1.24).abs() < 0.01,
             "{guess}: {torque}"

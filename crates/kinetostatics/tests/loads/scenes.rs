@@ -3,7 +3,7 @@
 use crate::machines::{self, Machine};
 use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Vec2, vec2};
 use dwell_kinetostatics::{
-    InverseDynamics, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace,
+    EvaluatedState, InverseDynamics, Load, LoadKind, Magnitude, Mass, Model, Signal, Workspace,
 };
 use dwell_laws::{Expression, Law, Polynomial};
 use dwell_scene::Scene;
@@ -51,12 +51,12 @@ const OLDHAM: &str = r#"
     phi = { angle = ["ground", "input"] }
 "#;
 
+pub(crate) type Memory = (Workspace<f64>, InverseDynamics<f64>);
+
 pub(crate) struct Case {
     pub(crate) name: String,
     pub(crate) mechanism: Mechanism,
     pub(crate) model: Model,
-    pub(crate) workspace: Workspace<f64>,
-    pub(crate) result: InverseDynamics<f64>,
     pub(crate) masses: Vec<Mass>,
     /// How far states may lie from the start: 1 for an angle, less for a length.
     pub(crate) reach: f64,
@@ -91,8 +91,6 @@ impl Case {
             .expect("loads of the mechanism");
         Self {
             name: name.to_owned(),
-            workspace: model.workspace(),
-            result: model.result_buffer(),
             masses,
             // A length is driven over less than an angle.
             reach: if model.plan().is_angle(0) { 1.0 } else { 0.1 },
@@ -110,16 +108,32 @@ impl Case {
         body(&self.mechanism, name)
     }
 
+    pub(crate) fn memory(&self) -> Memory {
+        (self.model.workspace(), self.model.result_buffer())
+    }
+
     /// Evaluates at t, q, q̇, q̈.
-    pub(crate) fn evaluate(&mut self, t: f64, q: &[f64], q_dot: &[f64], q_ddot: &[f64]) {
-        self.model
-            .kinetostatics(t, q, q_dot, q_ddot, &mut self.workspace, &mut self.result)
-            .expect("a pose");
+    pub(crate) fn evaluate<'a>(
+        &'a self,
+        (workspace, result): &'a mut Memory,
+        (t, q, q_dot, q_ddot): (f64, &[f64], &[f64], &[f64]),
+    ) -> EvaluatedState<'a> {
+        let state = self
+            .model
+            .kinetostatics(t, q, q_dot, q_ddot, workspace, result);
+        state.expect("a pose")
+    }
+
+    /// The results at t, q, q̇, q̈.
+    pub(crate) fn result(&self, at: (f64, &[f64], &[f64], &[f64])) -> InverseDynamics<f64> {
+        let mut memory = self.memory();
+        self.evaluate(&mut memory, at);
+        memory.1
     }
 
     /// The reaction of this name, such as `A.x`.
-    pub(crate) fn reaction(&self, name: &str) -> f64 {
-        let mut all = self.model.reactions().iter().zip(&self.result.reactions);
+    pub(crate) fn reaction(&self, result: &InverseDynamics<f64>, name: &str) -> f64 {
+        let mut all = self.model.reactions().iter().zip(&result.reactions);
         let found = all.find(|(r, _)| self.mechanism.reaction_name(**r) == name);
         *found.expect("a reaction of that name").1
     }

@@ -2,7 +2,7 @@
 
 use crate::scenes::{Case, all, case, load};
 use dwell_geometry::{BodyId, Vec2, vec2};
-use dwell_kinetostatics::{AppliedWrench, Distribution, FreeBodyForces, LinkForces, LoadKind};
+use dwell_kinetostatics::{Distribution, EvaluatedState, FreeBodyForces, LinkForces, LoadKind};
 
 const G: f64 = 9.81;
 
@@ -23,15 +23,11 @@ const BAR: &str = r#"
     phi = { angle = ["ground", "bar"] }
 "#;
 
-fn link(
-    case: &Case,
-    wrenches: &mut Vec<AppliedWrench>,
-    body: BodyId,
-    points: [Vec2; 2],
-) -> LinkForces {
-    let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
-    free_body_forces.wrenches(&case.model, &case.workspace, &case.result, wrenches);
-    let found = free_body_forces.link_forces(&case.model, body, points, &case.workspace, wrenches);
+fn link(state: &EvaluatedState<'_>, body: BodyId, points: [Vec2; 2]) -> LinkForces {
+    let free_body_forces = FreeBodyForces::new(state.model()).expect("every reaction");
+    let mut wrenches = Vec::new();
+    free_body_forces.wrenches(state, &mut wrenches);
+    let found = free_body_forces.link_forces(state, body, points, &wrenches);
     found.expect("a link with a length")
 }
 
@@ -39,17 +35,13 @@ fn link(
 /// −∫ μ (σ − s)(α σ − g·n) dσ of bending.
 #[test]
 fn a_bar_turned_at_its_end_is_a_cantilever() {
-    let mut case = Case::parse(BAR, |_| vec![load("weight", gravity(), G)]);
+    let case = Case::parse(BAR, |_| vec![load("weight", gravity(), G)]);
     let (l, density) = (0.8, 3.0 / 0.8);
     let (q, w, a) = (0.7, 5.0, -30.0);
-    case.evaluate(0.0, &[q], &[w], &[a]);
-    let bar = case.body("bar");
-    let link = link(
-        &case,
-        &mut Vec::new(),
-        bar,
-        [vec2(0.1, 0.0), vec2(0.9, 0.0)],
-    );
+    let mut memory = case.memory();
+    let state = case.evaluate(&mut memory, (0.0, &[q], &[w], &[a]));
+    let ends = [vec2(0.1, 0.0), vec2(0.9, 0.0)];
+    let link = link(&state, case.body("bar"), ends);
     assert_eq!(link.distribution, Distribution::UniformBar);
     assert_eq!(link.length, l);
     let along = Vec2::from_angle(q);
@@ -71,24 +63,27 @@ fn a_bar_turned_at_its_end_is_a_cantilever() {
         );
     }
     // The whole couple of the actuator enters at the fixed end.
-    assert!((link.section_after(0.0).bending + case.result.tau[0]).abs() < 1e-13 * 20.0);
+    assert!(
+        (link.section_after(0.0).bending + state.inverse_dynamics().tau[0]).abs() < 1e-13 * 20.0
+    );
 }
 
 /// The coupler is a beam on two pins under its own inertia, which grows evenly along it from w₀ by w₁:
 /// bending w₀ s (l − s)/2 + w₁ s (l² − s²)/6.
 #[test]
 fn a_coupler_is_a_beam_on_two_pins() {
-    let mut case = Case::of(&case("crank-rocker"), |_| {
+    let case = Case::of(&case("crank-rocker"), |_| {
         vec![load("weight", gravity(), G)]
     });
     let coupler = case.body("coupler");
     let ends = [vec2(0.0, 0.0), vec2(3.5, 0.0)];
     let (l, density) = (3.5, 2.0 / 3.5);
+    let mut memory = case.memory();
     for (t, q, q_dot, q_ddot) in case.states() {
-        case.evaluate(t, &q, &q_dot, &q_ddot);
-        let link = link(&case, &mut Vec::new(), coupler, ends);
+        let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+        let link = link(&state, coupler, ends);
         assert_eq!(link.distribution, Distribution::UniformBar);
-        let states = case.workspace.states();
+        let states = state.bodies();
         let normal = states.body(coupler).rotation.perp();
         let load = ends.map(|p| {
             let apparent = states.point(coupler, p).acceleration + vec2(0.0, G);
@@ -109,7 +104,8 @@ fn a_coupler_is_a_beam_on_two_pins() {
         }
         // The first pin pulls the coupler with the axial force just behind it.
         let along = states.body(coupler).rotation;
-        let pin = vec2(case.reaction("B.x"), case.reaction("B.y"));
+        let pin = ["B.x", "B.y"].map(|name| case.reaction(state.inverse_dynamics(), name));
+        let pin = vec2(pin[0], pin[1]);
         assert!((link.section_after(0.0).axial + pin.dot(along)).abs() < 1e-12 * pin.norm());
     }
 }
@@ -117,18 +113,19 @@ fn a_coupler_is_a_beam_on_two_pins() {
 /// At its second end a link hands over exactly what acts there, whatever acts along it and beside it.
 #[test]
 fn sections_close_at_the_second_end() {
-    for mut case in all() {
+    for case in all() {
+        let mut memory = case.memory();
         let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
         for (t, q, q_dot, q_ddot) in case.states().into_iter().take(4) {
-            case.evaluate(t, &q, &q_dot, &q_ddot);
+            let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
             let mut wrenches = Vec::new();
-            free_body_forces.wrenches(&case.model, &case.workspace, &case.result, &mut wrenches);
+            free_body_forces.wrenches(&state, &mut wrenches);
             for b in (0..case.mechanism.bodies.len()).filter(|&b| b != case.mechanism.ground) {
                 let body = BodyId(b);
                 // A line across the body with all that acts within its length.
                 let points = [vec2(-9.0, 0.2), vec2(9.0, -0.1)];
                 let link = free_body_forces
-                    .link_forces(&case.model, body, points, &case.workspace, &wrenches)
+                    .link_forces(&state, body, points, &wrenches)
                     .expect("a link with a length");
                 assert_eq!(link.distribution, Distribution::Lumped);
                 let scale: f64 = 1.0 + wrenches.iter().map(|a| a.force.norm()).sum::<f64>();
@@ -147,12 +144,11 @@ fn sections_close_at_the_second_end() {
 
 #[test]
 fn what_has_no_line_has_no_sections() {
-    let mut case = Case::parse(BAR, |_| Vec::new());
-    case.evaluate(0.0, &[0.0], &[0.0], &[0.0]);
+    let case = Case::parse(BAR, |_| Vec::new());
+    let mut memory = case.memory();
+    let state = case.evaluate(&mut memory, (0.0, &[0.0], &[0.0], &[0.0]));
     let free_body_forces = FreeBodyForces::new(&case.model).expect("every reaction");
-    let of = |body, points| {
-        free_body_forces.link_forces(&case.model, body, points, &case.workspace, &[])
-    };
+    let of = |body, points| free_body_forces.link_forces(&state, body, points, &[]);
     let points = [Vec2::ZERO, vec2(1.0, 0.0)];
     assert_eq!(of(case.body("ground"), points), None);
     assert_eq!(of(case.body("bar"), [Vec2::ZERO; 2]), None);

@@ -3,7 +3,7 @@
 
 use crate::scenes::Case;
 use dwell_geometry::{JointId, Vec2, vec2};
-use dwell_kinetostatics::{FreeBodyForces, Load, LoadKind, Magnitude, Model};
+use dwell_kinetostatics::{FreeBodyForces, InverseDynamics, Load, LoadKind, Magnitude, Model};
 use dwell_scene::Scene;
 
 /// rad, about 20°.
@@ -29,15 +29,39 @@ fn case(text: &str) -> Case {
     Case::of(&scene, |_| scene.loads.clone())
 }
 
-impl Case {
+/// A case in a state of motion.
+struct Evaluated<'a> {
+    case: &'a Case,
+    result: InverseDynamics<f64>,
+    magnitudes: Vec<f64>,
+}
+
+/// The case at q, q̇ of its one actuator and t = 0, without acceleration.
+fn at(case: &Case, q: f64, q_dot: f64) -> Evaluated<'_> {
+    let mut memory = case.memory();
+    let state = case.evaluate(&mut memory, (0.0, &[q], &[q_dot], &[0.0]));
+    let magnitudes = state.loads().magnitude.clone();
+    Evaluated {
+        case,
+        result: memory.1,
+        magnitudes,
+    }
+}
+
+impl Evaluated<'_> {
+    fn reaction(&self, name: &str) -> f64 {
+        self.case.reaction(&self.result, name)
+    }
+
     fn pin(&self, name: &str) -> Vec2 {
         let component = |axis| self.reaction(&format!("{name}.{axis}"));
         vec2(component("x"), component("y"))
     }
 
     fn magnitude(&self, name: &str) -> f64 {
-        let load = self.model.loads().iter().position(|load| load.name == name);
-        self.workspace.loads().magnitude[load.expect("a load of that name")]
+        let mut loads = self.case.model.loads().iter();
+        let load = loads.position(|load| load.name == name);
+        self.magnitudes[load.expect("a load of that name")]
     }
 }
 
@@ -81,8 +105,8 @@ const WITH_ANGLE: &str = ", pressure-angle = 0.35";
 fn two_spur_gears_are_pushed_apart_by_both_senses_of_the_torque() {
     for psi in [0.0, 0.9, 2.4, -1.3] {
         for torque in [3.0, -3.0] {
-            let mut case = case(&gears([0.03, 0.02], false, psi, torque, WITH_ANGLE));
-            case.evaluate(0.0, &[0.3], &[0.0], &[0.0]);
+            let case = case(&gears([0.03, 0.02], false, psi, torque, WITH_ANGLE));
+            let case = at(&case, 0.3, 0.0);
             let tooth = -torque / 0.02;
             let separating = tooth.abs() * tangent();
             assert!((case.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
@@ -104,8 +128,8 @@ fn two_spur_gears_are_pushed_apart_by_both_senses_of_the_torque() {
 fn a_ring_pushes_its_pinion_towards_its_own_centre() {
     for torque in [3.0, -3.0] {
         for (radii, pinion) in [([0.07, 0.02], 1), ([0.02, 0.07], 0)] {
-            let mut case = case(&gears(radii, true, 0.7, torque, WITH_ANGLE));
-            case.evaluate(0.0, &[0.3], &[0.0], &[0.0]);
+            let case = case(&gears(radii, true, 0.7, torque, WITH_ANGLE));
+            let case = at(&case, 0.3, 0.0);
             let tooth = -torque / radii[1];
             assert!((case.reaction("mesh.tooth") - tooth).abs() < ROUNDING);
             // From the ring's centre to the pinion's, and on to the pitch point.
@@ -147,8 +171,8 @@ fn rack(side: f64, force: f64) -> String {
 fn a_rack_pushes_its_pinion_off_normal_to_the_pitch_line() {
     for side in [1.0, -1.0] {
         for force in [80.0, -80.0] {
-            let mut case = case(&rack(side, force));
-            case.evaluate(0.0, &[1.0], &[0.0], &[0.0]);
+            let case = case(&rack(side, force));
+            let case = at(&case, 1.0, 0.0);
             // The teeth hold the rack: T acts on the pinion, −T on the rack.
             assert!((case.reaction("mesh.tooth") - force).abs() < ROUNDING);
             let separating = force.abs() * tangent() * side;
@@ -189,32 +213,28 @@ const PLANETARY: &str = r#"
 /// 2 T, so T = M/(2 · 50 mm). The sun pushes the planet outwards, the ring inwards.
 #[test]
 fn the_pin_of_a_planet_carries_the_difference_of_two_separating_forces() {
-    let mut case = case(PLANETARY);
+    let planetary = case(PLANETARY);
     for q in [0.4, 1.7, -2.2] {
-        case.evaluate(0.0, &[q], &[0.0], &[0.0]);
+        let case = at(&planetary, q, 0.0);
         let tooth = 12.0 / 0.1;
         let [sun, ring] = [ALPHA, 0.44].map(|angle| tooth * angle.tan());
-        let u = Vec2::from_angle(0.3 * q + case.arm_offset());
+        let u = Vec2::from_angle(0.3 * q + ARM_OFFSET);
         close(case.pin("C"), u.perp() * (-2.0 * tooth) + u * (ring - sun));
         // The ground holds the sun alone.
         assert!((case.pin("O").norm() - tooth / ALPHA.cos()).abs() < ROUNDING);
     }
 }
 
-impl Case {
-    /// The arm turns by 0.3 of the sun: from where it is at assembly, at 0.
-    fn arm_offset(&self) -> f64 {
-        -0.3 * 0.4
-    }
-}
+/// The arm turns by 0.3 of the sun: from where it is at assembly, at 0.
+const ARM_OFFSET: f64 = -0.3 * 0.4;
 
 /// The friction of a pin answers to |T|/cos α: r₂ T = −M + µ r |T|/cos α tanh(ω/ω₀), with T against M.
 #[test]
 fn friction_sees_the_separating_force() {
     let friction = "\n[friction]\nB = { coefficient = 0.15, radius = 0.008 }\n";
     let text = gears([0.03, 0.02], false, 0.9, 3.0, WITH_ANGLE) + friction;
-    let mut case = case(&text);
-    case.evaluate(0.0, &[0.3], &[-2.0], &[0.0]);
+    let case = case(&text);
+    let case = at(&case, 0.3, -2.0);
     // The second gear turns with +3 rad/s, and friction brakes it.
     let lever = 0.15 * 0.008 * (3.0_f64 / 0.01).tanh();
     let cosine = ALPHA.cos();
@@ -241,39 +261,40 @@ fn without_angle(text: &str) -> String {
 /// has its unit response times it, and it takes no power.
 #[test]
 fn a_separating_force_does_no_work_and_adds_its_unit_response() {
-    let (mut with, mut without) = (case(MOVING), case(&without_angle(MOVING)));
+    let (with, without) = (case(MOVING), case(&without_angle(MOVING)));
     let body_forces = FreeBodyForces::new(&with.model).expect("every reaction");
     let separating = with.model.loads().len() - 1;
     assert_eq!(with.model.loads()[separating].name, "mesh.separating");
     let mut unit = with.model.result_buffer();
     let mut largest_share = 0.0_f64;
+    let (mut memory, mut other) = (with.memory(), with.memory());
     for (t, q, q_dot, q_ddot) in with.states() {
-        with.evaluate(t, &q, &q_dot, &q_ddot);
-        without.evaluate(t, &q, &q_dot, &q_ddot);
-        let force = with.magnitude("mesh.separating");
-        with.model
-            .unit_load_response(separating, &mut with.workspace, &mut unit)
+        let motion = (t, &q[..], &q_dot[..], &q_ddot[..]);
+        let state = with.evaluate(&mut memory, motion);
+        let (result, plain) = (state.inverse_dynamics(), without.result(motion));
+        let force = state.loads().magnitude[separating];
+        let tooth = with.reaction(result, "mesh.tooth");
+        with.evaluate(&mut other, motion)
+            .into_kinematic_state()
+            .unit_load_response(separating, &mut unit)
             .expect("gears apart");
-        let size = with
-            .result
-            .reactions
-            .iter()
-            .fold(1.0_f64, |s, r| s.max(r.abs()));
-        assert!((force - with.reaction("mesh.tooth").abs() * tangent()).abs() < 1e-14 * size);
-        assert!((with.result.tau[0] - without.result.tau[0]).abs() < 1e-13 * size);
-        let all = with.result.reactions.iter().zip(&without.result.reactions);
+        let reactions = result.reactions.iter();
+        let size = reactions.fold(1.0_f64, |s, r| s.max(r.abs()));
+        assert!((force - tooth.abs() * tangent()).abs() < 1e-14 * size);
+        assert!((result.tau[0] - plain.tau[0]).abs() < 1e-13 * size);
+        let all = result.reactions.iter().zip(&plain.reactions);
         for ((found, plain), response) in all.zip(&unit.reactions) {
             assert!((found - (plain + response * force)).abs() < 1e-13 * size);
             largest_share = largest_share.max((found - plain).abs() / size);
         }
-        let power = with.model.power_balance(&with.workspace, &with.result);
+        let power = state.power_balance();
         assert!(power.residual().abs() < 1e-13 * power.scale);
         let mut powers = vec![0.0; separating + 1];
-        with.model.load_powers(&with.workspace, &mut powers);
+        state.load_powers(&mut powers);
         assert!(powers[separating].abs() < 1e-13 * power.scale);
         let mut wrenches = Vec::new();
-        body_forces.wrenches(&with.model, &with.workspace, &with.result, &mut wrenches);
-        let shaking = body_forces.shaking_force(&with.model, &with.workspace, &wrenches);
+        body_forces.wrenches(&state, &mut wrenches);
+        let shaking = body_forces.shaking_force(&state, &wrenches);
         let difference = shaking.from_momentum.force - shaking.from_reactions.force;
         assert!(difference.norm() < 1e-12 * size);
     }

@@ -10,18 +10,19 @@ use dwell_kinetostatics::{ForceSource, LoadKind, Magnitude};
 /// damper's −c times its square; the same with angles.
 #[test]
 fn springs_give_back_and_dampers_dissipate() {
-    for mut case in all() {
+    for case in all() {
+        let mut memory = case.memory();
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.evaluate(t, &q, &q_dot, &q_ddot);
+            let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
             let mut powers = vec![0.0; case.model.loads().len()];
-            case.model.load_powers(&case.workspace, &mut powers);
-            let states = case.workspace.states();
+            state.load_powers(&mut powers);
+            let states = state.bodies();
             let wrenches_of = |i| {
-                let wrenches = case.workspace.loads().wrenches.iter();
+                let wrenches = state.loads().wrenches.iter();
                 wrenches.filter(move |a| a.source == ForceSource::Load(i))
             };
             for (i, load) in case.model.loads().iter().enumerate() {
-                let f = case.workspace.loads().magnitude[i];
+                let f = state.loads().magnitude[i];
                 let (measured, free) = match load.kind {
                     LoadKind::Spring {
                         bodies,
@@ -70,22 +71,21 @@ fn springs_give_back_and_dampers_dissipate() {
 /// τ of a loaded mechanism is that of its inertia less the loads' generalised forces.
 #[test]
 fn virtual_work_gives_what_the_actuators_feel() {
-    for mut case in all() {
-        let mut unloaded = (case.model.workspace(), case.model.result_buffer());
+    for case in all() {
+        let (mut memory, mut unloaded) = (case.memory(), case.memory());
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.evaluate(t, &q, &q_dot, &q_ddot);
+            let mut state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
             case.model
                 .inverse_dynamics(&q, &q_dot, &q_ddot, &mut unloaded.0, &mut unloaded.1)
                 .expect("a pose");
             let (n, loads) = (q.len(), case.model.loads().len());
             let mut forces = vec![0.0; n * loads];
-            case.model
-                .generalised_forces(&mut case.workspace, &mut forces);
+            state.generalised_forces(&mut forces);
             for i in 0..n {
                 let of_loads = (0..loads).map(|l| forces[l * n + i]);
                 let scale: f64 = of_loads.clone().map(f64::abs).sum();
                 let expected = unloaded.1.tau[i] - of_loads.sum::<f64>();
-                let difference = (case.result.tau[i] - expected).abs();
+                let difference = (state.inverse_dynamics().tau[i] - expected).abs();
                 let scale = scale + unloaded.1.tau[i].abs();
                 // Rounding of some 50 loads through groups of up to four unknowns.
                 assert!(
@@ -112,20 +112,20 @@ fn force(body: &'static str, direction: Vec2, body_fixed: bool) -> impl Fn(&Mech
 fn a_force_follows_its_body() {
     let direction = Vec2::from_angle(0.4);
     let follower = force("rod", direction, true);
-    let mut following = Case::parse(SLIDER_CRANK, |m| vec![load("f", follower(m), 30.0)]);
+    let following = Case::parse(SLIDER_CRANK, |m| vec![load("f", follower(m), 30.0)]);
     let rod = following.body("rod");
+    let mut memory = following.memory();
     for k in 0..5 {
         let q = 0.4 + 0.5 * f64::from(k);
-        following.evaluate(0.0, &[q], &[0.0], &[0.0]);
-        let rotation = following.workspace.states().body(rod).rotation;
+        let at = (0.0, &[q][..], &[0.0][..], &[0.0][..]);
+        let state = following.evaluate(&mut memory, at);
+        let rotation = state.bodies().body(rod).rotation;
         let rotated = force("rod", direction.rotate(rotation), false);
-        let mut fixed = Case::parse(SLIDER_CRANK, |m| vec![load("f", rotated(m), 30.0)]);
-        fixed.evaluate(0.0, &[q], &[0.0], &[0.0]);
-        assert_eq!(fixed.result, following.result);
+        let fixed = Case::parse(SLIDER_CRANK, |m| vec![load("f", rotated(m), 30.0)]);
+        assert_eq!(fixed.result(at), *state.inverse_dynamics());
         let unrotated = force("rod", direction, false);
-        let mut other = Case::parse(SLIDER_CRANK, |m| vec![load("f", unrotated(m), 30.0)]);
-        other.evaluate(0.0, &[q], &[0.0], &[0.0]);
-        assert!((other.result.tau[0] - following.result.tau[0]).abs() > 1e-3);
+        let other = Case::parse(SLIDER_CRANK, |m| vec![load("f", unrotated(m), 30.0)]);
+        assert!((other.result(at).tau[0] - state.inverse_dynamics().tau[0]).abs() > 1e-3);
     }
 }
 
@@ -134,30 +134,29 @@ fn a_force_follows_its_body() {
 #[test]
 fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
     let scene = case("slotted-rocker");
-    let mut unloaded = Case::of(&scene, |_| Vec::new());
-    let mut case = Case::of(&scene, |mechanism| {
+    let unloaded = Case::of(&scene, |_| Vec::new());
+    let case = Case::of(&scene, |mechanism| {
         let bodies = ["rocker", "block"].map(|name| body(mechanism, name));
         vec![load("torque", LoadKind::Torque { bodies }, 5.0)]
     });
+    let mut memory = case.memory();
     for (t, q, q_dot, q_ddot) in case.states() {
-        unloaded.evaluate(t, &q, &q_dot, &q_ddot);
-        case.evaluate(t, &q, &q_dot, &q_ddot);
-        let largest = unloaded
-            .result
-            .reactions
-            .iter()
-            .fold(5.0, |m: f64, r| m.max(r.abs()));
+        let at = (t, &q[..], &q_dot[..], &q_ddot[..]);
+        let (unloaded, state) = (unloaded.result(at), case.evaluate(&mut memory, at));
+        let result = state.inverse_dynamics();
+        let reactions = unloaded.reactions.iter();
+        let largest = reactions.fold(5.0, |m: f64, r| m.max(r.abs()));
         // Five is added to and taken off the same frame: rounding of the largest.
         let same = |a: f64, b: f64| (a - b).abs() < 1e-13 * largest;
-        assert!(same(case.result.tau[0], unloaded.result.tau[0]));
+        assert!(same(result.tau[0], unloaded.tau[0]));
         for (k, &reaction) in case.model.reactions().iter().enumerate() {
             let name = case.mechanism.reaction_name(reaction);
             let of_torque = if name == "slot.moment" { -5.0 } else { 0.0 };
-            let [with, without] = [&case, &unloaded].map(|c| c.result.reactions[k]);
+            let [with, without] = [result, &unloaded].map(|r| r.reactions[k]);
             assert!(same(with - without, of_torque), "{name}: {with} {without}");
         }
         let mut power = [0.0];
-        case.model.load_powers(&case.workspace, &mut power);
+        state.load_powers(&mut power);
         assert_eq!(power, [0.0]);
     }
 }
@@ -165,19 +164,15 @@ fn a_torque_between_bodies_that_turn_together_is_felt_by_their_slide_alone() {
 /// A magnitude is what its law or formula says of the signals it names.
 #[test]
 fn magnitudes_follow_their_signals() {
-    for mut case in all() {
+    for case in all() {
+        let mut memory = case.memory();
         for (t, q, q_dot, q_ddot) in case.states() {
-            case.evaluate(t, &q, &q_dot, &q_ddot);
-            let loads = case
-                .model
-                .loads()
-                .iter()
-                .zip(&case.workspace.loads().magnitude);
-            for (load, &f) in loads {
+            let state = case.evaluate(&mut memory, (t, &q, &q_dot, &q_ddot));
+            for (load, &f) in case.model.loads().iter().zip(&state.loads().magnitude) {
                 let LoadKind::Torque { bodies } = load.kind else {
                     continue;
                 };
-                let [angle, velocity, _] = case.workspace.states().angle(bodies);
+                let [angle, velocity, _] = state.bodies().angle(bodies);
                 let expected = match load.name.as_str() {
                     "fan" => -0.1 * velocity * velocity.abs() * (2.0 + (t + angle).sin()),
                     "torque" => 0.4 - 0.2 * velocity,
@@ -197,15 +192,13 @@ fn magnitudes_follow_their_signals() {
 /// Rest is statics, whatever the loads.
 #[test]
 fn statics_is_kinetostatics_at_rest() {
-    for mut case in all() {
+    for case in all() {
+        let (mut workspace, mut result) = case.memory();
         for (t, q, ..) in case.states() {
             let rest = vec![0.0; q.len()];
-            case.evaluate(t, &q, &rest, &rest);
-            let moving = case.result.clone();
-            case.model
-                .statics(t, &q, &mut case.workspace, &mut case.result)
-                .expect("a pose");
-            assert_eq!(case.result, moving);
+            let moving = case.result((t, &q, &rest, &rest));
+            let still = case.model.statics(t, &q, &mut workspace, &mut result);
+            assert_eq!(still.expect("a pose").inverse_dynamics(), &moving);
         }
         let constant = |m: &Magnitude| matches!(m, Magnitude::Constant(_));
         assert!(case.model.loads().iter().any(|l| !constant(&l.magnitude)));

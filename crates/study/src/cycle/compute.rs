@@ -107,11 +107,11 @@ fn cycle_table(
     columns.extend(work_columns(prepared));
     let mut workspace = machine.workspace();
     let row = |point: &OdeState| -> Result<Vec<f64>, StudyError> {
-        let evaluated = machine.evaluate(point.t, &point.y, &mut workspace);
-        evaluated.map_err(|e| prepared.explain(&e))?;
+        let state = machine.evaluate(point.t, &point.y, &mut workspace);
+        let state = state.map_err(|e| prepared.explain(&e))?;
         let mut row = vec![point.t];
         row.extend(&point.y);
-        row.insert(3, workspace.q_ddot[coordinate]);
+        row.insert(3, state.q_ddot()[coordinate]);
         Ok(row)
     };
     let rows = cycle.samples.iter().map(row).collect::<Result<_, _>>()?;

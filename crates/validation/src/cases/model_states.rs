@@ -1,7 +1,9 @@
 //! States of motion by a scene's model, under its loads: the claims that the checks of states are applied to.
 
-use dwell_geometry::{ActuatorId, BodyId, Vec2};
-use dwell_kinetostatics::{InverseDynamics, KinetostaticsError, Model, Workspace};
+use dwell_geometry::{ActuatorId, BodyId, Pose, Vec2};
+use dwell_kinetostatics::{
+    EvaluatedState, InverseDynamics, KinematicState, KinetostaticsError, Model, Workspace,
+};
 use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_position;
@@ -28,8 +30,7 @@ pub(crate) struct StateRequest {
 pub(crate) struct ModelStates<'a> {
     scene: &'a Scene,
     model: Model,
-    workspace: Workspace<f64>,
-    result: InverseDynamics<f64>,
+    reached: ReachedPose,
     /// By body: its angle, rad, whole revolutions counted from the assembly on.
     angles: Vec<f64>,
     /// The coordinates, rad or m, and the largest step of each.
@@ -38,13 +39,63 @@ pub(crate) struct ModelStates<'a> {
     assembly_poses: Vec<[f64; 3]>,
 }
 
+/// The pose that was reached, with the memory to evaluate states of motion there.
+#[derive(Debug)]
+struct ReachedPose {
+    pose: Pose<f64>,
+    workspace: Workspace<f64>,
+    result: InverseDynamics<f64>,
+}
+
+impl ReachedPose {
+    fn evaluate<'s>(
+        &'s mut self,
+        scene: &Scene,
+        model: &'s Model,
+        StateRequest { t, q_dot, .. }: &StateRequest,
+        q_ddot: &[f64],
+    ) -> Result<EvaluatedState<'s>, StudyError> {
+        let state = kinematic_state(model, &self.pose, q_dot, &mut self.workspace);
+        let loaded = state.apply_loads(*t);
+        let evaluated = loaded.and_then(|state| state.evaluate(q_ddot, &mut self.result));
+        evaluated.map_err(|e| explain(scene, model, &e))
+    }
+}
+
+/// The velocities at a pose.
+fn kinematic_state<'s>(
+    model: &'s Model,
+    reached: &Pose<f64>,
+    q_dot: &[f64],
+    workspace: &'s mut Workspace<f64>,
+) -> KinematicState<'s> {
+    model.given_kinematic_state(q_dot, workspace, |pose, motion| {
+        pose.clone_from(reached);
+        model.plan().velocities(pose, q_dot, motion);
+    })
+}
+
 /// A state of motion that was evaluated.
 #[derive(Debug)]
-pub(crate) struct EvaluatedState<'m> {
+pub(crate) struct StateValues<'m> {
     pub(crate) scene: &'m Scene,
-    pub(crate) workspace: &'m Workspace<f64>,
-    pub(crate) result: &'m InverseDynamics<f64>,
+    pub(crate) state: EvaluatedState<'m>,
+    pub(crate) q_ddot: Vec<f64>,
+    /// By body: its angle with whole revolutions, rad.
     pub(crate) angles: &'m [f64],
+}
+
+impl StateValues<'_> {
+    /// The frames of all bodies.
+    fn body_poses(&self) -> Vec<[f64; 3]> {
+        let plan = self.state.model().plan();
+        plan.body_frames(&self.scene.mechanism, self.state.pose())
+    }
+
+    /// Condition number of the dense rows.
+    pub(crate) fn condition_number(&self) -> f64 {
+        condition_number(&self.scene.mechanism, &self.body_poses())
+    }
 }
 
 impl<'a> ModelStates<'a> {
@@ -61,8 +112,11 @@ impl<'a> ModelStates<'a> {
         };
         let mut model_states = Self {
             scene,
-            workspace: model.workspace(),
-            result: model.result_buffer(),
+            reached: ReachedPose {
+                pose: model.plan().pose(),
+                workspace: model.workspace(),
+                result: model.result_buffer(),
+            },
             angles: Vec::new(),
             coordinates: scene.assembly.coordinates.clone(),
             coordinate_steps: (0..model.plan().actuators()).map(step).collect(),
@@ -90,10 +144,11 @@ impl<'a> ModelStates<'a> {
     /// # Errors
     /// As [`ModelStates::evaluate_at`].
     pub(crate) fn state(&mut self, request: &StateRequest) -> Result<ClaimedState, StudyError> {
-        let q_ddot = self.evaluate_at(request)?;
-        let (scene, states) = (self.scene, self.workspace.states());
-        let mut bodies = self.body_poses();
-        for (pose, angle) in bodies.iter_mut().zip(&self.angles) {
+        let values = self.evaluate_at(request)?;
+        let mut bodies = values.body_poses();
+        let (scene, state) = (values.scene, &values.state);
+        let (states, result) = (state.bodies(), state.inverse_dynamics());
+        for (pose, angle) in bodies.iter_mut().zip(values.angles) {
             pose[2] = *angle;
         }
         let rates = |b: usize| {
@@ -103,9 +158,9 @@ impl<'a> ModelStates<'a> {
             (velocity, [a.x, a.y, body.angular_acceleration])
         };
         let (velocities, accelerations): (Vec<_>, Vec<_>) = (0..bodies.len()).map(rates).unzip();
-        let loads = scene.loads.iter().zip(&self.workspace.loads().magnitude);
+        let loads = scene.loads.iter().zip(&state.loads().magnitude);
         let (ground, masses) = (scene.mechanism.ground, &scene.masses);
-        let reactions = &self.result.reactions;
+        let reactions = &result.reactions;
         let loads = loads.filter_map(|(load, &magnitude)| {
             let magnitude = magnitude_by_reactions(load, magnitude, &scene.mechanism, reactions);
             load_wrenches(&load.kind, magnitude, ground, masses, &bodies, &velocities)
@@ -114,12 +169,12 @@ impl<'a> ModelStates<'a> {
             t: request.t,
             q: request.q.clone(),
             q_dot: request.q_dot.clone(),
-            q_ddot,
             load_wrenches: loads.flatten().collect(),
+            q_ddot: values.q_ddot,
             velocities,
             accelerations,
-            reactions: self.result.reactions.clone(),
-            tau: self.result.tau.clone(),
+            reactions: reactions.clone(),
+            tau: result.tau.clone(),
             poses: bodies,
         })
     }
@@ -128,9 +183,12 @@ impl<'a> ModelStates<'a> {
     pub(crate) fn mass_matrix(&mut self) -> Vec<f64> {
         let n = self.coordinate_steps.len();
         let mut run = self.model.result_buffer();
+        let ReachedPose {
+            pose, workspace, ..
+        } = &mut self.reached;
+        let mut state = kinematic_state(&self.model, pose, &vec![0.0; n], workspace);
         let column = |i: usize| {
-            let workspace = &mut self.workspace;
-            self.model.mass_matrix_column(i, workspace, &mut run);
+            state.mass_matrix_column(i, &mut run);
             run.tau.clone()
         };
         let columns: Vec<Vec<f64>> = (0..n).map(column).collect();
@@ -147,34 +205,30 @@ impl<'a> ModelStates<'a> {
         Ok(self.body_poses())
     }
 
-    /// Condition number of the dense rows at the last state.
-    pub(crate) fn condition_number(&self) -> f64 {
-        condition_number(&self.scene.mechanism, &self.body_poses())
-    }
-
-    /// The last state.
-    pub(crate) fn evaluated(&self) -> EvaluatedState<'_> {
-        EvaluatedState {
-            scene: self.scene,
-            workspace: &self.workspace,
-            result: &self.result,
-            angles: &self.angles,
-        }
-    }
-
-    /// Steps to a state and evaluates it; yields its accelerations.
+    /// Steps to a state and evaluates it.
     ///
     /// # Errors
     /// [`StudyError::Scene`] when it cannot be reached, or a load has no magnitude or direction
     /// there.
-    pub(crate) fn evaluate_at(&mut self, request: &StateRequest) -> Result<Vec<f64>, StudyError> {
+    pub(crate) fn evaluate_at(
+        &mut self,
+        request: &StateRequest,
+    ) -> Result<StateValues<'_>, StudyError> {
         self.step_to(&request.q)?;
         let q_ddot = match &request.q_ddot {
             Some(given) => given.clone(),
             None => self.free_acceleration(request)?,
         };
-        self.evaluate(request, &q_ddot)?;
-        Ok(q_ddot)
+        let (scene, angles) = (self.scene, &self.angles);
+        let state = self
+            .reached
+            .evaluate(scene, &self.model, request, &q_ddot)?;
+        Ok(StateValues {
+            scene,
+            state,
+            q_ddot,
+            angles,
+        })
     }
 
     /// In equal steps, counting the whole revolutions of every body.
@@ -203,21 +257,13 @@ impl<'a> ModelStates<'a> {
 
     fn set_coordinates(&mut self, q: &[f64]) -> Result<(), StudyError> {
         let plan = self.model.plan();
-        let done = plan.positions(q, &mut self.workspace.pose);
+        let done = plan.positions(q, &mut self.reached.pose);
         done.map_err(|e| explain_position(self.scene, plan, &e))
     }
 
     fn body_poses(&self) -> Vec<[f64; 3]> {
         let plan = self.model.plan();
-        plan.body_frames(&self.scene.mechanism, &self.workspace.pose)
-    }
-
-    fn evaluate(&mut self, request: &StateRequest, q_ddot: &[f64]) -> Result<(), StudyError> {
-        let StateRequest { t, q, q_dot, .. } = request;
-        let (workspace, result) = (&mut self.workspace, &mut self.result);
-        let model = &self.model;
-        let done = model.kinetostatics(*t, q, q_dot, q_ddot, workspace, result);
-        done.map_err(|e| self.explain(&e))
+        plan.body_frames(&self.scene.mechanism, &self.reached.pose)
     }
 
     /// The acceleration without actuator force, which is linear in it.
@@ -228,34 +274,37 @@ impl<'a> ModelStates<'a> {
             let label = (actuator, "one of several".to_owned());
             return Err(self.scene.error(message, None, &[label]).into());
         }
-        self.evaluate(request, &[0.0])?;
-        let at_rest = self.result.tau[0];
-        self.evaluate(request, &[1.0])?;
-        let mut found = -at_rest / (self.result.tau[0] - at_rest);
+        let (scene, model, reached) = (self.scene, &self.model, &mut self.reached);
+        let mut tau = |q_ddot: f64| -> Result<f64, StudyError> {
+            let state = reached.evaluate(scene, model, request, &[q_ddot])?;
+            Ok(state.inverse_dynamics().tau[0])
+        };
+        let at_rest = tau(0.0)?;
+        let mut found = -at_rest / (tau(1.0)? - at_rest);
         // Once more from there: the difference above is rounded relative to the loads.
-        self.evaluate(request, &[found])?;
+        let remaining = tau(found)?;
         if at_rest != 0.0 {
-            found += self.result.tau[0] * found / at_rest;
+            found += remaining * found / at_rest;
         }
         Ok(vec![found])
     }
+}
 
-    fn explain(&self, error: &KinetostaticsError) -> StudyError {
-        if let KinetostaticsError::Position(error) = error {
-            return explain_position(self.scene, self.model.plan(), error);
-        }
-        let loads = &self.scene.loads;
-        let load = error.load().and_then(|l| Some((l, loads.get(l)?)));
-        let (location, name) = load.map_or((SceneLocation::Whole, ""), |(l, load)| {
-            (SceneLocation::Load(l), &load.name)
-        });
-        let message = match error {
-            KinetostaticsError::NoDirection { .. } => {
-                format!("`{name}` has no direction: its two points coincide")
-            }
-            _ => format!("the magnitude of `{name}` is not a finite number"),
-        };
-        let label = (location, "in a state that is checked".to_owned());
-        self.scene.error(message, None, &[label]).into()
+/// The error with the names of the scene.
+fn explain(scene: &Scene, model: &Model, error: &KinetostaticsError) -> StudyError {
+    if let KinetostaticsError::Position(error) = error {
+        return explain_position(scene, model.plan(), error);
     }
+    let load = error.load().and_then(|l| Some((l, scene.loads.get(l)?)));
+    let (location, name) = load.map_or((SceneLocation::Whole, ""), |(l, load)| {
+        (SceneLocation::Load(l), &load.name)
+    });
+    let message = match error {
+        KinetostaticsError::NoDirection { .. } => {
+            format!("`{name}` has no direction: its two points coincide")
+        }
+        _ => format!("the magnitude of `{name}` is not a finite number"),
+    };
+    let label = (location, "in a state that is checked".to_owned());
+    scene.error(message, None, &[label]).into()
 }

@@ -1,6 +1,6 @@
 //! Quantities of a state by the names that tables and references use.
 
-use crate::cases::model_states::EvaluatedState;
+use crate::cases::model_states::StateValues;
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Component, Coordinate, JointId, Vec2};
 use dwell_scene::Scene;
@@ -168,8 +168,9 @@ impl StateQuantity {
     }
 
     /// Its value in a state, SI; not a number where it does not exist.
-    pub(crate) fn value(self, evaluated: &EvaluatedState<'_>) -> f64 {
-        let states = evaluated.workspace.states();
+    pub(crate) fn value(self, evaluated: &StateValues<'_>) -> f64 {
+        let states = evaluated.state.bodies();
+        let result = evaluated.state.inverse_dynamics();
         match self {
             Self::BodyAngle(body, order) => {
                 let state = states.body(body);
@@ -192,8 +193,8 @@ impl StateQuantity {
                 let found = CoordinateFunction::find(&evaluated.scene.mechanism, coordinate);
                 order.of(found.map_or([f64::NAN; 3], |found| states.coordinate(found)))
             }
-            Self::Reaction(k, _) => evaluated.result.reactions[k],
-            Self::ActuatorForce(k) => evaluated.result.tau[k],
+            Self::Reaction(k, _) => result.reactions[k],
+            Self::ActuatorForce(k) => result.tau[k],
         }
     }
 }

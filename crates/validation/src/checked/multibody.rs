@@ -146,11 +146,11 @@ impl<'a> StateReader<'a> {
 
     /// Adds a state to the run. Angles go on from those before: no step rotates a body by half a revolution.
     fn append(&mut self, at: &OdeState, run: &mut FreeMotionRun) -> Result<(), DynamicsError> {
-        let (machine, workspace) = (self.machine, &mut self.workspace);
-        machine.evaluate(at.t, &at.y, workspace)?;
-        let (outputs, result) = (&mut self.output_workspace, &mut self.result);
-        machine.evaluate_outputs(self.output_model, at.t, workspace, outputs, result)?;
-        let states = self.output_workspace.states();
+        let machine = self.machine;
+        let state = machine.evaluate(at.t, &at.y, &mut self.workspace)?;
+        let (workspace, result) = (&mut self.output_workspace, &mut self.result);
+        let outputs = state.outputs(self.output_model, workspace, result)?;
+        let (states, result) = (outputs.bodies(), outputs.inverse_dynamics());
         let unwrapped = |angle: f64, last: Option<f64>| match last {
             Some(last) => angle + ((last - angle) / TAU).round() * TAU,
             None => angle,
@@ -177,14 +177,14 @@ impl<'a> StateReader<'a> {
                 false => [q, speed],
             }
         };
-        let [kinetic, potential] = machine.energy(workspace);
+        let [kinetic, potential] = state.energy();
         let sample = MotionSample {
             t: at.t,
             poses,
             velocities,
-            reactions: self.result.reactions.clone(),
-            tau: self.residual_actuator_forces(),
-            drive_forces: self.workspace.drive_forces.clone(),
+            reactions: result.reactions.clone(),
+            tau: residual_actuator_forces(machine, result),
+            drive_forces: state.drive_forces().to_vec(),
             kinetic,
             potential,
             work: at.y[machine.work_offset()..].iter().sum(),
@@ -194,19 +194,19 @@ impl<'a> StateReader<'a> {
         run.coordinates.push(coordinates);
         Ok(())
     }
+}
 
-    /// The actuator forces; that of a free actuator is zero but for rounding.
-    fn residual_actuator_forces(&self) -> Vec<f64> {
-        let reactions = self.result.reactions.iter();
-        let max = reactions.fold(1.0_f64, |max, r| max.max(r.abs()));
-        let mut tau = self.result.tau.clone();
-        for &free in self.machine.free() {
-            if tau[free].abs() < ZERO_FORCE * max {
-                tau[free] = 0.0;
-            }
+/// The actuator forces; that of a free actuator is zero but for rounding.
+fn residual_actuator_forces(machine: &Machine, result: &InverseDynamics<f64>) -> Vec<f64> {
+    let reactions = result.reactions.iter();
+    let max = reactions.fold(1.0_f64, |max, r| max.max(r.abs()));
+    let mut tau = result.tau.clone();
+    for &free in machine.free() {
+        if tau[free].abs() < ZERO_FORCE * max {
+            tau[free] = 0.0;
         }
-        tau
     }
+    tau
 }
 
 /// A free motion, if the scene has one, with its findings.

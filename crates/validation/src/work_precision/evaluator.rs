@@ -229,8 +229,8 @@ impl Evaluator for MachineEvaluator<'_> {
         let mut workspace = self.output_machine.workspace::<f64>();
         Box::new(move |point, out| {
             let machine = self.output_machine;
-            machine.evaluate(point.t, &point.y, &mut workspace)?;
-            let reactions = &workspace.inverse_dynamics().reactions;
+            let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
+            let reactions = &state.inverse_dynamics().reactions;
             out.copy_from_slice(&reactions[..out.len()]);
             Ok(())
         })
@@ -309,8 +309,8 @@ impl Evaluator for SinglePrecisionEvaluator<'_> {
         let mut y = vec![0.0; output_machine.state_count()];
         Box::new(move |point, out| {
             to_f32(&point.y, &mut y);
-            output_machine.evaluate(point.t, &y, &mut workspace)?;
-            for (out, &value) in out.iter_mut().zip(&workspace.inverse_dynamics().reactions) {
+            let state = output_machine.evaluate(point.t, &y, &mut workspace)?;
+            for (out, &value) in out.iter_mut().zip(&state.inverse_dynamics().reactions) {
                 *out = f64::from(value);
             }
             Ok(())
@@ -338,9 +338,8 @@ impl OdeSystem for SinglePrecisionOde<'_> {
 
     fn rhs(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), DynamicsError> {
         to_f32(y, &mut self.y);
-        self.machine.evaluate(t, &self.y, &mut self.workspace)?;
-        self.machine
-            .state_derivative(&self.workspace, &mut self.out);
+        let state = self.machine.evaluate(t, &self.y, &mut self.workspace)?;
+        state.derivative(&mut self.out);
         for (out, &value) in out.iter_mut().zip(&self.out) {
             *out = f64::from(value);
         }

@@ -124,8 +124,7 @@ impl<'s> ReferenceSolution<'s> {
     /// Kinetic energy, and potential energy less the works, at a state of the exact machine, J.
     fn energies(&mut self, t: f64, y: &[f64]) -> Result<[f64; 2], DynamicsError> {
         let machine = &self.subject.machine;
-        machine.evaluate(t, y, &mut self.workspace)?;
-        let [kinetic, potential] = machine.energy(&self.workspace);
+        let [kinetic, potential] = machine.evaluate(t, y, &mut self.workspace)?.energy();
         let works: f64 = y[machine.work_offset()..].iter().sum();
         Ok([kinetic, potential - works])
     }

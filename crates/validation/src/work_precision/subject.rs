@@ -129,10 +129,12 @@ impl Subject {
 
     /// Refuses a motion that stays at rest: all combinations would be exact.
     fn require_motion(&self) -> Result<(), StudyError> {
-        let mut at = self.machine.workspace();
-        let evaluated = self.machine.evaluate(0.0, &self.initial_state.y, &mut at);
-        evaluated.map_err(|e| self.explain(&e))?;
-        let is_moving = |&i: &usize| at.q_dot[i] != 0.0 || at.q_ddot[i] != 0.0;
+        let mut workspace = self.machine.workspace();
+        let state = self
+            .machine
+            .evaluate(0.0, &self.initial_state.y, &mut workspace);
+        let state = state.map_err(|e| self.explain(&e))?;
+        let is_moving = |&i: &usize| state.q_dot()[i] != 0.0 || state.q_ddot()[i] != 0.0;
         match self.machine.free().iter().any(is_moving) {
             true => Ok(()),
             false => Err(self.explain(&DynamicsError::AtRest)),

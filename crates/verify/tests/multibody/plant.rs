@@ -217,20 +217,13 @@ impl Plant {
 
     fn model_sample(&self, machine: &Machine, at: &OdeState) -> MotionSample {
         let mut workspace = machine.workspace();
-        machine.evaluate(at.t, &at.y, &mut workspace).unwrap();
-        let [kinetic, potential] = machine.energy(&workspace);
+        let state = machine.evaluate(at.t, &at.y, &mut workspace).unwrap();
+        let [kinetic, potential] = state.energy();
         let model = machine.model();
-        let (mut model_workspace, mut inverse_dynamics) =
-            (model.workspace(), model.result_buffer());
-        machine
-            .evaluate_outputs(
-                model,
-                at.t,
-                &workspace,
-                &mut model_workspace,
-                &mut inverse_dynamics,
-            )
-            .unwrap();
+        let (mut model_workspace, mut result) = (model.workspace(), model.result_buffer());
+        let outputs = state.outputs(model, &mut model_workspace, &mut result);
+        let outputs = outputs.unwrap();
+        let mut inverse_dynamics = outputs.inverse_dynamics().clone();
         // Nothing is left for an actuator that is free.
         let largest = inverse_dynamics
             .reactions
@@ -244,7 +237,7 @@ impl Plant {
             );
             inverse_dynamics.tau[free] = 0.0;
         }
-        let states = model_workspace.states();
+        let states = outputs.bodies();
         // There are more states: of what the lowering adds.
         let bodies = (0..self.masses.len()).map(BodyId);
         let pose = |body: BodyId| {
@@ -263,7 +256,7 @@ impl Plant {
             velocities: bodies.map(body_velocity).collect(),
             reactions: inverse_dynamics.reactions,
             tau: inverse_dynamics.tau,
-            drive_forces: workspace.drive_forces.clone(),
+            drive_forces: state.drive_forces().to_vec(),
             kinetic,
             potential,
             work: at.y[machine.work_offset()..].iter().sum(),

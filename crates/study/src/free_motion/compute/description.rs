@@ -98,10 +98,10 @@ impl FreeMotionProblem<'_> {
             let machine = self.machine(motion, chart);
             workspaces.resize_with(workspaces.len().max(chart + 1), || None);
             let workspace = workspaces[chart].get_or_insert_with(|| machine.workspace());
-            if machine.evaluate(point.t, &point.y, workspace).is_err() {
+            let Ok(state) = machine.evaluate(point.t, &point.y, workspace) else {
                 break;
-            }
-            let [kinetic, potential] = machine.energy(workspace);
+            };
+            let [kinetic, potential] = state.energy();
             let sum = kinetic + potential - point.y[machine.work_offset()..].iter().sum::<f64>();
             let initial = *initial.get_or_insert(sum);
             max_kinetic = max_kinetic.max(kinetic);

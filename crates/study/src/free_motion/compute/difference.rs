@@ -119,17 +119,12 @@ impl FreeMotionProblem<'_> {
         let chart = motion.charts.get(sample.chart);
         let model = chart.map_or(&self.output_model, |chart| &chart.output_model);
         let (mut workspace, mut results) = (model.workspace(), model.result_buffer());
+        let state = model.kinematic_state(&sample.q, &sample.q_dot, &mut workspace)?;
+        let mut state = state.apply_loads(sample.t)?;
         for &(load, magnitude) in &sample.drive_magnitudes {
-            workspace.set_magnitude(load, magnitude);
+            state.set_magnitude(load, magnitude);
         }
-        let TrajectorySample {
-            t,
-            q,
-            q_dot,
-            q_ddot,
-            ..
-        } = sample;
-        model.kinetostatics(*t, q, q_dot, q_ddot, &mut workspace, &mut results)?;
+        state.evaluate(&sample.q_ddot, &mut results)?;
         Ok(results.reactions)
     }
 }

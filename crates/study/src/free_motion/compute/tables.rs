@@ -6,7 +6,7 @@ use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{
     BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, Trajectory, TrajectorySample,
 };
-use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineWorkspace, OdeState};
+use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineState, OdeState};
 use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
@@ -43,9 +43,9 @@ impl FreeMotionProblem<'_> {
                 if machine.is_in_fit_window(&point.y) {
                     continue;
                 }
-                machine.evaluate(point.t, &point.y, &mut workspace)?;
+                let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
                 let actuator_coordinates = motion.actuator_coordinates.get(segment);
-                let mut sample = self.sample(machine, point, &workspace, &mut initial_balance);
+                let mut sample = self.sample(machine, point, &state, &mut initial_balance);
                 sample.chart = *chart;
                 sample.actuator_coordinate = actuator_coordinates.and_then(|s| s.get(k)).copied();
                 samples.push(sample);
@@ -62,11 +62,11 @@ impl FreeMotionProblem<'_> {
         &self,
         machine: &Machine,
         point: &OdeState,
-        workspace: &MachineWorkspace,
+        state: &MachineState<'_>,
         initial_balance: &mut Option<f64>,
     ) -> TrajectorySample {
         let first = machine.work_offset();
-        let [kinetic, potential] = machine.energy(workspace);
+        let [kinetic, potential] = state.energy();
         let works = &point.y[first..];
         let sum = kinetic + potential - works.iter().sum::<f64>();
         let initial = *initial_balance.get_or_insert(sum);
@@ -76,12 +76,12 @@ impl FreeMotionProblem<'_> {
         extra_values.extend(&point.y[2 * machine.free().len()..first]);
         let count = self.loaded_scene.loads.len();
         let drives = count - machine.drives()..count;
-        let magnitudes = &workspace.inner.loads().magnitude;
+        let magnitudes = state.magnitudes();
         TrajectorySample {
             t: point.t,
-            q: workspace.q.clone(),
-            q_dot: workspace.q_dot.clone(),
-            q_ddot: workspace.q_ddot.clone(),
+            q: state.q().to_vec(),
+            q_dot: state.q_dot().to_vec(),
+            q_ddot: state.q_ddot().to_vec(),
             drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
             extra_values,
             ..TrajectorySample::default()
@@ -138,13 +138,11 @@ impl FreeMotionProblem<'_> {
             let machine = self.machine(motion, chart);
             let mut workspace = machine.workspace();
             let mut row = vec![o.state.t, (o.event + 1) as f64];
-            let evaluated = machine.evaluate(o.state.t, &o.state.y, &mut workspace);
-            if evaluated.is_ok() {
-                let states = workspace.inner.states();
+            if let Ok(state) = machine.evaluate(o.state.t, &o.state.y, &mut workspace) {
                 for actuator in &mechanism.actuators {
                     let measured = CoordinateFunction::find(mechanism, actuator.coordinate());
-                    let values = measured.map(|measured| states.coordinate(measured));
-                    row.extend(&values.unwrap_or([f64::NAN; 3])[..2]);
+                    let values = measured.map(|measured| state.coordinate(measured));
+                    row.extend(values.unwrap_or([f64::NAN; 2]));
                 }
             }
             row.resize(columns.len(), f64::NAN);

@@ -71,20 +71,21 @@ impl UnitLoadCurves {
             }),
         };
         for &q in q {
-            let set = model.set_state(0.0, &[q], &[1.0], &mut workspace);
-            set.map_err(explain)?;
+            let state = model.kinematic_state(&[q], &[1.0], &mut workspace);
+            let loaded = state.map_err(KinetostaticsError::from);
+            let loaded = loaded.and_then(|state| state.apply_loads(0.0));
+            let mut state = loaded.map_err(explain)?;
             let mut row = Vec::with_capacity(curves.loads.len());
             for load in loads.clone() {
-                let response = model.unit_load_response(load, &mut workspace, &mut results);
+                let response = state.unit_load_response(load, &mut results);
                 response.map_err(explain)?;
                 let mut values = vec![-results.tau[0]];
                 values.extend(&results.reactions);
                 row.push(values);
             }
             curves.rows.push(row);
-            let potentials = loads
-                .clone()
-                .filter_map(|l| model.potential_energy(l, &workspace));
+            let all = loads.clone();
+            let potentials = all.filter_map(|load| state.potential_energy(load));
             curves.potential.push(potentials.sum());
         }
         Ok(Some(curves))

@@ -8,8 +8,8 @@ use crate::trajectory::compute::{
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
 use dwell_kinetostatics::{
-    AppliedWrench, ForceSource, FreeBodyForces, InverseDynamics, LoadKind, Model, PowerBalance,
-    Workspace, Wrench,
+    AppliedWrench, EvaluatedState, ForceSource, FreeBodyForces, InverseDynamics, LinkForces,
+    LoadKind, Model, PowerBalance, Workspace, Wrench,
 };
 use dwell_scene::Scene;
 
@@ -17,8 +17,9 @@ use dwell_scene::Scene;
 pub(crate) struct ForceEvaluator<'a> {
     pub(crate) model: &'a Model,
     analysis: Analysis,
-    pub(crate) workspace: Workspace<f64>,
+    workspace: Workspace<f64>,
     pub(crate) results: InverseDynamics<f64>,
+    pose: Pose<f64>,
     motion_buffer: Motion<f64>,
     /// The bodies at the velocities of the trajectory, whatever the analysis.
     body_states: BodyStates,
@@ -32,38 +33,47 @@ impl<'a> ForceEvaluator<'a> {
             analysis,
             workspace: model.workspace(),
             results: model.result_buffer(),
+            pose: model.plan().pose(),
             motion_buffer: model.plan().motion(),
             body_states: BodyStates::new(model.plan()),
             monitor: TrajectoryMonitor::new(scene),
         }
     }
 
-    /// Evaluates the position of a sample, with the loads at time `t`.
-    pub(crate) fn evaluate(&mut self, sample: &TrajectorySample, t: f64) -> Result<(), StopCause> {
+    /// Evaluates the position of a sample, with the loads at time `t`; its state, but for kinematics.
+    pub(crate) fn evaluate(
+        &mut self,
+        sample: &TrajectorySample,
+        t: f64,
+    ) -> Result<Option<EvaluatedState<'_>>, StopCause> {
         let (model, workspace, results) = (self.model, &mut self.workspace, &mut self.results);
         let TrajectorySample {
             q, q_dot, q_ddot, ..
         } = sample;
-        match self.analysis {
+        let state = match self.analysis {
             Analysis::Kinematics => {
-                model.plan().positions(q, &mut workspace.pose)?;
-                return Ok(());
+                model.plan().positions(q, &mut self.pose)?;
+                return Ok(None);
             }
             Analysis::Statics => model.statics(t, q, workspace, results)?,
             Analysis::Kinetostatics | Analysis::FreeMotion => {
+                let mut state = model.kinematic_state(q, q_dot, workspace)?.apply_loads(t)?;
                 for &(load, magnitude) in &sample.drive_magnitudes {
-                    workspace.set_magnitude(load, magnitude);
+                    state.set_magnitude(load, magnitude);
                 }
-                model.kinetostatics(t, q, q_dot, q_ddot, workspace, results)?;
+                state.evaluate(q_ddot, results)?
             }
+        };
+        self.pose.clone_from(state.pose());
+        match self.monitor.off_table(t, state.bodies()) {
+            Some(fault) => Err(StopCause::Fault(fault)),
+            None => Ok(Some(state)),
         }
-        let fault = self.monitor.off_table(t, workspace.states());
-        fault.map_or(Ok(()), |fault| Err(StopCause::Fault(fault)))
     }
 
     /// Computes the states of the bodies at the velocities of the sample; fails where a coupling jumps.
     pub(crate) fn fill_states(&mut self, sample: &TrajectorySample) -> Result<(), StopCause> {
-        let (plan, pose) = (self.model.plan(), &self.workspace.pose);
+        let (plan, pose) = (self.model.plan(), &self.pose);
         plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
         plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
         self.body_states.fill(plan, pose, &self.motion_buffer);
@@ -72,24 +82,77 @@ impl<'a> ForceEvaluator<'a> {
     }
 }
 
-/// Evaluates all quantities at one position after another.
-pub(crate) struct PositionEvaluator<'a> {
+/// What the forces at one position are computed into.
+pub(crate) struct PositionForces<'a> {
     scene: &'a Scene,
-    pub(crate) forces: ForceEvaluator<'a>,
-    pub(crate) body_forces: FreeBodyForces,
-    /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
-    whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
-    pub(crate) wrenches: Vec<AppliedWrench>,
-    /// The bodies at q̇ = 1 of a single actuator.
-    unit_speed_states: BodyStates,
-    /// Size of the mechanism, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
-    size: f64,
-    speed_scales: [SpeedScale; 2],
+    body_forces: FreeBodyForces,
+    wrenches: Vec<AppliedWrench>,
+    /// By load: its magnitude and its power.
+    magnitudes: Vec<f64>,
     load_powers: Vec<f64>,
     /// By joint: the force on its second body, N.
     joint_forces: Vec<Vec2>,
     shaking_wrench: Wrench,
     pub(crate) power_balance: PowerBalance,
+    /// By requested link: its internal forces.
+    pub(crate) link_forces: Vec<Option<LinkForces>>,
+}
+
+impl<'a> PositionForces<'a> {
+    fn new(scene: &'a Scene, model: &Model) -> Result<Self, StudyError> {
+        Ok(Self {
+            body_forces: FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?,
+            scene,
+            wrenches: Vec::new(),
+            magnitudes: vec![0.0; scene.loads.len()],
+            load_powers: vec![0.0; scene.loads.len()],
+            joint_forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
+            shaking_wrench: Wrench::default(),
+            power_balance: PowerBalance::default(),
+            link_forces: Vec::new(),
+        })
+    }
+
+    /// Computes joint forces, shaking force, power balance and internal forces.
+    fn compute(&mut self, state: &EvaluatedState<'_>) {
+        let (body_forces, wrenches) = (&self.body_forces, &mut self.wrenches);
+        body_forces.wrenches(state, wrenches);
+        self.joint_forces.fill(Vec2::ZERO);
+        for wrench in &*wrenches {
+            if let ForceSource::Joint(j) = wrench.source
+                && wrench.body == self.scene.mechanism.joints[j.0].bodies[1]
+            {
+                self.joint_forces[j.0] += wrench.force;
+            }
+        }
+        let shaking = body_forces.shaking_force(state, wrenches);
+        let [by_reactions, by_loads] = [shaking.from_reactions, shaking.loads_on_ground];
+        self.shaking_wrench = Wrench {
+            force: by_reactions.force + by_loads.force,
+            moment: by_reactions.moment + by_loads.moment,
+        };
+        self.power_balance = state.power_balance();
+        state.load_powers(&mut self.load_powers);
+        self.magnitudes.clone_from(&state.loads().magnitude);
+        let links = self.scene.requests.sections.iter();
+        let forces = links.map(|l| body_forces.link_forces(state, l.body, l.points, wrenches));
+        self.link_forces.clear();
+        self.link_forces.extend(forces);
+    }
+}
+
+/// Evaluates all quantities at one position after another.
+pub(crate) struct PositionEvaluator<'a> {
+    scene: &'a Scene,
+    pub(crate) forces: ForceEvaluator<'a>,
+    pub(crate) position: PositionForces<'a>,
+    /// With several actuators, the unpruned mechanism: the trajectory ends where any of its groups cannot be assembled.
+    whole_mechanism: Option<(&'a Plan, Pose<f64>)>,
+    /// The bodies at q̇ = 1 of a single actuator.
+    unit_speed_states: BodyStates,
+    /// Size of the mechanism, m; and the scales at q̇ = 1 of a single actuator, and along the trajectory.
+    size: f64,
+    speed_scales: [SpeedScale; 2],
 }
 
 impl<'a> PositionEvaluator<'a> {
@@ -102,18 +165,13 @@ impl<'a> PositionEvaluator<'a> {
         let is_pruned = model.plan().pruned_groups().contains(&true);
         let checks_whole = is_pruned && whole_plan.actuators() > 1;
         Ok(Self {
-            body_forces: FreeBodyForces::new(model).map_err(|e| explain_model(scene, &e))?,
+            position: PositionForces::new(scene, model)?,
             scene,
             forces: ForceEvaluator::new(scene, model, analysis),
             whole_mechanism: checks_whole.then(|| (whole_plan, whole_plan.pose())),
             size: scene.mechanism.size(),
             speed_scales: [SpeedScale::default(); 2],
-            wrenches: Vec::new(),
             unit_speed_states: BodyStates::new(model.plan()),
-            load_powers: vec![0.0; scene.loads.len()],
-            joint_forces: vec![Vec2::ZERO; scene.mechanism.joints.len()],
-            shaking_wrench: Wrench::default(),
-            power_balance: PowerBalance::default(),
         })
     }
 
@@ -122,51 +180,25 @@ impl<'a> PositionEvaluator<'a> {
         if let Some((whole_plan, pose)) = &mut self.whole_mechanism {
             whole_plan.positions(&sample.q, pose)?;
         }
+        if let Some(state) = self.forces.evaluate(sample, t)? {
+            self.position.compute(&state);
+        }
         let forces = &mut self.forces;
-        forces.evaluate(sample, t)?;
         let plan = forces.model.plan();
         if plan.actuators() == 1 {
-            let (pose, motion) = (&forces.workspace.pose, &mut forces.motion_buffer);
+            let (pose, motion) = (&forces.pose, &mut forces.motion_buffer);
             plan.velocities(pose, &[1.0], motion);
             self.unit_speed_states.fill(plan, pose, motion);
         }
         forces.fill_states(sample)?;
         self.speed_scales = [&self.unit_speed_states, &forces.body_states]
             .map(|states| SpeedScale::new(states, self.size));
-        if forces.analysis != Analysis::Kinematics {
-            self.compute_forces();
-        }
         Ok(())
-    }
-
-    /// Computes joint forces, shaking force and power balance.
-    fn compute_forces(&mut self) {
-        let of = &self.forces;
-        let (model, workspace, results) = (of.model, &of.workspace, &of.results);
-        let wrenches = &mut self.wrenches;
-        self.body_forces
-            .wrenches(model, workspace, results, wrenches);
-        self.joint_forces.fill(Vec2::ZERO);
-        for wrench in &*wrenches {
-            if let ForceSource::Joint(j) = wrench.source
-                && wrench.body == self.scene.mechanism.joints[j.0].bodies[1]
-            {
-                self.joint_forces[j.0] += wrench.force;
-            }
-        }
-        let shaking = self.body_forces.shaking_force(model, workspace, wrenches);
-        let [by_reactions, by_loads] = [shaking.from_reactions, shaking.loads_on_ground];
-        self.shaking_wrench = Wrench {
-            force: by_reactions.force + by_loads.force,
-            moment: by_reactions.moment + by_loads.moment,
-        };
-        self.power_balance = model.power_balance(workspace, results);
-        model.load_powers(workspace, &mut self.load_powers);
     }
 
     pub(crate) fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
         let (forces, states) = (&self.forces.results, &self.forces.body_states);
-        let unit_speed = &self.unit_speed_states;
+        let (unit_speed, balance) = (&self.unit_speed_states, &self.position.power_balance);
         let component = |v: Vec2, axis: usize| if axis == 0 { v.x } else { v.y };
         match quantity {
             Quantity::Time => sample.t,
@@ -207,19 +239,22 @@ impl<'a> PositionEvaluator<'a> {
             Quantity::Reaction(k) => forces.reactions[k],
             Quantity::BodyFrameForce(joint, body, axis) => {
                 let rotation = states.body(body).rotation;
-                component(self.joint_forces[joint.0].rotate_inverse(rotation), axis)
+                component(
+                    self.position.joint_forces[joint.0].rotate_inverse(rotation),
+                    axis,
+                )
             }
-            Quantity::ForceMagnitude(joint) => self.joint_forces[joint.0].norm(),
-            Quantity::ForceDirection(joint) => self.joint_forces[joint.0].angle(),
-            Quantity::ShakingForce(2) => self.shaking_wrench.moment,
-            Quantity::ShakingForce(axis) => component(self.shaking_wrench.force, axis),
-            Quantity::Power(PowerTerm::Actuators) => self.power_balance.actuators,
-            Quantity::Power(PowerTerm::Loads) => self.power_balance.loads,
-            Quantity::Power(PowerTerm::KineticRate) => self.power_balance.kinetic_energy_rate,
-            Quantity::Power(PowerTerm::Residual) => self.power_balance.residual(),
-            Quantity::Power(PowerTerm::KineticEnergy) => self.power_balance.kinetic_energy,
+            Quantity::ForceMagnitude(joint) => self.position.joint_forces[joint.0].norm(),
+            Quantity::ForceDirection(joint) => self.position.joint_forces[joint.0].angle(),
+            Quantity::ShakingForce(2) => self.position.shaking_wrench.moment,
+            Quantity::ShakingForce(axis) => component(self.position.shaking_wrench.force, axis),
+            Quantity::Power(PowerTerm::Actuators) => balance.actuators,
+            Quantity::Power(PowerTerm::Loads) => balance.loads,
+            Quantity::Power(PowerTerm::KineticRate) => balance.kinetic_energy_rate,
+            Quantity::Power(PowerTerm::Residual) => balance.residual(),
+            Quantity::Power(PowerTerm::KineticEnergy) => balance.kinetic_energy,
             Quantity::LoadForce(k) => self.load_force(k),
-            Quantity::LoadPower(k) => self.load_powers[k],
+            Quantity::LoadPower(k) => self.position.load_powers[k],
             Quantity::Extra(k) => sample.extra_values[k],
         }
     }
@@ -237,10 +272,9 @@ impl<'a> PositionEvaluator<'a> {
 
     /// The force of a load along its direction or line, or its moment on its second body.
     fn load_force(&self, k: usize) -> f64 {
-        let workspace = &self.forces.workspace;
-        let states = workspace.states();
+        let states = &self.forces.body_states;
         let on = |body: BodyId| {
-            let mut wrenches = self.wrenches.iter();
+            let mut wrenches = self.position.wrenches.iter();
             wrenches.find(|w| w.source == ForceSource::Load(k) && w.body == body)
         };
         match self.scene.loads[k].kind {
@@ -248,7 +282,7 @@ impl<'a> PositionEvaluator<'a> {
             | LoadKind::Force { .. }
             | LoadKind::Torque { .. }
             | LoadKind::PointToPointForce { .. }
-            | LoadKind::SeparatingForce(_) => workspace.loads().magnitude[k],
+            | LoadKind::SeparatingForce(_) => self.position.magnitudes[k],
             LoadKind::Spring { bodies, points, .. } | LoadKind::Damper { bodies, points } => {
                 let line = states.separation(bodies, points).direction;
                 let force_and_line = on(bodies[1]).zip(line);

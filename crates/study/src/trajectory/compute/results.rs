@@ -93,10 +93,12 @@ impl TrajectoryResults {
         self.rows
             .push(self.columns.iter().enumerate().map(value).collect());
         self.body_poses.push(evaluator.body_poses());
-        for link in &mut self.sectioned_links {
-            link.add_position(k, evaluator);
+        let position = &evaluator.position;
+        let links = self.sectioned_links.iter_mut().zip(&position.link_forces);
+        for (link, forces) in links {
+            link.add_position(k, forces.as_ref());
         }
-        let balance = &evaluator.power_balance;
+        let balance = &position.power_balance;
         if balance.scale > 0.0 {
             let residual = balance.residual().abs() / balance.scale;
             self.power_residual = self.power_residual.max(residual);

@@ -1,8 +1,7 @@
 //! Internal forces of a link along the trajectory: the sections at the largest bending moment, and the envelope.
 
-use crate::trajectory::compute::PositionEvaluator;
 use dwell_findings::{Column, Table};
-use dwell_kinetostatics::{Distribution, Section};
+use dwell_kinetostatics::{Distribution, LinkForces, Section};
 use dwell_scene::SectionRequest as Request;
 
 /// Intervals along a link.
@@ -35,11 +34,8 @@ impl SectionedLink {
     }
 
     /// Adds the internal forces at the `k`th position.
-    pub(crate) fn add_position(&mut self, k: usize, at: &PositionEvaluator<'_>) {
-        let Request { body, points, .. } = self.request;
-        let (model, workspace) = (at.forces.model, &at.forces.workspace);
-        let (forces, wrenches) = (&at.body_forces, &at.wrenches);
-        let Some(forces) = forces.link_forces(model, body, points, workspace, wrenches) else {
+    pub(crate) fn add_position(&mut self, k: usize, forces: Option<&LinkForces>) {
+        let Some(forces) = forces else {
             return;
         };
         self.distribution = forces.distribution;

@@ -147,9 +147,8 @@ impl ReferenceStates {
     ) -> Result<(Vec<(QuantityKind, ComparedValue)>, BTreeSet<String>), ValidationError> {
         let (mut values, mut unknown) = (Vec::new(), BTreeSet::new());
         for (k, row) in self.samples.iter().enumerate() {
-            model.evaluate_at(&row.request)?;
-            let condition_number = model.condition_number();
-            let state = model.evaluated();
+            let state = model.evaluate_at(&row.request)?;
+            let condition_number = state.condition_number();
             for (name, expected) in &row.values {
                 let Some(quantity) = StateQuantity::find(scene, name) else {
                     unknown.insert(format!("`{name}`"));

@@ -1,0 +1,142 @@
+//! A machine at one time and state, evaluated.
+
+use super::workspace::EquationWorkspace;
+use super::{Machine, NonconservativeSource};
+use crate::error::Result;
+use dwell_geometry::body_states::BodyStates;
+use dwell_kinetostatics::{
+    EvaluatedState, ForceState, InverseDynamics, KinematicState, Model, Workspace,
+};
+use dwell_numerics::Scalar;
+use std::ops::Deref;
+
+/// A machine at one time and state: the motion of all actuators, the drives' forces, the equation of motion solved.
+#[derive(Debug)]
+pub struct MachineState<'a, T = f64> {
+    pub(super) machine: &'a Machine,
+    pub(super) t: f64,
+    pub(super) forces: ForceState<'a, T>,
+    pub(super) equation: &'a mut EquationWorkspace<T>,
+}
+
+impl<'a, T> Deref for MachineState<'a, T> {
+    type Target = KinematicState<'a, T>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.forces
+    }
+}
+
+impl<T: Scalar> MachineState<'_, T> {
+    /// By actuator: its coordinate, rad or m.
+    pub fn q(&self) -> &[T] {
+        &self.equation.q
+    }
+
+    /// By actuator: its speed, per s.
+    pub fn q_dot(&self) -> &[T] {
+        &self.equation.q_dot
+    }
+
+    /// By actuator: its acceleration, per s².
+    pub fn q_ddot(&self) -> &[T] {
+        &self.equation.q_ddot
+    }
+
+    /// By drive: its force, N·m or N, before that which accelerates its rotor is taken off.
+    pub fn drive_forces(&self) -> &[T] {
+        &self.equation.drive_forces
+    }
+
+    /// The magnitudes of the loads, in the units of their kinds.
+    pub fn magnitudes(&self) -> &[T] {
+        self.forces.magnitudes()
+    }
+
+    /// The actuators' forces (zero on free coordinates) and the reactions of the machine's own model; none within the
+    /// window of a change-point fit.
+    pub fn inverse_dynamics(&self) -> &InverseDynamics<T> {
+        &self.equation.inverse_dynamics
+    }
+
+    /// The states of the bodies.
+    pub fn bodies(&mut self) -> &BodyStates<T> {
+        if self.machine.fit_at(self.equation.q.first()).is_some() {
+            // With the accelerations of the fit.
+            self.forces.bodies()
+        } else {
+            self.forces.bodies_at(&self.equation.q_ddot)
+        }
+    }
+
+    /// ẏ, into `out` of length [`Machine::state_count`].
+    pub fn derivative(&self, out: &mut [T]) {
+        let (machine, equation) = (self.machine, &*self.equation);
+        let n = machine.free.len();
+        for (k, &i) in machine.free.iter().enumerate() {
+            out[k] = equation.q_dot[i];
+            out[n + k] = equation.q_ddot[i];
+        }
+        let (drive_state_rates, powers) = out[2 * n..].split_at_mut(machine.drive_state_count);
+        drive_state_rates.copy_from_slice(&equation.drive_state_rates);
+        for (power, &source) in powers.iter_mut().zip(&machine.nonconservative_sources) {
+            *power = match source {
+                NonconservativeSource::Load(load) => self.forces.load_power(load),
+                NonconservativeSource::Drive(d) => {
+                    let [_, speed] = self.coordinate(machine.drives[d].measured);
+                    equation.drive_forces[d] * speed
+                }
+                NonconservativeSource::Prescribed(i) => {
+                    equation.inverse_dynamics.tau[i] * equation.q_dot[i]
+                }
+            };
+        }
+    }
+}
+
+impl MachineState<'_> {
+    /// The kinetic energy, with that of rotors and flywheels, and the potential of the conservative loads, J.
+    pub fn energy(&self) -> [f64; 2] {
+        let machine = self.machine;
+        let rotors = machine.drives.iter().map(|drive| {
+            let [_, speed] = self.coordinate(drive.measured);
+            0.5 * drive.reflected_inertia * speed * speed
+        });
+        let wheels = machine
+            .free
+            .iter()
+            .zip(&machine.flywheels)
+            .map(|(&i, inertia)| {
+                let speed = self.equation.q_dot[i];
+                0.5 * inertia * speed * speed
+            });
+        let kinetic = self.kinetic_energy() + rotors.sum::<f64>() + wheels.sum::<f64>();
+        let loads = 0..machine.model.loads().len();
+        let potentials = loads.filter_map(|load| self.potential_energy(load));
+        [kinetic, potentials.sum()]
+    }
+
+    /// Evaluates another model of the same mechanism and loads at this state: its reactions are then
+    /// in `result`. Within the window of a change-point
+    /// fit, a reaction that is not determined at the change point is not a number.
+    ///
+    /// # Errors
+    /// [`DynamicsError`](crate::DynamicsError) as of [`Machine::evaluate`].
+    pub fn outputs<'o>(
+        &self,
+        output_model: &'o Model,
+        workspace: &'o mut Workspace<f64>,
+        result: &'o mut InverseDynamics<f64>,
+    ) -> Result<EvaluatedState<'o>> {
+        if let Some(fit) = self.machine.fit_at(self.equation.q.first()) {
+            return self.outputs_on_fit(fit, output_model, workspace, result);
+        }
+        let equation = &*self.equation;
+        let state = output_model.kinematic_state(&equation.q, &equation.q_dot, workspace)?;
+        let mut state = state.apply_loads(self.t)?;
+        for drive in &self.machine.drives {
+            state.set_magnitude(drive.load, self.magnitudes()[drive.load]);
+        }
+        Ok(state.evaluate(&equation.q_ddot, result)?)
+    }
+}

@@ -1,0 +1,107 @@
+//! Everything at one state.
+
+use super::KinematicState;
+use crate::error::Result;
+use crate::load::{ForceSource, LoadState};
+use crate::model::{Model, Workspace};
+use crate::pass::InverseDynamics;
+use dwell_geometry::body_states::BodyStates;
+use dwell_geometry::{Motion, Pose};
+use dwell_numerics::Scalar;
+use std::ops::Deref;
+
+/// Everything is known: the accelerations of the bodies, all loads with friction, actuator forces and reactions.
+#[derive(Debug)]
+pub struct EvaluatedState<'a, T = f64> {
+    state: KinematicState<'a, T>,
+    result: &'a InverseDynamics<T>,
+}
+
+/// To read only: other accelerations would not fit the forces.
+impl<'a, T> Deref for EvaluatedState<'a, T> {
+    type Target = KinematicState<'a, T>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.state
+    }
+}
+
+impl Model {
+    /// A state whose pose and motion (with accelerations) `set` stores, and whose magnitudes of loads, actuator forces
+    /// and reactions are given.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where the two points of a load coincide.
+    pub fn given_state<'a, T: Scalar>(
+        &'a self,
+        q_dot: &[T],
+        magnitudes: &[T],
+        workspace: &'a mut Workspace<T>,
+        result: &'a InverseDynamics<T>,
+        set: impl FnOnce(&mut Pose<T>, &mut Motion<T>),
+    ) -> Result<EvaluatedState<'a, T>> {
+        let mut state = self.given_kinematic_state(q_dot, workspace, set);
+        let loads = &mut state.workspace.load_workspace.loads;
+        loads.magnitude.copy_from_slice(magnitudes);
+        state.update_wrenches()?;
+        Ok(EvaluatedState { state, result })
+    }
+}
+
+impl<'a, T: Scalar> EvaluatedState<'a, T> {
+    pub(super) fn new(state: KinematicState<'a, T>, result: &'a InverseDynamics<T>) -> Self {
+        Self { state, result }
+    }
+
+    /// The positions and velocities alone, for what else is to be evaluated there.
+    pub fn into_kinematic_state(self) -> KinematicState<'a, T> {
+        self.state
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        self.model
+    }
+
+    /// The states of the bodies.
+    pub fn bodies(&self) -> &BodyStates<T> {
+        &self.workspace.load_workspace.states
+    }
+
+    /// The loads: their magnitudes and wrenches.
+    pub fn loads(&self) -> &LoadState<T> {
+        &self.workspace.load_workspace.loads
+    }
+
+    /// The actuator forces and reactions.
+    pub fn inverse_dynamics(&self) -> &'a InverseDynamics<T> {
+        self.result
+    }
+}
+
+impl EvaluatedState<'_> {
+    /// Each load's generalised force by virtual work: `forces[load × actuators + i]` is the
+    /// sum of F·∂v/∂q̇ᵢ + M ∂ω/∂q̇ᵢ over its wrenches, N·m (or N if the coordinate is a length).
+    pub fn generalised_forces(&mut self, forces: &mut [f64]) {
+        let Workspace {
+            pose,
+            load_workspace: loaded,
+            ..
+        } = &mut *self.state.workspace;
+        let plan = self.state.model.plan();
+        forces.fill(0.0);
+        let n = plan.actuators();
+        for i in 0..n {
+            loaded.unit_velocity.fill(0.0);
+            loaded.unit_velocity[i] = 1.0;
+            plan.velocities(pose, &loaded.unit_velocity, &mut loaded.virtual_motion);
+            let states = &mut loaded.virtual_states;
+            states.fill(plan, pose, &loaded.virtual_motion);
+            for wrench in &loaded.loads.wrenches {
+                if let ForceSource::Load(load) = wrench.source {
+                    forces[load * n + i] += wrench.power(states);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! Positions and velocities.
+
+use super::LoadedState;
+use crate::error::Result;
+use crate::model::workspace::LoadWorkspace;
+use crate::model::{Model, Workspace};
+use crate::pass::{AtRest, GivenMotion, InertialBody, InverseDynamics, UnitAcceleration};
+use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
+use dwell_geometry::{BodyId, Motion, Pose, PositionError};
+use dwell_numerics::Scalar;
+
+/// The positions and velocities of all bodies are known. The passes from which the equation of motion and every
+/// reaction are composed need no more:
+///
+/// ```text
+/// method                          what is nonzero                  τ                 reaction k
+/// LoadedState::inverse_dynamics   q̇, known q̈, all loads           c − Q             R⁰
+/// mass_matrix_column              q̈ᵢ = 1                           column i of M     a_k,i
+/// unit_load_response              magnitude 1 of one load          −w_ℓ              c_k,ℓ
+/// christoffel_terms               q̇ᵢ q̇ⱼ                           Cᵢⱼ               b_k,ij
+/// ```
+///
+/// C are the Christoffel terms: c(q, q̇) = Σ Cᵢⱼ q̇ᵢ q̇ⱼ over i ≤ j. All passes share the pose, its factors and the states
+/// of the bodies.
+#[derive(Debug)]
+pub struct KinematicState<'a, T = f64> {
+    pub(crate) model: &'a Model,
+    pub(crate) workspace: &'a mut Workspace<T>,
+}
+
+impl Model {
+    /// Positions and velocities at coordinates `q` (rad or m) and their velocities `q_dot`.
+    ///
+    /// # Errors
+    /// [`PositionError`] when there is no pose at `q`.
+    pub fn kinematic_state<'a, T: Scalar>(
+        &'a self,
+        q: &[T],
+        q_dot: &[T],
+        workspace: &'a mut Workspace<T>,
+    ) -> Result<KinematicState<'a, T>, PositionError> {
+        let Workspace { pose, motion, .. } = &mut *workspace;
+        self.plan().positions(q, pose)?;
+        self.plan().velocities(pose, q_dot, motion);
+        Ok(KinematicState::new(self, q_dot, workspace))
+    }
+
+    /// Positions and velocities that `set` stores as pose and motion, where they come from elsewhere than
+    /// the coordinates: of a change-point fit.
+    pub fn given_kinematic_state<'a, T: Scalar>(
+        &'a self,
+        q_dot: &[T],
+        workspace: &'a mut Workspace<T>,
+        set: impl FnOnce(&mut Pose<T>, &mut Motion<T>),
+    ) -> KinematicState<'a, T> {
+        set(&mut workspace.pose, &mut workspace.motion);
+        KinematicState::new(self, q_dot, workspace)
+    }
+}
+
+impl<'a, T: Scalar> KinematicState<'a, T> {
+    fn new(model: &'a Model, q_dot: &[T], workspace: &'a mut Workspace<T>) -> Self {
+        workspace.load_workspace.q_dot.copy_from_slice(q_dot);
+        let mut state = Self { model, workspace };
+        state.fill_bodies();
+        state
+    }
+
+    /// The states of the bodies from pose and motion.
+    pub(super) fn fill_bodies(&mut self) {
+        let Workspace {
+            pose,
+            motion,
+            load_workspace: loaded,
+            ..
+        } = &mut *self.workspace;
+        loaded.states.fill(self.model.plan(), pose, motion);
+    }
+
+    /// The wrenches of the loads from their magnitudes.
+    pub(super) fn update_wrenches(&mut self) -> Result<()> {
+        let LoadWorkspace { states, loads, .. } = &mut self.workspace.load_workspace;
+        self.model.loads.update_wrenches(states, loads)
+    }
+
+    /// Inverse dynamics under all loads with the magnitudes that they have.
+    pub(super) fn loaded_pass(
+        &mut self,
+        q_ddot: &[T],
+        result: &mut InverseDynamics<T>,
+    ) -> Result<()> {
+        self.update_wrenches()?;
+        let Workspace {
+            pose,
+            motion,
+            pass,
+            load_workspace: loaded,
+            ..
+        } = &mut *self.workspace;
+        let model = &self.model.pass_model;
+        model.plan.accelerations(pose, q_ddot, motion);
+        pass.evaluate_loaded(model, pose, GivenMotion(motion), &mut loaded.loads);
+        result.read_from(model, pose, pass);
+        Ok(())
+    }
+
+    /// The pose.
+    pub fn pose(&self) -> &Pose<T> {
+        &self.workspace.pose
+    }
+
+    /// The value and the velocity of a coordinate of the mechanism, rad or m, per s.
+    pub fn coordinate(&self, coordinate: CoordinateFunction) -> [T; 2] {
+        let states = &self.workspace.load_workspace.states;
+        let [value, velocity, _] = states.coordinate(coordinate);
+        [value, velocity]
+    }
+
+    /// Whether the whole revolutions of a body are counted.
+    pub fn counts_revolutions(&self, body: BodyId) -> bool {
+        let states = &self.workspace.load_workspace.states;
+        states.body(body).angle.is_some()
+    }
+
+    /// The states of the bodies with the accelerations that follow from those of the coordinates, rad/s² or m/s².
+    pub fn bodies_at(&mut self, q_ddot: &[T]) -> &BodyStates<T> {
+        let Workspace { pose, motion, .. } = &mut *self.workspace;
+        self.model.plan().accelerations(pose, q_ddot, motion);
+        self.fill_bodies();
+        &self.workspace.load_workspace.states
+    }
+
+    /// The magnitudes of the loads at time `t` (s).
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where a load has no finite magnitude.
+    pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>> {
+        let LoadWorkspace { states, loads, .. } = &mut self.workspace.load_workspace;
+        self.model.loads.update_magnitudes(t, states, loads)?;
+        Ok(LoadedState::new(self))
+    }
+
+    /// Column i of the mass matrix, and a_k,i: q̈ᵢ = 1 (per s²) and nothing else.
+    pub fn mass_matrix_column(&mut self, i: usize, result: &mut InverseDynamics<T>) {
+        let Workspace {
+            pose,
+            pass,
+            load_workspace: loaded,
+            ..
+        } = &mut *self.workspace;
+        let model = &self.model.pass_model;
+        let motion = &mut loaded.virtual_motion;
+        loaded.unit_velocity.fill(T::from_f64(0.0));
+        loaded.unit_velocity[i] = T::from_f64(1.0);
+        model.plan.velocities(pose, &loaded.unit_velocity, motion);
+        pass.evaluate(model, pose, UnitAcceleration(motion));
+        result.read_from(model, pose, pass);
+    }
+
+    /// The response to one load alone of magnitude 1, at rest: τ = −w and the reactions c. Of a damper,
+    /// to one unit of its resistance (N or N·m).
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::NoDirection`](crate::KinetostaticsError::NoDirection) where its two points coincide.
+    pub fn unit_load_response(
+        &mut self,
+        load: usize,
+        result: &mut InverseDynamics<T>,
+    ) -> Result<()> {
+        let Workspace {
+            pose,
+            pass,
+            load_workspace: loaded,
+            ..
+        } = &mut *self.workspace;
+        let model = &self.model.pass_model;
+        let single = &mut loaded.single_load;
+        self.model
+            .loads
+            .unit_wrenches(load, &loaded.states, single)?;
+        pass.evaluate_loaded(model, pose, AtRest, single);
+        result.read_from(model, pose, pass);
+        Ok(())
+    }
+
+    /// The Christoffel terms of the velocities i and j, for q̇ᵢ q̇ⱼ = 1 per s²: with i = j, the pass at
+    /// unit velocity; else the pass at both unit velocities less those at each of them.
+    pub fn christoffel_terms(&mut self, [i, j]: [usize; 2], result: &mut InverseDynamics<T>) {
+        let Workspace {
+            pose,
+            pass,
+            load_workspace: loaded,
+            ..
+        } = &mut *self.workspace;
+        let model = &self.model.pass_model;
+        let rest = vec![T::from_f64(0.0); model.plan.actuators()];
+        let mut at = |coordinates: &[usize], result: &mut InverseDynamics<T>| {
+            let motion = &mut loaded.virtual_motion;
+            loaded.unit_velocity.fill(T::from_f64(0.0));
+            for &k in coordinates {
+                loaded.unit_velocity[k] = T::from_f64(1.0);
+            }
+            model.plan.velocities(pose, &loaded.unit_velocity, motion);
+            model.plan.accelerations(pose, &rest, motion);
+            pass.evaluate(model, pose, GivenMotion(motion));
+            result.read_from(model, pose, pass);
+        };
+        if i == j {
+            return at(&[i], result);
+        }
+        let mut single = self.model.result_buffer();
+        at(&[i, j], result);
+        for k in [i, j] {
+            at(&[k], &mut single);
+            result.add_scaled(&single, T::from_f64(-1.0));
+        }
+    }
+}
+
+impl KinematicState<'_> {
+    /// Kinetic energy ½ Σ m v² + I ω², J.
+    pub fn kinetic_energy(&self) -> f64 {
+        let states = &self.workspace.load_workspace.states;
+        let energy = |body: &InertialBody| {
+            let id = BodyId(body.body);
+            let velocity = states.point(id, self.model.masses[id.0].center).velocity;
+            let angular_velocity = states.body(id).angular_velocity;
+            0.5 * (body.mass * velocity.dot(velocity)
+                + body.inertia * angular_velocity * angular_velocity)
+        };
+        let bodies = self.model.pass_model.inertial_bodies.iter();
+        bodies.map(energy).sum()
+    }
+
+    /// The potential energy of a load, J; none if it is not [conservative](crate::Load::is_conservative). That of gravity
+    /// and of forces is zero at the ground's origin.
+    pub fn potential_energy(&self, load: usize) -> Option<f64> {
+        let states = &self.workspace.load_workspace.states;
+        self.model.loads.potential_energy(load, states)
+    }
+}

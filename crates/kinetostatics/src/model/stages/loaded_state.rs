@@ -1,0 +1,212 @@
+//! The loads, and inverse dynamics under them.
+
+use super::{EvaluatedState, KinematicState};
+use crate::error::{KinetostaticsError, Result};
+use crate::friction;
+use crate::load::{AppliedWrench, ForceSource, Magnitude};
+use crate::model::workspace::LoadWorkspace;
+use crate::pass::InverseDynamics;
+use dwell_geometry::Motion;
+use dwell_geometry::body_states::BodyStates;
+use dwell_numerics::Scalar;
+use std::ops::{Deref, DerefMut};
+
+/// The magnitudes of the loads are known; friction and separating forces are still zero, and so are external magnitudes
+/// until they are set.
+#[derive(Debug)]
+pub struct LoadedState<'a, T = f64>(KinematicState<'a, T>);
+
+/// The wrenches of the loads are known, and the accelerations of the mechanism where inverse dynamics led here.
+#[derive(Debug)]
+pub struct ForceState<'a, T = f64>(KinematicState<'a, T>);
+
+impl<'a, T> Deref for LoadedState<'a, T> {
+    type Target = KinematicState<'a, T>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl<T> DerefMut for LoadedState<'_, T> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}
+
+impl<'a, T> Deref for ForceState<'a, T> {
+    type Target = KinematicState<'a, T>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl<T> DerefMut for ForceState<'_, T> {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.0
+    }
+}
+
+impl<'a, T: Scalar> LoadedState<'a, T> {
+    pub(super) fn new(state: KinematicState<'a, T>) -> Self {
+        Self(state)
+    }
+
+    /// Sets the magnitude of a load of [`Magnitude::External`], in the unit of its kind.
+    pub fn set_magnitude(&mut self, load: usize, magnitude: T) {
+        self.0.workspace.load_workspace.loads.magnitude[load] = magnitude;
+    }
+
+    /// A magnitude of the signals of a load of [`Magnitude::External`], such as the voltage of a motor, at time `t` (s).
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::MagnitudeNotFinite`] where it has no finite value.
+    pub fn eval_magnitude(&mut self, load: usize, magnitude: &Magnitude, t: f64) -> Result<T> {
+        let LoadWorkspace { states, loads, .. } = &mut self.0.workspace.load_workspace;
+        let signals = &self.0.model.loads.compiled_signals[load];
+        let value = magnitude.eval_at_state(t, signals, states, &mut loads.signal_workspace);
+        if value.value().is_finite() {
+            Ok(value)
+        } else {
+            Err(KinetostaticsError::MagnitudeNotFinite { load })
+        }
+    }
+
+    /// The wrenches of the loads, without inverse dynamics.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    pub fn wrenches(mut self) -> Result<ForceState<'a, T>> {
+        self.0.update_wrenches()?;
+        Ok(ForceState(self.0))
+    }
+
+    /// The actuator forces and reactions of inertia and all loads with these accelerations (rad/s² or m/s²), without
+    /// friction.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    pub fn inverse_dynamics(
+        mut self,
+        q_ddot: &[T],
+        result: &mut InverseDynamics<T>,
+    ) -> Result<ForceState<'a, T>> {
+        self.0.loaded_pass(q_ddot, result)?;
+        Ok(ForceState(self.0))
+    }
+
+    /// The actuator forces and reactions of inertia and all loads with these accelerations (rad/s² or m/s²), with
+    /// friction: Jᵀ[λ; τ] = M ẍ + h − f.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError`] where a load has no direction, or friction jams the mechanism.
+    pub fn evaluate(
+        self,
+        q_ddot: &[T],
+        result: &'a mut InverseDynamics<T>,
+    ) -> Result<EvaluatedState<'a, T>> {
+        let mut state = self.inverse_dynamics(q_ddot, result)?;
+        state.0.fill_bodies();
+        if !state.model.dependent_loads.is_empty() {
+            let loaded = &mut state.0.workspace.load_workspace;
+            let mut responses = std::mem::take(&mut loaded.friction_responses);
+            let solved = state.solve_prescribed_friction(&mut responses, &result.reactions);
+            state.0.workspace.load_workspace.friction_responses = responses;
+            solved?;
+            state.0.loaded_pass(q_ddot, result)?;
+        }
+        Ok(EvaluatedState::new(state.0, result))
+    }
+}
+
+impl<T: Scalar> ForceState<'_, T> {
+    /// The magnitudes of the loads, in the units of their kinds.
+    pub fn magnitudes(&self) -> &[T] {
+        &self.0.workspace.load_workspace.loads.magnitude
+    }
+
+    /// Sets magnitudes of loads of [`Magnitude::External`], and the wrenches anew.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    pub fn set_magnitudes(&mut self, magnitudes: impl Iterator<Item = (usize, T)>) -> Result<()> {
+        let loads = &mut self.0.workspace.load_workspace.loads;
+        for (load, magnitude) in magnitudes {
+            loads.magnitude[load] = magnitude;
+        }
+        self.0.update_wrenches()
+    }
+
+    /// The power of a load, W.
+    pub fn load_power(&self, load: usize) -> T {
+        let LoadWorkspace { states, loads, .. } = &self.0.workspace.load_workspace;
+        let mut sum = T::from_f64(0.0);
+        for wrench in &loads.wrenches {
+            if wrench.source == ForceSource::Load(load) {
+                sum += wrench.power(states);
+            }
+        }
+        sum
+    }
+
+    /// The wrenches of the loads on the bodies.
+    pub fn wrenches(&self) -> &[AppliedWrench<T>] {
+        &self.0.workspace.load_workspace.loads.wrenches
+    }
+
+    /// The motion of frames and slides.
+    pub fn motion(&self) -> &Motion<T> {
+        &self.0.workspace.motion
+    }
+
+    /// The states of the bodies with the accelerations of the inverse dynamics.
+    pub fn bodies(&mut self) -> &BodyStates<T> {
+        self.0.fill_bodies();
+        &self.0.workspace.load_workspace.states
+    }
+
+    /// The states of the bodies with the motion that `set` stores, accelerations included.
+    pub fn bodies_with(&mut self, set: impl FnOnce(&mut Motion<T>)) -> &BodyStates<T> {
+        set(&mut self.0.workspace.motion);
+        self.bodies()
+    }
+
+    /// Solves for the [loads that depend on reactions](crate::Model::frictions): `frictionless` are the reactions without
+    /// them, and `responses[j]` what a unit of load j adds to each (its
+    /// [response](KinematicState::unit_load_response), with that of the free coordinates' accelerations). They
+    /// become the magnitudes of their loads, and the loads' wrenches are updated.
+    ///
+    /// # Errors
+    /// [`KinetostaticsError::SelfLocking`] where there is no unique solution.
+    pub fn solve_friction(
+        &mut self,
+        frictionless: &[T],
+        responses: &[InverseDynamics<T>],
+    ) -> Result<()> {
+        let LoadWorkspace {
+            states,
+            loads,
+            friction_workspace: solution,
+            ..
+        } = &mut self.0.workspace.load_workspace;
+        let frictions = &self.0.model.dependent_loads;
+        friction::solve(frictions, states, frictionless, responses, solution)?;
+        for (friction, force) in frictions.iter().zip(&solution.force) {
+            loads.magnitude[friction.load] = *force;
+        }
+        self.0.update_wrenches()
+    }
+
+    /// Solves for the frictions and separating forces of a prescribed motion, from the reactions without them.
+    fn solve_prescribed_friction(
+        &mut self,
+        responses: &mut [InverseDynamics<T>],
+        frictionless: &[T],
+    ) -> Result<()> {
+        for (load, response) in self.model.frictions().zip(&mut *responses) {
+            self.unit_load_response(load, response)?;
+        }
+        self.solve_friction(frictionless, responses)
+    }
+}
