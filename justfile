@@ -19,7 +19,7 @@ validate-slow: && size
 size:
     cargo run --release --example size
 
-# Deliberate faults, and which independent checks catch them: reports/mutations.png, .md and .txt
+# Deliberate faults, and which independent checks detect them: reports/mutations.png, .md and .txt
 [group('main')]
 mutations:
     cargo run --release --example mutations
@@ -32,12 +32,13 @@ alias faults := mutations
 test:
     cargo test --release --workspace
 
-# Format, lints with warnings denied, and no circle of imports between folders
+# Format, lints with warnings denied, no circle of imports between folders, and no long file or function without a reason
 [group('care')]
 lint:
     cargo fmt --all --check
     cargo clippy --release --workspace --all-targets -- -D warnings
     python3 tests/house/circles.py
+    python3 tests/house/sizes.py
 
 # Licences, sources, duplicates and advisories of the dependencies, by deny.toml. The tool: cargo install cargo-deny --locked
 [group('care')]

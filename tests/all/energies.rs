@@ -57,12 +57,12 @@ type Mutation = (&'static str, fn(&mut ClaimedStates), &'static str);
 
 const MUTATIONS: [Mutation; 8] = [
     (
-        "the sign of an action",
+        "the sign of an actuator force",
         |c| c.states[MUTATED_STATE].tau[0] *= -1.0,
         "state-lagrange",
     ),
     (
-        "a billionth of an action",
+        "a billionth of an actuator force",
         |c| c.states[MUTATED_STATE].tau[0] *= 1.0 + 1e-9,
         "state-lagrange",
     ),

@@ -164,9 +164,9 @@ fn what_has_no_closed_form_is_told_with_its_bodies() {
     for (name, text) in [
         ("class-three-six-bar", "they are no dyad"),
         ("stephenson-six-bar", "they are no dyad"),
-        ("cam", "a relation has a law"),
+        ("cam", "a coupling is given by a law"),
         ("parallelogram-three-cranks", "repeat each other"),
-        ("planetary", "loops and relations"),
+        ("planetary", "loops and couplings"),
         ("five-bar", "2 actuators"),
     ] {
         let scene = scene(name);

@@ -294,7 +294,11 @@ fn careless_scenes_are_cut_short_or_refused() {
         assert!(found.duration < 2.0, "{}", found.duration);
         let notes = found.motion_notes.join("; ");
         assert!(notes.contains("before its coordinate reaches"), "{notes}");
-        assert_eq!(notes.contains("set free"), more.is_empty(), "{notes}");
+        assert_eq!(
+            notes.contains("a free motion starts at"),
+            more.is_empty(),
+            "{notes}"
+        );
         assert!(found.points.len() > 20);
     }
     let still = "[bodies.ground]\npoints = { A = [0, 0], D = [4, 0] }\n[bodies.one]\npoints = { A = [0, 0], B = [3, 0] }\n\

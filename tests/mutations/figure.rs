@@ -74,7 +74,7 @@ fn operations(steps: &[(&'static str, Tally)]) -> Panel {
         };
         let min_checks = tally.min_checks.map_or("-".to_owned(), |n| n.to_string());
         let name = format!(
-            "{step}: {} felt, by {min_checks} or more",
+            "{step}: {} with an effect, detected by {min_checks} or more",
             tally.effective()
         );
         Row::new(name, (0..CHECKS.len()).map(cell).collect())

@@ -97,8 +97,8 @@ pub fn markdown(
 ) -> String {
     let mut out = String::from(
         "# Deliberate faults\n\n![Faults and checks](mutations.png)\n\nA fault is a wrapper around what is checked; production \
-         code holds none. A cell is the digits by which the difference exceeds the tolerance of the check; 0: it detects \
-         nothing; empty: it was not applied. Every fault is shown on the mechanism where the fewest checks detect it.\n\n",
+         code holds none. A cell is the digits by which the difference exceeds the tolerance of the check; 0: the check \
+         applies and does not detect the fault; empty: it does not apply. Every fault is shown on the mechanism where the fewest checks detect it.\n\n",
     );
     let _ = writeln!(out, "{}\n", summary(study));
     for gap in study.gaps() {
@@ -151,16 +151,16 @@ pub fn markdown(
     let _ = writeln!(out, "|---|---|---|---|---|{}", "---|".repeat(CHECKS.len()));
     for (function, tally) in functions {
         let min_checks = tally.min_checks.map_or("-".to_owned(), |n| n.to_string());
-        let caught = tally.detected.map(|n| n.to_string()).join(" | ");
+        let detected = tally.detected.map(|n| n.to_string()).join(" | ");
         let _ = writeln!(
             out,
-            "| {function} | {} | {} | {} | {min_checks} | {caught} |",
+            "| {function} | {} | {} | {} | {min_checks} | {detected} |",
             tally.mutations, tally.unchanged, tally.no_result
         );
     }
     let _ = writeln!(
         out,
-        "\n## Faults without effect\n\nThese change nothing that is checked on any mechanism: an initial guess of Newton's method or its \
+        "\n## Faults without effect on any result\n\nThese change nothing that is checked on any mechanism: an initial guess of Newton's method or its \
          Jacobian, a term that is zero by construction, a value that is not used.\n"
     );
     for result in study

@@ -208,7 +208,7 @@ impl Study {
                 gaps.push(format!("{}: a fault on no machine", row.description));
             } else if row.detection.check_count() < REQUIRED_CHECKS {
                 gaps.push(format!(
-                    "{} on {}: caught by [{}] only",
+                    "{} on {}: detected by [{}] only",
                     row.description,
                     row.mechanism,
                     row.detection.check_numbers()

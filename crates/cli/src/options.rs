@@ -20,12 +20,12 @@ pub(crate) struct Options {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Degrees of freedom, groups, assembly mode and range of a scene
+    /// Degrees of freedom, groups, assembly mode and range of the mechanism in a scene
     Check {
         /// The scene file
         scene: PathBuf,
     },
-    /// Reduced parameters over the range: table and figures
+    /// Reduced model (m, ½m′, a, b, w, c) over the range: table and figures
     Reduce {
         /// The scene file
         scene: PathBuf,
@@ -59,9 +59,9 @@ pub(crate) enum Command {
         /// Maximum step, s (default: no limit)
         #[arg(long, value_parser = parse_time, value_name = "SECONDS", allow_hyphen_values = true)]
         max_step: Option<f64>,
-        /// Required accuracy, instead of method and tolerance: in rad for angles, else relative to the largest value, such
-        /// as 1e-6; or draft (1e-3), standard (1e-6), precise (1e-9), reference (1e-10). The cheapest method that meets it
-        /// is used
+        /// Required accuracy, instead of method and tolerance. The cheapest method that meets it is chosen. In rad for
+        /// angles, otherwise relative to the largest value: a number such as 1e-6, or draft (1e-3), standard (1e-6),
+        /// precise (1e-9) or reference (1e-10)
         #[arg(long, value_parser = parse_accuracy, value_name = "ACCURACY", allow_hyphen_values = true,
               conflicts_with_all = ["method", "rtol", "atol", "max_step"])]
         accuracy: Option<f64>,
@@ -73,7 +73,7 @@ pub(crate) enum Command {
     Cycle {
         /// The scene file
         scene: PathBuf,
-        /// Target coefficient of speed fluctuation, such as 0.02; also sizes the flywheel for it
+        /// Target coefficient of speed fluctuation, such as 0.02; sizes the flywheel that reaches it
         #[arg(long, value_parser = parse_fluctuation, value_name = "RATIO", allow_hyphen_values = true)]
         fluctuation: Option<f64>,
         /// The integrator
@@ -112,13 +112,14 @@ pub(crate) enum Command {
         #[arg(long, value_name = "NAME")]
         reaction: Option<String>,
     },
-    /// Positions, velocities and accelerations along the prescribed motion, the sweep or the range
+    /// Positions, velocities and accelerations along the prescribed motion, the coordinate sweep or the range
     Kinematics(TrajectoryArgs),
     /// Actuator forces and reactions under the loads, at rest in each position
     Statics(TrajectoryArgs),
-    /// Actuator forces and reactions under loads and inertia, along the prescribed motion or the sweep
+    /// Actuator forces and reactions under loads and inertia, along the prescribed motion, the coordinate sweep or the
+    /// range
     Kinetostatics(TrajectoryArgs),
-    /// The value of a scene parameter that gives the free motion a target period
+    /// Find the value of a scene parameter that gives the free motion a target period
     Calibrate {
         /// The scene file
         scene: PathBuf,
@@ -143,7 +144,7 @@ pub(crate) enum Command {
             allow_hyphen_values = true
         )]
         vary: Vec<String>,
-        /// Number of random samples
+        /// Number of random samples for each combination of listed values
         #[arg(long, value_parser = parse_count, value_name = "COUNT", allow_hyphen_values = true)]
         samples: Option<u64>,
         /// Random seed
@@ -160,7 +161,7 @@ pub(crate) enum Command {
         /// Compute only this part of the points, such as 2/8, in a separate file
         #[arg(long, value_name = "PART/PARTS", allow_hyphen_values = true)]
         shard: Option<Shard>,
-        /// Compute nothing; only export the stored results, those of all shards included
+        /// Compute nothing; export the stored results, including those of all shards
         #[arg(long, value_parser = choice(TABLE_FORMATS), value_name = "FORMAT")]
         export: Option<TableFormat>,
     },
@@ -171,7 +172,7 @@ pub(crate) enum Command {
         /// Folder of the cases
         #[arg(long, default_value = DEFAULT_CASE_FOLDER, value_name = "FOLDER")]
         folder: PathBuf,
-        /// Include the extreme-parameter checks that take minutes
+        /// Include the extreme-parameter checks that take minutes, such as a hundred thousand revolutions
         #[arg(long)]
         slow: bool,
     },
@@ -186,7 +187,7 @@ pub(crate) const DEFAULT_CASE_FOLDER: &str = "validation";
 pub(crate) struct TrajectoryArgs {
     /// The scene file
     pub(crate) scene: PathBuf,
-    /// Number of positions, both ends included (default: that of the scene)
+    /// Number of positions, both ends included (default: the scene's `points`, or 361)
     #[arg(long, value_parser = clap::value_parser!(u32).range(2..=1_000_000), value_name = "COUNT", allow_hyphen_values = true)]
     pub(crate) points: Option<u32>,
 }

@@ -1,6 +1,6 @@
 //! Kinematics, forces, the reduced model and the motion of planar mechanisms.
 //!
-//! A mechanism is built in a program, or read from a scene file; it is assembled; and then it is asked.
+//! A mechanism is built in a program, or read from a scene file; it is assembled, and then its results are computed.
 //!
 //! ```
 //! use dwell::{Actuator, Mechanism};
@@ -14,7 +14,7 @@
 //! m.pin("A", "ground", "crank").pin("B", "crank", "coupler");
 //! m.pin("C", "coupler", "rocker").pin("D", "ground", "rocker");
 //! m.actuator("phi", Actuator::angle("ground", "crank"));
-//! m.assembly("phi", 1.0).assembly("rocker", 1.8); // the rocker's angle is a rough one: it selects the branch
+//! m.assembly("phi", 1.0).assembly("rocker", 1.8); // the rocker's angle is an initial guess: it selects the branch
 //! let four_bar = m.assemble()?;
 //!
 //! // The forces of a motion: crank at 60°, 20 rad/s, constant speed.
@@ -31,7 +31,7 @@
 //! # Ok::<(), dwell::Error>(())
 //! ```
 //!
-//! # What can be asked
+//! # What can be computed
 //!
 //! | question | call |
 //! |---|---|
@@ -45,8 +45,8 @@
 //!
 //! # Conventions
 //!
-//! SI everywhere: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. A reaction is the action of the joint's
-//! first-named body on the second. Points are written `body.point`, reactions `joint.component`. Coordinates are those of
+//! SI everywhere: m, rad, kg, s, N. Right-handed plane, angles counter-clockwise. A reaction is the force or moment of the
+//! joint's first-named body on the second. Points are written `body.point`, reactions `joint.component`. Coordinates are those of
 //! the actuators, in their order. A [`Mechanism`] and a [`ReducedModel`] are constant and shared between threads.
 //!
 //! A mechanism that is built in a program is a scene: [`MechanismBuilder::to_toml`] writes it for the `dwell` command, and

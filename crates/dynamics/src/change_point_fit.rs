@@ -47,7 +47,7 @@ pub enum ChangePointFitError {
     #[error("friction depends on reactions that are not determined at the change point")]
     Friction,
     /// It has couplings, which count whole revolutions.
-    #[error("a motion with gears or coupled coordinates is not continued through a change point")]
+    #[error("a motion with gears or couplings cannot pass a change point")]
     Couplings,
     /// There is no pose next to it.
     #[error(transparent)]

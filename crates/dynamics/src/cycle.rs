@@ -183,7 +183,7 @@ impl<'m> CycleProblem<'m> {
             return none("there is not just one free coordinate");
         };
         if !machine.model().plan().is_angle(free) {
-            return none("the free coordinate is a length and cannot turn");
+            return none("the free coordinate is a length, which makes no revolutions");
         }
         if machine.depends_on_time() {
             return none("a load, drive or prescribed motion changes with time");

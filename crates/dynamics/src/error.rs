@@ -33,7 +33,7 @@ pub enum DynamicsError {
     #[error(transparent)]
     Load(KinetostaticsError),
     /// The generalised inertia is not positive: a force has no finite acceleration.
-    #[error("the generalised inertia m is {m} kg m² at q = {q} rad: nothing resists there")]
+    #[error("the generalised inertia m is {m} kg m² at q = {q} rad: no body with mass moves there")]
     NoInertia {
         /// The coordinate, rad.
         q: f64,
@@ -114,7 +114,7 @@ pub enum DynamicsError {
     },
     /// The motion does not follow from energy alone: something does work that no potential accounts for, or there is
     /// not one degree of freedom.
-    #[error("the motion does not follow from its energy: {what}")]
+    #[error("the motion is not determined by its energy: {what}")]
     NotConservative {
         /// What it is.
         what: &'static str,

@@ -3,7 +3,7 @@
 //! ```text
 //! δẋ = A δx + B δu,    δz = C δx + D δu                            (1)
 //! x   coordinates and speeds of the free actuators, states of the drives
-//! u   by drive: its action, voltage or wanted speed
+//! u   by drive: its applied force, voltage or reference speed
 //! z   the free coordinates, their speeds, the reactions of the machine's model, the drives' actions
 //! ```
 //!

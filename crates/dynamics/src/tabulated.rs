@@ -35,7 +35,9 @@ use thiserror::Error;
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum TabulationError {
     /// More or less than one coordinate, or one that is prescribed.
-    #[error("a table is of one coordinate, which is free, not of {free} free ones of {actuators}")]
+    #[error(
+        "a tabulated machine needs one actuator, which must be free; this one has {actuators}, {free} of them free"
+    )]
     DegreesOfFreedom {
         /// Number of actuators.
         actuators: usize,
@@ -220,7 +222,7 @@ impl TabulatedMachine {
         self.potential.as_ref().map_or(Ok([0.0; 2]), |v| v.eval(q))
     }
 
-    /// Kinetic energy ½ m q̇² and potential V, J, as [`Machine::energy`].
+    /// Kinetic energy ½ m q̇² and potential V, J, as those of the machine.
     ///
     /// # Errors
     /// [`PositionError`] outside the table.

@@ -33,13 +33,13 @@ impl Plan {
         Some(angle + T::from_f64(offset))
     }
 
-    /// Whether [`counted_angle`](Self::counted_angle) gives a value for this body.
+    /// Whether the angle of this body is known over all revolutions: it is counted, or actuators alone determine it.
     pub fn counts_revolutions(&self, body: BodyId) -> bool {
         let frame = self.frames.orientations[body.0].frame;
         self.revolution_counted[frame] || self.frames.frames[frame].orientation_class == 0
     }
 
-    /// The angle of a frame that actuators alone revolution from the ground's, rad.
+    /// The angle of a frame that actuators alone rotate from the ground's, rad.
     fn actuated_angle<T: Scalar>(&self, mut frame: usize, pose: &Pose<T>) -> Option<T> {
         let mut angle = T::from_f64(0.0);
         loop {

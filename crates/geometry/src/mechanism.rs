@@ -46,7 +46,7 @@ pub struct Body {
 pub struct Joint {
     /// The name a message and a reaction use.
     pub name: String,
-    /// The first and the second body; a reaction is the action of the first on the second.
+    /// The first and the second body; a reaction is the force or moment of the first on the second.
     pub bodies: [BodyId; 2],
     /// The joint's point on each body, in that body's frame, in m.
     pub points: [Vec2; 2],
@@ -159,7 +159,7 @@ pub struct Coupling {
 pub struct Actuator {
     /// The name of the actuator and of its coordinate.
     pub name: String,
-    /// The first and the second body: the actuator's action τ is that of the first on the second.
+    /// The first and the second body: the actuator force τ is that of the first on the second.
     pub bodies: [BodyId; 2],
     /// Which of their coordinates it drives.
     pub kind: ActuatorKind,

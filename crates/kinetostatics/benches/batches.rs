@@ -123,6 +123,11 @@ fn compare(comparison: &Comparison, ordered: bool, threads: &Threads) {
             });
         }
     }
+    print_row(comparison.name, ordered, min_ns);
+}
+
+/// Nanoseconds, each beside its ratio to the closed form's.
+fn print_row(name: &str, ordered: bool, min_ns: [f64; 6]) {
     let [
         closed_form_latency,
         closed_form_throughput,
@@ -132,7 +137,7 @@ fn compare(comparison: &Comparison, ordered: bool, threads: &Threads) {
         all,
     ] = min_ns;
     let order = if ordered { "in order" } else { "in no order" };
-    print!("{:14}{order:12}", comparison.name);
+    print!("{name:14}{order:12}");
     print!(
         "{closed_form_latency:8.1}{latency:9.1}{:7.2}",
         latency / closed_form_latency

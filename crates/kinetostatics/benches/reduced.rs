@@ -19,6 +19,7 @@ use dwell_scene::Scene;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
+// Long: the list of what is measured, whose subjects borrow the models.
 fn main() {
     let dwell = Case::read("single-dwell");
     let normal: Vec<Reaction> = reactions(&dwell.scene, "slide.normal");
@@ -72,13 +73,13 @@ fn main() {
 
     let mut forces = vec![
         Subject::new(
-            "four-bar by hand: motion, action, reactions",
+            "four-bar by hand: motion, actuator force, reactions",
             FULL_REVOLUTION,
             |q| {
                 black_box(closed_form_four_bar.at(q, 8.0, 3.0));
             },
         ),
-        kinetostatics("four-bar: motion, action, all reactions", &bars.0),
+        kinetostatics("four-bar: motion, actuator force, all reactions", &bars.0),
         kinetostatics("… with a massless dyad that is modelled", &dyad.0),
         kinetostatics("… with a massless dyad that is skipped", &pruned),
         reduced("m and m'/2 with the dyad modelled", &without_reactions),

@@ -130,6 +130,7 @@ fn make(case: &str) {
     }
 }
 
+// Long: the list of what is measured, whose subjects borrow the table.
 fn measure(case: &str) {
     let exact = read(case, true);
     let made = Instant::now();
@@ -149,7 +150,7 @@ fn measure(case: &str) {
         Subject::new("bare cubic, m alone", |q| cubic.m(q)),
         Subject::new("bare cubic, m and m'/2", |q| cubic.both(q)),
         Subject::new("table, m and m'/2", |q| table.inertia(q, &mut ())),
-        Subject::new("… 1000 turns on", |q| {
+        Subject::new("… 1000 revolutions on", |q| {
             table.inertia(q + 1000.0 * TAU, &mut ())
         }),
         Subject::new("table, m, m'/2 and m''/2", |q| {

@@ -1,4 +1,4 @@
-//! Masses, loads, joint reactions and actuator actions of a mechanism, and its reduced model m(q) q̈ + ½m′(q) q̇² = Q. A
+//! Masses, loads, joint reactions and actuator forces of a mechanism, and its reduced model m(q) q̈ + ½m′(q) q̇² = Q. A
 //! [`Model`] is constant and shared between threads; an evaluation writes into a [`Workspace`] of one thread, by
 //! [stages](model::stages) that cannot be called in a wrong order.
 //!

@@ -114,7 +114,7 @@ pub enum TableError {
         accuracy: f64,
     },
     /// A domain that is empty, not finite or not inside the range.
-    #[error("a table cannot have the domain from {from} to {to}: it is empty, or leaves the range")]
+    #[error("the interval from {from} to {to} is empty or not within the range")]
     Domain {
         /// Lower end, rad or m.
         from: f64,
@@ -122,17 +122,17 @@ pub enum TableError {
         to: f64,
     },
     /// The range has no end and the mechanism is not periodic.
-    #[error("the range has no ends: give the limits of the table's domain")]
+    #[error("the range has no ends: give the interval of the table")]
     Unbounded,
     /// A coefficient that is not periodic, such as that of a spring that winds up.
-    #[error("{what} is not periodic: give the limits of the table's domain")]
+    #[error("{what} is not periodic: give the interval of the table")]
     NotPeriodic {
         /// Which.
         what: TableQuantity,
     },
     /// The coefficients of the series do not fall to the accuracy.
     #[error(
-        "not smooth enough for a table over this domain: {points} samples leave {residual:.1e} of the largest value"
+        "not smooth enough for a table over this interval: {points} samples leave {residual:.1e} of the largest value"
     )]
     NotSmooth {
         /// Samples taken.

@@ -1,7 +1,7 @@
 //! Functions of one variable with three derivatives, and expressions of named variables.
 //!
 //! A [`Law`] gives a quantity with its first three derivatives, exactly: a prescribed motion is
-//! needed as q, q̇ and q̈ at once, the motion through a cam one derivative further. An
+//! needed as q, q̇ and q̈ at once, a coupling (such as a cam's) one derivative further. An
 //! [`Expression`] is a formula of several names, as a load has it. Everything is checked when it
 //! is built; evaluation allocates nothing, cannot fail, and shows what is undefined as NaN or ±∞.
 //!

@@ -53,7 +53,7 @@ impl Animation {
     /// # Errors
     ///
     /// [`ReportError::NoFrames`]; [`ReportError::AnimationSize`] if the frames have no area, a side of more than 65 535 pixels or
-    /// more than 134 million pixels together; [`ReportError::Draw`], [`ReportError::Font`] and [`ReportError::Encode`] if
+    /// more than 134 million pixels together; [`ReportError::Draw`] and [`ReportError::Encode`] if
     /// a library refuses, which no data should bring about.
     pub fn gif(&self) -> Result<Vec<u8>, ReportError> {
         let pictures = self.pictures()?;

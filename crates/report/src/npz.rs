@@ -28,7 +28,7 @@ pub enum Array {
 }
 
 /// Named arrays as a NumPy archive (`.npz`): matrices are `<f8` of shape (rows, columns), words `<U`. Names become
-/// keys as those of [`Table::npz`].
+/// keys as those of [`TableExport::npz`](crate::TableExport::npz).
 ///
 /// # Errors
 ///

@@ -94,7 +94,7 @@ pub struct Requests {
     /// Names of the columns of the tables, each once; none: all of them. Whether they exist is for
     /// the level above to find out ([`SceneLocation::Variable`](crate::SceneLocation::Variable)).
     pub variables: Option<Vec<String>>,
-    /// Links whose inner forces are wanted.
+    /// Links whose internal forces are requested.
     pub sections: Vec<SectionRequest>,
 }
 
@@ -118,7 +118,7 @@ pub struct DwellRequest {
     pub relative_band: f64,
 }
 
-/// A line along a body, whose axial force, shear and bending moment are wanted.
+/// A line along a body, whose axial force, shear and bending moment are requested.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionRequest {
     /// The body, not the ground.

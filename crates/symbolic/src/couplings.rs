@@ -16,7 +16,7 @@ impl PositionFormulas<'_> {
     ) -> Result<(), SymbolicError> {
         let row = self.plan.coupling(coupling).clone();
         if row.law.is_some() {
-            return Err(self.unsupported(group, "a relation has a law"));
+            return Err(self.unsupported(group, "a coupling is given by a law"));
         }
         let angular = row.angular;
         let (mut known_terms, mut unknown_coefficient) = (zero(), zero());

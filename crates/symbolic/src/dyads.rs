@@ -56,7 +56,7 @@ impl PositionFormulas<'_> {
                 Ok(())
             }
             (.., []) => Err(self.unsupported(group, "they are no dyad")),
-            _ => Err(self.unsupported(group, "loops and relations are solved together")),
+            _ => Err(self.unsupported(group, "loops and couplings are solved together")),
         }
     }
 

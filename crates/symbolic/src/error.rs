@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SymbolicError {
     /// Not one coordinate.
-    #[error("closed forms are of one coordinate, and the mechanism has {0} actuators")]
+    #[error("closed forms need exactly one actuator; the mechanism has {0}")]
     ActuatorCount(usize),
     /// A group that is not a dyad, or another one without a closed form.
     #[error("a group has no closed form: {what}")]

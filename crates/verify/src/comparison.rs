@@ -65,9 +65,9 @@ impl LargestDifference {
         self.failure.get_or_insert(message);
     }
 
-    /// Records that the subject failed to answer.
+    /// Records that the subject failed.
     pub(crate) fn record_error(&mut self, error: &SubjectError) {
-        self.record_failure(format!("the subject failed to answer: {error}"));
+        self.record_failure(format!("the subject failed: {error}"));
     }
 
     /// The worse of two.

@@ -57,7 +57,7 @@ pub enum DenseError {
         last_step: f64,
     },
     /// Rows that repeat others are not met where these are.
-    #[error("rows that repeat others stay open by {residual:.1e} of the size")]
+    #[error("redundant rows have a residual of {residual:.1e} of the size")]
     RedundantRowsOpen {
         /// The largest residual, relative to the mechanism's size.
         residual: f64,

@@ -110,7 +110,7 @@ const VELOCITIES: FindingSpec<'_> = FindingSpec {
 };
 const ACCELERATIONS: FindingSpec<'_> = FindingSpec {
     key: "state-accelerations",
-    comparison: "the accelerations of all bodies with the solution of J x_ddot = q_ddot - curvature",
+    comparison: "the accelerations of all bodies with the solution of J x_ddot = q_ddot - velocity product",
     scale: "the largest acceleration or squared velocity over the size",
     ..VELOCITIES
 };

@@ -6,7 +6,7 @@
 pub struct SubjectError {
     /// The coordinate it was asked at, rad.
     pub q: f64,
-    /// Why, as it reads after "failed to answer:".
+    /// Why, as it reads after "the subject failed:".
     pub message: String,
 }
 

@@ -292,7 +292,7 @@ impl BodyBuilder<'_> {
     /// ```
     #[expect(
         clippy::return_self_not_must_use,
-        reason = "the point is added to the mechanism either way"
+        reason = "the point is added to the mechanism in any case"
     )]
     pub fn point(self, name: &str, position: [f64; 2]) -> Self {
         self.0.points = std::mem::take(&mut self.0.points).with(name, position);
@@ -307,7 +307,7 @@ impl BodyBuilder<'_> {
     /// ```
     #[expect(
         clippy::return_self_not_must_use,
-        reason = "the points are added to the mechanism either way"
+        reason = "the points are added to the mechanism in any case"
     )]
     pub fn bar(self, first: &str, second: &str, length: f64) -> Self {
         self.point(first, [0.0, 0.0]).point(second, [length, 0.0])
@@ -322,7 +322,7 @@ impl BodyBuilder<'_> {
     /// ```
     #[expect(
         clippy::return_self_not_must_use,
-        reason = "the mass is given to the mechanism either way"
+        reason = "the mass is given to the mechanism in any case"
     )]
     pub fn mass(self, mass: f64, center: impl Into<Value>, inertia: f64) -> Self {
         let keys = std::mem::take(&mut self.0.keys).with("mass", mass);

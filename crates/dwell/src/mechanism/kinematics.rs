@@ -208,7 +208,7 @@ impl InverseDynamics {
         &self.kinematics
     }
 
-    /// A reaction `joint.component`, N or N·m: the action of the joint's first-named body on the second. The
+    /// A reaction `joint.component`, N or N·m: the force or moment of the joint's first-named body on the second. The
     /// `magnitude` of a pin or a weld is the length of (x, y).
     ///
     /// # Errors

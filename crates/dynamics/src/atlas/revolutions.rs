@@ -26,7 +26,7 @@ impl Atlas<'_> {
                 continue;
             }
             let auxiliary = BodyId(mechanism.bodies.len());
-            let name = format!("turns of {}", mechanism.body_name(bodies[1]));
+            let name = format!("revolutions of {}", mechanism.body_name(bodies[1]));
             mechanism.bodies.push(Body { name: name.clone() });
             initial_guess.push(Some(states.angle(bodies)[0]));
             let joint = |kind| Joint {

@@ -48,7 +48,7 @@ pub struct Orientation {
 pub enum AngularConstraintSource {
     /// A slide or a weld, by its moment: index of the pair.
     Pair(usize),
-    /// An angular actuator, by its action.
+    /// An angular actuator, by its moment.
     Actuator(ActuatorId),
 }
 

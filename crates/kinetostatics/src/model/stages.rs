@@ -7,8 +7,9 @@
 //!     .evaluate(q̈)                 → EvaluatedState   + friction, accelerations of the bodies, all forces
 //! ```
 //!
-//! [`Model::kinetostatics`] and [`Model::statics`] take all of them at once. A later stage can do what a
-//! [`KinematicState`] can. A wrong order does not compile: inverse dynamics needs the loads,
+//! [`Model::kinetostatics`](crate::Model::kinetostatics) and [`Model::statics`](crate::Model::statics) take all of them
+//! at once. A later stage can do what a [`KinematicState`] can. A wrong order does not compile: inverse dynamics needs the
+//! loads,
 //!
 //! ```compile_fail,E0599
 //! # use dwell_kinetostatics::{Model, Workspace, InverseDynamics};

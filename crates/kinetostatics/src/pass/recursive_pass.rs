@@ -1,5 +1,5 @@
 //! `N` passes side by side at one pose: from the accelerations of every frame to inertia forces, multipliers,
-//! actuator actions and reactions. All of them share the pose and its factors.
+//! actuator forces and reactions. All of them share the pose and its factors.
 
 use super::PassModel;
 use super::acceleration::AccelerationInput;
@@ -368,7 +368,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
         }
     }
 
-    /// An actuator's action on its second body: the sum of the moments on the frames that it turns.
+    /// An actuator's force on its second body: the sum of the moments on the frames that it turns.
     #[inline(always)]
     pub(crate) fn tau(&self, model: &PassModel, actuator: usize) -> [T; N] {
         if let Some(slide) = model.reaction_sources.actuated_slides[actuator] {

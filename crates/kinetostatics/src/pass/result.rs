@@ -7,7 +7,7 @@ use dwell_numerics::Scalar;
 /// The actuators' actions and the requested reactions in one state of motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct InverseDynamics<T> {
-    /// By actuator: its action on its second body, N·m; of a length, N, positive when it pushes apart.
+    /// By actuator: its force on its second body, N·m; of a length, N, positive when it pushes apart.
     pub tau: Vec<T>,
     /// By requested reaction: N or N·m.
     pub reactions: Vec<T>,

@@ -8,7 +8,7 @@ use crate::model::stages::EvaluatedState;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{ActuatorId, BodyId, Joint, JointId, JointKind, Reaction, Vec2};
 
-/// Converts reactions and actuator actions into forces and couples on the bodies.
+/// Converts reactions and actuator forces into forces and couples on the bodies.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FreeBodyForces {
     joints: Vec<JointEntry>,
@@ -152,6 +152,7 @@ fn coupling_wrenches(
 }
 
 /// The wrenches of a joint on its two bodies.
+// One arm for each kind of joint.
 fn joint_wrenches(
     joint: &Joint,
     value: impl Fn(usize) -> f64,

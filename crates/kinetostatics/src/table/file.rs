@@ -44,10 +44,10 @@ pub enum FileError {
         loads: usize,
     },
     /// The text is no table.
-    #[error("this is no table: its first line is not `dwell-table` and a version")]
+    #[error("this is not a table file: its first line is not `dwell-table` and a version")]
     NotATable,
     /// An unknown version.
-    #[error("a table of version {found}: version {VERSION} is known")]
+    #[error("a table file of version {found}: only version {VERSION} can be read")]
     Version {
         /// What the file says.
         found: String,
@@ -56,7 +56,7 @@ pub enum FileError {
     #[error("the table is cut short: its last line, `check`, is missing")]
     Truncated,
     /// The sum in the last line is not that of the lines before.
-    #[error("the table was altered, or damaged: its sum does not agree")]
+    #[error("the table file was changed or damaged: its checksum is wrong")]
     ChecksumMismatch,
     /// A line that is not what the format asks for.
     #[error("line {line} of the table: expected {expected}")]
@@ -198,7 +198,7 @@ impl<'a> Reader<'a> {
         let none = [false, widths[0] == 0, widths[1] == 0];
         let mut pairs = cells.iter().zip(none);
         if pairs.any(|(&cells, none)| (cells == 0) != none) {
-            return Err(self.line_error("cells of whatever there is"));
+            return Err(self.line_error("cells of every function of the table, and of no other"));
         }
         let (both, ab, wc) = table_quantities(counts);
         let entries = [both.to_vec(), ab, wc].concat();
@@ -240,7 +240,8 @@ impl<'a> Reader<'a> {
         if whole && length > 0.0 && (from + length).is_finite() {
             Ok(Grid::new(from, length, revolutions, 1))
         } else {
-            let expected = "an extent that is not empty, and of whole turns if it repeats itself";
+            let expected =
+                "an interval that is not empty, and of whole revolutions if it repeats itself";
             Err(self.line_error(expected))
         }
     }

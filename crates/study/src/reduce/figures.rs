@@ -114,7 +114,8 @@ fn coefficient_figure(
         0 => "reaction".to_owned(),
         k => format!("reaction-{}", k + 1),
     };
-    let text = "Reaction = a q̈ + b q̇²: the action of the joint's first body on its second.";
+    let text =
+        "Reaction = a q̈ + b q̇²: the force or moment of the joint's first body on its second.";
     figure(
         prepared.scene,
         name,

@@ -61,10 +61,9 @@ pub(crate) fn figure(
     Ok((figure, note))
 }
 
-const HISTOGRAM: &str = "How often each result falls into equal steps; the band holds 95 % of the samples, from the \
-                         quantile of 2.5 to that of 97.5 %.";
+const HISTOGRAM: &str = "Histogram of each result; the band from the 2.5 % to the 97.5 % quantile holds 95 % of the samples.";
 
-const BAND: &str = "Mean of the samples at each value, and between which values 95 % of them lie.";
+const BAND: &str = "Mean of the samples at each value, with the band between the 2.5 % and the 97.5 % quantile, which holds 95 % of them.";
 
 fn method_text(prepared: &PreparedSweep<'_>, rows: &[Row]) -> String {
     let failed = rows.iter().filter(|row| row.result.message.is_some());

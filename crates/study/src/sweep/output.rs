@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! --vary … ── Axis ── Design: point k → values ─┐            (rayon, any order)
-//! scene, --result ── RequestedQuantities ─────────┴→ PointResult ── channel ── Store (one writer)
-//!                                                                        └→ Table, figures, summary
+//! scene, --result ── RequestedQuantities ───────┴→ PointResult ── channel ── Store (one writer)
+//!                                                                      └→ Table, figures, summary
 //! ```
 
 use super::export;

@@ -98,7 +98,7 @@ pub(crate) fn document(scene: &Scene, form: &ClosedForm) -> String {
     };
     let mut blocks = vec![
         Block::Text(format!(
-            "The coordinate is ${}$ ({}), in {}. Each line uses those above it. A prime is the derivative with respect to the \
+            "The coordinate is ${}$ ({}), in {}. Each line depends only on lines above it. A prime is the derivative with respect to the \
              coordinate. All quantities are in SI units.",
             of.latex, scene.mechanism.actuators[0].name, of.unit
         )),

@@ -243,7 +243,7 @@ impl<'a> Document<'a> {
         blocks.extend(self.internal_forces());
         blocks.push(Block::Heading("Columns".to_owned()));
         blocks.push(Block::Text(
-            "Reactions are the action of the joint's first body on its second. Names with `@body` are the \
+            "Reactions are the forces and moments of the joint's first body on its second. Names with `@body` are the \
              same force in the axes of that body. Speeds and accelerations are time derivatives."
                 .to_owned(),
         ));
@@ -295,7 +295,7 @@ impl<'a> Document<'a> {
         vec![
             Block::Heading("Internal forces".to_owned()),
             Block::Text(
-                "The action of the part towards the second point on the part towards the first: axial force \
+                "What the part towards the second point exerts on the part towards the first: axial force \
                  (positive in tension), shear force at +90° to it, and bending moment."
                     .to_owned(),
             ),

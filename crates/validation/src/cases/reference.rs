@@ -69,8 +69,10 @@ const KEYS: [&str; 12] = [
     "free_motion",
     "others_measured",
     "published",
-    "truths",
+    "confirmed",
 ];
+/// The former name of `confirmed`, which is still read.
+const FORMER_CONFIRMED: &str = "truths";
 /// The keys of a sample besides points, such as `P_m`, and angles, such as `theta_guide_rad`.
 const SAMPLE_KEYS: [&str; 5] = ["phi_rad", "phi_deg", "m1_kg_m2", "half_dm1", "reactions"];
 
@@ -115,8 +117,9 @@ impl Reference {
     }
 
     fn from_value(value: &Value, scene: &Scene) -> Result<Self, String> {
-        let fields = object(value, "the file")?;
-        check_keys(fields, &KEYS)?;
+        let mut fields = object(value, "the file")?.clone();
+        fields.remove(FORMER_CONFIRMED);
+        check_keys(&fields, &KEYS)?;
         let has_values = |s: &Value| s.get("values").is_some();
         let all = list(value, "samples")?;
         let (states, samples) = if all.iter().any(has_values) {

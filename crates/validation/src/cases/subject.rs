@@ -18,7 +18,7 @@ impl PlanSubject {
     /// Compiles a scene for all reactions.
     ///
     /// # Errors
-    /// As [`crate::PreparedScene::new`].
+    /// As [`reduced_model`].
     pub fn new(scene: &Scene) -> Result<Self, StudyError> {
         Ok(Self {
             mechanism: scene.mechanism.clone(),

@@ -22,13 +22,15 @@ pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure
     let tables =
         |p: &super::CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
     let hollow = match found.points.iter().any(tables) {
-        true => "; hollow: tables, once they are built; dashed: building the finest",
+        true => {
+            "; hollow: tables, without their build time; dashed: build time of the finest table"
+        }
         false => "",
     };
     let reference_error = found.reference.error;
     Figure {
         name: name.to_owned(),
-        title: "What accuracy costs".to_owned(),
+        title: "Work–precision diagram".to_owned(),
         caption: scene_caption(
             scene,
             &format!(
@@ -84,7 +86,7 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     if measure == CostMeasure::Time && build_time > 0.0 {
         marks.push(Mark::Horizontal {
             at: build_time,
-            label: "building the finest table".to_owned(),
+            label: "build time of the finest table".to_owned(),
         });
     }
     let (label_gap, cost) = match measure {

@@ -392,7 +392,7 @@ fn no_reference_error(
     if labels.is_empty() {
         return subject.explain(error);
     }
-    let help = "use a shorter `duration` or a less stiff model (a friction with a larger `regularization-speed`)";
+    let help = "use a shorter `duration` or a less stiff model (friction with a larger `regularization-speed`)";
     let message = "no two methods reach the end of this motion, so no error can be determined";
     let (message, help) = (message.to_owned(), Some(help.to_owned()));
     subject.scene.error(message, help, &labels).into()

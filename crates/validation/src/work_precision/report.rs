@@ -173,7 +173,7 @@ pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Docu
                 "error of",
                 "at most",
                 "by evaluations",
-                "by time, tables built",
+                "by time without build",
                 "by time with build",
             ],
             ErrorQuantity::ALL.into_iter().flat_map(|quantity| {
@@ -191,7 +191,7 @@ pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Docu
     ] {
         let cost = match measure {
             CostMeasure::Evaluations => "evaluations",
-            CostMeasure::Time => "time, tables built",
+            CostMeasure::Time => "time without build",
             CostMeasure::TimeWithBuild => "time with build",
         };
         let heading = format!("Front: {} over {cost}", quantity_name(quantity));
@@ -204,7 +204,7 @@ pub(super) fn document(scene: &Scene, found: &WorkPrecision, file: &str) -> Docu
         blocks.push(Block::Text(lines.join("\n")));
     }
     Document {
-        title: format!("What accuracy costs: {}", scene.title),
+        title: format!("Work–precision diagram: {}", scene.title),
         blocks,
     }
 }
@@ -248,7 +248,7 @@ fn quadrature(found: &WorkPrecision) -> String {
     };
     match found.quadrature() {
         Some(point) => format!(
-            "The motion follows from its energy: quadrature computes all of it with {} evaluations, in the time of {}, with errors of {}, {} and {}. No time-stepping method is competitive, so the Pareto fronts show integrators only.",
+            "The motion is determined by its energy: quadrature computes all of it with {} evaluations, in the time of {}, with errors of {}, {} and {}. No time-stepping method is competitive, so the Pareto fronts show integrators only.",
             point.cost.weighted_evaluations,
             digits(point.cost.time, 3),
             error(point, ErrorQuantity::Coordinate),
@@ -282,22 +282,22 @@ pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
         digits_or_dash(reference_error.reaction, 1)
     );
     for accuracy in ACCURACIES {
-        let [counted, once_built, with_build] = CostMeasure::ALL
+        let [counted, without_build, with_build] = CostMeasure::ALL
             .map(|measure| cheapest(found, ErrorQuantity::Coordinate, measure, accuracy));
-        let build_text = match once_built == with_build {
+        let build_text = match without_build == with_build {
             true => String::new(),
-            false => format!("; once tables are built {once_built}"),
+            false => format!("; time without build {without_build}"),
         };
         let unit = found.unit;
         let _ = writeln!(
             text,
-            "  {accuracy:.0e} {unit}: evaluations {counted}; time {with_build}{build_text}"
+            "  {accuracy:.0e} {unit}: evaluations {counted}; time with build {with_build}{build_text}"
         );
     }
     if let Some(point) = found.quadrature() {
         let _ = writeln!(
             text,
-            "  quadrature, since the motion follows from its energy: {} evaluations, in time {}",
+            "  quadrature, since the motion is determined by its energy: {} evaluations, in time {}",
             point.cost.weighted_evaluations,
             digits(point.cost.time, 3)
         );
@@ -307,7 +307,7 @@ pub(super) fn summary(scene: &Scene, found: &WorkPrecision) -> String {
     }
     if found.omitted.len() > 8 {
         let more = found.omitted.len() - 8;
-        let _ = writeln!(text, "  and {more} more, in the document");
+        let _ = writeln!(text, "  and {more} more, listed in the report");
     }
     text
 }

@@ -43,7 +43,7 @@ pub fn selected_case_reports(scenes: &[&Scene]) -> Result<Outcome, StudyError> {
     };
     let done: Vec<(Files, String)> = selected.par_iter().map(one).collect::<Result<_, _>>()?;
     let mut outcome = Outcome::default();
-    let mut text = "What accuracy costs\n".to_owned();
+    let mut text = "Work–precision study\n".to_owned();
     for (files, text_of_case) in done {
         outcome.files.extend("", files);
         text += &text_of_case;

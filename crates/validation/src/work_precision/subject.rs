@@ -170,7 +170,9 @@ fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, Stu
         }
     }
     let starts = texts.join(", ");
-    notes.push(format!("without [motion], it is set free at {starts}"));
+    notes.push(format!(
+        "without [motion], a free motion starts at {starts}"
+    ));
     Ok(free_scene)
 }
 
@@ -251,7 +253,7 @@ fn bound_duration(
 /// How much of a motion is integrated, and why.
 fn shortened_text(what: &str, end: f64, requested: f64, reason: &str) -> String {
     let [end, requested] = [end, requested].map(|t| digits(t, 6));
-    format!("integrated for {what}{end} of {requested} s{reason}")
+    format!("computed for {what}{end} of {requested} s{reason}")
 }
 
 /// The end of a motion that does not last as long as it should in its own coordinate.
@@ -265,9 +267,10 @@ fn shorten_before_end(
     let (fraction, reason) = match &motion.failure {
         // An event that ends the motion is no position where anything grows.
         None if one_chart => (1.0, "until an event ends it".to_owned()),
-        Some(DynamicsError::MaxStepsReached { max_steps, .. }) => {
-            (1.0, format!("reached in {max_steps} steps of a first run"))
-        }
+        Some(DynamicsError::MaxStepsReached { max_steps, .. }) => (
+            1.0,
+            format!("the time that {max_steps} steps of a preliminary run reach"),
+        ),
         Some(error) if one_chart => (KEPT_FRACTION, format!("short of its end ({error})")),
         _ => (
             KEPT_FRACTION,

@@ -24,7 +24,7 @@ const DIFFERENCES: FindingSpec<'_> = FindingSpec {
 };
 const POWER: FindingSpec<'_> = FindingSpec {
     key: "half-dm-power",
-    comparison: "half dm/dq with the sum of m v·a + I omega alpha at unit speed, by dense accelerations",
+    comparison: "half dm/dq with the sum of m v·a + I omega alpha at unit velocity, by dense accelerations",
     tolerance: 1e-13,
     tolerance_reason: "no step; two dense solutions in a row, and terms larger than their sum",
     ..DIFFERENCES

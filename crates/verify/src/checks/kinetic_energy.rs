@@ -23,14 +23,14 @@ const TOLERANCE: f64 = 1e-14;
 const WHOLE: FindingSpec<'_> = FindingSpec {
     key: "m-energy",
     check: Check::KineticEnergy,
-    comparison: "m with 2 E_c at unit speed, by dense velocities",
+    comparison: "m with 2 E_c at unit velocity, by dense velocities",
     scale: "the largest m",
     tolerance: TOLERANCE,
     tolerance_reason: "some ten roundings per body on either side, 45 units in the last place",
 };
 const VARYING: FindingSpec<'_> = FindingSpec {
     key: "m-energy-varying",
-    comparison: "m with 2 E_c at unit speed, without the bodies whose share is constant",
+    comparison: "m with 2 E_c at unit velocity, without the bodies whose share is constant",
     scale: "the largest part of m that varies",
     tolerance_reason: "as for m, and m itself is rounded with its constant part",
     ..WHOLE

@@ -38,7 +38,7 @@ const A: FindingSpec<'_> = FindingSpec {
 };
 const B: FindingSpec<'_> = FindingSpec {
     key: "b-released",
-    comparison: "every b with dm12/dq1 - half dm1/dq2, each constraint really opened and closed again",
+    comparison: "every b with dm12/dq1 - half dm1/dq2, each constraint opened and closed again",
     scale: "the largest b of the same unit",
     tolerance: 1e-11,
     tolerance_reason: "rounding of m1 and m12 over the shortest step that the extrapolation uses",

@@ -82,7 +82,7 @@ pub enum MultibodyError {
     },
     /// No friction found that fits the reactions it makes.
     #[error(
-        "at t = {t} s no friction force satisfies the friction law: the mechanism locks itself"
+        "at t = {t} s no friction force satisfies the friction law: the mechanism is self-locking"
     )]
     SelfLocking {
         /// Time, s.

@@ -44,7 +44,7 @@ const KINETIC_ENERGY: FindingSpec<'_> = FindingSpec {
 const LAGRANGE: FindingSpec<'_> = FindingSpec {
     key: "state-lagrange",
     check: Check::EnergySlope,
-    comparison: "actuator forces with d/dt dE/dq_dot - dE/dq - power of the loads at unit speed, by differences of E",
+    comparison: "actuator forces with d/dt dE/dq_dot - dE/dq - power of the loads at unit velocity, by differences of E",
     scale: "the largest of them or of the forces they balance, moments over the size",
     tolerance: 2e-11,
     tolerance_reason: "rounding of E over the shortest step that the extrapolation uses",
@@ -52,7 +52,7 @@ const LAGRANGE: FindingSpec<'_> = FindingSpec {
 const RELEASED: FindingSpec<'_> = FindingSpec {
     key: "state-released",
     check: Check::ReleasedConstraint,
-    comparison: "reactions with d/dt dE/dv - dE/dy - power of the loads at unit speed, each constraint opened as a coordinate y",
+    comparison: "reactions with d/dt dE/dv - dE/dy - power of the loads at unit velocity, each constraint opened as a coordinate y",
     ..LAGRANGE
 };
 

@@ -4,7 +4,7 @@ use super::{Keys, Law};
 use crate::value::Value;
 
 /// A joint of two bodies, or a coupling of two coordinates. A point is written `body.point`; an axis and an angle are
-/// in the frame of the first-named body. The reaction is the action of the first-named body on the second.
+/// in the frame of the first-named body. The reaction is the force or moment of the first-named body on the second.
 ///
 /// Each kind has a function for what it needs, and [`with`](Joint::with) for what it may have besides. The kinds and
 /// their keys are those of `docs/scene-format.md`.

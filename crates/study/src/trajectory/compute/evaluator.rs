@@ -196,6 +196,8 @@ impl<'a> PositionEvaluator<'a> {
         Ok(())
     }
 
+    /// The value of a column at the position that was evaluated last.
+    // One arm for each quantity.
     pub(crate) fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
         let (forces, states) = (&self.forces.results, &self.forces.body_states);
         let (unit_speed, balance) = (&self.unit_speed_states, &self.position.power_balance);

@@ -20,7 +20,7 @@ impl FigureContext<'_> {
             Some(self.chart_of_some(title, label, &curves)?.into())
         };
         let panels: Vec<Panel> = kinds.into_iter().filter_map(chart).collect();
-        let text = "Required actuator forces: the action of the first body on the second.";
+        let text = "Required actuator forces: the force or moment of the first body on the second.";
         self.figure_of_some("actuator-forces", "Actuator forces", text, panels)
     }
 
@@ -72,7 +72,7 @@ impl FigureContext<'_> {
                 0 => "reactions".to_owned(),
                 i => format!("reactions-{}", i + 1),
             };
-            let text = "The action of each joint's first body on its second.";
+            let text = "The force or moment of each joint's first body on its second.";
             self.figure(name, "Joint reactions", text, panels.to_vec())
         };
         let pages = panels.chunks(3).take(shown).enumerate();
