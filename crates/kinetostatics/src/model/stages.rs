@@ -43,10 +43,4 @@
 //! # }
 //! ```
 
-mod evaluated_state;
-mod kinematic_state;
-mod loaded_state;
-
-pub use evaluated_state::EvaluatedState;
-pub use kinematic_state::KinematicState;
-pub use loaded_state::{ForceState, LoadedState};
+pub use super::{EvaluatedState, ForceState, KinematicState, LoadedState};
