@@ -39,12 +39,6 @@ fn units(kind: LoadKind) -> [&'static str; 3] {
     }
 }
 
-/// The loads that have a w, with their indices.
-fn working(loads: &[Load]) -> impl Iterator<Item = (usize, &Load)> {
-    let all = loads.iter().enumerate();
-    all.filter(|(_, load)| load.does_work())
-}
-
 impl UnitLoadCurves {
     /// The unit of w of a load.
     pub fn unit(&self, load: usize) -> &'static str {
@@ -53,7 +47,8 @@ impl UnitLoadCurves {
 
     /// The indices of the loads that have a w.
     pub(crate) fn working(&self) -> impl Iterator<Item = usize> {
-        working(&self.loads).map(|(l, _)| l)
+        let all = 0..self.loads.len();
+        all.filter(|&l| self.loads[l].does_work())
     }
 
     /// The unit-load response at the coordinates `q` (rad); `None` without loads.
@@ -70,7 +65,10 @@ impl UnitLoadCurves {
             loads: scene.loads.clone(),
             rows: Vec::with_capacity(q.len()),
             potential: Vec::with_capacity(q.len()),
-            conservative: working(&scene.loads).any(|(_, load)| load.is_conservative()),
+            conservative: loads.clone().any(|l| {
+                let load = &scene.loads[l];
+                load.does_work() && load.is_conservative()
+            }),
         };
         for &q in q {
             let state = model.kinematic_state(&[q], &[1.0], &mut workspace);
@@ -100,7 +98,7 @@ impl UnitLoadCurves {
             all.push((Column::new("V", "J"), self.potential.clone()));
         }
         let value = |load: usize, k: usize| self.rows.iter().map(|row| row[load][k]).collect();
-        for (l, load) in working(&self.loads) {
+        for (l, load) in self.working().map(|l| (l, &self.loads[l])) {
             let [unit, ..] = units(load.kind);
             all.push((Column::new(format!("{}.w", load.name), unit), value(l, 0)));
         }
