@@ -7,7 +7,7 @@
 //!     .evaluate(q̈)                 → EvaluatedState   + friction, accelerations of the bodies, all forces
 //! ```
 //!
-//! [`Model::kinetostatics`] and [`Model::statics`] take all of them at once. A later stage can do what a
+//! [`Model::kinetostatics`](super::Model::kinetostatics) and [`Model::statics`](super::Model::statics) take all of them at once. A later stage can do what a
 //! [`KinematicState`] can. A wrong order does not compile: inverse dynamics needs the loads,
 //!
 //! ```compile_fail,E0599
