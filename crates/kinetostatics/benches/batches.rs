@@ -87,6 +87,7 @@ fn coordinates(round: usize, ordered: bool) -> Vec<f64> {
     all.map(|q| q.rem_euclid(TAU)).collect()
 }
 
+// Long because it lists what is measured.
 fn compare(comparison: &Comparison, ordered: bool, threads: &Threads) {
     let exact = &comparison.exact;
     let mut closed_form_values = vec![[0.0; 4]; EVALUATIONS];

@@ -19,6 +19,7 @@ use dwell_scene::Scene;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
+// Long because it lists what is measured.
 fn main() {
     let dwell = Case::read("single-dwell");
     let normal: Vec<Reaction> = reactions(&dwell.scene, "slide.normal");

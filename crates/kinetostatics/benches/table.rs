@@ -130,6 +130,7 @@ fn make(case: &str) {
     }
 }
 
+// Long because it lists what is measured.
 fn measure(case: &str) {
     let exact = read(case, true);
     let made = Instant::now();
