@@ -139,9 +139,7 @@ fn evaluation_step(path: &str, function: &str) -> Option<(usize, &'static str)> 
         ("kinetostatics", "friction", _) | ("kinetostatics", _, "solve_friction") => {
             (23, "friction")
         }
-        ("kinetostatics", "reduced" | "model/stages/kinematic_state", _) => {
-            (19, "unit accelerations")
-        }
+        ("kinetostatics", "reduced" | "model/kinematic_state", _) => (19, "unit accelerations"),
         ("geometry", "body_states", _) => (20, "states of bodies and distances"),
         ("kinetostatics", _, _) if module.starts_with("load") => (21, "loads"),
         ("laws", _, _) | ("numerics", "scalar", _) => (24, "laws and number types"),

@@ -202,7 +202,7 @@ impl<'s> Atlas<'s> {
     /// # Errors
     /// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. What
     /// ends the motion later is in [`ContinuedMotion::error`].
-    // One loop: what ends a segment decides, by all that the loop knows, how the next one begins.
+    // Long because it is one loop: what ends a segment decides how the next one begins.
     pub fn solve(
         &mut self,
         start: &OdeState,

@@ -50,7 +50,7 @@ fn check_interval(start: &OdeState, end: Option<f64>) -> Result<()> {
 /// # Errors
 /// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. An error that
 /// ends the integration later is in [`Termination::error`].
-// One function: the problem is a type of closures, which has no name and borrows what is counted and kept here.
+// Long because diffsol's problem is a type of closures, which has no name and borrows what is counted and kept here.
 pub fn integrate(
     system: &mut dyn OdeSystem,
     start: &OdeState,

@@ -222,7 +222,7 @@ impl TabulatedMachine {
         self.potential.as_ref().map_or(Ok([0.0; 2]), |v| v.eval(q))
     }
 
-    /// Kinetic energy ½ m q̇² and potential V, J, as those of the machine.
+    /// Kinetic energy ½ m q̇² and potential V, J, as [`MachineState::energy`](crate::MachineState::energy).
     ///
     /// # Errors
     /// [`PositionError`] outside the table.

@@ -19,7 +19,7 @@ use dwell_scene::Scene;
 use std::f64::consts::TAU;
 use std::hint::black_box;
 
-// Long: the list of what is measured, whose subjects borrow the models.
+// Long because it lists what is measured.
 fn main() {
     let dwell = Case::read("single-dwell");
     let normal: Vec<Reaction> = reactions(&dwell.scene, "slide.normal");

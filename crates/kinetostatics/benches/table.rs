@@ -130,7 +130,7 @@ fn make(case: &str) {
     }
 }
 
-// Long: the list of what is measured, whose subjects borrow the table.
+// Long because it lists what is measured.
 fn measure(case: &str) {
     let exact = read(case, true);
     let made = Instant::now();

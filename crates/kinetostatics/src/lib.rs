@@ -55,8 +55,7 @@ pub use load::{
     Signal,
 };
 pub use mass::Mass;
-pub use model::stages::{EvaluatedState, ForceState, KinematicState, LoadedState};
-pub use model::{Model, Workspace};
+pub use model::{EvaluatedState, ForceState, KinematicState, LoadedState, Model, Workspace};
 pub use pass::InverseDynamics;
 pub use reduced::{Batch, Coefficients, ExactModel, ExactWorkspace, Inertia, ReducedModel};
 pub use results::{

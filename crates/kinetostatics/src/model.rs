@@ -1,10 +1,16 @@
 //! A mechanism with masses and loads, ready to be evaluated.
 
+mod evaluated_state;
+mod kinematic_state;
 mod kinetostatics;
+mod loaded_state;
 mod revolutions;
 pub mod stages;
 mod workspace;
 
+pub use evaluated_state::EvaluatedState;
+pub use kinematic_state::KinematicState;
+pub use loaded_state::{ForceState, LoadedState};
 pub use workspace::Workspace;
 
 use crate::error::ModelError;

@@ -53,7 +53,7 @@ pub(super) type LoadEnd<T> = Option<(BodyId, Vec2<T>, Vec2<T>, T)>;
 
 /// The body, force, arm and couple at each end of a load of magnitude `f`; none where it has no
 /// direction.
-// One arm for each kind of load.
+// Long because it has one arm for each kind of load.
 pub(super) fn load_ends<T: Scalar>(
     kind: LoadKind,
     f: T,

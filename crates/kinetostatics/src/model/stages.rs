@@ -7,9 +7,8 @@
 //!     .evaluate(q̈)                 → EvaluatedState   + friction, accelerations of the bodies, all forces
 //! ```
 //!
-//! [`Model::kinetostatics`](crate::Model::kinetostatics) and [`Model::statics`](crate::Model::statics) take all of them
-//! at once. A later stage can do what a [`KinematicState`] can. A wrong order does not compile: inverse dynamics needs the
-//! loads,
+//! [`Model::kinetostatics`](super::Model::kinetostatics) and [`Model::statics`](super::Model::statics) take all of them at once. A later stage can do what a
+//! [`KinematicState`] can. A wrong order does not compile: inverse dynamics needs the loads,
 //!
 //! ```compile_fail,E0599
 //! # use dwell_kinetostatics::{Model, Workspace, InverseDynamics};
@@ -44,10 +43,4 @@
 //! # }
 //! ```
 
-mod evaluated_state;
-mod kinematic_state;
-mod loaded_state;
-
-pub use evaluated_state::EvaluatedState;
-pub use kinematic_state::KinematicState;
-pub use loaded_state::{ForceState, LoadedState};
+pub use super::{EvaluatedState, ForceState, KinematicState, LoadedState};

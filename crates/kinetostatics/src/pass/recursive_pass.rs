@@ -281,7 +281,7 @@ impl<T: Scalar, const N: usize> RecursivePass<T, N> {
 
     /// The couples that prismatic joints and actuators exert, where they are needed: each body's moment balance
     /// about its origin, before [`Self::transfer_joint_moments`].
-    // One function: it is inlined whole, and each part needs the same sources.
+    // Long because it is inlined whole, and each part needs the same sources.
     #[inline(always)]
     pub(crate) fn accumulate_joint_moments(
         &mut self,

@@ -152,7 +152,7 @@ fn coupling_wrenches(
 }
 
 /// The wrenches of a joint on its two bodies.
-// One arm for each kind of joint.
+// Long because it has one arm for each kind of joint.
 fn joint_wrenches(
     joint: &Joint,
     value: impl Fn(usize) -> f64,

@@ -201,6 +201,7 @@ impl<'a> PositionEvaluator<'a> {
     pub(crate) fn value(&self, quantity: Quantity, sample: &TrajectorySample) -> f64 {
         let (forces, states) = (&self.forces.results, &self.forces.body_states);
         let (unit_speed, balance) = (&self.unit_speed_states, &self.position.power_balance);
+        let joint_forces = &self.position.joint_forces;
         let component = |v: Vec2, axis: usize| if axis == 0 { v.x } else { v.y };
         match quantity {
             Quantity::Time => sample.t,
@@ -241,13 +242,10 @@ impl<'a> PositionEvaluator<'a> {
             Quantity::Reaction(k) => forces.reactions[k],
             Quantity::BodyFrameForce(joint, body, axis) => {
                 let rotation = states.body(body).rotation;
-                component(
-                    self.position.joint_forces[joint.0].rotate_inverse(rotation),
-                    axis,
-                )
+                component(joint_forces[joint.0].rotate_inverse(rotation), axis)
             }
-            Quantity::ForceMagnitude(joint) => self.position.joint_forces[joint.0].norm(),
-            Quantity::ForceDirection(joint) => self.position.joint_forces[joint.0].angle(),
+            Quantity::ForceMagnitude(joint) => joint_forces[joint.0].norm(),
+            Quantity::ForceDirection(joint) => joint_forces[joint.0].angle(),
             Quantity::ShakingForce(2) => self.position.shaking_wrench.moment,
             Quantity::ShakingForce(axis) => component(self.position.shaking_wrench.force, axis),
             Quantity::Power(PowerTerm::Actuators) => balance.actuators,

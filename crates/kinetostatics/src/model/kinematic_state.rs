@@ -1,9 +1,9 @@
 //! Positions and velocities.
 
-use super::LoadedState;
+use super::workspace::LoadWorkspace;
+use super::{LoadedState, Model, Workspace};
 use crate::error::Result;
-use crate::model::workspace::LoadWorkspace;
-use crate::model::{Model, Workspace};
+
 use crate::pass::{AtRest, GivenMotion, InertialBody, InverseDynamics, UnitAcceleration};
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Pose, PositionError};

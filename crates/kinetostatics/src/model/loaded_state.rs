@@ -1,10 +1,10 @@
 //! The loads, and inverse dynamics under them.
 
+use super::workspace::LoadWorkspace;
 use super::{EvaluatedState, KinematicState};
 use crate::error::{KinetostaticsError, Result};
 use crate::friction;
 use crate::load::{AppliedWrench, ForceSource, Magnitude};
-use crate::model::workspace::LoadWorkspace;
 use crate::pass::InverseDynamics;
 use dwell_geometry::Motion;
 use dwell_geometry::body_states::BodyStates;

@@ -1,9 +1,9 @@
 //! Everything at one state.
 
-use super::KinematicState;
+use super::{KinematicState, Model, Workspace};
 use crate::error::Result;
 use crate::load::{ForceSource, LoadState};
-use crate::model::{Model, Workspace};
+
 use crate::pass::InverseDynamics;
 use dwell_geometry::body_states::BodyStates;
 use dwell_geometry::{Motion, Pose};
