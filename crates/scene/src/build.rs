@@ -98,6 +98,7 @@ impl<'f, 'a> ParsedScene<'f, 'a> {
         fields.reject_unknown_keys(table("scene"));
         let section = |key| section(fields, key);
         let log = fields.log();
+        let (title, note) = (title(fields), text_of(fields, "note"));
         // Without bodies every other name would be unknown: one message is enough.
         let bodies = needed_section(fields, "bodies")?;
         let count = log.count();
@@ -173,8 +174,8 @@ impl<'f, 'a> ParsedScene<'f, 'a> {
         });
         Some(Self {
             fields,
-            title: title(fields),
-            note: text_of(fields, "note"),
+            title,
+            note,
             bodies,
             joints,
             actuators,

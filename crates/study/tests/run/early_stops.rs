@@ -252,7 +252,7 @@ fn where_the_search_gave_up_is_no_end_of_the_mechanism() {
         "{d:?}"
     );
     let far = analyse(
-        &scene(&format!("{RAM}d = [10, 100]")),
+        &scene(&format!("{RAM}d = [1, 100]")),
         Analysis::Statics,
         11,
     );
