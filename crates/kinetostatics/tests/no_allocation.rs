@@ -145,7 +145,7 @@ fn dependent_loads_allocate_nothing() {
     let text = include_str!("loads/separating.toml").to_owned() + friction;
     let scene = Scene::parse("test.toml", &text).expect("a scene");
     let model = model(&scene).model().clone();
-    let model = model.with_loads(scene.loads.clone()).expect("they fit");
+    let model = model.with_loads(scene.loads).expect("they fit");
     assert_eq!(model.frictions().len(), 2);
     let (mut workspace, mut result) = (model.workspace(), model.result_buffer());
     let spent = allocations("contact forces", true, || {

@@ -16,7 +16,9 @@ const STEP: f64 = 6e-6;
 /// It must be a smooth function of them where a motion passes: the integrators' Jacobians and linearised motions take
 /// its derivatives by central differences (about ten digits). Two are equal if they are the same function.
 #[derive(Clone)]
-pub struct MagnitudeFunction(Arc<dyn Fn(&[f64]) -> f64 + Send + Sync>);
+pub struct MagnitudeFunction(Arc<Function>);
+
+type Function = dyn Fn(&[f64]) -> f64 + Send + Sync;
 
 impl MagnitudeFunction {
     /// From a function or closure.

@@ -60,7 +60,7 @@ fn value(shape: &ValueShape) -> String {
             format!("table of a kind: {}", kinds.join(", "))
         }
         ValueShape::Either(shapes) => {
-            let mut shapes: Vec<_> = shapes.iter().map(|s| value(s)).collect();
+            let mut shapes: Vec<_> = shapes.iter().map(value).collect();
             shapes.dedup();
             shapes.join(", or ")
         }

@@ -237,13 +237,19 @@ impl DrawnPosition<'_> {
                     self.line(&at, self.pen(drawing.color(two), 5.0));
                     self.line(&[at[0], [end.x, end.y]], self.pen(drawing.color(one), 12.0));
                 }
-                JointKind::Prismatic { axes } => {
-                    if is_first || !joint.bodies.iter().any(|b| drawing.is_ground(*b)) {
-                        self.track(joint, axes[0], *travel);
-                    }
+                JointKind::Prismatic { axes }
+                    if is_first || !joint.bodies.iter().any(|b| drawing.is_ground(*b)) =>
+                {
+                    self.track(joint, axes[0], *travel);
                 }
                 JointKind::Distance { .. } => self.line(&at, self.pen(Paint::Grey, 4.0)),
-                _ => {}
+                // Pins are drawn on top of the bodies; of a slide, a slot or teeth one drawing is enough.
+                JointKind::Gear { .. }
+                | JointKind::Revolute
+                | JointKind::Slot { .. }
+                | JointKind::Prismatic { .. }
+                | JointKind::Weld { .. }
+                | JointKind::Coupling(_) => {}
             }
         }
         for actuator in mechanism

@@ -251,11 +251,7 @@ fn where_the_search_gave_up_is_no_end_of_the_mechanism() {
         (d[0] - low - 1e-3 * (high - low)).abs() < 1e-9 && d[10] == high,
         "{d:?}"
     );
-    let far = analyse(
-        &scene(&format!("{RAM}d = [1, 100]")),
-        Analysis::Statics,
-        11,
-    );
+    let far = analyse(&scene(&format!("{RAM}d = [1, 100]")), Analysis::Statics, 11);
     let Some(StudyError::Scene(error)) = far.early_stop else {
         panic!("it was followed without end");
     };

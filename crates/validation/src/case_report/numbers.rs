@@ -120,9 +120,12 @@ pub(super) fn tables(reduced: &ReducedAnalysis<'_>) -> Vec<(&'static str, Table)
     tables
 }
 
+/// A number of a run.
+type RunNumber = fn(&ToleranceRun) -> f64;
+
 /// Cost and errors of one method over its tolerances.
 fn tolerance_runs_table(motion: &CheckedFreeMotion, method: Method) -> Table {
-    let columns: [(&str, &str, fn(&ToleranceRun) -> f64); 8] = [
+    let columns: [(&str, &str, RunNumber); 8] = [
         ("tolerance", "", |r| r.tolerance),
         ("steps", "", |r| r.statistics.steps as f64),
         ("evaluations", "", |r| r.statistics.evaluations as f64),

@@ -102,7 +102,7 @@ impl Law {
     pub fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
         match self.0.0.first_mut() {
             Some((_, Value::Table(keys))) if key != "start" => {
-                keys.push((key.to_owned(), value.into()))
+                *keys = Keys(std::mem::take(keys)).with(key, value).0;
             }
             _ => self.0 = self.0.with(key, value),
         }

@@ -62,17 +62,20 @@ pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure
     }
 }
 
+/// A reaction's name, and its index among those of the model.
+type NamedReaction = (String, usize);
+
 /// Title, label and reactions, by name and index, of at most two panels of a unit. One reaction alone needs no name.
 fn reaction_panels(
     named: &[(String, &str)],
     unit: &str,
     noun: &str,
-) -> Vec<(String, String, Vec<(String, usize)>)> {
+) -> Vec<(String, String, Vec<NamedReaction>)> {
     let all = named.iter().enumerate().filter(|(_, (_, of))| *of == unit);
-    let all: Vec<(String, usize)> = all.map(|(k, (name, _))| (name.clone(), k)).collect();
+    let all: Vec<NamedReaction> = all.map(|(k, (name, _))| (name.clone(), k)).collect();
     let panels = all.len().div_ceil(MAX_CURVES).max(1);
     let per_panel = all.len().div_ceil(panels).max(1);
-    let panel = |group: &[(String, usize)]| match group {
+    let panel = |group: &[NamedReaction]| match group {
         [(name, k)] => (
             format!("Reaction {name}"),
             name.clone(),

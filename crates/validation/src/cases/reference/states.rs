@@ -90,6 +90,9 @@ const KINDS: [(QuantityKind, &str); 5] = [
     (QuantityKind::ActuatorForces, "actuator-forces"),
 ];
 
+/// A value with the kind of its quantity, by which its scale is found.
+type KindAndValue = (QuantityKind, ComparedValue);
+
 impl ReferenceStates {
     /// The largest value of a unit in all samples.
     fn scale(&self, scene: &Scene, unit: &str) -> f64 {
@@ -144,7 +147,7 @@ impl ReferenceStates {
         &self,
         scene: &Scene,
         model: &mut ModelStates<'_>,
-    ) -> Result<(Vec<(QuantityKind, ComparedValue)>, BTreeSet<String>), ValidationError> {
+    ) -> Result<(Vec<KindAndValue>, BTreeSet<String>), ValidationError> {
         let (mut values, mut unknown) = (Vec::new(), BTreeSet::new());
         for (k, row) in self.samples.iter().enumerate() {
             let state = model.evaluate_at(&row.request)?;
