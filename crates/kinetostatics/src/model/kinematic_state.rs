@@ -33,6 +33,7 @@ impl Model {
     ///
     /// # Errors
     /// [`PositionError`] when there is no pose at `q`.
+    #[inline]
     pub fn kinematic_state<'a, T: Scalar>(
         &'a self,
         q: &[T],
@@ -59,6 +60,7 @@ impl Model {
 }
 
 impl<'a, T: Scalar> KinematicState<'a, T> {
+    #[inline]
     fn new(model: &'a Model, q_dot: &[T], workspace: &'a mut Workspace<T>) -> Self {
         workspace.load_workspace.q_dot.copy_from_slice(q_dot);
         let mut state = Self { model, workspace };
@@ -67,6 +69,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     }
 
     /// The states of the bodies from pose and motion.
+    #[inline]
     pub(super) fn fill_bodies(&mut self) {
         let Workspace {
             pose,
@@ -78,12 +81,14 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     }
 
     /// The wrenches of the loads from their magnitudes.
+    #[inline]
     pub(super) fn update_wrenches(&mut self) -> Result<()> {
         let LoadWorkspace { states, loads, .. } = &mut self.workspace.load_workspace;
         self.model.loads.update_wrenches(states, loads)
     }
 
     /// Inverse dynamics under all loads with the magnitudes that they have.
+    #[inline]
     pub(super) fn loaded_pass(
         &mut self,
         q_ddot: &[T],
@@ -110,6 +115,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     }
 
     /// The value and the velocity of a coordinate of the mechanism, rad or m, per s.
+    #[inline]
     pub fn coordinate(&self, coordinate: CoordinateFunction) -> [T; 2] {
         let states = &self.workspace.load_workspace.states;
         let [value, velocity, _] = states.coordinate(coordinate);
@@ -134,6 +140,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     ///
     /// # Errors
     /// [`KinetostaticsError::MagnitudeNotFinite`](crate::KinetostaticsError::MagnitudeNotFinite) where a load has no finite magnitude.
+    #[inline]
     pub fn apply_loads(self, t: f64) -> Result<LoadedState<'a, T>> {
         let LoadWorkspace { states, loads, .. } = &mut self.workspace.load_workspace;
         self.model.loads.update_magnitudes(t, states, loads)?;
@@ -141,6 +148,7 @@ impl<'a, T: Scalar> KinematicState<'a, T> {
     }
 
     /// Column i of the mass matrix, and a_k,i: q̈ᵢ = 1 (per s²) and nothing else.
+    #[inline]
     pub fn mass_matrix_column(&mut self, i: usize, result: &mut InverseDynamics<T>) {
         let Workspace {
             pose,

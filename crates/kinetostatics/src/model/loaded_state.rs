@@ -49,6 +49,7 @@ impl<T> DerefMut for ForceState<'_, T> {
 }
 
 impl<'a, T: Scalar> LoadedState<'a, T> {
+    #[inline]
     pub(super) fn new(state: KinematicState<'a, T>) -> Self {
         Self(state)
     }
@@ -87,6 +88,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
     ///
     /// # Errors
     /// [`KinetostaticsError::NoDirection`] where the two points of a load coincide.
+    #[inline]
     pub fn inverse_dynamics(
         mut self,
         q_ddot: &[T],
@@ -122,6 +124,7 @@ impl<'a, T: Scalar> LoadedState<'a, T> {
 
 impl<T: Scalar> ForceState<'_, T> {
     /// The magnitudes of the loads, in the units of their kinds.
+    #[inline]
     pub fn magnitudes(&self) -> &[T] {
         &self.0.workspace.load_workspace.loads.magnitude
     }

@@ -7,6 +7,7 @@
 //!     .evaluate(q̈)                 → EvaluatedState   + friction, accelerations of the bodies, all forces
 //! ```
 //!
+//! Small steps are inlined into the crates above: without that the equation of motion of a loaded machine takes a tenth longer.
 //! [`Model::kinetostatics`](super::Model::kinetostatics) and [`Model::statics`](super::Model::statics) take all of them at once. A later stage can do what a
 //! [`KinematicState`] can. A wrong order does not compile: inverse dynamics needs the loads,
 //!
