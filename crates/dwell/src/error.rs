@@ -34,7 +34,7 @@ pub enum Error {
         help: String,
     },
     /// A list of coordinates, velocities or accelerations that does not have one number for each actuator.
-    #[error("{given} numbers given as {what}, but the mechanism has {actuators} actuators")]
+    #[error("{given} numbers given as {what}, where {actuators} are needed: one for each actuator")]
     Count {
         /// Which list.
         what: &'static str,
@@ -42,6 +42,14 @@ pub enum Error {
         given: usize,
         /// How many it needs.
         actuators: usize,
+    },
+    /// Two parts of one name in a section of a builder.
+    #[error("`{name}` is given twice among the {section}")]
+    GivenTwice {
+        /// The section: joints, loads, drives …
+        section: &'static str,
+        /// The name.
+        name: String,
     },
     /// A table that cannot be made or written.
     #[error("{0}")]
@@ -72,6 +80,7 @@ impl Error {
             Self::Study(_)
             | Self::Unknown { .. }
             | Self::Count { .. }
+            | Self::GivenTwice { .. }
             | Self::Table(_)
             | Self::OutOfTable { .. } => None,
         }

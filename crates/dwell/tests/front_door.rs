@@ -276,7 +276,14 @@ fn mistakes_are_named() {
     let count = bob.positions(&[0.0, 1.0]).map(|_| ()).map_err(text);
     assert_eq!(
         count,
-        Err("2 numbers given as coordinates, but the mechanism has 1 actuators".to_owned())
+        Err("2 numbers given as coordinates, where 1 are needed: one for each actuator".to_owned())
+    );
+    let mut twice = pendulum(Motion::seconds(1.0));
+    twice.load("weight", Load::torque("bob", 1.0));
+    let error = twice.assemble().map(|_| ()).map_err(text);
+    assert_eq!(
+        error,
+        Err("`weight` is given twice among the loads".to_owned())
     );
     let signal = {
         let mut m = pendulum(Motion::seconds(1.0));

@@ -32,6 +32,8 @@ pub struct MechanismBuilder {
     /// The other sections, in the order of the file, each with its entries.
     sections: Vec<(&'static str, Keys)>,
     functions: Vec<(String, LoadFunction)>,
+    /// The parts that were given a second time: section and name.
+    given_twice: Vec<(&'static str, String)>,
 }
 
 /// The keys of one body.
@@ -48,6 +50,7 @@ impl MechanismBuilder {
             bodies: Vec::new(),
             sections: Vec::new(),
             functions: Vec::new(),
+            given_twice: Vec::new(),
         }
     }
 
@@ -233,6 +236,10 @@ impl MechanismBuilder {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn scene(&self) -> Result<Scene, Error> {
+        if let Some((section, name)) = self.given_twice.first() {
+            let (section, name) = (*section, name.clone());
+            return Err(Error::GivenTwice { section, name });
+        }
         let mut scene = Scene::parse(&self.to_toml())?;
         for (load, (signals, function)) in &self.functions {
             scene = scene.with_load_function(load, signals, function)?;
@@ -263,6 +270,10 @@ impl MechanismBuilder {
             self.sections.len() - 1
         });
         let (_, entries) = &mut self.sections[index];
+        let is_part = !matches!(section, "assembly" | "prescribed" | "requests");
+        if is_part && entries.0.iter().any(|(known, _)| known == name) {
+            self.given_twice.push((section, name.to_owned()));
+        }
         *entries = std::mem::take(entries).with(name, value);
         self
     }

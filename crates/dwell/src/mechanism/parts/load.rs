@@ -68,6 +68,12 @@ impl From<f64> for Magnitude {
     }
 }
 
+impl From<String> for Magnitude {
+    fn from(expression: String) -> Self {
+        expression.as_str().into()
+    }
+}
+
 impl From<&str> for Magnitude {
     fn from(expression: &str) -> Self {
         Self {
