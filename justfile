@@ -57,6 +57,12 @@ bench:
 peers:
     python3 validation/peers/run.py
 
+# What takes too long for each change: 1e5 revolutions, new random draws in every property, peers, the dependencies' advisories
+[group('care')]
+nightly: validate-slow mutations
+    PROPTEST_CASES=2000 cargo test --release --workspace
+    just peers deny
+
 # What the build server runs
 [group('care')]
 ci: lint test validate

@@ -51,12 +51,13 @@
 //!
 //! A mechanism that is built in a program is a scene: [`MechanismBuilder::to_toml`] writes it for the `dwell` command, and
 //! every key of a joint, load, law, drive or friction
-//! that has no function here is set with its `with`. Sections without a function, such as `[coordinate-sweep]`, are appended to that text,
-//! which [`Scene::parse`] reads.
+//! that has no function here is set with its `with`. Sections without a function, such as `[coordinate-sweep]`, are given as text
+//! to [`MechanismBuilder::toml`].
 //!
 //! More programs are in the folder `examples`: reactions of a four-bar, the single-dwell study, the flywheel of a press,
 //! equilibrium and eigenfrequencies, a tolerance study, and loads of one's own.
 
+mod column_table;
 mod error;
 mod machine;
 mod mechanism;

@@ -1,9 +1,9 @@
 //! Motions in time: along a prescribed motion, and free.
 
+use crate::column_table::ColumnTable;
 use crate::error::Error;
 use crate::mechanism::Mechanism;
 use dwell_dynamics::{Method, Orbit};
-use dwell_findings::Column;
 use dwell_study::free_motion::compute::FreeMotionProblem;
 use dwell_study::trajectory::compute::ComputedTrajectory;
 use dwell_study::{
@@ -188,8 +188,7 @@ impl Solver {
 /// ```
 #[derive(Debug)]
 pub struct MotionResults {
-    columns: Vec<Column>,
-    rows: Vec<Vec<f64>>,
+    table: ColumnTable,
     /// The events that happened: time, s, and name.
     pub events: Vec<(f64, String)>,
     /// The estimated error, where an accuracy was required.
@@ -201,8 +200,10 @@ pub struct MotionResults {
 impl MotionResults {
     fn new(computed: ComputedTrajectory<'_>) -> Self {
         Self {
-            columns: computed.table.columns,
-            rows: computed.table.rows,
+            table: ColumnTable {
+                columns: computed.table.columns,
+                rows: computed.table.rows,
+            },
             events: Vec::new(),
             estimated_error: None,
             early_stop: computed.early_stop.map(Error::from),
@@ -217,9 +218,7 @@ impl MotionResults {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn columns(&self) -> impl Iterator<Item = (&str, &str)> + Clone {
-        self.columns
-            .iter()
-            .map(|c| (c.name.as_str(), c.unit.as_str()))
+        self.table.columns()
     }
 
     /// A column.
@@ -234,9 +233,6 @@ impl MotionResults {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn column(&self, name: &str) -> Result<Vec<f64>, Error> {
-        let found = self.columns.iter().position(|c| c.name == name);
-        let names = self.columns().map(|(name, _)| name);
-        let k = found.ok_or_else(|| Error::unknown("column", "columns", name, names))?;
-        Ok(self.rows.iter().map(|row| row[k]).collect())
+        self.table.column(name)
     }
 }

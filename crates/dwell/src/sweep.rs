@@ -1,8 +1,8 @@
 //! Many variants of one scene.
 
+use crate::column_table::ColumnTable;
 use crate::error::Error;
 use crate::mechanism::scene::Scene;
-use dwell_findings::Column;
 use dwell_study::sweep::compute_sweep;
 
 /// A parameter sweep: numbers of a scene over grids, lists or at random, and results of every combination, computed on all
@@ -101,8 +101,10 @@ impl Sweep {
         let scene = self.scene.inner();
         let swept = compute_sweep(scene, &self.vary, self.samples, self.seed, &self.results)?;
         Ok(SweepResults {
-            columns: swept.table.columns,
-            rows: swept.table.rows,
+            table: ColumnTable {
+                columns: swept.table.columns,
+                rows: swept.table.rows,
+            },
             messages: swept.messages,
         })
     }
@@ -119,8 +121,7 @@ impl Sweep {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct SweepResults {
-    columns: Vec<Column>,
-    rows: Vec<Vec<f64>>,
+    table: ColumnTable,
     /// By row: why results are missing.
     pub messages: Vec<Option<String>>,
 }
@@ -135,9 +136,7 @@ impl SweepResults {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn columns(&self) -> impl Iterator<Item = (&str, &str)> + Clone {
-        self.columns
-            .iter()
-            .map(|c| (c.name.as_str(), c.unit.as_str()))
+        self.table.columns()
     }
 
     /// A column.
@@ -152,9 +151,6 @@ impl SweepResults {
     /// # Ok::<(), dwell::Error>(())
     /// ```
     pub fn column(&self, name: &str) -> Result<Vec<f64>, Error> {
-        let found = self.columns.iter().position(|c| c.name == name);
-        let names = self.columns().map(|(name, _)| name);
-        let k = found.ok_or_else(|| Error::unknown("column", "columns", name, names))?;
-        Ok(self.rows.iter().map(|row| row[k]).collect())
+        self.table.column(name)
     }
 }

@@ -31,6 +31,8 @@ pub struct MechanismBuilder {
     bodies: Vec<(String, BodyKeys)>,
     /// The other sections, in the order of the file, each with its entries.
     sections: Vec<(&'static str, Keys)>,
+    /// Text of the scene format, after everything else.
+    text: String,
     functions: Vec<(String, LoadFunction)>,
     /// The parts that were given a second time: section and name.
     given_twice: Vec<(&'static str, String)>,
@@ -49,6 +51,7 @@ impl MechanismBuilder {
             title: title.to_owned(),
             bodies: Vec::new(),
             sections: Vec::new(),
+            text: String::new(),
             functions: Vec::new(),
             given_twice: Vec::new(),
         }
@@ -64,7 +67,8 @@ impl MechanismBuilder {
         self.body("ground")
     }
 
-    /// A body, new or already there, to which points and a mass can be added.
+    /// A body, new or already there, to which points and a mass can be added. What it returns borrows the mechanism:
+    /// end the statement before the next part is added.
     ///
     /// ```
     /// let mut m = dwell::Mechanism::builder("Four-bar");
@@ -198,6 +202,25 @@ impl MechanismBuilder {
         self.add("requests", "reactions", reactions.to_vec())
     }
 
+    /// Appends text of the scene format: sections that have no function here, as `docs/scene-format.md` describes them.
+    /// An error in it is found by [`scene`](MechanismBuilder::scene).
+    ///
+    /// ```
+    /// # let mut m = dwell::Mechanism::builder("Pendulum");
+    /// # m.ground().point("O", [0.0, 0.0]);
+    /// # m.body("bob").bar("O", "P", 0.5).mass(2.0, "P", 0.0);
+    /// # m.pin("O", "ground", "bob").actuator("phi", dwell::Actuator::angle("ground", "bob"));
+    /// m.toml("[coordinate-sweep]\nphi = [0.0, 1.5]\npoints = 46\nspeed = 10.0");
+    /// let sweep = m.assemble()?.kinetostatics()?;
+    /// assert_eq!(sweep.column("phi")?.len(), 46);
+    /// # Ok::<(), dwell::Error>(())
+    /// ```
+    pub fn toml(&mut self, text: &str) -> &mut Self {
+        self.text += "\n";
+        self.text += text;
+        self
+    }
+
     /// The mechanism as the text of a scene file. A load's function of one's own is not in it.
     ///
     /// ```
@@ -217,7 +240,7 @@ impl MechanismBuilder {
             let _ = writeln!(text, "\n[{section}]");
             write_keys(&mut text, entries);
         }
-        text
+        text + &self.text
     }
 
     /// The scene of this mechanism.
