@@ -294,7 +294,7 @@ impl<'s> Atlas<'s> {
         if let Some(exit_at_start) = monitor.exit_at_fold(at)? {
             return Ok((solution, Some(exit_at_start)));
         }
-        let mut ode = MachineOde::new(&current.machine, at.t, &at.y)?;
+        let mut ode = MachineOde::until(&current.machine, at.t, &at.y, Some(end))?;
         let mut exit = None;
         let mut observer = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
             monitor.observe(before, now, dense, &mut exit, |dense| {

@@ -15,6 +15,7 @@ mod coefficients;
 use crate::error::{DynamicsError, Result};
 use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Options, Statistics};
+use crate::time_pieces::TimePieces;
 use coefficients::{DENSE, ERRORS, EXTRA_NODES, EXTRA_STAGES, NODES, Row, STAGES, WEIGHTS};
 
 /// Stages, the interpolant's among them.
@@ -47,7 +48,7 @@ pub(crate) fn integrate(
     (start, rates): (&OdeState, &[f64]),
     end: Option<f64>,
     options: &Options,
-    (atol, min_step): (&[f64], f64),
+    (atol, min_step, pieces): (&[f64], f64, Option<&mut TimePieces<'_>>),
     observer: StepObserver<'_>,
 ) -> Termination {
     let tolerance = (options.rtol, atol);
@@ -62,7 +63,7 @@ pub(crate) fn integrate(
         stiff_steps: 0,
         accepted_steps: 0,
     };
-    let error = stepper.run(end, options, observer).err();
+    let error = stepper.run(end, options, pieces, observer).err();
     Termination {
         state: stepper.from,
         error,
@@ -96,13 +97,21 @@ impl Stepper<'_> {
         &mut self,
         end: Option<f64>,
         options: &Options,
+        mut pieces: Option<&mut TimePieces<'_>>,
         observer: StepObserver<'_>,
     ) -> Result<()> {
         let max_step = options.max_step.unwrap_or(f64::INFINITY);
+        let mut longest = |t: f64| -> Result<f64> {
+            Ok(match &mut pieces {
+                Some(pieces) => max_step.min(pieces.latest_end(t)? - t),
+                None => max_step,
+            })
+        };
         let remaining = |t: f64| end.map_or(f64::INFINITY, |end| end - t);
-        let mut h = self.initial_step(remaining(self.from.t).min(max_step));
+        let first = remaining(self.from.t).min(longest(self.from.t)?);
+        let mut h = self.initial_step(first);
         for _ in 0..options.max_steps {
-            h = self.step(h.min(max_step), end)?;
+            h = self.step(h.min(longest(self.from.t)?), end)?;
             let (stages, from, to) = (&mut self.stages, &self.from, &self.to);
             let mut ready = false;
             let control = observer(from, to, &mut |t, y| {

@@ -74,6 +74,20 @@ pub enum DynamicsError {
         /// The number of steps allowed.
         max_steps: usize,
     },
+    /// Something varies so fast in time that more steps are needed than allowed.
+    #[error(
+        "a function of time varies within {width:.1e} s near t = {t} s, for which more steps are needed than the {max_steps} allowed"
+    )]
+    VariesTooFast {
+        /// Which: the index of a load (those of the drives last), or behind them of a prescribed actuator.
+        source_index: usize,
+        /// The time over which it varies, s.
+        width: f64,
+        /// Where, s.
+        t: f64,
+        /// The number of steps allowed.
+        max_steps: usize,
+    },
     /// The integrator's steps became too small to continue.
     #[error("the integrator's steps become too small at t = {t:e} s")]
     StepTooSmall {

@@ -8,8 +8,9 @@
 
 use crate::dop853;
 use crate::error::{DynamicsError, Result};
-use crate::ode::{OdeState, OdeSystem, StepControl, StepObserver, Termination};
+use crate::ode::{DenseOutput, OdeState, OdeSystem, StepControl, StepObserver, Termination};
 use crate::options::{Method, Options, Statistics};
+use crate::time_pieces::TimePieces;
 use diffsol::{
     DiffsolError, NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder, OdeEquations, OdeSolverMethod,
     OdeSolverStopReason, VectorCommon,
@@ -45,12 +46,11 @@ fn check_interval(start: &OdeState, end: Option<f64>) -> Result<()> {
 }
 
 /// Integrates a system from `start` until `end` (s), or without an end until the observer stops it. The
-/// observer is called after every step.
+/// observer is called after every step. Where a function of time switches, one integration ends and another begins.
 ///
 /// # Errors
 /// [`DynamicsError`] where not even the start can be evaluated, or an option cannot be used. An error that
 /// ends the integration later is in [`Termination::error`].
-// Long because diffsol's problem is a type of closures, which has no name and borrows what is counted and kept here.
 pub fn integrate(
     system: &mut dyn OdeSystem,
     start: &OdeState,
@@ -60,6 +60,81 @@ pub fn integrate(
 ) -> Result<Termination> {
     options.check()?;
     check_interval(start, end)?;
+    let features = system.time_features().filter(|f| !f.is_empty());
+    let Some(features) = features else {
+        return integrate_smooth(system, start, end, options, None, observer);
+    };
+    let mut pieces = TimePieces::new(&features, start.t, end, options)?;
+    let stopped = Cell::new(false);
+    let mut watched = |before: &OdeState, now: &OdeState, dense: DenseOutput<'_>| {
+        let control = observer(before, now, dense)?;
+        stopped.set(stopped.get() || control == StepControl::Stop);
+        Ok(control)
+    };
+    let mut whole: Option<Termination> = None;
+    let mut from = start.clone();
+    loop {
+        let segment = match pieces.next_segment() {
+            Ok(segment) => segment,
+            Err(error) => return ended_by(error, whole),
+        };
+        let to = match segment {
+            Some((begins, segment)) => {
+                from.t = from.t.max(begins);
+                // The end itself, however a switch there is rounded.
+                segment.restart.then_some(segment.to).or(end)
+            }
+            None if whole.is_none() => end,
+            None => break,
+        };
+        if to.is_some_and(|to| to <= from.t) {
+            continue;
+        }
+        let mut limited = *options;
+        let steps = whole.as_ref().map_or(0, |w| w.statistics.steps);
+        limited.max_steps = options.max_steps.saturating_sub(steps);
+        let part = integrate_smooth(system, &from, to, &limited, Some(&mut pieces), &mut watched);
+        let part = match part {
+            // Between two switches lies less than a rounding of time.
+            Err(DynamicsError::DurationTooShort) if whole.is_some() => continue,
+            Err(error) => return ended_by(error, whole),
+            Ok(part) => part,
+        };
+        from.clone_from(&part.state);
+        let failed = part.error.is_some();
+        whole = Some(match whole {
+            None => part,
+            Some(before) => Termination {
+                statistics: before.statistics.plus(part.statistics),
+                ..part
+            },
+        });
+        if stopped.get() || failed {
+            break;
+        }
+    }
+    whole.ok_or(DynamicsError::DurationTooShort)
+}
+
+/// What was integrated before an error, if anything was.
+fn ended_by(error: DynamicsError, whole: Option<Termination>) -> Result<Termination> {
+    let Some(mut whole) = whole else {
+        return Err(error);
+    };
+    whole.error = Some(error);
+    Ok(whole)
+}
+
+/// Integrates while nothing switches in time; `pieces` limits the steps.
+// Long because diffsol's problem is a type of closures, which has no name and borrows what is counted and kept here.
+fn integrate_smooth(
+    system: &mut dyn OdeSystem,
+    start: &OdeState,
+    end: Option<f64>,
+    options: &Options,
+    pieces: Option<&mut TimePieces<'_>>,
+    observer: StepObserver<'_>,
+) -> Result<Termination> {
     let n = system.size();
     // A start that cannot be evaluated is an error at once, not after a search for a step size.
     let mut rates = vec![0.0; n];
@@ -73,7 +148,7 @@ pub fn integrate(
     let min_step = MIN_STEP / max_rate;
     if options.method == Method::Dop853 {
         let from = (start, &rates[..]);
-        let limits = (&atol[..], min_step);
+        let limits = (&atol[..], min_step, pieces);
         return Ok(dop853::integrate(
             system, from, end, options, limits, observer,
         ));
@@ -123,11 +198,12 @@ pub fn integrate(
     // The counter runs over the whole integration, and its default of 50 ends long healthy runs.
     problem.ode_options.max_nonlinear_solver_failures = usize::MAX;
     problem.ode_options.min_timestep = min_step;
-    let step_loop = StepLoop {
+    let mut step_loop = StepLoop {
         start,
         end,
         options,
         failure: &failure,
+        pieces,
     };
     let mut termination = match options.method {
         Method::Bdf => step_loop.run(&mut problem.bdf::<Solver>().map_err(solver)?, observer),
@@ -164,15 +240,16 @@ fn solver_error(error: &DiffsolError, t: f64) -> DynamicsError {
     }
 }
 
-struct StepLoop<'g> {
+struct StepLoop<'g, 'f> {
     start: &'g OdeState,
     end: Option<f64>,
     options: &'g Options,
     failure: &'g RefCell<Option<DynamicsError>>,
+    pieces: Option<&'g mut TimePieces<'f>>,
 }
 
-impl StepLoop<'_> {
-    fn run<'a, E, S>(&self, solver: &mut S, observer: StepObserver<'_>) -> Termination
+impl StepLoop<'_, '_> {
+    fn run<'a, E, S>(&mut self, solver: &mut S, observer: StepObserver<'_>) -> Termination
     where
         E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
         S: OdeSolverMethod<'a, E>,
@@ -194,7 +271,7 @@ impl StepLoop<'_> {
     }
 
     fn take_steps<'a, E, S>(
-        &self,
+        &mut self,
         solver: &mut S,
         at: &mut OdeState,
         observer: StepObserver<'_>,
@@ -204,14 +281,15 @@ impl StepLoop<'_> {
         S: OdeSolverMethod<'a, E>,
     {
         // The error of the last failed evaluation, else the integrator's own.
+        let failure = self.failure;
         let cause = |t: f64, e: DiffsolError| {
-            let kept = self.failure.borrow_mut().take();
+            let kept = failure.borrow_mut().take();
             kept.unwrap_or_else(|| solver_error(&e, t))
         };
         let mut scratch = solver.state().y.clone();
         let mut now = at.clone();
-        self.set_stop_time(solver, at.t)
-            .map_err(|e| cause(at.t, e))?;
+        let stop = self.stop_time(at.t)?;
+        set_stop_time(solver, stop).map_err(|e| cause(at.t, e))?;
         for _ in 0..self.options.max_steps {
             let reason = solver.step().map_err(|e| cause(at.t, e))?;
             let state = solver.state();
@@ -238,9 +316,10 @@ impl StepLoop<'_> {
             }
             if matches!(reason, OdeSolverStopReason::TstopReached)
                 || self.options.max_step.is_some()
+                || self.pieces.is_some()
             {
-                self.set_stop_time(solver, at.t)
-                    .map_err(|e| cause(at.t, e))?;
+                let stop = self.stop_time(at.t)?;
+                set_stop_time(solver, stop).map_err(|e| cause(at.t, e))?;
             }
         }
         Err(DynamicsError::MaxStepsReached {
@@ -249,17 +328,22 @@ impl StepLoop<'_> {
         })
     }
 
-    /// Sets the time at which the next step must end at the latest.
-    fn set_stop_time<'a, E, S>(&self, solver: &mut S, t: f64) -> Result<(), DiffsolError>
-    where
-        E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
-        S: OdeSolverMethod<'a, E>,
-    {
-        let step = self.options.max_step.map(|max_step| t + max_step);
-        match (self.end, step) {
-            (Some(end), Some(step)) => solver.set_stop_time(end.min(step)),
-            (Some(stop), None) | (None, Some(stop)) => solver.set_stop_time(stop),
-            (None, None) => Ok(()),
-        }
+    /// The time at which a step that begins at `t` must end at the latest, if there is one.
+    fn stop_time(&mut self, t: f64) -> Result<Option<f64>> {
+        let step = self.options.max_step.map_or(f64::INFINITY, |step| t + step);
+        let feature = match &mut self.pieces {
+            Some(pieces) => pieces.latest_end(t)?,
+            None => f64::INFINITY,
+        };
+        let stop = self.end.unwrap_or(f64::INFINITY).min(step).min(feature);
+        Ok(stop.is_finite().then_some(stop))
     }
+}
+
+fn set_stop_time<'a, E, S>(solver: &mut S, stop: Option<f64>) -> Result<(), DiffsolError>
+where
+    E: OdeEquations<T = f64, V = NalgebraVec<f64>> + 'a,
+    S: OdeSolverMethod<'a, E>,
+{
+    stop.map_or(Ok(()), |stop| solver.set_stop_time(stop))
 }

@@ -71,6 +71,7 @@ pub mod solve;
 pub mod state_space;
 pub mod tabulated;
 mod time_density;
+mod time_pieces;
 
 pub use atlas::{
     Atlas, AtlasError, Chart, ChartChange, ChartChangeReason, ContinuedMotion, CoordinateHistory,

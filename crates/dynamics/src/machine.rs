@@ -23,10 +23,11 @@ use crate::change_point_fit::FitWindow;
 use crate::drive::{CompiledDrive, DriveError};
 use crate::error::{DynamicsError, Result};
 use dwell_geometry::Mechanism;
-use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, Model, Signal};
-use dwell_laws::Law;
+use dwell_kinetostatics::{Drive, ForceState, Load, LoadError, LoadKind, Magnitude, Model, Signal};
+use dwell_laws::{Features, Law};
 use dwell_numerics::{Scalar, lu};
 pub use state::MachineState;
+use std::sync::Arc;
 use workspace::EquationWorkspace;
 pub use workspace::MachineWorkspace;
 
@@ -57,6 +58,8 @@ pub struct Machine {
     modes: Vec<CoordinateMode>,
     free: Vec<usize>,
     pub(crate) drives: Vec<CompiledDrive>,
+    /// Where loads, drives and prescribed motions switch and vary in time.
+    pub(crate) time_features: Arc<Features>,
     /// Number of the drives' states.
     drive_state_count: usize,
     nonconservative_sources: Vec<NonconservativeSource>,
@@ -107,6 +110,7 @@ impl Machine {
         let prescribed = (0..modes.len()).filter(|i| !is_free(i));
         sources.extend(prescribed.map(NonconservativeSource::Prescribed));
         Ok(Self {
+            time_features: Arc::new(time_features(&model, &drives, &modes)),
             drive_state_count: drives.iter().filter(|d| d.state.is_some()).count(),
             model,
             flywheels: vec![0.0; free.len()],
@@ -145,6 +149,44 @@ impl Machine {
         // The drives are among the loads.
         let mut loads = self.model.loads().iter();
         is_prescribed_in_time || loads.any(|load| load.magnitude.signals().contains(&Signal::Time))
+    }
+
+    /// The works that the loads can do over the size of the mechanism, or a turn of one radian, from one time to another
+    /// (s), in sum: J. Of magnitudes that depend on the motion only what is a function of time counts; dampers do
+    /// not.
+    pub fn largest_work(&self, from: f64, to: f64) -> f64 {
+        let size = self.model.mechanism().size();
+        let drives = self.drives.iter().map(|drive| {
+            // A voltage or a wanted speed is no force, but of the order of what it makes.
+            let kind = self.model.loads()[drive.load].kind;
+            (drive.load, kind, &drive.input)
+        });
+        let loads = self.model.loads().iter().enumerate();
+        let loads = loads.map(|(l, load)| (l, load.kind, &load.magnitude));
+        let works = loads.chain(drives).map(|(source, kind, magnitude)| {
+            let largest = match magnitude {
+                Magnitude::Constant(value) => value.abs(),
+                Magnitude::Law(Signal::Time, law) => law.largest(from, to),
+                Magnitude::Expression(..) => self.time_features.largest(source, from, to),
+                _ => 0.0,
+            };
+            let lever = match kind {
+                LoadKind::Gravity { .. } => {
+                    size * self.model.masses().iter().map(|m| m.mass).sum::<f64>()
+                }
+                LoadKind::Force { .. }
+                | LoadKind::PointToPointForce { .. }
+                | LoadKind::SlideForce(_) => size,
+                LoadKind::Torque { .. } | LoadKind::TorsionSpring { .. } => 1.0,
+                LoadKind::Spring { .. } => size * size,
+                LoadKind::Damper { .. }
+                | LoadKind::RotationalDamper { .. }
+                | LoadKind::SlideDamper(_)
+                | LoadKind::SeparatingForce(_) => 0.0,
+            };
+            largest * lever
+        });
+        works.sum()
     }
 
     /// The nonconservative sources, in the order of their works among the states.
@@ -325,6 +367,38 @@ impl Machine {
         }
         Ok(())
     }
+}
+
+/// The functions of time among loads, inputs of drives and prescribed motions, numbered in this order; the drives are
+/// the last of the loads. What a program's own function does in time is unknown.
+fn time_features(model: &Model, drives: &[CompiledDrive], modes: &[CoordinateMode]) -> Features {
+    let mut features = Features::default();
+    let mut add = |source: usize, magnitude: &Magnitude| match magnitude {
+        Magnitude::Law(Signal::Time, law) => features.add_law(source, law),
+        Magnitude::Expression(expression, signals) => {
+            if let Some(time) = signals.iter().position(|s| *s == Signal::Time) {
+                features.add_expression(source, expression, time);
+            }
+        }
+        Magnitude::Constant(_)
+        | Magnitude::Law(..)
+        | Magnitude::Function(..)
+        | Magnitude::Friction(_)
+        | Magnitude::Separating(_)
+        | Magnitude::External(_) => {}
+    };
+    for (source, load) in model.loads().iter().enumerate() {
+        add(source, &load.magnitude);
+    }
+    for drive in drives {
+        add(drive.load, &drive.input);
+    }
+    for (i, mode) in modes.iter().enumerate() {
+        if let CoordinateMode::Prescribed(law) = mode {
+            features.add_law(model.loads().len() + i, law);
+        }
+    }
+    features
 }
 
 /// The loads, followed by those by which the drives act.

@@ -3,7 +3,9 @@
 use crate::error::Result;
 use crate::machine::{Machine, MachineState, MachineWorkspace};
 use crate::ode::{OdeSystem, dual_jacobian};
+use dwell_laws::Features;
 use dwell_numerics::{Dual, Scalar};
+use std::sync::Arc;
 
 /// A machine with the working memory to integrate it, for one thread.
 #[derive(Debug)]
@@ -28,6 +30,20 @@ impl<'m> MachineOde<'m> {
         Ok(ode)
     }
 
+    /// The same, where the works that loads can do until `end` (s) are a scale of the works too: at an equilibrium the
+    /// energies show nothing of what comes.
+    ///
+    /// # Errors
+    /// As [`MachineOde::new`].
+    pub fn until(machine: &'m Machine, t: f64, y: &[f64], end: Option<f64>) -> Result<Self> {
+        let mut ode = Self::new(machine, t, y)?;
+        let work = machine.largest_work(t, end.unwrap_or(t));
+        for weight in &mut ode.error_weights[machine.work_offset()..] {
+            *weight = raised_energy_scale(*weight, work);
+        }
+        Ok(ode)
+    }
+
     /// A machine whose works have no scale, where none is integrated.
     pub(crate) fn unscaled(machine: &'m Machine) -> Self {
         let zero = vec![Dual::from_f64(0.0); machine.state_count()];
@@ -45,6 +61,15 @@ impl<'m> MachineOde<'m> {
     pub fn machine(&self) -> &'m Machine {
         self.machine
     }
+}
+
+/// The part of the largest work below which a work does not count.
+const SMALL_WORK: f64 = 1e-6;
+
+/// The scale of works, J: at least a small part of what the loads can do.
+pub(crate) fn raised_energy_scale(scale: f64, work: f64) -> f64 {
+    let work = if work.is_finite() { work } else { 0.0 };
+    scale.max(SMALL_WORK * work)
 }
 
 impl MachineState<'_> {
@@ -86,6 +111,10 @@ impl OdeSystem for MachineOde<'_> {
             machine.evaluate(t, y, workspace)?.derivative(out);
             Ok(())
         })
+    }
+
+    fn time_features(&self) -> Option<Arc<Features>> {
+        Some(Arc::clone(&self.machine.time_features))
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -2,7 +2,9 @@
 
 use crate::error::{DynamicsError, Result};
 use crate::options::Statistics;
+use dwell_laws::Features;
 use dwell_numerics::{Dual, Scalar};
+use std::sync::Arc;
 
 /// A time and a state.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -60,6 +62,11 @@ pub trait OdeSystem {
     /// # Errors
     /// As [`OdeSystem::rhs`].
     fn jacobian(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<()>;
+
+    /// Where the right-hand side, as a function of time, switches and varies.
+    fn time_features(&self) -> Option<Arc<Features>> {
+        None
+    }
 
     /// The factor of a state in the absolute tolerance.
     fn error_weight(&self, _state: usize) -> f64 {

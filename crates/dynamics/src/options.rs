@@ -112,3 +112,18 @@ pub struct Statistics {
     /// Factorisations.
     pub factorisations: usize,
 }
+
+impl Statistics {
+    /// The work of both together.
+    #[must_use]
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            steps: self.steps + other.steps,
+            rejected_steps: self.rejected_steps + other.rejected_steps,
+            stiff_steps: self.stiff_steps + other.stiff_steps,
+            evaluations: self.evaluations + other.evaluations,
+            jacobians: self.jacobians + other.jacobians,
+            factorisations: self.factorisations + other.factorisations,
+        }
+    }
+}

@@ -69,7 +69,7 @@ pub fn solve(
     options: &Options,
     events: &[Event],
 ) -> Result<Solution> {
-    let mut ode = MachineOde::new(machine, start.t, &start.y)?;
+    let mut ode = MachineOde::until(machine, start.t, &start.y, Some(end))?;
     let observed = ObservedMachine::new(machine, output_model);
     solve_system(&mut ode, observed, start, Some(end), options, events)
 }

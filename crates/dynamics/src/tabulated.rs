@@ -28,7 +28,9 @@ use dwell_kinetostatics::table::{Bound, IntegratedCurve, PiecewiseColumns, Resul
 use dwell_kinetostatics::{
     CompiledSignal, ExactModel, Load, LoadKind, Magnitude, TableDomain, TableError, TableQuantity,
 };
+use dwell_laws::Features;
 use source::{AuxiliaryColumns, TotalInertia, TotalPotential};
+use std::sync::Arc;
 use thiserror::Error;
 
 /// Why a machine has no table.
@@ -72,6 +74,7 @@ pub struct TabulatedMachine {
     tabulated_loads: Vec<TabulatedLoad>,
     /// Number of the drives' states.
     drive_state_count: usize,
+    time_features: Arc<Features>,
     bounds: Vec<Bound>,
     domain: [f64; 2],
     period: Option<f64>,
@@ -167,6 +170,7 @@ impl TabulatedMachine {
             drive_state_count: machine.work_offset() - 2,
             domain: builder.domain(),
             period: builder.period(),
+            time_features: Arc::clone(&machine.time_features),
             bounds: builder.bounds(),
         })
     }

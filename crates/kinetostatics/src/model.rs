@@ -150,6 +150,11 @@ impl Model {
         &self.mechanism
     }
 
+    /// The masses, by body.
+    pub fn masses(&self) -> &[Mass] {
+        &self.masses
+    }
+
     /// The compiled plan of the mechanism.
     #[inline]
     pub fn plan(&self) -> &Plan {

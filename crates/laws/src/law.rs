@@ -31,6 +31,19 @@ impl Law {
         }
     }
 
+    /// The largest absolute value from one x to another, of those at equal distances and at the points of a table.
+    pub fn largest(&self, from: f64, to: f64) -> f64 {
+        let parts = 64;
+        let part = |k: usize| from + (to - from) * k as f64 / parts as f64;
+        let knots = match self {
+            Self::Spline(spline) => spline.knots(),
+            _ => &[],
+        };
+        let inside = knots.iter().copied().filter(|x| (from..=to).contains(x));
+        let all = (0..=parts).map(part).chain(inside);
+        all.map(|x| self.eval(x)[0].abs()).fold(0.0, f64::max)
+    }
+
     /// Where the value jumps between one number and another, which should be close: the last
     /// number before the jump and the first after it. Only an expression can jump (`floor`, `sign`,
     /// `step`, `if`); of several jumps it is the one that shows most. A jump of less than

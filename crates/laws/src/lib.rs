@@ -24,6 +24,7 @@
 
 pub mod error;
 pub mod expression;
+pub mod features;
 pub mod law;
 pub mod polynomial;
 pub mod profile;
@@ -32,8 +33,9 @@ pub mod spline;
 
 pub use error::LawError;
 pub use expression::{Expression, ExpressionError};
+pub use features::{Features, Piece, Scan, Unresolved};
 pub use law::Law;
 pub use polynomial::Polynomial;
 pub use profile::{Profile, Rise, Shape};
 pub use sinusoid::Sinusoid;
-pub use spline::Spline;
+pub use spline::{Interpolation, Spline};

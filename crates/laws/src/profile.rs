@@ -64,6 +64,21 @@ impl Profile {
         Ok(Self { shape, rise })
     }
 
+    /// Where its derivatives may jump: its ends, and the corners of a trapezium.
+    pub fn corners(&self) -> Vec<f64> {
+        let Rise {
+            duration, delay, ..
+        } = self.rise;
+        match self.shape {
+            Shape::Trapezoidal { ramp } => [0.0, ramp, duration - ramp, duration]
+                .map(|at| delay + at)
+                .to_vec(),
+            Shape::Polynomial345 | Shape::Polynomial4567 | Shape::Cycloidal => {
+                vec![delay, delay + duration]
+            }
+        }
+    }
+
     /// The value and its first three derivatives at `x`. At an end, where a derivative may jump,
     /// those of the rest.
     pub fn eval(&self, x: f64) -> [f64; 4] {

@@ -1,17 +1,42 @@
-//! A table as a cubic spline.
+//! A table of points, and the curve through them.
 
 use crate::error::LawError;
 
-/// The cubic spline through the points of a table: value, first and second derivative are
-/// continuous, the third is constant between two points.
+/// How a curve goes from one point of a table to the next.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Interpolation {
+    /// A cubic spline: value, first and second derivative are continuous. Between points that change abruptly it goes
+    /// beyond them.
+    #[default]
+    Spline,
+    /// Cubic pieces that rise where the points rise and fall where they fall: never beyond neighbouring points. Value and
+    /// first derivative are continuous (F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5, 1984).
+    Monotone,
+    /// Straight lines.
+    Linear,
+    /// The value of the point before.
+    Step,
+}
+
+impl Interpolation {
+    /// All of them, with their names in scenes.
+    pub const ALL: [(&'static str, Self); 4] = [
+        ("spline", Self::Spline),
+        ("monotone", Self::Monotone),
+        ("linear", Self::Linear),
+        ("step", Self::Step),
+    ];
+}
+
+/// The curve through the points of a table: cubic or lower between two points, as [`Interpolation`] says.
 ///
-/// At its ends it is *not-a-knot*: the first two pieces are one cubic, and so the last two (C. de
+/// At its ends a spline is *not-a-knot*: the first two pieces are one cubic, and so the last two (C. de
 /// Boor, *A Practical Guide to Splines*, chapter IV). So it reproduces every cubic, and is as
 /// exact at the ends as elsewhere. A natural spline would bend every motion and force to zero
 /// curvature there. Three points make a parabola, two a line.
 ///
-/// Outside its range it goes on along the tangent of its end: the speed of a motion does not
-/// jump, and [`range`](Self::range) gives its ends.
+/// Outside its range a spline or a line goes on along the tangent of its end: the speed of a motion does not
+/// jump, and [`range`](Self::range) gives its ends. Monotone and stepped curves keep the value of their end.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spline {
     /// Where the pieces begin, and where the last ends.
@@ -19,15 +44,27 @@ pub struct Spline {
     /// Each piece: its Taylor polynomial at its beginning, value first. Behind them the tangent
     /// at the end.
     pieces: Vec<[f64; 4]>,
+    interpolation: Interpolation,
 }
 
 impl Spline {
-    /// The spline through `points`, each x and y, in SI units.
+    /// The cubic spline through `points`, each x and y, in SI units.
+    ///
+    /// # Errors
+    /// As [`Spline::interpolating`].
+    pub fn through(points: &[[f64; 2]]) -> Result<Self, LawError> {
+        Self::interpolating(points, Interpolation::Spline)
+    }
+
+    /// The curve through `points`, each x and y, in SI units.
     ///
     /// # Errors
     /// [`LawError::TooFewPoints`], [`LawError::PointNotFinite`], [`LawError::NotAscending`],
     /// [`LawError::TooSteep`].
-    pub fn through(points: &[[f64; 2]]) -> Result<Self, LawError> {
+    pub fn interpolating(
+        points: &[[f64; 2]],
+        interpolation: Interpolation,
+    ) -> Result<Self, LawError> {
         check(points)?;
         let steps: Vec<f64> = points.windows(2).map(|p| p[1][0] - p[0][0]).collect();
         let slopes: Vec<f64> = points
@@ -38,29 +75,82 @@ impl Spline {
         if let Some(before) = (0..steps.len()).find(|&i| !(steps[i] + slopes[i]).is_finite()) {
             return Err(LawError::TooSteep { index: before + 1 });
         }
-        let second_derivatives = second_derivatives(&steps, &slopes);
+        let last = steps.len();
+        let second = match interpolation {
+            Interpolation::Spline => second_derivatives(&steps, &slopes),
+            _ => Vec::new(),
+        };
+        let tangents = match interpolation {
+            Interpolation::Monotone => monotone_tangents(&steps, &slopes),
+            _ => Vec::new(),
+        };
         let mut pieces = Vec::with_capacity(points.len());
         for (i, (&h, &slope)) in steps.iter().zip(&slopes).enumerate() {
-            let [m, n] = [second_derivatives[i], second_derivatives[i + 1]];
-            let piece = [
-                points[i][1],
-                slope - h * (2.0 * m + n) / 6.0,
-                0.5 * m,
-                (n - m) / (6.0 * h),
-            ];
+            let value = points[i][1];
+            let piece = match interpolation {
+                Interpolation::Spline => {
+                    let [m, n] = [second[i], second[i + 1]];
+                    let tangent = slope - h * (2.0 * m + n) / 6.0;
+                    [value, tangent, 0.5 * m, (n - m) / (6.0 * h)]
+                }
+                Interpolation::Monotone => {
+                    let [m, n] = [tangents[i], tangents[i + 1]];
+                    let third = (m + n - 2.0 * slope) / (h * h);
+                    [value, m, (3.0 * slope - 2.0 * m - n) / h, third]
+                }
+                Interpolation::Linear => [value, slope, 0.0, 0.0],
+                Interpolation::Step => [value, 0.0, 0.0, 0.0],
+            };
             if !piece.iter().all(|c| c.is_finite()) {
                 return Err(LawError::TooSteep { index: i + 1 });
             }
             pieces.push(piece);
         }
-        let last = pieces.len();
         let (h, slope) = (steps[last - 1], slopes[last - 1]);
-        let end = slope + h * (second_derivatives[last - 1] + 2.0 * second_derivatives[last]) / 6.0;
+        let end = match interpolation {
+            Interpolation::Spline => slope + h * (second[last - 1] + 2.0 * second[last]) / 6.0,
+            Interpolation::Linear => slope,
+            Interpolation::Monotone | Interpolation::Step => 0.0,
+        };
         pieces.push([points[last][1], end, 0.0, 0.0]);
         Ok(Self {
             knots: points.iter().map(|p| p[0]).collect(),
             pieces,
+            interpolation,
         })
+    }
+
+    /// The x of the points.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// Whether value, first or second derivative jumps at the points.
+    pub fn has_kinks(&self) -> bool {
+        self.interpolation != Interpolation::Spline
+    }
+
+    /// Where it goes farthest beyond the range of its points: x, the value, and by which part of that range.
+    pub fn overshoot(&self) -> Option<[f64; 3]> {
+        let values = self.pieces.iter().map(|piece| piece[0]);
+        let low = values.clone().fold(f64::INFINITY, f64::min);
+        let high = values.fold(f64::NEG_INFINITY, f64::max);
+        let mut farthest: Option<[f64; 3]> = None;
+        for (knots, &[value, b, c, d]) in self.knots.windows(2).zip(&self.pieces) {
+            // The extrema of a cubic: b + 2 c u + 3 d u² = 0, by the formula without cancellation.
+            let discriminant = (c * c - 3.0 * b * d).max(0.0).sqrt();
+            let sum = -(c + c.signum() * discriminant);
+            for u in [sum / (3.0 * d), b / sum] {
+                if u > 0.0 && u < knots[1] - knots[0] {
+                    let y = value + u * (b + u * (c + u * d));
+                    let beyond = (y - high).max(low - y) / (high - low);
+                    if beyond > farthest.map_or(4.0 * f64::EPSILON, |[_, _, most]| most) {
+                        farthest = Some([knots[0] + u, y, beyond]);
+                    }
+                }
+            }
+        }
+        farthest
     }
 
     /// The first and the last x of the table.
@@ -77,7 +167,8 @@ impl Spline {
         let [first, last] = self.range();
         // A time summed up from steps may pass the end by a few roundings, and is still the end's.
         let tolerance = 4.0 * f64::EPSILON * first.abs().max(last.abs());
-        let i = if x > last + tolerance {
+        let is_step = self.interpolation == Interpolation::Step;
+        let i = if x > last + tolerance || (is_step && x >= last) {
             self.pieces.len() - 1
         } else {
             let inner = &self.knots[1..self.knots.len() - 1];
@@ -86,6 +177,10 @@ impl Spline {
         let [value, b, c, d] = self.pieces[i];
         let u = x - self.knots[i];
         if x < first - tolerance {
+            let b = match self.interpolation {
+                Interpolation::Spline | Interpolation::Linear => b,
+                Interpolation::Monotone | Interpolation::Step => 0.0,
+            };
             return [value + u * b, b, 0.0, 0.0];
         }
         [
@@ -110,6 +205,42 @@ fn check(points: &[[f64; 2]]) -> Result<(), LawError> {
         Some(before) => Err(LawError::NotAscending { index: before + 1 }),
         None => Ok(()),
     }
+}
+
+/// The first derivatives at all points, by Fritsch and Butland: zero where the points turn, else a weighted harmonic mean
+/// of both slopes; at the ends the parabola's, held within the same bounds.
+fn monotone_tangents(steps: &[f64], slopes: &[f64]) -> Vec<f64> {
+    let last = steps.len();
+    if last == 1 {
+        return vec![slopes[0]; 2];
+    }
+    let end = |[h, k]: [f64; 2], [s, t]: [f64; 2]| {
+        let parabola = ((2.0 * h + k) * s - h * t) / (h + k);
+        if parabola * s <= 0.0 {
+            0.0
+        } else if s * t <= 0.0 && parabola.abs() > 3.0 * s.abs() {
+            3.0 * s
+        } else {
+            parabola
+        }
+    };
+    let inner = (1..last).map(|i| {
+        let ([h, k], [s, t]) = ([steps[i - 1], steps[i]], [slopes[i - 1], slopes[i]]);
+        if s * t <= 0.0 {
+            return 0.0;
+        }
+        let [v, w] = [2.0 * k + h, k + 2.0 * h];
+        (v + w) / (v / s + w / t)
+    });
+    let first = end([steps[0], steps[1]], [slopes[0], slopes[1]]);
+    let final_one = end(
+        [steps[last - 1], steps[last - 2]],
+        [slopes[last - 1], slopes[last - 2]],
+    );
+    std::iter::once(first)
+        .chain(inner)
+        .chain([final_one])
+        .collect()
 }
 
 /// The second derivatives at all points: between neighbours
@@ -244,6 +375,49 @@ mod tests {
             // Roundings of values of 10 over the smallest step, 0.1, squared.
             assert!((spline.eval(x)[2] - 6.0 * x).abs() < 2e-13, "{x}");
         }
+    }
+
+    /// Data with a jump: a spline goes far beyond them, the others never; all pass through them, and monotone
+    /// curves have a continuous slope.
+    #[test]
+    fn only_a_spline_goes_beyond_its_points() {
+        let points = [
+            [0.0, 0.0],
+            [1.0, 0.0],
+            [1.01, 10.0],
+            [2.0, 10.0],
+            [4.0, 0.0],
+        ];
+        let [place, value, beyond] = Spline::through(&points)
+            .expect("a spline")
+            .overshoot()
+            .expect("an overshoot");
+        assert!(beyond > 1.0 && !(0.0..=10.0).contains(&value), "{place}");
+        for (_, interpolation) in &Interpolation::ALL[1..] {
+            let curve = Spline::interpolating(&points, *interpolation).expect("a curve");
+            assert_eq!(curve.overshoot(), None);
+            for i in 0..=2000 {
+                let [value, ..] = curve.eval(f64::from(i) / 500.0);
+                assert!(
+                    (-1e-14..=10.0 + 1e-14).contains(&value),
+                    "{interpolation:?} {value}"
+                );
+            }
+            for [x, y] in points {
+                assert!((curve.eval(x)[0] - y).abs() < 1e-13); // roundings of slopes of 1e3
+            }
+        }
+        let smooth = Spline::interpolating(&points, Interpolation::Monotone).expect("a curve");
+        assert_eq!([-3.0, 9.0].map(|x| smooth.eval(x)[0]), [0.0, 0.0]);
+        for x in [1.0, 1.01, 2.0] {
+            let [a, b] = [x - 1e-12, x + 1e-12].map(|x| smooth.eval(x)[1]);
+            assert!((a - b).abs() < 1e-5, "{a} {b}"); // curvatures of 1e6 over 1e-12
+        }
+        let step = Spline::interpolating(&points, Interpolation::Step).expect("a curve");
+        assert_eq!(
+            [1.0, 1.005, 1.01, 3.9].map(|x| step.eval(x)[0]),
+            [0.0, 0.0, 10.0, 10.0]
+        );
     }
 
     #[test]

@@ -85,7 +85,7 @@ impl ContinuedMotion {
         whole.event_occurrences.extend(occurrences);
         whole.terminated_by_event = solution.terminated_by_event;
         whole.error = solution.error;
-        whole.statistics = add_statistics(whole.statistics, solution.statistics);
+        whole.statistics = whole.statistics.plus(solution.statistics);
     }
 
     /// The events in order, each with its segment.
@@ -100,7 +100,7 @@ impl ContinuedMotion {
     /// The work of all segments together.
     pub fn statistics(&self) -> Statistics {
         let each = self.segments.iter().map(|s| s.solution.statistics);
-        each.fold(Statistics::default(), add_statistics)
+        each.fold(Statistics::default(), Statistics::plus)
     }
 }
 
@@ -167,17 +167,6 @@ impl Atlas<'_> {
             history.samples.push(samples);
         }
         Ok(history)
-    }
-}
-
-fn add_statistics(a: Statistics, b: Statistics) -> Statistics {
-    Statistics {
-        steps: a.steps + b.steps,
-        rejected_steps: a.rejected_steps + b.rejected_steps,
-        stiff_steps: a.stiff_steps + b.stiff_steps,
-        evaluations: a.evaluations + b.evaluations,
-        jacobians: a.jacobians + b.jacobians,
-        factorisations: a.factorisations + b.factorisations,
     }
 }
 

@@ -2,9 +2,12 @@
 
 use super::{LoadEffect, TabulatedCoordinate, TabulatedLoad, TabulatedMachine, TabulatedSignal};
 use crate::error::{DynamicsError, Result, positive_inertia};
+use crate::machine_ode::raised_energy_scale;
 use crate::ode::{OdeSystem, dual_jacobian};
 use dwell_kinetostatics::KinetostaticsError;
+use dwell_laws::Features;
 use dwell_numerics::{Dual, Scalar};
+use std::sync::Arc;
 
 /// A table with the working memory to integrate it, for one thread. Its states are those of
 /// [`MachineOde`](crate::MachineOde).
@@ -182,6 +185,13 @@ impl TabulatedCoordinate {
     }
 }
 
+impl TabulatedMachineOde<'_> {
+    /// Works are small only where they are small beside this part of `work`, J.
+    pub fn raise_energy_scale(&mut self, work: f64) {
+        self.energy_scale = raised_energy_scale(self.energy_scale, work);
+    }
+}
+
 impl OdeSystem for TabulatedMachineOde<'_> {
     fn size(&self) -> usize {
         self.machine.state_count()
@@ -204,6 +214,10 @@ impl OdeSystem for TabulatedMachineOde<'_> {
         dual_jacobian(columns, y, (duals, rates), out, |y, out| {
             machine.rhs(t, y, workspace, out)
         })
+    }
+
+    fn time_features(&self) -> Option<Arc<Features>> {
+        Some(Arc::clone(&self.machine.time_features))
     }
 
     fn error_weight(&self, state: usize) -> f64 {

@@ -4,7 +4,7 @@ use std::f64::consts::{LN_10, PI, TAU};
 
 /// A number with a name. (Euler's has none: `e` is too likely a name of the scene.)
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Constant {
+pub(crate) enum Constant {
     Pi,
     Tau,
 }
@@ -12,7 +12,7 @@ pub(super) enum Constant {
 impl Constant {
     pub(super) const ALL: [(&'static str, Self); 2] = [("pi", Self::Pi), ("tau", Self::Tau)];
 
-    pub(super) fn value(self) -> f64 {
+    pub(crate) fn value(self) -> f64 {
         match self {
             Self::Pi => PI,
             Self::Tau => TAU,
@@ -22,7 +22,7 @@ impl Constant {
 
 /// A function of one argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Unary {
+pub(crate) enum Unary {
     Sin,
     Cos,
     Tan,
@@ -44,7 +44,7 @@ pub(super) enum Unary {
 
 /// An operation on two arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Binary {
+pub(crate) enum Binary {
     Add,
     Subtract,
     Multiply,
@@ -58,7 +58,7 @@ pub(super) enum Binary {
 
 /// How `if` compares two numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Comparison {
+pub(crate) enum Comparison {
     Less,
     LessOrEqual,
     Greater,
@@ -122,7 +122,7 @@ impl Function {
 }
 
 impl Comparison {
-    pub(super) fn holds(self, a: f64, b: f64) -> bool {
+    pub(crate) fn holds(self, a: f64, b: f64) -> bool {
         match self {
             Self::Less => a < b,
             Self::LessOrEqual => a <= b,

@@ -30,8 +30,10 @@ mod tape;
 mod token;
 
 pub use error::{ExpressionError, nearest};
+pub(crate) use function::{Binary, Unary};
 use jet::{Jet, TapeScalar};
-use tape::{Op, Tape};
+use tape::Tape;
+pub(crate) use tape::{Op, run_parts};
 
 /// An expression of named variables, ready to be evaluated. Its language is described
 /// [in the module](crate::expression).
@@ -89,6 +91,11 @@ impl Expression {
         }
         self.variable_indices = (0..self.names.len()).collect();
         self
+    }
+
+    /// Its operations, operands first.
+    pub(crate) fn ops(&self) -> &[Op] {
+        &self.tape.ops
     }
 
     /// The value for `values` of all variables given to [`parse`](Self::parse), in their order. A

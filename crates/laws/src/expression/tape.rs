@@ -21,7 +21,7 @@ pub(super) struct Tape {
 
 /// One step of an evaluation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Op {
+pub(crate) enum Op {
     Number(f64),
     Constant(Constant),
     /// The variable of that place in the list given to the parser.
@@ -37,7 +37,7 @@ pub(super) enum Op {
 
 impl Op {
     /// How many results it takes from the places; it leaves one.
-    pub(super) fn arity(self) -> usize {
+    pub(crate) fn arity(self) -> usize {
         match self {
             Self::Number(_) | Self::Constant(_) | Self::Variable(_) => 0,
             Self::Negate | Self::Unary(_) => 1,
@@ -90,6 +90,11 @@ pub(super) fn run<S: TapeScalar, const N: usize>(ops: &[Op], variable: impl Fn(u
         depth += 1;
     }
     stack[0]
+}
+
+/// The value of a part of a tape, which is an expression of its own.
+pub(crate) fn run_parts(ops: &[Op], variable: impl Fn(usize) -> f64) -> f64 {
+    run::<f64, STACK_SIZE>(ops, variable)
 }
 
 /// Whether a name can stand without backticks.

@@ -1,0 +1,408 @@
+//! The smooth pieces of an interval, found from left to right by halving.
+
+use super::Features;
+use super::interval::Interval;
+use super::switching::{Pieces, Sides, Switch};
+
+/// A piece is smooth if a parabola is as good as its terms, to this part of their largest values.
+const SMOOTHNESS: f64 = 1e-3;
+/// Shortest piece, relative to the ends of the whole interval.
+const MIN_WIDTH: f64 = 64.0 * f64::EPSILON;
+/// Parts of the interval in which the largest values of the terms are looked for.
+const SCALE_PARTS: usize = 128;
+/// Most cells that may be tried for one piece.
+const MAX_TRIALS: usize = 100_000;
+/// Roundings of time on both sides of a switch in which its value is not trusted.
+const ROUNDINGS: f64 = 2.0;
+
+/// A part of the interval in which everything is smooth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Piece {
+    /// Where it begins: after a switch, the first instant at which it has switched.
+    pub from: f64,
+    /// Where it ends: before a switch, the last instant at which it has not yet switched.
+    pub to: f64,
+    /// The length over which everything in it is smooth.
+    pub width: f64,
+    /// Whether something switches, jumps or has a kink behind it.
+    pub restart: bool,
+    /// The source that bounds its width, if one does.
+    pub source: Option<usize>,
+}
+
+/// An interval in which the switches of a source cannot be told apart.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("source {source_index} switches too often near {at}")]
+pub struct Unresolved {
+    /// The source.
+    pub source_index: usize,
+    /// Where.
+    pub at: f64,
+}
+
+/// The smooth pieces of an interval, in order.
+#[derive(Debug, Clone)]
+pub struct Scan<'f> {
+    features: &'f Features,
+    /// The cells still to be looked at, the first last.
+    open: Vec<Cell>,
+    /// The next knot, and the end.
+    next_knot: usize,
+    from: f64,
+    to: f64,
+    min_width: f64,
+    /// By expression and term: its largest value.
+    scales: Vec<Vec<f64>>,
+    /// The piece found last, whose end depends on what the next one says.
+    held: Option<(Piece, Vec<Vec<Sides>>)>,
+    failed: bool,
+}
+
+#[derive(Debug, Clone)]
+struct Cell {
+    from: f64,
+    to: f64,
+    /// By expression and operation: what is decided.
+    sides: Vec<Vec<Sides>>,
+    restart: bool,
+}
+
+/// What is found about a cell.
+enum Verdict {
+    /// The source that bounds its width, if one does.
+    Smooth(Option<usize>),
+    Halve(usize),
+    /// Of an expression, a switch between two instants, with its sides before and behind.
+    SwitchAt {
+        expression: usize,
+        switch: Switch,
+        between: [f64; 2],
+        sides: [f64; 2],
+    },
+}
+
+impl<'f> Scan<'f> {
+    /// The pieces between switches, or with `smooth` those in which everything is smooth besides.
+    pub(super) fn new(features: &'f Features, from: f64, to: f64, smooth: bool) -> Self {
+        let scales = features.expressions.iter().map(|(_, pieces)| match smooth {
+            true => term_scales(pieces, from, to),
+            false => Vec::new(),
+        });
+        Self {
+            scales: scales.collect(),
+            features,
+            open: Vec::new(),
+            next_knot: features.knots.partition_point(|knot| knot.x <= from),
+            from,
+            to,
+            min_width: MIN_WIDTH * from.abs().max(to.abs()),
+            held: None,
+            failed: false,
+        }
+    }
+
+    /// Whether the last piece has been given.
+    pub fn is_exhausted(&self) -> bool {
+        self.held.is_none() && self.open.is_empty() && self.from >= self.to
+    }
+
+    /// The interval from where the last knot was to the next.
+    fn next_cell(&mut self) -> Option<Cell> {
+        if self.from >= self.to {
+            return None;
+        }
+        let knots = &self.features.knots;
+        let knot = knots.get(self.next_knot).filter(|knot| knot.x < self.to);
+        let from = self.from;
+        let margin = |x: f64| 2.0 * ROUNDINGS * f64::EPSILON * x.abs();
+        let (to, restart) = match knot {
+            Some(knot) => {
+                self.next_knot += 1;
+                self.from = knot.x + margin(knot.x);
+                (knot.x - margin(knot.x), knot.restart)
+            }
+            None => {
+                self.from = self.to;
+                (self.to, false)
+            }
+        };
+        let undecided = |(_, pieces): &(usize, Pieces)| vec![[None; 2]; pieces.len()];
+        Some(Cell {
+            from,
+            to,
+            sides: self.features.expressions.iter().map(undecided).collect(),
+            restart,
+        })
+    }
+
+    fn examine(&self, cell: &mut Cell) -> Verdict {
+        let over = Interval::checked(cell.from, cell.to);
+        let is_short = over.width() <= self.min_width;
+        for (e, (source, pieces)) in self.features.expressions.iter().enumerate() {
+            let sides = &mut cell.sides[e];
+            for switch in &pieces.switches {
+                if sides[switch.op][switch.function].is_some() {
+                    continue;
+                }
+                match decide(pieces, switch, over, sides) {
+                    Decision::Side(side) => sides[switch.op][switch.function] = Some(side),
+                    Decision::Never => {}
+                    Decision::Unknown if is_short => {
+                        let value = pieces.switch_value(switch, 0.5 * (cell.from + cell.to));
+                        let side = match switch.at_integers {
+                            true => value.floor(),
+                            false => value.signum(),
+                        };
+                        sides[switch.op][switch.function] = Some(side);
+                    }
+                    Decision::Unknown => return Verdict::Halve(*source),
+                    Decision::Root { level, values } => {
+                        let between = bracket(pieces, switch, level, over, values);
+                        let sides = match switch.at_integers {
+                            true if values[0] < values[1] => [level - 1.0, level],
+                            true => [level, level - 1.0],
+                            false => values.map(f64::signum),
+                        };
+                        return Verdict::SwitchAt {
+                            expression: e,
+                            switch: *switch,
+                            between,
+                            sides,
+                        };
+                    }
+                }
+            }
+        }
+        let mut narrowest = None;
+        for (e, (source, pieces)) in self.features.expressions.iter().enumerate() {
+            for (&term, &scale) in pieces.terms.iter().zip(&self.scales[e]) {
+                let [_, _, second] = pieces.enclose(term, over, &cell.sides[e]).entries;
+                let deviation = second.width() * over.width() * over.width() / 16.0;
+                if !(deviation <= SMOOTHNESS * scale || is_short) {
+                    return Verdict::Halve(*source);
+                }
+                if deviation > 0.02 * SMOOTHNESS * scale {
+                    narrowest = Some(*source);
+                }
+            }
+        }
+        Verdict::Smooth(narrowest)
+    }
+
+    /// The piece of a smooth cell, with the laws that are smooth over shorter lengths.
+    fn piece(&self, cell: &Cell, source: Option<usize>) -> Piece {
+        let middle = 0.5 * (cell.from + cell.to);
+        let (mut width, mut source) = (cell.to - cell.from, source);
+        for bands in &self.features.bands {
+            let k = bands.partition_point(|band| band.to < middle);
+            if let Some(band) = bands.get(k).filter(|band| band.from <= middle)
+                && band.width < width
+            {
+                (width, source) = (band.width, Some(band.source));
+            }
+        }
+        Piece {
+            from: cell.from,
+            to: cell.to,
+            width,
+            restart: cell.restart,
+            source,
+        }
+    }
+}
+
+/// The largest absolute value of each term, or somewhat more.
+pub(super) fn term_scales(pieces: &Pieces, from: f64, to: f64) -> Vec<f64> {
+    let part = |k: usize| from + (to - from) * k as f64 / SCALE_PARTS as f64;
+    let sides = vec![[None; 2]; pieces.len()];
+    let scale = |&term: &usize| {
+        let of = |k: usize| {
+            let over = Interval::checked(part(k), part(k + 1));
+            let bound = pieces.enclose(term, over, &sides).value().magnitude();
+            match bound.is_finite() {
+                true => bound,
+                false => pieces.term_value(term, over.lo).abs(),
+            }
+        };
+        let finite = (0..SCALE_PARTS).map(of).filter(|s| s.is_finite());
+        finite.fold(0.0, f64::max)
+    };
+    pieces.terms.iter().map(scale).collect()
+}
+
+impl Iterator for Scan<'_> {
+    type Item = Result<Piece, Unresolved>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while !self.failed {
+            let next = match self.next_piece() {
+                Ok(next) => next,
+                Err(error) => {
+                    self.failed = true;
+                    return Some(Err(error));
+                }
+            };
+            let Some((mut piece, sides)) = next else {
+                return self.held.take().map(|(piece, _)| Ok(piece));
+            };
+            if let Some((held, held_sides)) = &mut self.held
+                && !held.restart
+                && differ(held_sides, &sides)
+            {
+                // Something switches exactly where two cells meet.
+                held.restart = true;
+                let rounding = ROUNDINGS * f64::EPSILON * piece.from.abs();
+                held.to = (held.to - rounding).max(held.from);
+                piece.from = (piece.from + rounding).min(piece.to);
+            }
+            if let Some((held, _)) = self.held.replace((piece, sides)) {
+                return Some(Ok(held));
+            }
+        }
+        None
+    }
+}
+
+/// Whether a switch is on one side in the one and on the other in the other.
+fn differ(one: &[Vec<Sides>], other: &[Vec<Sides>]) -> bool {
+    let pairs = one.iter().flatten().zip(other.iter().flatten());
+    let mut sides = pairs.flat_map(|(a, b)| a.iter().zip(b));
+    sides.any(|pair| matches!(pair, (Some(a), Some(b)) if a != b))
+}
+
+impl Scan<'_> {
+    fn next_piece(&mut self) -> Result<Option<(Piece, Vec<Vec<Sides>>)>, Unresolved> {
+        let mut last = 0;
+        for _ in 0..MAX_TRIALS {
+            let Some(mut cell) = self.open.pop().or_else(|| self.next_cell()) else {
+                return Ok(None);
+            };
+            if cell.to <= cell.from {
+                if let Some((held, _)) = &mut self.held {
+                    held.restart |= cell.restart;
+                }
+                continue;
+            }
+            match self.examine(&mut cell) {
+                Verdict::Smooth(source) => {
+                    let piece = self.piece(&cell, source);
+                    return Ok(Some((piece, cell.sides)));
+                }
+                Verdict::Halve(source) => {
+                    last = source;
+                    let middle = 0.5 * (cell.from + cell.to);
+                    let first = Cell {
+                        to: middle,
+                        restart: false,
+                        ..cell.clone()
+                    };
+                    cell.from = middle;
+                    self.open.extend([cell, first]);
+                }
+                Verdict::SwitchAt {
+                    expression,
+                    switch,
+                    between: [before, behind],
+                    sides,
+                } => {
+                    last = self.features.expressions[expression].0;
+                    let mut first = Cell {
+                        to: before,
+                        restart: true,
+                        ..cell.clone()
+                    };
+                    cell.from = behind;
+                    let decided = [&mut first, &mut cell];
+                    for (cell, side) in decided.into_iter().zip(sides) {
+                        cell.sides[expression][switch.op][switch.function] = Some(side);
+                    }
+                    self.open.extend([cell, first]);
+                }
+            }
+        }
+        let at = self.open.last().map_or(self.from, |cell| cell.from);
+        Err(Unresolved {
+            source_index: last,
+            at,
+        })
+    }
+}
+
+enum Decision {
+    /// Throughout.
+    Side(f64),
+    /// Both sides are the same.
+    Never,
+    /// One switch within, where the function has this value; its values at the ends, less that.
+    Root {
+        level: f64,
+        values: [f64; 2],
+    },
+    Unknown,
+}
+
+fn decide(pieces: &Pieces, switch: &Switch, over: Interval, sides: &[Sides]) -> Decision {
+    let enclosure = pieces.enclose_switch(switch, over, sides);
+    let [value, slope, _] = enclosure.entries;
+    let level = if switch.at_integers {
+        let (low, high) = (value.lo.floor(), value.hi.floor());
+        if low == high {
+            return Decision::Side(low);
+        }
+        if high > low + 1.0 {
+            return Decision::Unknown;
+        }
+        high
+    } else {
+        if value.lo > 0.0 || value.hi < 0.0 {
+            return Decision::Side(value.lo.signum());
+        }
+        if value.lo == 0.0 && value.hi == 0.0 {
+            return Decision::Never;
+        }
+        0.0
+    };
+    if slope.contains(0.0) {
+        return Decision::Unknown;
+    }
+    let values = [over.lo, over.hi].map(|x| pieces.switch_value(switch, x) - level);
+    if values[0] * values[1] < 0.0 {
+        return Decision::Root { level, values };
+    }
+    // A zero at an end, or beyond it by rounding, is outside: it grows or falls throughout.
+    let sum = values[0] + values[1];
+    match (sum == 0.0 || sum.is_nan(), switch.at_integers) {
+        (true, _) => Decision::Unknown,
+        (false, true) => Decision::Side(if sum > 0.0 { level } else { level - 1.0 }),
+        (false, false) => Decision::Side(sum.signum()),
+    }
+}
+
+/// The last instant before a switch, and the first behind it, at which its function has the sign of that end.
+fn bracket(
+    pieces: &Pieces,
+    switch: &Switch,
+    level: f64,
+    over: Interval,
+    values: [f64; 2],
+) -> [f64; 2] {
+    let value = |x: f64| pieces.switch_value(switch, x) - level;
+    // The boundary between where the sign of one end holds and where it does not.
+    let boundary = |mut inside: f64, mut outside: f64, sign: f64| {
+        loop {
+            let middle = 0.5 * (inside + outside);
+            if middle == inside || middle == outside {
+                let rounding = ROUNDINGS * f64::EPSILON * inside.abs();
+                return (inside, rounding);
+            }
+            if value(middle) * sign > 0.0 {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+    };
+    let (before, rounding) = boundary(over.lo, over.hi, values[0]);
+    let (behind, _) = boundary(over.hi, over.lo, values[1]);
+    [before - rounding, behind + rounding]
+}

@@ -1,0 +1,218 @@
+//! Where an expression's pieces meet: the comparisons, kinks and jumps that depend on one variable alone.
+
+use super::enclosure::Enclosure;
+use super::interval::Interval;
+use crate::expression::{Binary, Expression, Op, Unary, run_parts};
+
+/// Which piece of a switching operation holds: the sign of its function, or the whole number below it.
+/// An operation has up to two functions (`clamp`).
+pub(super) type Sides = [Option<f64>; 2];
+
+/// An expression in one of its variables, the others unknown.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Pieces {
+    ops: Vec<Op>,
+    variable: usize,
+    /// By operation: where that of its first operand begins.
+    starts: Vec<usize>,
+    /// The functions whose zeros separate the pieces, inner ones first.
+    pub(super) switches: Vec<Switch>,
+    /// The terms that depend on the variable alone and on nothing else, by their last operation.
+    pub(super) terms: Vec<usize>,
+}
+
+/// A function of the variable whose zeros (or whole values) separate two pieces.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Switch {
+    /// The operation that switches, and which of its functions this is.
+    pub(super) op: usize,
+    pub(super) function: usize,
+    /// The last operation of the minuend and of the subtrahend, if there is one.
+    left: usize,
+    right: Option<usize>,
+    /// Whether it switches at every whole value, not only at zero.
+    pub(super) at_integers: bool,
+}
+
+impl Pieces {
+    pub(super) fn of(expression: &Expression, variable: usize) -> Self {
+        let ops = expression.ops().to_vec();
+        let mut starts = Vec::with_capacity(ops.len());
+        // By operation: whether it depends on the variable, and on another one.
+        let mut depends: Vec<[bool; 2]> = Vec::with_capacity(ops.len());
+        let mut operands: Vec<Vec<usize>> = Vec::with_capacity(ops.len());
+        let mut stack: Vec<usize> = Vec::new();
+        for (i, op) in ops.iter().enumerate() {
+            let of = stack.split_off(stack.len().saturating_sub(op.arity()));
+            let own = match op {
+                Op::Variable(index) => [*index == variable, *index != variable],
+                _ => [false; 2],
+            };
+            let all = of.iter().map(|&o| depends[o]);
+            depends.push(all.fold(own, |[a, b], [c, d]| [a || c, b || d]));
+            starts.push(of.first().map_or(i, |&first| starts[first]));
+            operands.push(of);
+            stack.push(i);
+        }
+        let is_alone = |i: usize| depends[i] == [true, false];
+        let mut pieces = Self {
+            switches: Vec::new(),
+            terms: Vec::new(),
+            variable,
+            starts,
+            ops,
+        };
+        for i in 0..pieces.ops.len() {
+            let found = pieces.switches_of(i, &operands[i]);
+            let separable = |s: &Switch| match s.right {
+                None => is_alone(s.left),
+                Some(right) => {
+                    let neither = !depends[s.left][1] && !depends[right][1];
+                    neither
+                        && (is_alone(s.left) || is_alone(right))
+                        && !pieces.is_same(s.left, right)
+                }
+            };
+            let found: Vec<Switch> = found.into_iter().filter(separable).collect();
+            pieces.switches.extend(found);
+        }
+        let mut open: Vec<usize> = stack;
+        while let Some(i) = open.pop() {
+            let is_sum = matches!(
+                pieces.ops[i],
+                Op::Negate | Op::Binary(Binary::Add | Binary::Subtract)
+            );
+            if is_alone(i) && !is_sum {
+                pieces.terms.push(i);
+            } else if depends[i][0] {
+                open.extend(&operands[i]);
+            }
+        }
+        pieces
+    }
+
+    fn switches_of(&self, op: usize, operands: &[usize]) -> Vec<Switch> {
+        let zero = |function, left, right| Switch {
+            op,
+            function,
+            left,
+            right,
+            at_integers: false,
+        };
+        match (self.ops[op], operands) {
+            (Op::Unary(Unary::Abs | Unary::Sign | Unary::Step), &[x]) => vec![zero(0, x, None)],
+            (Op::Unary(Unary::Floor), &[x]) => vec![Switch {
+                at_integers: true,
+                ..zero(0, x, None)
+            }],
+            (Op::Binary(Binary::Min | Binary::Max), &[a, b]) => vec![zero(0, a, Some(b))],
+            // Its cut: y = 0 on the left.
+            (Op::Binary(Binary::Atan2), &[y, _]) => vec![zero(0, y, None)],
+            (Op::Clamp, &[x, low, high]) => {
+                vec![zero(0, x, Some(low)), zero(1, x, Some(high))]
+            }
+            (Op::If(_), &[a, b, ..]) => vec![zero(0, a, Some(b))],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether two operands are the same text, so that their difference is zero everywhere.
+    fn is_same(&self, a: usize, b: usize) -> bool {
+        self.ops[self.starts[a]..=a] == self.ops[self.starts[b]..=b]
+    }
+
+    /// Number of operations, each of which has its sides.
+    pub(super) fn len(&self) -> usize {
+        self.ops.len()
+    }
+
+    /// Bounds of the part that ends with operation `last`, over an interval of the variable on which these sides hold.
+    pub(super) fn enclose(&self, last: usize, over: Interval, sides: &[Sides]) -> Enclosure {
+        let first = self.starts[last];
+        let mut stack: Vec<Enclosure> = Vec::new();
+        for (i, &op) in self.ops.iter().enumerate().take(last + 1).skip(first) {
+            let of = stack.split_off(stack.len().saturating_sub(op.arity()));
+            stack.push(self.enclose_op(op, &of, sides[i], over));
+        }
+        stack.pop().unwrap_or(Enclosure::UNKNOWN)
+    }
+
+    fn enclose_op(
+        &self,
+        op: Op,
+        operands: &[Enclosure],
+        [side, second]: Sides,
+        over: Interval,
+    ) -> Enclosure {
+        let choose = |side: Option<f64>, above: Enclosure, below: Enclosure| match side {
+            Some(s) if s > 0.0 => above,
+            Some(_) => below,
+            None => above.hull(below),
+        };
+        match (op, operands) {
+            (Op::Number(number), _) => Enclosure::constant(number),
+            (Op::Constant(constant), _) => Enclosure::constant(constant.value()),
+            (Op::Variable(index), _) if index == self.variable => Enclosure::variable(over),
+            (Op::Negate, &[x]) => x.negate(),
+            (Op::Unary(Unary::Abs), &[x]) => choose(side, x, x.negate()),
+            (Op::Unary(Unary::Sign), &[_]) => {
+                choose(side, Enclosure::constant(1.0), Enclosure::constant(-1.0))
+            }
+            (Op::Unary(Unary::Step), &[_]) => {
+                choose(side, Enclosure::constant(1.0), Enclosure::constant(0.0))
+            }
+            (Op::Unary(Unary::Floor), &[x]) => match side {
+                Some(whole) => Enclosure::constant(whole),
+                None => {
+                    let Interval { lo, hi } = x.value();
+                    let (low, high) = (lo.floor(), hi.floor());
+                    Enclosure::constant(low).hull(Enclosure::constant(high))
+                }
+            },
+            (Op::Unary(function), &[x]) => x.unary(function),
+            (Op::Binary(Binary::Max), &[a, b]) => choose(side, a, b),
+            (Op::Binary(Binary::Min), &[a, b]) => choose(side, b, a),
+            (Op::Binary(operation), &[a, b]) => a.binary(operation, b),
+            (Op::Clamp, &[x, low, high]) => {
+                if low.value().hi > high.value().lo {
+                    return x.hull(low).hull(high);
+                }
+                choose(second, high, choose(side, x, low))
+            }
+            (Op::If(comparison), &[_, _, yes, no]) => {
+                let above = comparison.holds(1.0, 0.0);
+                let (a, b) = if above { (yes, no) } else { (no, yes) };
+                choose(side, a, b)
+            }
+            _ => Enclosure::UNKNOWN,
+        }
+    }
+
+    /// Bounds of a switch's function.
+    pub(super) fn enclose_switch(
+        &self,
+        switch: &Switch,
+        over: Interval,
+        sides: &[Sides],
+    ) -> Enclosure {
+        let left = self.enclose(switch.left, over, sides);
+        match switch.right {
+            None => left,
+            Some(right) => left.minus(self.enclose(right, over, sides)),
+        }
+    }
+
+    /// The value of a switch's function.
+    pub(super) fn switch_value(&self, switch: &Switch, x: f64) -> f64 {
+        let part = |last: usize| {
+            let variable = |index| if index == self.variable { x } else { f64::NAN };
+            run_parts(&self.ops[self.starts[last]..=last], variable)
+        };
+        part(switch.left) - switch.right.map_or(0.0, part)
+    }
+
+    /// The value of a term.
+    pub(super) fn term_value(&self, last: usize, x: f64) -> f64 {
+        run_parts(&self.ops[self.starts[last]..=last], |_| x)
+    }
+}

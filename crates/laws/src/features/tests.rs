@@ -1,0 +1,137 @@
+//! Every switch is found, to rounding, and between switches every piece is as smooth as it says.
+
+use super::*;
+
+fn features(text: &str) -> Features {
+    let mut features = Features::default();
+    let expression = Expression::parse(text, &["x", "t"]).expect(text);
+    features.add_expression(7, &expression, 1);
+    features
+}
+
+fn switches(text: &str, from: f64, to: f64) -> Vec<f64> {
+    let features = features(text);
+    let pieces = features.scan(from, to).map(|piece| piece.expect(text));
+    let restarts = pieces.filter(|piece| piece.restart);
+    restarts.map(|piece| piece.to).collect()
+}
+
+#[test]
+fn switches_are_where_they_are_by_hand() {
+    for (text, from, to, expected) in [
+        ("if(t > 0.7, 5, 0)", 0.0, 10.0, vec![0.7]),
+        ("if(t > 0.7, 5, 0)*x", 0.0, 10.0, vec![0.7]),
+        ("if(x > 0.7, 5, 0)*t", 0.0, 10.0, vec![]),
+        ("abs(t - 2) + min(t, 3)", 0.0, 10.0, vec![2.0, 3.0]),
+        ("sign(sin(pi*t))", 0.5, 4.5, vec![1.0, 2.0, 3.0, 4.0]),
+        ("floor(2*t)", 0.1, 2.0, vec![0.5, 1.0, 1.5]),
+        ("step(t - 1e-3)", 0.0, 1e5, vec![1e-3]),
+        ("clamp(t, 1, 2)", 0.0, 3.0, vec![1.0, 2.0]),
+        ("clamp(-t, -2, -1)*x", 0.0, 3.0, vec![1.0, 2.0]),
+        // A pulse of a microsecond in a day.
+        (
+            "if(abs(t - 50000) < 5e-7, 1, 0)",
+            0.0,
+            86400.0,
+            vec![50000.0 - 5e-7, 50000.0, 50000.0 + 5e-7],
+        ),
+        // Nested: the inner switch decides where the outer one is.
+        (
+            "if(if(t < 2, t, 5 - t) > 1, 1, 0)",
+            0.0,
+            10.0,
+            vec![1.0, 2.0, 4.0],
+        ),
+        (
+            "if(t - floor(t) < 0.25, 1, 0)",
+            0.1,
+            2.1,
+            vec![0.25, 1.0, 1.25, 2.0],
+        ),
+        (
+            "atan2(sin(t), cos(t))",
+            0.0,
+            6.0,
+            vec![std::f64::consts::PI],
+        ),
+        ("min(t, t)", 0.0, 3.0, vec![]),
+        ("abs(t^2)", 1.0, 3.0, vec![]),
+    ] {
+        let found = switches(text, from, to);
+        assert_eq!(found.len(), expected.len(), "{text}: {found:?}");
+        for (a, b) in found.iter().zip(&expected) {
+            // A few roundings of the time, and of what is compared.
+            assert!((a - b).abs() <= 16.0 * f64::EPSILON * to, "{text}: {a} {b}");
+        }
+    }
+}
+
+/// Within a piece nothing switches: the values at both ends, and close to them, are of the same side.
+#[test]
+fn a_piece_ends_before_the_switch_and_the_next_begins_behind_it() {
+    let text = "if(sin(20*t) > 0.3, 1, 0) + step(cos(7*t)) + sign(t - 1)";
+    let expression = Expression::parse(text, &["x", "t"]).expect(text);
+    let features = features(text);
+    let pieces: Vec<Piece> = features.scan(0.0, 5.0).map(|p| p.expect(text)).collect();
+    let mut changes = 0;
+    for pair in pieces.windows(2) {
+        let value = |t: f64| expression.eval(&[0.0, t]);
+        let [before, behind] = [pair[0].to, pair[1].from];
+        assert!(behind - before < 1e-14, "{before} {behind}");
+        assert_eq!(value(pair[0].from), value(before));
+        assert_eq!(value(0.5 * (pair[0].from + before)), value(before));
+        assert_eq!(pair[0].restart, value(before) != value(behind));
+        changes += usize::from(pair[0].restart);
+    }
+    // sin(20 t) = 0.3 twice in each of 16 periods (100 rad), cos(7 t) = 0 at 11 places, and t = 1.
+    assert_eq!(changes, 32 + 11 + 1);
+}
+
+/// A narrow bell: the pieces on it are as narrow as it is, those far from it are not; and it costs little.
+#[test]
+fn narrow_smooth_features_are_resolved() {
+    for width in [0.1, 1e-4, 1e-9] {
+        let text = format!("100*sin(t) + 1e-3*exp(-((t - 200)/{width})^2)");
+        let features = features(&text);
+        let pieces: Vec<Piece> = features
+            .scan(0.0, 300.0)
+            .map(|p| p.expect("pieces"))
+            .collect();
+        let on = pieces.iter().filter(|p| (p.from - 200.0).abs() < width);
+        let narrow: Vec<f64> = on.map(|p| p.width / width).collect();
+        assert!(
+            narrow.len() > 5 && narrow.iter().all(|w| *w < 0.5),
+            "{narrow:?}"
+        );
+        let far = pieces.iter().filter(|p| (p.from - 200.0).abs() > 1.0);
+        assert!(far.map(|p| p.width).fold(f64::INFINITY, f64::min) > 0.01);
+        assert!(pieces.len() < 6000, "{}", pieces.len());
+    }
+}
+
+#[test]
+fn laws_end_their_pieces_at_their_corners() {
+    let rise = crate::Rise {
+        start: 0.0,
+        rise: 1.0,
+        duration: 2.0,
+        delay: 3.0,
+    };
+    let shape = crate::Shape::Trapezoidal { ramp: 0.5 };
+    let mut features = Features::default();
+    features.add_law(
+        0,
+        &Law::Profile(crate::Profile::new(shape, rise).expect("a profile")),
+    );
+    let pieces: Vec<Piece> = features
+        .scan(0.0, 10.0)
+        .map(|p| p.expect("pieces"))
+        .collect();
+    let ends: Vec<f64> = pieces.iter().filter(|p| p.restart).map(|p| p.to).collect();
+    assert_eq!(ends.len(), 4);
+    for (end, corner) in ends.iter().zip([3.0, 3.5, 4.5, 5.0]) {
+        assert!((end - corner).abs() < 1e-14);
+    }
+    assert_eq!(pieces[1].width, 0.25);
+    assert_eq!(pieces[4].width, pieces[4].to - pieces[4].from);
+}
