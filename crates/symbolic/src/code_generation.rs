@@ -3,9 +3,9 @@
 use crate::algebra::{Term, common_subexpressions, is_atomic, names};
 use crate::closed_form::{ClosedForm, FormulaSection};
 use crate::format::{Language, OutputStyle};
-use crate::symbol_table::Assignment;
+use crate::quantities::Quantity;
+use crate::symbol_table::{Assignment, Constant};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 
 /// Characters of LaTeX on one line: two or three of them are one in print.
 const WIDTH: usize = 200;
@@ -44,17 +44,92 @@ impl ClosedForm {
 
     /// A function of the coordinate in a language, that gives all quantities: what steps share is computed
     /// once. `name` is its name, and `about` stands in the comment above it.
+    //
+    // Long: every part of it in every language.
     pub fn code(&self, language: Language, name: &str, about: &str) -> String {
-        let lines = self.lines();
+        let style = OutputStyle::Code(language);
+        let kind = camel(name);
+        let (q, of, unit) = {
+            let of = &self.coordinate;
+            (&of.code, &of.meaning, of.unit)
+        };
         // A title may hold anything: it must not end the comment that it stands in.
         let about = &about.replace(['\n', '\r'], " ").replace("*/", "* /");
-        match language {
-            Language::Rust => self.rust(name, about, &lines),
-            Language::C => self.c(name, about, &lines),
-            Language::Python => self.python(name, about, &lines),
+        let mut text = match language {
+            Language::Rust => format!(
+                "// {about}\n\n/// What [`{name}`] gives.\n#[allow(non_snake_case)]\n#[derive(Debug, Clone, Copy)]\npub struct {kind} {{\n"
+            ),
+            Language::C => format!("/* {about} */\n\n#include <math.h>\n\ntypedef struct {{\n"),
+            Language::Python => format!(
+                "# {about}\n\nfrom math import atan2, cos, sin, sqrt\n\n\ndef {name}({q}):\n    \"\"\"Of the {of}, {unit}:\n\n"
+            ),
+        };
+        for Quantity {
+            code,
+            meaning,
+            unit,
+            ..
+        } in &self.quantities
+        {
+            text += &match language {
+                Language::Rust => format!("    /// {meaning}, {unit}\n    pub {code}: f64,\n"),
+                Language::C => format!("    double {code}; /* {meaning}, {unit} */\n"),
+                Language::Python => format!("    {code}: {meaning}, {unit}\n"),
+            };
         }
+        text += &match language {
+            Language::Rust => format!(
+                "}}\n\n/// Of the {of}, {unit}.\n#[allow(non_snake_case, unused_parens)]\npub fn {name}({q}: f64) -> {kind} {{\n"
+            ),
+            Language::C => format!(
+                "}} {name}_result;\n\n/* Of the {of}, {unit}. */\n{name}_result {name}(double {q})\n{{\n"
+            ),
+            Language::Python => "    \"\"\"\n".to_owned(),
+        };
+        for Constant {
+            code,
+            value,
+            meaning,
+            unit,
+            ..
+        } in &self.constants
+        {
+            let separator = if unit.is_empty() { "" } else { ", " };
+            let meaning = format!("{meaning}{separator}{unit}");
+            text += &match language {
+                Language::Rust => format!("    // {meaning}\n    let {code}: f64 = {value:?};\n"),
+                Language::C => format!("    const double {code} = {value:?}; /* {meaning} */\n"),
+                Language::Python => format!("    {code} = {value:?}  # {meaning}\n"),
+            };
+        }
+        for (code, term) in self.lines() {
+            let value = style.text(&term);
+            text += &match language {
+                Language::Rust => format!("    let {code}: f64 = {value};\n"),
+                Language::C => format!("    const double {code} = {value};\n"),
+                Language::Python => format!("    {code} = {value}\n"),
+            };
+        }
+        let (begin, end) = match language {
+            Language::Rust => (format!("    {kind} {{\n"), "    }\n}\n"),
+            Language::C => (format!("    return ({name}_result){{\n"), "    };\n}\n"),
+            Language::Python => ("    return {\n".to_owned(), "    }\n"),
+        };
+        text += &begin;
+        for Quantity { code, .. } in &self.quantities {
+            text += &match language {
+                Language::Rust => format!("        {code},\n"),
+                Language::C => format!("        .{code} = {code},\n"),
+                Language::Python => format!("        \"{code}\": {code},\n"),
+            };
+        }
+        text + end
     }
 
+    /// Steps that are more than another name, in all parts.
+    pub fn assignment_count(&self) -> usize {
+        self.assignments().filter(|s| !is_atomic(&s.value)).count()
+    }
     /// Names and terms in the order in which they can be computed, what is shared among them.
     fn lines(&self) -> Vec<(String, Term)> {
         let assignments: Vec<&Assignment> = self.assignments().collect();
@@ -71,101 +146,6 @@ impl ClosedForm {
             .into_iter()
             .map(|(code, term)| (code.replace("__x", "t"), term))
             .collect()
-    }
-
-    fn rust(&self, name: &str, about: &str, lines: &[(String, Term)]) -> String {
-        let style = OutputStyle::Code(Language::Rust);
-        let kind = camel(name);
-        let mut text = format!(
-            "// {about}\n\n/// What [`{name}`] gives.\n#[allow(non_snake_case)]\n#[derive(Debug, Clone, Copy)]\npub struct {kind} {{\n"
-        );
-        for q in &self.quantities {
-            let _ = writeln!(text, "    /// {}, {}", q.meaning, q.unit);
-            let _ = writeln!(text, "    pub {}: f64,", q.code);
-        }
-        let of = &self.coordinate;
-        let _ = writeln!(
-            text,
-            "}}\n\n/// Of the {}, {}.\n#[allow(non_snake_case, unused_parens)]\npub fn {name}({}: f64) -> {kind} {{",
-            of.meaning, of.unit, of.code
-        );
-        for c in &self.constants {
-            let _ = writeln!(text, "    // {}{}", c.meaning, unit(c.unit));
-            let _ = writeln!(text, "    let {}: f64 = {:?};", c.code, c.value);
-        }
-        for (code, term) in lines {
-            let _ = writeln!(text, "    let {code}: f64 = {};", style.text(term));
-        }
-        let _ = writeln!(text, "    {kind} {{");
-        for q in &self.quantities {
-            let _ = writeln!(text, "        {},", q.code);
-        }
-        text + "    }\n}\n"
-    }
-
-    fn c(&self, name: &str, about: &str, lines: &[(String, Term)]) -> String {
-        let style = OutputStyle::Code(Language::C);
-        let mut text = format!("/* {about} */\n\n#include <math.h>\n\ntypedef struct {{\n");
-        for q in &self.quantities {
-            let _ = writeln!(
-                text,
-                "    double {}; /* {}, {} */",
-                q.code, q.meaning, q.unit
-            );
-        }
-        let of = &self.coordinate;
-        let _ = writeln!(
-            text,
-            "}} {name}_result;\n\n/* Of the {}, {}. */\n{name}_result {name}(double {})\n{{",
-            of.meaning, of.unit, of.code
-        );
-        for c in &self.constants {
-            let (meaning, unit) = (&c.meaning, unit(c.unit));
-            let _ = writeln!(
-                text,
-                "    const double {} = {:?}; /* {meaning}{unit} */",
-                c.code, c.value
-            );
-        }
-        for (code, term) in lines {
-            let _ = writeln!(text, "    const double {code} = {};", style.text(term));
-        }
-        let _ = writeln!(text, "    return ({name}_result){{");
-        for q in &self.quantities {
-            let _ = writeln!(text, "        .{0} = {0},", q.code);
-        }
-        text + "    };\n}\n"
-    }
-
-    fn python(&self, name: &str, about: &str, lines: &[(String, Term)]) -> String {
-        let style = OutputStyle::Code(Language::Python);
-        let of = &self.coordinate;
-        let mut text = format!(
-            "# {about}\n\nfrom math import atan2, cos, sin, sqrt\n\n\ndef {name}({}):\n    \"\"\"Of the {}, {}:\n\n",
-            of.code, of.meaning, of.unit
-        );
-        for q in &self.quantities {
-            let _ = writeln!(text, "    {}: {}, {}", q.code, q.meaning, q.unit);
-        }
-        text.push_str("    \"\"\"\n");
-        for c in &self.constants {
-            let _ = writeln!(
-                text,
-                "    {} = {:?}  # {}{}",
-                c.code,
-                c.value,
-                c.meaning,
-                unit(c.unit)
-            );
-        }
-        for (code, term) in lines {
-            let _ = writeln!(text, "    {code} = {}", style.text(term));
-        }
-        text.push_str("    return {\n");
-        for q in &self.quantities {
-            let _ = writeln!(text, "        \"{0}\": {0},", q.code);
-        }
-        text + "    }\n"
     }
 }
 
@@ -186,14 +166,6 @@ fn emit_dependencies(
     }
 }
 
-fn unit(unit: &str) -> String {
-    if unit.is_empty() {
-        String::new()
-    } else {
-        format!(", {unit}")
-    }
-}
-
 /// The name of a type from that of a function.
 fn camel(name: &str) -> String {
     let mut text = String::new();
@@ -203,11 +175,4 @@ fn camel(name: &str) -> String {
         text.push_str(chars.as_str());
     }
     text
-}
-
-impl ClosedForm {
-    /// Steps that are more than another name, in all parts.
-    pub fn assignment_count(&self) -> usize {
-        self.assignments().filter(|s| !is_atomic(&s.value)).count()
-    }
 }

@@ -43,21 +43,21 @@ impl OutputStyle<'_> {
             let positive = found.remove(first);
             found.insert(0, positive);
         }
-        let several = found.len() > 1;
-        let precedence = |minus: bool| match (several, minus) {
-            (false, false) => Precedence::Lowest,
-            _ => Precedence::Product,
+        let only_one = found.len() == 1;
+        let text = |(minus, term): (bool, Term)| {
+            let precedence = match only_one && !minus {
+                true => Precedence::Lowest,
+                false => Precedence::Product,
+            };
+            (minus, self.single(&term, precedence))
         };
-        found
-            .iter()
-            .map(|(minus, term)| (*minus, self.single(term, precedence(*minus))))
-            .collect()
+        found.into_iter().map(text).collect()
     }
 
     fn write(&self, term: &Term, precedence: Precedence) -> String {
         let summands = self.summands(term);
         if let [(false, _)] = summands.as_slice() {
-            return self.single(&without_sign(term), precedence);
+            return self.single(&unsigned(term).0, precedence);
         }
         let mut text = String::new();
         for (k, (minus, one)) in summands.iter().enumerate() {
@@ -166,18 +166,15 @@ impl OutputStyle<'_> {
                 let exponent = self.write(exponent, Precedence::Lowest);
                 // A function's power stands at its name, a derivative's outside brackets.
                 match base.as_ref() {
-                    Node::Cos(angle) | Node::Sin(angle) if whole == Some(2) => {
-                        let name = if matches!(base.as_ref(), Node::Cos(_)) {
-                            "\\cos"
-                        } else {
-                            "\\sin"
-                        };
-                        format!("{name}^2 {}", self.write(angle, Precedence::Highest))
+                    Node::Cos(angle) if whole == Some(2) => {
+                        format!("\\cos^2 {}", self.write(angle, Precedence::Highest))
                     }
-                    Node::Sym(_) if !tight.contains(['\'', ' ']) => {
-                        format!("{tight}^{{{exponent}}}")
+                    Node::Sin(angle) if whole == Some(2) => {
+                        format!("\\sin^2 {}", self.write(angle, Precedence::Highest))
                     }
-                    Node::Sym(_) => format!("{{{tight}}}^{{{exponent}}}"),
+                    Node::Sym(_) if tight.contains(['\'', ' ']) => {
+                        format!("{{{tight}}}^{{{exponent}}}")
+                    }
                     _ => format!("{tight}^{{{exponent}}}"),
                 }
             }
@@ -223,46 +220,29 @@ impl OutputStyle<'_> {
                 }
                 _ => format!("{value:?}"),
             },
-            Node::Cos(angle) => self.function("cos", &[angle]),
-            Node::Sin(angle) => self.function("sin", &[angle]),
-            Node::Sqrt(inner) => self.function("sqrt", &[inner]),
-            Node::Atan2(y, x) => self.function("atan2", &[y, x]),
+            Node::Cos(angle) => self.function("cos", angle, None),
+            Node::Sin(angle) => self.function("sin", angle, None),
+            Node::Sqrt(inner) => self.function("sqrt", inner, None),
+            Node::Atan2(y, x) => self.function("atan2", y, Some(x)),
             // The closed forms hold nothing else.
             _ => format!("{term}"),
         }
     }
 
-    fn function(&self, name: &str, of: &[&Term]) -> String {
-        let arguments = || {
-            let all: Vec<String> = of
-                .iter()
-                .map(|t| self.write(t, Precedence::Lowest))
-                .collect();
-            all.join(", ")
-        };
-        match self {
-            Self::Latex(..) => match (name, of) {
-                ("sqrt", _) => format!("\\sqrt{{{}}}", arguments()),
-                ("atan2", _) => format!("\\operatorname{{atan2}}\\left({}\\right)", arguments()),
-                (_, [angle]) => format!("\\{name} {}", self.write(angle, Precedence::Highest)),
-                _ => format!("\\{name}\\left({}\\right)", arguments()),
-            },
-            Self::Code(Language::Rust) => match of {
-                [one] => format!("{}.{name}()", self.write(one, Precedence::Highest)),
-                [one, rest @ ..] => {
-                    let rest: Vec<String> = rest
-                        .iter()
-                        .map(|t| self.write(t, Precedence::Lowest))
-                        .collect();
-                    format!(
-                        "{}.{name}({})",
-                        self.write(one, Precedence::Highest),
-                        rest.join(", ")
-                    )
-                }
-                [] => String::new(),
-            },
-            Self::Code(_) => format!("{name}({})", arguments()),
+    fn function(&self, name: &str, first: &Term, second: Option<&Term>) -> String {
+        let lowest = |term: &Term| self.write(term, Precedence::Lowest);
+        let highest = || self.write(first, Precedence::Highest);
+        let all: Vec<String> = [first].into_iter().chain(second).map(lowest).collect();
+        let all = all.join(", ");
+        match (self, name) {
+            (Self::Latex(..), "sqrt") => format!("\\sqrt{{{all}}}"),
+            (Self::Latex(..), "atan2") => format!("\\operatorname{{atan2}}\\left({all}\\right)"),
+            (Self::Latex(..), _) => format!("\\{name} {}", highest()),
+            (Self::Code(Language::Rust), _) => {
+                let second = second.map(lowest).unwrap_or_default();
+                format!("{}.{name}({second})", highest())
+            }
+            (Self::Code(_), _) => format!("{name}({all})"),
         }
     }
 }
@@ -331,11 +311,6 @@ fn unsigned(term: &Term) -> (Term, bool) {
         }
         _ => (term.clone(), false),
     }
-}
-
-/// A term of one summand without its sign, which is known to be plus.
-fn without_sign(term: &Term) -> Term {
-    unsigned(term).0
 }
 
 fn factors(term: &Term, above: &mut Vec<Term>, below: &mut Vec<Term>) {
