@@ -3,8 +3,7 @@
 use crate::algebra::{Term, common_subexpressions, is_atomic, names};
 use crate::closed_form::{ClosedForm, FormulaSection};
 use crate::format::{Language, OutputStyle};
-use crate::quantities::Quantity;
-use crate::symbol_table::{Assignment, Constant};
+use crate::symbol_table::Assignment;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Characters of LaTeX on one line: two or three of them are one in print.
@@ -49,10 +48,8 @@ impl ClosedForm {
     pub fn code(&self, language: Language, name: &str, about: &str) -> String {
         let style = OutputStyle::Code(language);
         let kind = camel(name);
-        let (q, of, unit) = {
-            let of = &self.coordinate;
-            (&of.code, &of.meaning, of.unit)
-        };
+        let (q, of) = (&self.coordinate.code, &self.coordinate);
+        let of = format!("Of the {}, {}", of.meaning, of.unit);
         // A title may hold anything: it must not end the comment that it stands in.
         let about = &about.replace(['\n', '\r'], " ").replace("*/", "* /");
         let mut text = match language {
@@ -61,41 +58,31 @@ impl ClosedForm {
             ),
             Language::C => format!("/* {about} */\n\n#include <math.h>\n\ntypedef struct {{\n"),
             Language::Python => format!(
-                "# {about}\n\nfrom math import atan2, cos, sin, sqrt\n\n\ndef {name}({q}):\n    \"\"\"Of the {of}, {unit}:\n\n"
+                "# {about}\n\nfrom math import atan2, cos, sin, sqrt\n\n\ndef {name}({q}):\n    \"\"\"{of}:\n\n"
             ),
         };
-        for Quantity {
-            code,
-            meaning,
-            unit,
-            ..
-        } in &self.quantities
-        {
+        for quantity in &self.quantities {
+            let code = &quantity.code;
+            let meaning = format!("{}, {}", quantity.meaning, quantity.unit);
             text += &match language {
-                Language::Rust => format!("    /// {meaning}, {unit}\n    pub {code}: f64,\n"),
-                Language::C => format!("    double {code}; /* {meaning}, {unit} */\n"),
-                Language::Python => format!("    {code}: {meaning}, {unit}\n"),
+                Language::Rust => format!("    /// {meaning}\n    pub {code}: f64,\n"),
+                Language::C => format!("    double {code}; /* {meaning} */\n"),
+                Language::Python => format!("    {code}: {meaning}\n"),
             };
         }
         text += &match language {
             Language::Rust => format!(
-                "}}\n\n/// Of the {of}, {unit}.\n#[allow(non_snake_case, unused_parens)]\npub fn {name}({q}: f64) -> {kind} {{\n"
+                "}}\n\n/// {of}.\n#[allow(non_snake_case, unused_parens)]\npub fn {name}({q}: f64) -> {kind} {{\n"
             ),
-            Language::C => format!(
-                "}} {name}_result;\n\n/* Of the {of}, {unit}. */\n{name}_result {name}(double {q})\n{{\n"
-            ),
+            Language::C => {
+                format!("}} {name}_result;\n\n/* {of}. */\n{name}_result {name}(double {q})\n{{\n")
+            }
             Language::Python => "    \"\"\"\n".to_owned(),
         };
-        for Constant {
-            code,
-            value,
-            meaning,
-            unit,
-            ..
-        } in &self.constants
-        {
+        for constant in &self.constants {
+            let (code, value, unit) = (&constant.code, constant.value, constant.unit);
             let separator = if unit.is_empty() { "" } else { ", " };
-            let meaning = format!("{meaning}{separator}{unit}");
+            let meaning = format!("{}{separator}{unit}", constant.meaning);
             text += &match language {
                 Language::Rust => format!("    // {meaning}\n    let {code}: f64 = {value:?};\n"),
                 Language::C => format!("    const double {code} = {value:?}; /* {meaning} */\n"),
@@ -116,7 +103,7 @@ impl ClosedForm {
             Language::Python => ("    return {\n".to_owned(), "    }\n"),
         };
         text += &begin;
-        for Quantity { code, .. } in &self.quantities {
+        for code in self.quantities.iter().map(|quantity| &quantity.code) {
             text += &match language {
                 Language::Rust => format!("        {code},\n"),
                 Language::C => format!("        .{code} = {code},\n"),
@@ -130,22 +117,21 @@ impl ClosedForm {
     pub fn assignment_count(&self) -> usize {
         self.assignments().filter(|s| !is_atomic(&s.value)).count()
     }
+
     /// Names and terms in the order in which they can be computed, what is shared among them.
     fn lines(&self) -> Vec<(String, Term)> {
-        let assignments: Vec<&Assignment> = self.assignments().collect();
-        let values: Vec<Term> = assignments.iter().map(|s| s.value.clone()).collect();
+        let values: Vec<Term> = self.assignments().map(|s| s.value.clone()).collect();
         let (shared_terms, reduced_terms) = common_subexpressions(&values);
         let shared_terms: BTreeMap<String, Term> = shared_terms.into_iter().collect();
         let mut emitted = BTreeSet::new();
         let mut lines = Vec::new();
-        for (assignment, term) in assignments.iter().zip(reduced_terms) {
+        for (assignment, term) in self.assignments().zip(reduced_terms) {
             emit_dependencies(&term, &shared_terms, &mut emitted, &mut lines);
             lines.push((assignment.code.clone(), term));
         }
+        let rename = |(code, _): &mut (String, Term)| *code = code.replace("__x", "t");
+        lines.iter_mut().for_each(rename);
         lines
-            .into_iter()
-            .map(|(code, term)| (code.replace("__x", "t"), term))
-            .collect()
     }
 }
 

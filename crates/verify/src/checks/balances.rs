@@ -30,7 +30,7 @@ use crate::constraint_closing::Configuration;
 use crate::context::{CheckContext, CheckedPosition, FORCE_MIN_SHARE};
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
 use crate::subject::SubjectError;
-use crate::wrenches::{DenseWrench, NetWrench};
+use crate::wrenches::{BodyWrench, NetWrench};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::Vec2;
 use dwell_laws::Polynomial;
@@ -227,7 +227,7 @@ fn state_at(
 /// (2) and (3), with the errors of the rates.
 fn momentum_balance(
     context: &CheckContext<'_>,
-    wrenches: &[DenseWrench],
+    wrenches: &[BodyWrench],
     rate: [Extrapolated; 3],
 ) -> (NetWrench, [f64; 3]) {
     let force = rate[0].value.abs().max(rate[1].value.abs());
@@ -236,7 +236,7 @@ fn momentum_balance(
         terms: [force, force, rate[2].value.abs()],
     };
     let ground = context.case.mechanism.ground;
-    for wrench in wrenches.iter().filter(|wrench| wrench.body == ground) {
+    for wrench in wrenches.iter().filter(|wrench| wrench.body.0 == ground) {
         net.add(wrench, Vec2::ZERO);
     }
     // The ground's action on the mechanism is opposite to what acts on the ground.
@@ -248,7 +248,7 @@ fn momentum_balance(
 fn body_balance(
     context: &CheckContext<'_>,
     position: &CheckedPosition,
-    wrenches: &[DenseWrench],
+    wrenches: &[BodyWrench],
     body: usize,
     second: [Extrapolated; 3],
 ) -> (NetWrench, [f64; 3]) {
@@ -260,7 +260,7 @@ fn body_balance(
         terms: rate.map(f64::abs),
     };
     let center = context.dense.center(of, &position.configuration);
-    for wrench in wrenches.iter().filter(|wrench| wrench.body == body) {
+    for wrench in wrenches.iter().filter(|wrench| wrench.body.0 == body) {
         net.add(wrench, center);
     }
     (net, std::array::from_fn(|c| inertias[c] * second[c].error))

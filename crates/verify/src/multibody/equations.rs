@@ -1,13 +1,12 @@
 //! Equation (1) at one instant.
 
 use super::drives::rotor_inertia;
-use super::friction::FrictionResponse;
+use super::friction::depends_on_reactions;
 use super::state::MultibodyState;
 use super::{MotionSample, MultibodyError, MultibodySystem, Result};
 use crate::dense::DenseMechanism;
 use crate::wrenches::BodyWrench;
 use dwell_geometry::{Vec2, vec2};
-use dwell_kinetostatics::Magnitude;
 use faer::Mat;
 
 /// The equations from a start on: gears meshed, rows chosen.
@@ -53,7 +52,7 @@ struct EvaluationPoint<'a> {
 /// Accelerations, and multipliers by row.
 type AugmentedSolution = (Vec<f64>, Vec<f64>);
 
-fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
+pub(super) fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
     let both = to.iter_mut().zip(more);
     both.for_each(|(to, more)| *to += factor * more);
 }
@@ -84,11 +83,10 @@ impl MultibodyOde<'_> {
             let arm = wrench.point - ground - vec2(x[c], x[c + 1]);
             force[c] += wrench.force.x;
             force[c + 1] += wrench.force.y;
-            let is_couple = wrench.force == Vec2::ZERO;
-            let moment = if is_couple {
-                0.0
-            } else {
-                arm.cross(wrench.force)
+            // A pure couple acts nowhere.
+            let moment = match wrench.force {
+                Vec2::ZERO => 0.0,
+                force => arm.cross(force),
             };
             force[c + 2] += moment + wrench.couple;
         }
@@ -122,17 +120,14 @@ impl MultibodyOde<'_> {
         to: &mut AppliedForces,
     ) -> Option<()> {
         for (i, load) in self.system.loads.iter().enumerate() {
-            if matches!(
-                load.magnitude,
-                Magnitude::Friction(_) | Magnitude::Separating(_)
-            ) {
+            if depends_on_reactions(&load.magnitude) {
                 continue;
             }
             let magnitude = self.system.magnitude(&load.magnitude, at)?;
             let wrenches = self.system.wrenches(i, magnitude, at);
             self.add_wrenches(&wrenches, point.x, &mut to.force);
             if !load.is_conservative() {
-                to.power += wrenches.iter().map(|wrench| at.power(wrench)).sum::<f64>();
+                to.power += at.power(&wrenches);
             }
         }
         Some(())
@@ -150,19 +145,19 @@ impl MultibodyOde<'_> {
             let row = self.frames.actuator_row() + self.system.modes.len() + d;
             let velocity = self.frames.row_velocity(&point.jacobian, row, point.v);
             let state = point.drive_states[d];
-            let output = self.system.drive_output(d, velocity, state, at)?;
+            let [force, state_rate] = self.system.drive_output(&drive.kind, velocity, state, at)?;
             let inertia = rotor_inertia(&drive.kind);
             let jacobian_row = &point.jacobian[row * n..][..n];
-            let force = output.force - inertia * point.velocity_products[row];
-            add_scaled(&mut to.force, force, jacobian_row);
+            let net_force = force - inertia * point.velocity_products[row];
+            add_scaled(&mut to.force, net_force, jacobian_row);
             for (i, a) in jacobian_row.iter().enumerate() {
                 for (j, b) in jacobian_row.iter().enumerate() {
                     to.mass[(i, j)] += inertia * a * b;
                 }
             }
-            to.power += output.force * velocity;
-            to.drive_forces.push(output.force);
-            to.drive_state_rates.push(output.state_rate);
+            to.power += force * velocity;
+            to.drive_forces.push(force);
+            to.drive_state_rates.push(state_rate);
         }
         Some(())
     }
@@ -187,10 +182,9 @@ impl MultibodyOde<'_> {
             velocity_products,
         };
         let mut applied = self.assemble_masses();
-        let loads = self.add_loads(&at, &point, &mut applied);
-        loads.ok_or(not_finite)?;
-        let drives = self.add_drives(&at, &point, &mut applied);
-        drives.ok_or(not_finite)?;
+        self.add_loads(&at, &point, &mut applied)
+            .and_then(|()| self.add_drives(&at, &point, &mut applied))
+            .ok_or(not_finite)?;
         let (a, multipliers) = self.solve_with_friction(&at, &point, &mut applied)?;
         let velocities = &self.prescribed_values(t)[1];
         let rates = multipliers.iter().zip(velocities);
@@ -219,25 +213,20 @@ impl MultibodyOde<'_> {
         let not_finite = MultibodyError::NotFinite { t: at.t };
         let frictions = self.system.frictions();
         let mut forces = vec![std::mem::take(&mut applied.force)];
-        for (load, _) in &frictions {
+        for &load in &frictions {
             let mut unit = vec![0.0; self.frames.rows.columns()];
-            self.add_wrenches(&self.system.wrenches(*load, 1.0, at), point.x, &mut unit);
+            self.add_wrenches(&self.system.wrenches(load, 1.0, at), point.x, &mut unit);
             forces.push(unit);
         }
         let found = self.solve_augmented(&applied.mass, point, &forces, at.t)?;
         let mut found = found.into_iter();
         let (mut a, mut multipliers) = found.next().ok_or(not_finite)?;
         let (unit_accelerations, unit_reactions): (Vec<_>, Vec<_>) = found.unzip();
-        let response = FrictionResponse {
-            frictionless: multipliers.clone(),
-            unit_responses: unit_reactions,
-        };
-        let friction_forces = self.solve_friction(&frictions, &response, at)?;
-        for (k, &force) in friction_forces.iter().enumerate() {
+        let friction_forces = self.solve_friction(&frictions, &multipliers, &unit_reactions, at)?;
+        for (k, force) in friction_forces.into_iter().enumerate() {
             add_scaled(&mut a, force, &unit_accelerations[k]);
-            add_scaled(&mut multipliers, force, &response.unit_responses[k]);
-            let wrenches = self.system.wrenches(frictions[k].0, force, at);
-            applied.power += wrenches.iter().map(|wrench| at.power(wrench)).sum::<f64>();
+            add_scaled(&mut multipliers, force, &unit_reactions[k]);
+            applied.power += at.power(&self.system.wrenches(frictions[k], force, at));
         }
         Ok((a, multipliers))
     }

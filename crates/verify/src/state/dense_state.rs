@@ -6,7 +6,7 @@ use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::differences::Extrapolated;
 use crate::error::Result;
-use crate::wrenches::{DenseWrench, NetWrench};
+use crate::wrenches::{BodyWrench, NetWrench};
 use dwell_geometry::{Vec2, vec2};
 
 /// A state with its dense solution.
@@ -24,8 +24,8 @@ pub(super) struct DenseState<'a> {
     pub(super) claimed_ddot: Vec<f64>,
     pub(super) pose_rounding_bound: f64,
     pub(super) condition_number: f64,
-    pub(super) load_wrenches: Vec<DenseWrench>,
-    joint_wrenches: Vec<DenseWrench>,
+    pub(super) load_wrenches: Vec<BodyWrench>,
+    joint_wrenches: Vec<BodyWrench>,
 }
 
 /// Velocities and accelerations of the moved frames, and the multipliers: reactions, then actuator forces.
@@ -41,7 +41,7 @@ impl DenseSolution {
         state: &ClaimedState,
         at: &Configuration,
         unit_velocities: &[Vec<f64>],
-        loads: &[DenseWrench],
+        loads: &[BodyWrench],
     ) -> Result<Self> {
         let actuator_row = dense.actuator_row();
         let mut x_dot = vec![0.0; dense.rows.columns()];
@@ -72,7 +72,7 @@ fn required_forces(
     at: &Configuration,
     x_dot: &[f64],
     x_ddot: &[f64],
-    loads: &[DenseWrench],
+    loads: &[BodyWrench],
 ) -> Vec<f64> {
     let mut forces = vec![0.0; dense.rows.columns()];
     let origin = |c: usize| vec2(at.x[c], at.x[c + 1]);
@@ -90,7 +90,7 @@ fn required_forces(
         }
     }
     for load in loads {
-        if let Some(c) = dense.bodies[load.body].column {
+        if let Some(c) = dense.bodies[load.body.0].column {
             add(c, -load.force, -load.moment(origin(c)));
         }
     }
@@ -175,7 +175,7 @@ impl<'a> DenseState<'a> {
         let body_at = &self.dense.bodies[body];
         let center = self.dense.center(body_at, &self.configuration);
         let all = self.joint_wrenches.iter().chain(&self.load_wrenches);
-        NetWrench::of(all.filter(|a| a.body == body), center)
+        NetWrench::of(all.filter(|a| a.body.0 == body), center)
     }
 
     /// m a_G and I α with the claimed motion.
@@ -231,7 +231,7 @@ impl<'a> DenseState<'a> {
             &self.solution.x_ddot,
         );
         for load in &self.load_wrenches {
-            if let Some(c) = self.dense.bodies[load.body].column {
+            if let Some(c) = self.dense.bodies[load.body.0].column {
                 let arm = load.point - vec2(at.x[c], at.x[c + 1]);
                 let v = vec2(u[c], u[c + 1]);
                 add(load.force.dot(v), load.force.norm() * v.norm());
@@ -256,8 +256,8 @@ impl<'a> DenseState<'a> {
     /// terms: x, y, and the moment about the ground's moved origin over the size, N.
     pub(super) fn momentum_balance(&self) -> [(f64, f64, &'static str); 3] {
         let ground = self.dense.mechanism.ground;
-        let on_ground = self.joint_wrenches.iter().filter(|a| a.body == ground);
-        let on_bodies = self.load_wrenches.iter().filter(|a| a.body != ground);
+        let on_ground = self.joint_wrenches.iter().filter(|a| a.body.0 == ground);
+        let on_bodies = self.load_wrenches.iter().filter(|a| a.body.0 != ground);
         let mut total = NetWrench::of(on_bodies, Vec2::ZERO);
         // The ground's action is the opposite of what acts on it.
         let on_ground = NetWrench::of(on_ground, Vec2::ZERO);
@@ -319,18 +319,15 @@ fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Result<(), Stat
 }
 
 /// The loads with their points from the ground's moved origin.
-fn shifted_wrenches(dense: &DenseMechanism, state: &ClaimedState) -> Vec<DenseWrench> {
+fn shifted_wrenches(dense: &DenseMechanism, state: &ClaimedState) -> Vec<BodyWrench> {
     let ground = dense.bodies[dense.mechanism.ground].shift;
-    let shifted = state.load_wrenches.iter().map(|load| DenseWrench {
-        body: load.body.0,
-        force: load.force,
+    let shifted = state.load_wrenches.iter().map(|load| BodyWrench {
         // A pure couple acts nowhere, and its point, wherever it was put, must not cost digits.
-        point: if load.force == Vec2::ZERO {
-            Vec2::ZERO
-        } else {
-            load.point - ground
+        point: match load.force {
+            Vec2::ZERO => Vec2::ZERO,
+            _ => load.point - ground,
         },
-        couple: load.couple,
+        ..*load
     });
     shifted.collect()
 }

@@ -22,6 +22,7 @@ use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::FindingSpec;
 use crate::dense::DenseMechanism;
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
+use crate::wrenches::BodyWrench;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Mechanism, vec2};
 use dwell_kinetostatics::Mass;
@@ -235,8 +236,8 @@ impl DenseState<'_> {
 
     /// The power of the loads at the velocities `u`, W.
     fn load_power(&self, u: &[f64]) -> f64 {
-        let power = |load: &crate::wrenches::DenseWrench| {
-            self.dense.bodies[load.body].column.map_or(0.0, |c| {
+        let power = |load: &BodyWrench| {
+            self.dense.bodies[load.body.0].column.map_or(0.0, |c| {
                 let origin = vec2(self.configuration.x[c], self.configuration.x[c + 1]);
                 load.force.dot(vec2(u[c], u[c + 1])) + load.moment(origin) * u[c + 2]
             })
