@@ -91,6 +91,44 @@ fn is_worse(new: f64, old: f64) -> bool {
     !old.is_nan() && (new.is_nan() || new > old)
 }
 
+/// Comparisons of one kind and unit, whose scale is only known when all are there: the largest that any of them has.
+#[derive(Default)]
+pub(crate) struct ComparisonSet {
+    pub(crate) scale: f64,
+    comparisons: Vec<(Comparison, String)>,
+    /// Whether each is checked by its own scale.
+    individual_scales: bool,
+}
+
+impl ComparisonSet {
+    /// A balance must hold in every state, however small its terms are there.
+    pub(crate) fn with_individual_scales() -> Self {
+        Self {
+            individual_scales: true,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a comparison, whose scale is what that of all is at least.
+    pub(crate) fn add(&mut self, comparison: Comparison, location: String) {
+        // A maximum drops what is not a number, but then the difference is not one either.
+        self.scale = self.scale.max(comparison.numbers[1]);
+        self.comparisons.push((comparison, location));
+    }
+
+    /// The largest difference relative to the scale.
+    pub(crate) fn largest(self) -> LargestDifference {
+        let mut worst = LargestDifference::default();
+        for (mut comparison, location) in self.comparisons {
+            if !self.individual_scales {
+                comparison.numbers[1] = self.scale;
+            }
+            worst.record(&comparison, || location);
+        }
+        worst
+    }
+}
+
 /// The constant texts of a finding, and its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FindingSpec<'a> {

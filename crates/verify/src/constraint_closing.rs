@@ -154,7 +154,7 @@ impl DenseMechanism {
         }
         let independent_rows = self.select_independent_rows(&from.x);
         if independent_rows.len() != self.rows.columns() {
-            return Err(DenseError::Singular { pivot: 0.0 });
+            return Err(DenseError::Singular(0.0));
         }
         let best = Self {
             independent_rows,
@@ -256,7 +256,7 @@ impl DenseMechanism {
         let all: Vec<usize> = (0..residual.len()).collect();
         match self.largest_residual(&residual, &all) {
             open if open <= MAX_RESIDUAL => Ok(()),
-            residual => Err(DenseError::RedundantRowsOpen { residual }),
+            residual => Err(DenseError::RedundantRowsOpen(residual)),
         }
     }
 
@@ -279,8 +279,7 @@ impl DenseMechanism {
     }
 
     fn factor(&self, x: &[f64]) -> Result<Lu> {
-        Lu::new(self.independent_part(&self.scaled_jacobian(x)))
-            .map_err(|pivot| DenseError::Singular { pivot })
+        Lu::new(self.independent_part(&self.scaled_jacobian(x))).map_err(DenseError::Singular)
     }
 
     /// The rows that are solved.
@@ -295,7 +294,7 @@ impl DenseMechanism {
     pub(crate) fn multipliers(&self, at: &Configuration, q: &[f64]) -> Result<Vec<f64>> {
         let rows = self.independent_part(&self.scaled_jacobian(&at.x));
         let lu = Lu::new(rows.transpose().to_owned());
-        let lu = lu.map_err(|pivot| DenseError::Singular { pivot })?;
+        let lu = lu.map_err(DenseError::Singular)?;
         let mut right = Mat::from_fn(q.len(), 1, |c, _| q[c] * self.column_scale(c));
         lu.solve(&mut right);
         let mut multipliers = vec![0.0; self.rows.len()];

@@ -85,7 +85,7 @@ impl<'a> CheckContext<'a> {
     pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self> {
         let actuators = case.mechanism.actuators.len();
         if actuators != 1 {
-            return Err(DenseError::Actuators { actuators });
+            return Err(DenseError::Actuators(actuators));
         }
         let (mechanism, masses) = (case.mechanism, case.masses);
         let dense = match case.positions.first().map(|&q| subject.poses(q)) {
@@ -225,12 +225,16 @@ impl CheckedPosition {
         unit: &'static str,
         location: impl FnOnce() -> String,
     ) {
-        let comparison = Comparison {
+        worst.record(&self.comparison(numbers, unit), location);
+    }
+
+    /// A comparison at this position.
+    pub(crate) fn comparison(&self, numbers: [f64; 3], unit: &'static str) -> Comparison {
+        Comparison {
             numbers,
             unit,
             condition_number: self.condition_number,
-        };
-        worst.record(&comparison, location);
+        }
     }
 
     /// Rounding of an energy relative to itself, which next to a dead point is not the last place.

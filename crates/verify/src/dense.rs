@@ -175,6 +175,12 @@ impl DenseMechanism {
     }
 }
 
+/// Adds a multiple of a vector to another.
+pub(crate) fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
+    let both = to.iter_mut().zip(more);
+    both.for_each(|(to, more)| *to += factor * more);
+}
+
 /// The condition number of the dense scaled rows of a mechanism, those of its joints and actuators, in the
 /// configuration with the frames `poses` of all bodies, m and rad: largest over smallest singular value. It
 /// says how many roundings a result may be off by. 1 where there is none.

@@ -17,24 +17,23 @@
 //! q(t) = q + q̇ t + ½ q̈ t², closed without any velocity. (5) and (6) take the dense motion. (3)
 //! and the acts of (4) to (6) share nothing but the poses.
 
-mod comparison_set;
 mod dense_state;
 mod energies;
 
 pub use energies::check_energies;
 
-use crate::comparison::{FindingSpec, LargestDifference};
+use crate::comparison::{ComparisonSet, FindingSpec, LargestDifference};
 use crate::dense::DenseMechanism;
 use crate::differences::NO_ESTIMATE;
 use crate::error::DenseError;
 use crate::wrenches::BodyWrench;
-use comparison_set::ComparisonSet;
-use dense_state::DenseState;
+use dense_state::{DenseState, check_counts};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Component, Mechanism, Reaction};
 use dwell_kinetostatics::Mass;
 use rayon::iter::Either;
 use rayon::prelude::*;
+use std::fmt::Display;
 
 /// A claimed state. What is given by body is in the order of [`Mechanism::bodies`], the ground
 /// included.
@@ -161,7 +160,9 @@ struct StateChecker<'a> {
 impl<'a> StateChecker<'a> {
     fn new(dense: &'a DenseMechanism, states: &'a [ClaimedState]) -> Self {
         let of = |state: &'a ClaimedState| {
-            DenseState::new(dense, state).map_err(|error| format!("t = {} s: {error}", state.t))
+            let described = |why: &dyn Display| format!("t = {} s: {why}", state.t);
+            check_counts(dense, state).map_err(|why| described(&why))?;
+            DenseState::new(dense, state).map_err(|error| described(&error))
         };
         let (dense_states, failures) = states.par_iter().map(of).partition_map(|one| match one {
             Ok(one) => Either::Left(one),
@@ -204,19 +205,21 @@ impl<'a> StateChecker<'a> {
     }
 
     fn poses(&self) -> Finding {
-        let mut comparisons = ComparisonSet::new("");
+        let mut comparisons = ComparisonSet::default();
         for m in &self.dense_states {
-            comparisons.add(m, [m.closing_correction, 1.0, m.pose_rounding_bound], "");
+            let numbers = [m.closing_correction, 1.0, m.pose_rounding_bound];
+            m.compare(&mut comparisons, numbers, "", "");
         }
         self.finding(&POSES, comparisons)
     }
 
     fn branch(&self) -> Finding {
-        let mut comparisons = ComparisonSet::new("");
+        let mut comparisons = ComparisonSet::default();
         let positive = |m: &DenseState<'_>| m.configuration.lu.positive();
         for m in &self.dense_states {
             let other = self.dense_states.first().map(positive) != Some(positive(m));
-            comparisons.add(m, [f64::from(u8::from(other)), 1.0, 0.0], "");
+            let numbers = [f64::from(u8::from(other)), 1.0, 0.0];
+            m.compare(&mut comparisons, numbers, "", "");
         }
         self.finding(&BRANCH, comparisons)
     }
@@ -224,7 +227,7 @@ impl<'a> StateChecker<'a> {
     /// Velocities and accelerations of the moved frames, (1) and (2).
     fn motions(&self) -> [Finding; 2] {
         let size = self.dense.size();
-        let (mut first, mut second) = (ComparisonSet::new("m/s"), ComparisonSet::new("m/s2"));
+        let [mut first, mut second] = [(); 2].map(|()| ComparisonSet::default());
         for m in &self.dense_states {
             let [speed, acceleration] =
                 [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.scaled_norm(x) * size);
@@ -235,10 +238,11 @@ impl<'a> StateChecker<'a> {
                     let arm = if c == column + 2 { size } else { 1.0 };
                     let difference = (m.claimed_dot[c] - m.solution.x_dot[c]) * arm;
                     let numbers = [difference, speed, m.bounds.x_dot[c] * arm];
-                    first.add(m, numbers, name);
+                    m.compare(&mut first, numbers, "m/s", name);
                     let difference = (m.claimed_ddot[c] - m.solution.x_ddot[c]) * arm;
                     let error = m.bounds.x_ddot[c] * arm;
-                    second.add(m, [difference, acceleration, error], name);
+                    let numbers = [difference, acceleration, error];
+                    m.compare(&mut second, numbers, "m/s2", name);
                 }
             }
         }
@@ -251,7 +255,7 @@ impl<'a> StateChecker<'a> {
     fn reactions(&self) -> Finding {
         let size = self.dense.size();
         let rows = self.rows();
-        let mut comparisons = ComparisonSet::new("N");
+        let mut comparisons = ComparisonSet::default();
         for m in &self.dense_states {
             let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
@@ -264,7 +268,8 @@ impl<'a> StateChecker<'a> {
                 let dense = m.solution.multipliers[k] * arm;
                 let error = m.bounds.multipliers[k] * arm;
                 let scale = largest_force.max(dense.abs());
-                comparisons.add(m, [claimed * arm - dense, scale, error], name);
+                let numbers = [claimed * arm - dense, scale, error];
+                m.compare(&mut comparisons, numbers, "N", name);
             }
         }
         self.finding(&REACTIONS, comparisons)
@@ -272,7 +277,7 @@ impl<'a> StateChecker<'a> {
 
     /// Check 8, by claimed accelerations and by positions alone.
     fn newton_euler(&self) -> [Finding; 2] {
-        let (mut claimed, mut differenced) = (ComparisonSet::new("N"), ComparisonSet::new("N"));
+        let [mut claimed, mut differenced] = [(); 2].map(|()| ComparisonSet::default());
         let size = self.dense.size();
         let states = self.dense_states.par_iter();
         let from_positions: Vec<_> = states.map(DenseState::second_differences).collect();
@@ -289,12 +294,13 @@ impl<'a> StateChecker<'a> {
                     let terms = net.terms[c] * arm;
                     let error = m.pose_rounding_bound * terms;
                     let scale = terms + exact.abs() * arm;
-                    claimed.add(m, [(net.sum[c] - exact) * arm, scale, error], name);
+                    let numbers = [(net.sum[c] - exact) * arm, scale, error];
+                    m.compare(&mut claimed, numbers, "N", name);
                     let factor = inertia * arm;
                     let second = second.get(3 * i + c).copied().unwrap_or(NO_ESTIMATE);
                     let difference = net.sum[c] * arm - factor * second.value;
-                    let error = error + factor * second.error;
-                    differenced.add(m, [difference, scale, error], name);
+                    let numbers = [difference, scale, error + factor * second.error];
+                    m.compare(&mut differenced, numbers, "N", name);
                 }
             }
         }
@@ -305,38 +311,23 @@ impl<'a> StateChecker<'a> {
     }
 
     fn power(&self) -> Finding {
-        let mut comparisons = ComparisonSet::with_individual_scales("W");
+        let mut comparisons = ComparisonSet::with_individual_scales();
         for m in &self.dense_states {
             let (difference, terms) = m.power_balance();
-            let error = m.relative_rounding_bound() * terms;
-            comparisons.add(m, [difference, terms, error], "");
+            let numbers = [difference, terms, m.relative_rounding_bound() * terms];
+            m.compare(&mut comparisons, numbers, "W", "");
         }
         self.finding(&POWER, comparisons)
     }
 
     fn momentum(&self) -> Finding {
-        let mut comparisons = ComparisonSet::with_individual_scales("N");
+        let mut comparisons = ComparisonSet::with_individual_scales();
         for m in &self.dense_states {
             for (difference, terms, what) in m.momentum_balance() {
-                let error = m.relative_rounding_bound() * terms;
-                comparisons.add(m, [difference, terms, error], what);
+                let numbers = [difference, terms, m.relative_rounding_bound() * terms];
+                m.compare(&mut comparisons, numbers, "N", what);
             }
         }
         self.finding(&MOMENTUM, comparisons)
     }
-}
-
-/// Why a state cannot be measured.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-enum StateError {
-    #[error("{found} {what} where there are {expected}")]
-    Count {
-        what: &'static str,
-        found: usize,
-        expected: usize,
-    },
-    #[error("a load acts on body {body}, but there are {bodies} bodies")]
-    Load { body: usize, bodies: usize },
-    #[error(transparent)]
-    Dense(#[from] DenseError),
 }

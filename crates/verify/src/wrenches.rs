@@ -174,6 +174,37 @@ fn unit(v: Vec2) -> Vec2 {
 }
 
 impl DenseMechanism {
+    /// Forces on bodies at points of the plane, with their points from the ground's moved origin.
+    pub(crate) fn shifted_wrenches(&self, wrenches: &[BodyWrench]) -> Vec<BodyWrench> {
+        let ground = self.bodies[self.mechanism.ground].shift;
+        let shifted = wrenches.iter().map(|wrench| BodyWrench {
+            // A pure couple acts nowhere, and its point, wherever it was put, must not cost digits.
+            point: match wrench.force {
+                Vec2::ZERO => Vec2::ZERO,
+                _ => wrench.point - ground,
+            },
+            ..*wrench
+        });
+        shifted.collect()
+    }
+
+    /// Adds `sign` times forces on bodies, at points from the ground's moved origin, to the forces of the coordinates `x`.
+    pub(crate) fn add_wrenches<'w>(
+        &self,
+        x: &[f64],
+        wrenches: impl IntoIterator<Item = &'w BodyWrench>,
+        sign: f64,
+        forces: &mut [f64],
+    ) {
+        for wrench in wrenches {
+            if let Some(c) = self.bodies[wrench.body.0].column {
+                forces[c] += sign * wrench.force.x;
+                forces[c + 1] += sign * wrench.force.y;
+                forces[c + 2] += sign * wrench.moment(vec2(x[c], x[c + 1]));
+            }
+        }
+    }
+
     /// All forces of joints and actuators on bodies, the ground among them, at points from the ground's moved origin.
     pub(crate) fn joint_wrenches(
         &self,

@@ -4,9 +4,8 @@ use super::drives::rotor_inertia;
 use super::friction::depends_on_reactions;
 use super::state::MultibodyState;
 use super::{MotionSample, MultibodyError, MultibodySystem, Result};
-use crate::dense::DenseMechanism;
+use crate::dense::{DenseMechanism, add_scaled};
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{Vec2, vec2};
 use faer::Mat;
 
 /// The equations from a start on: gears meshed, rows chosen.
@@ -40,8 +39,9 @@ struct AppliedForces {
     drive_state_rates: Vec<f64>,
 }
 
-/// The rows at a state.
+/// A state with the rows there.
 struct EvaluationPoint<'a> {
+    at: MultibodyState,
     x: &'a [f64],
     v: &'a [f64],
     drive_states: &'a [f64],
@@ -51,11 +51,6 @@ struct EvaluationPoint<'a> {
 
 /// Accelerations, and multipliers by row.
 type AugmentedSolution = (Vec<f64>, Vec<f64>);
-
-pub(super) fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
-    let both = to.iter_mut().zip(more);
-    both.for_each(|(to, more)| *to += factor * more);
-}
 
 impl MultibodyOde<'_> {
     /// Number of states.
@@ -73,23 +68,10 @@ impl MultibodyOde<'_> {
         }
     }
 
-    /// Adds forces on bodies to those on the coordinates: forces, and moments about the centres.
+    /// Adds forces on bodies to those on the coordinates.
     fn add_wrenches(&self, wrenches: &[BodyWrench], x: &[f64], force: &mut [f64]) {
-        let ground = self.frames.bodies[self.system.mechanism.ground].shift;
-        for wrench in wrenches {
-            let Some(c) = self.frames.bodies[wrench.body.0].column else {
-                continue;
-            };
-            let arm = wrench.point - ground - vec2(x[c], x[c + 1]);
-            force[c] += wrench.force.x;
-            force[c + 1] += wrench.force.y;
-            // A pure couple acts nowhere.
-            let moment = match wrench.force {
-                Vec2::ZERO => 0.0,
-                force => arm.cross(force),
-            };
-            force[c + 2] += moment + wrench.couple;
-        }
+        let wrenches = self.frames.shifted_wrenches(wrenches);
+        self.frames.add_wrenches(x, &wrenches, 1.0, force);
     }
 
     /// The masses without any force.
@@ -113,12 +95,8 @@ impl MultibodyOde<'_> {
     }
 
     /// All loads but those that depend on reactions; none if a magnitude cannot be evaluated.
-    fn add_loads(
-        &self,
-        at: &MultibodyState,
-        point: &EvaluationPoint<'_>,
-        to: &mut AppliedForces,
-    ) -> Option<()> {
+    fn add_loads(&self, point: &EvaluationPoint<'_>, to: &mut AppliedForces) -> Option<()> {
+        let at = &point.at;
         for (i, load) in self.system.loads.iter().enumerate() {
             if depends_on_reactions(&load.magnitude) {
                 continue;
@@ -134,12 +112,8 @@ impl MultibodyOde<'_> {
     }
 
     /// All drives: the rotors' inertia I on s̈ = J ẍ + Φ̇ₓ ẋ joins the masses as Jᵀ I J.
-    fn add_drives(
-        &self,
-        at: &MultibodyState,
-        point: &EvaluationPoint<'_>,
-        to: &mut AppliedForces,
-    ) -> Option<()> {
+    fn add_drives(&self, point: &EvaluationPoint<'_>, to: &mut AppliedForces) -> Option<()> {
+        let at = &point.at;
         let n = self.frames.rows.columns();
         for (d, drive) in self.system.drives.iter().enumerate() {
             let row = self.frames.actuator_row() + self.system.modes.len() + d;
@@ -166,15 +140,15 @@ impl MultibodyOde<'_> {
     pub(super) fn solve(&self, t: f64, y: &[f64]) -> Result<MultibodySolution> {
         let frames = &self.frames;
         let n = frames.rows.columns();
-        let not_finite = MultibodyError::NotFinite { t };
+        let not_finite = MultibodyError::NotFinite(t);
         if y.iter().any(|y| !y.is_finite()) {
             return Err(not_finite);
         }
-        let at = self.state(t, y);
         let (x, v) = (&y[..n], &y[n..2 * n]);
         let mut velocity_products = vec![0.0; frames.rows.len()];
         frames.rows.velocity_product(x, v, &mut velocity_products);
         let point = EvaluationPoint {
+            at: self.state(t, y),
             x,
             v,
             drive_states: &y[2 * n..],
@@ -182,10 +156,9 @@ impl MultibodyOde<'_> {
             velocity_products,
         };
         let mut applied = self.assemble_masses();
-        self.add_loads(&at, &point, &mut applied)
-            .and_then(|()| self.add_drives(&at, &point, &mut applied))
-            .ok_or(not_finite)?;
-        let (a, multipliers) = self.solve_with_friction(&at, &point, &mut applied)?;
+        self.add_loads(&point, &mut applied).ok_or(not_finite)?;
+        self.add_drives(&point, &mut applied).ok_or(not_finite)?;
+        let (a, multipliers) = self.solve_with_friction(&point, &mut applied)?;
         let velocities = &self.prescribed_values(t)[1];
         let rates = multipliers.iter().zip(velocities);
         for (tau, velocity) in rates.skip(frames.actuator_row()) {
@@ -199,18 +172,18 @@ impl MultibodyOde<'_> {
             derivative,
             multipliers,
             drive_forces: applied.drive_forces,
-            state: at,
+            state: point.at,
         })
     }
 
     /// Accelerations and multipliers under all forces, with the frictions.
     fn solve_with_friction(
         &self,
-        at: &MultibodyState,
         point: &EvaluationPoint<'_>,
         applied: &mut AppliedForces,
     ) -> Result<AugmentedSolution> {
-        let not_finite = MultibodyError::NotFinite { t: at.t };
+        let at = &point.at;
+        let not_finite = MultibodyError::NotFinite(at.t);
         let frictions = self.system.frictions();
         let mut forces = vec![std::mem::take(&mut applied.force)];
         for &load in &frictions {
@@ -218,7 +191,7 @@ impl MultibodyOde<'_> {
             self.add_wrenches(&self.system.wrenches(load, 1.0, at), point.x, &mut unit);
             forces.push(unit);
         }
-        let found = self.solve_augmented(&applied.mass, point, &forces, at.t)?;
+        let found = self.solve_augmented(&applied.mass, point, &forces)?;
         let mut found = found.into_iter();
         let (mut a, mut multipliers) = found.next().ok_or(not_finite)?;
         let (unit_accelerations, unit_reactions): (Vec<_>, Vec<_>) = found.unzip();
@@ -238,9 +211,8 @@ impl MultibodyOde<'_> {
         mass: &Mat<f64>,
         point: &EvaluationPoint<'_>,
         forces: &[Vec<f64>],
-        t: f64,
     ) -> Result<Vec<AugmentedSolution>> {
-        let frames = &self.frames;
+        let (frames, t) = (&self.frames, point.at.t);
         let (n, m) = (frames.rows.columns(), self.active_rows.len());
         let scale = |c| frames.column_scale(c);
         let scaled = |i: usize, j: usize| mass[(i, j)] * scale(i) * scale(j);

@@ -106,7 +106,7 @@ impl<'a> ExtrapolationSolver<'a> {
     /// Goes on to a time.
     pub(super) fn advance_to(&mut self, to: f64) -> Result<()> {
         while self.t < to {
-            let stuck = MultibodyError::AccuracyNotReached { t: self.t };
+            let stuck = MultibodyError::AccuracyNotReached(self.t);
             self.steps_left = self.steps_left.checked_sub(1).ok_or(stuck)?;
             let remaining = to - self.t;
             // No crumb is left behind.

@@ -6,10 +6,11 @@
 //! S_j = tan α |T_j|  of teeth with the pressure angle α and the tooth force T
 //! ```
 
-use super::equations::{MultibodyOde, add_scaled};
+use super::equations::MultibodyOde;
 use super::state::MultibodyState;
 use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::slide_axis;
+use crate::dense::add_scaled;
 use crate::loads::reaction_row;
 use crate::lu::Lu;
 use dwell_geometry::{Component, JointKind};
@@ -149,10 +150,10 @@ impl MultibodyOde<'_> {
         if n == 0 {
             return Ok(vec![]);
         }
-        let self_locking = MultibodyError::SelfLocking { t: at.t };
+        let self_locking = MultibodyError::SelfLocking(at.t);
         let loads = || frictions.iter().map(|&load| &self.system.loads[load]);
         let factors: Option<Vec<f64>> = loads().map(|load| self.system.factor(load, at)).collect();
-        let factors = factors.ok_or(MultibodyError::NotFinite { t: at.t })?;
+        let factors = factors.ok_or(MultibodyError::NotFinite(at.t))?;
         let mut force = vec![0.0_f64; n];
         for _ in 0..MAX_NEWTON_STEPS {
             let mut reactions = frictionless.to_vec();

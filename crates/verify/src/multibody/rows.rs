@@ -185,7 +185,7 @@ impl MultibodyOde<'_> {
         let open = |&row: &usize| residual[row].abs() * frames.row_scale[row] / frames.size;
         let closed = |row: &usize| open(row) <= MAX_RESIDUAL;
         if !converged || !self.candidate_rows.iter().all(closed) {
-            return Err(MultibodyError::NotClosed { t });
+            return Err(MultibodyError::NotClosed(t));
         }
         let jacobian = frames.jacobian(x);
         let velocity_error = |row| row_velocities[row] - frames.row_velocity(&jacobian, row, v);

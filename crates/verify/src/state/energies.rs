@@ -15,12 +15,11 @@
 //! dense side are used: no acceleration, no multiplier, no mass times acceleration. Of one freedom
 //! without loads, (3) is τ = m q̈ + ½ m′ q̇² and R = a q̈ + b q̇².
 
-use super::comparison_set::ComparisonSet;
 use super::dense_state::DenseState;
 use super::{ClaimedState, StateChecker};
 use crate::checks::MAX_DIFFERENCE_STEP;
-use crate::comparison::FindingSpec;
-use crate::dense::DenseMechanism;
+use crate::comparison::{ComparisonSet, FindingSpec};
+use crate::dense::{DenseMechanism, add_scaled};
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
 use crate::wrenches::BodyWrench;
 use dwell_findings::{Check, Finding};
@@ -86,8 +85,8 @@ pub fn check_energies(
 impl StateChecker<'_> {
     /// (1) and (2).
     fn energies(&self, states: &[ClaimedState], claimed: &[Vec<f64>]) -> [Finding; 2] {
-        let mut matrix = ComparisonSet::with_individual_scales("kg m2");
-        let mut kinetic = ComparisonSet::new("J");
+        let mut matrix = ComparisonSet::with_individual_scales();
+        let mut kinetic = ComparisonSet::default();
         for m in &self.dense_states {
             let index = states.iter().position(|state| std::ptr::eq(state, m.state));
             let claimed = index.and_then(|k| claimed.get(k));
@@ -104,13 +103,13 @@ impl StateChecker<'_> {
                     let [one, other] = [i, j].map(|k| &self.dense.mechanism.actuators[k].name);
                     let error = m.relative_rounding_bound() * scale;
                     let numbers = [at(i, j) - dense[i][j], scale, error];
-                    matrix.add(m, numbers, &format!("{one} {other}"));
+                    m.compare(&mut matrix, numbers, "kg m2", &format!("{one} {other}"));
                     half += 0.5 * m.state.q_dot[i] * at(i, j) * m.state.q_dot[j];
                 }
             }
             let energy = m.claimed_energy();
             let error = m.relative_rounding_bound() * energy;
-            kinetic.add(m, [half - energy, energy, error], "");
+            m.compare(&mut kinetic, [half - energy, energy, error], "J", "");
         }
         [
             self.finding(&MASS_MATRIX, matrix),
@@ -122,8 +121,7 @@ impl StateChecker<'_> {
     fn lagrange(&self) -> Vec<Finding> {
         let (size, actuator_row) = (self.dense.size(), self.dense.actuator_row());
         let rows = self.rows();
-        let mut of_actuators = ComparisonSet::new("N");
-        let mut released = ComparisonSet::new("N");
+        let [mut of_actuators, mut released] = [(); 2].map(|()| ComparisonSet::default());
         let states = self.dense_states.par_iter();
         let forces: Vec<_> = states.map(DenseState::lagrange).collect();
         for (m, forces) in self.dense_states.iter().zip(forces) {
@@ -136,10 +134,11 @@ impl StateChecker<'_> {
                 let arm = if *moment { 1.0 / size } else { 1.0 };
                 let (value, error) = (force.value * arm, force.error * arm);
                 let numbers = [claimed * arm - value, largest_force.max(value.abs()), error];
-                match k < actuator_row {
-                    true => released.add(m, numbers, name),
-                    false => of_actuators.add(m, numbers, name),
-                }
+                let set = match k < actuator_row {
+                    true => &mut released,
+                    false => &mut of_actuators,
+                };
+                m.compare(set, numbers, "N", name);
             }
         }
         let determinate = self.dense.determinate[..actuator_row].iter();
@@ -208,7 +207,7 @@ impl DenseState<'_> {
             let mut x_dot = vec![0.0; dense.rows.columns()];
             for (i, u) in velocities[actuator_row..].iter().enumerate() {
                 let rate = state.q_dot[i] + t * state.q_ddot[i];
-                x_dot.iter_mut().zip(u).for_each(|(v, u)| *v += u * rate);
+                add_scaled(&mut x_dot, rate, u);
             }
             let momentum = |u: &Vec<f64>| dense.inertia(&configuration, u, &x_dot);
             Some(velocities.iter().map(momentum).collect())
