@@ -70,6 +70,12 @@ impl LargestDifference {
         self.record_failure(format!("the subject failed: {error}"));
     }
 
+    /// The worse of two, of several quantities.
+    pub(crate) fn merge_each<const N: usize>(these: [Self; N], others: [Self; N]) -> [Self; N] {
+        let mut others = others.into_iter();
+        these.map(|one| one.merge(others.next().unwrap_or_default()))
+    }
+
     /// The worse of two.
     pub(crate) fn merge(mut self, other: Self) -> Self {
         let count = self.count + other.count;

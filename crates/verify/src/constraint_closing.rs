@@ -12,7 +12,6 @@
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
 use crate::lu::Lu;
-use dwell_geometry::Vec2;
 use faer::Mat;
 use std::f64::consts::TAU;
 
@@ -42,13 +41,6 @@ pub struct Configuration {
 }
 
 impl DenseMechanism {
-    /// Where a point given in a body's own frame is in the plane, m.
-    pub fn point(&self, closed: &Configuration, body: usize, point: Vec2) -> Vec2 {
-        let ground = self.bodies[self.mechanism.ground].shift;
-        let of = &self.bodies[body];
-        ground + self.frame_point(of, &closed.x, point - of.shift)
-    }
-
     /// Closes every row at its imposed value, starting from the coordinates `guess`.
     pub fn close(&self, guess: &[f64], row_values: &[f64]) -> Result<Configuration> {
         if guess.len() != self.rows.columns() || row_values.len() != self.rows.len() {
@@ -268,11 +260,17 @@ impl DenseMechanism {
         }
     }
 
+    /// ∂Φ/∂x of all rows, row after row.
+    pub(crate) fn jacobian(&self, x: &[f64]) -> Vec<f64> {
+        let mut jacobian = vec![0.0; self.rows.len() * self.rows.columns()];
+        self.rows.jacobian(x, &mut jacobian);
+        jacobian
+    }
+
     /// R J C of eq. (1) at the coordinates `x`.
     pub(crate) fn scaled_jacobian(&self, x: &[f64]) -> Mat<f64> {
         let (rows, columns) = (self.rows.len(), self.rows.columns());
-        let mut jacobian = vec![0.0; rows * columns];
-        self.rows.jacobian(x, &mut jacobian);
+        let jacobian = self.jacobian(x);
         Mat::from_fn(rows, columns, |i, j| {
             jacobian[i * columns + j] * self.row_scale[i] * self.column_scale(j)
         })

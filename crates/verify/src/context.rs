@@ -94,14 +94,8 @@ impl<'a> CheckContext<'a> {
             _ => DenseMechanism::new(mechanism, masses)?,
         };
         let close = |&q: &f64| CheckedPosition::new(&dense, subject, q).map_err(|e| (q, e));
-        let (positions, not_closed): (Vec<_>, Vec<_>) = case
-            .positions
-            .par_iter()
-            .map(close)
-            .partition_map(|result| match result {
-                Ok(position) => Either::Left(position),
-                Err(reason) => Either::Right(reason),
-            });
+        let (positions, not_closed): (Vec<_>, Vec<_>) =
+            case.positions.par_iter().map(close).partition_map(either);
         let reactions = mechanism.reactions();
         let varying_bodies = varying_bodies(&dense, &positions);
         let scales = scales(&dense, &positions, &varying_bodies, &reactions);
@@ -186,10 +180,15 @@ impl<'a> CheckContext<'a> {
             worst
         };
         let all: Vec<[LargestDifference; N]> = self.positions.par_iter().map(at).collect();
-        all.into_iter().fold(empty(), |sum, next| {
-            let mut next = next.into_iter();
-            sum.map(|w| w.merge(next.next().unwrap_or_default()))
-        })
+        all.into_iter().fold(empty(), LargestDifference::merge_each)
+    }
+}
+
+/// What succeeded to the left, why the others failed to the right.
+pub(crate) fn either<T, E>(result: Result<T, E>) -> Either<T, E> {
+    match result {
+        Ok(done) => Either::Left(done),
+        Err(reason) => Either::Right(reason),
     }
 }
 

@@ -104,13 +104,6 @@ impl DenseMechanism {
         })
     }
 
-    /// Meshes the gears as they stand in the frames of all bodies: there their rows vanish.
-    pub fn mesh(&mut self, poses: &[[f64; 3]]) -> Result<()> {
-        let x = self.coordinates(poses)?;
-        self.rows.mesh(&x);
-        Ok(())
-    }
-
     /// The size of the mechanism, m: what a radian is compared with.
     pub fn size(&self) -> f64 {
         self.size

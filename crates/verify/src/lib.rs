@@ -45,7 +45,6 @@
 //! Source: L. Jordi, E. Zayas, S. Cardona, *Reduced parameters for the dynamic study of a system
 //! of one degree of freedom*, TMT 2008; cited as (Jordi, Zayas & Cardona 2008, eq. n).
 
-mod all;
 mod body_motion;
 mod case;
 pub mod checks;
@@ -68,8 +67,8 @@ mod state;
 mod subject;
 mod wrenches;
 
-pub use all::verify_all;
 pub use case::{Case, spread};
+pub use checks::verify_all;
 pub use comparison::FindingSpec;
 pub use constraint_closing::Configuration;
 pub use context::{CheckContext, CheckedPosition, Scales};

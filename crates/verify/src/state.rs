@@ -23,15 +23,15 @@ mod energies;
 pub use energies::check_energies;
 
 use crate::comparison::{ComparisonSet, FindingSpec, LargestDifference};
+use crate::context::either;
 use crate::dense::DenseMechanism;
 use crate::differences::NO_ESTIMATE;
 use crate::error::DenseError;
 use crate::wrenches::BodyWrench;
 use dense_state::{DenseState, check_counts};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{Component, Mechanism, Reaction};
+use dwell_geometry::{Component, Mechanism};
 use dwell_kinetostatics::Mass;
-use rayon::iter::Either;
 use rayon::prelude::*;
 use std::fmt::Display;
 
@@ -164,10 +164,7 @@ impl<'a> StateChecker<'a> {
             check_counts(dense, state).map_err(|why| described(&why))?;
             DenseState::new(dense, state).map_err(|error| described(&error))
         };
-        let (dense_states, failures) = states.par_iter().map(of).partition_map(|one| match one {
-            Ok(one) => Either::Left(one),
-            Err(reason) => Either::Right(reason),
-        });
+        let (dense_states, failures) = states.par_iter().map(of).partition_map(either);
         Self {
             dense,
             dense_states,
@@ -193,35 +190,47 @@ impl<'a> StateChecker<'a> {
         spec.finding(format!("{} states", self.state_count), worst)
     }
 
-    /// By row, the actuators' after the reactions': whether its multiplier is a moment, and its name.
-    fn rows(&self) -> Vec<(bool, String)> {
+    /// By row, the actuators' after the reactions': what makes a force of its multiplier, and its name.
+    fn rows(&self) -> Vec<(f64, String)> {
         let mechanism = &self.dense.mechanism;
-        let of_reaction =
-            |r: Reaction| (r.component == Component::Moment, mechanism.reaction_name(r));
-        let joints = mechanism.reactions().into_iter().map(of_reaction);
+        let arm = |moment: bool| if moment { 1.0 / self.dense.size() } else { 1.0 };
+        let reactions = mechanism.reactions().into_iter();
+        let reactions = reactions.map(|r| {
+            (
+                arm(r.component == Component::Moment),
+                mechanism.reaction_name(r),
+            )
+        });
         let actuators = mechanism.actuators.iter();
-        let actuators = actuators.map(|a| (a.coordinate().is_angle(), a.name.clone()));
-        joints.chain(actuators).collect()
+        let actuators = actuators.map(|a| (arm(a.coordinate().is_angle()), a.name.clone()));
+        reactions.chain(actuators).collect()
+    }
+
+    /// One comparison in each state, by its own scale.
+    fn one_each(
+        &self,
+        spec: &FindingSpec<'_>,
+        unit: &'static str,
+        numbers: impl Fn(&DenseState<'_>) -> [f64; 3],
+    ) -> Finding {
+        let mut comparisons = ComparisonSet::with_individual_scales();
+        for m in &self.dense_states {
+            m.compare(&mut comparisons, numbers(m), unit, "");
+        }
+        self.finding(spec, comparisons)
     }
 
     fn poses(&self) -> Finding {
-        let mut comparisons = ComparisonSet::default();
-        for m in &self.dense_states {
-            let numbers = [m.closing_correction, 1.0, m.pose_rounding_bound];
-            m.compare(&mut comparisons, numbers, "", "");
-        }
-        self.finding(&POSES, comparisons)
+        self.one_each(&POSES, "", |m| {
+            [m.closing_correction, 1.0, m.pose_rounding_bound]
+        })
     }
 
     fn branch(&self) -> Finding {
-        let mut comparisons = ComparisonSet::default();
         let positive = |m: &DenseState<'_>| m.configuration.lu.positive();
-        for m in &self.dense_states {
-            let other = self.dense_states.first().map(positive) != Some(positive(m));
-            let numbers = [f64::from(u8::from(other)), 1.0, 0.0];
-            m.compare(&mut comparisons, numbers, "", "");
-        }
-        self.finding(&BRANCH, comparisons)
+        let first = self.dense_states.first().map(positive);
+        let is_other = |m: &DenseState<'_>| first != Some(positive(m));
+        self.one_each(&BRANCH, "", |m| [f64::from(is_other(m)), 1.0, 0.0])
     }
 
     /// Velocities and accelerations of the moved frames, (1) and (2).
@@ -230,7 +239,7 @@ impl<'a> StateChecker<'a> {
         let [mut first, mut second] = [(); 2].map(|()| ComparisonSet::default());
         for m in &self.dense_states {
             let [speed, acceleration] =
-                [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.scaled_norm(x) * size);
+                [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.dense.scaled_norm(x) * size);
             let acceleration = acceleration.max(speed * speed / size);
             for (body, column) in m.moving_bodies() {
                 let name = &self.dense.mechanism.bodies[body].name;
@@ -253,18 +262,16 @@ impl<'a> StateChecker<'a> {
     }
 
     fn reactions(&self) -> Finding {
-        let size = self.dense.size();
         let rows = self.rows();
         let mut comparisons = ComparisonSet::default();
         for m in &self.dense_states {
             let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
-            for (k, (claimed, (moment, name))) in claimed.zip(&rows).enumerate() {
+            for (k, (claimed, (arm, name))) in claimed.zip(&rows).enumerate() {
                 // Of a reaction that is not determined, (4) checks what it does with the others.
                 if !self.dense.determinate[k] {
                     continue;
                 }
-                let arm = if *moment { 1.0 / size } else { 1.0 };
                 let dense = m.solution.multipliers[k] * arm;
                 let error = m.bounds.multipliers[k] * arm;
                 let scale = largest_force.max(dense.abs());
@@ -311,13 +318,10 @@ impl<'a> StateChecker<'a> {
     }
 
     fn power(&self) -> Finding {
-        let mut comparisons = ComparisonSet::with_individual_scales();
-        for m in &self.dense_states {
+        self.one_each(&POWER, "W", |m| {
             let (difference, terms) = m.power_balance();
-            let numbers = [difference, terms, m.relative_rounding_bound() * terms];
-            m.compare(&mut comparisons, numbers, "W", "");
-        }
-        self.finding(&POWER, comparisons)
+            [difference, terms, m.relative_rounding_bound() * terms]
+        })
     }
 
     fn momentum(&self) -> Finding {

@@ -114,8 +114,7 @@ pub(crate) fn balances(context: &CheckContext<'_>) -> Vec<Finding> {
             let by_moments = FORCE_MIN_SHARE * sets[force + 1].scale / context.dense.size();
             sets[force].scale = sets[force].scale.max(by_moments);
         }
-        let mut largest = sets.into_iter().map(ComparisonSet::largest);
-        worst = worst.map(|w| w.merge(largest.next().unwrap_or_default()));
+        worst = LargestDifference::merge_each(worst, sets.map(ComparisonSet::largest));
     }
     let (domain, count) = (context.domain(), MOTIONS.len());
     let domain = format!("{domain}, each passed in {count} motions");

@@ -43,6 +43,18 @@ fn record(
     to.add(comparison, format!("t = {t} s, {name}"));
 }
 
+/// Adds a force to the first set, or a moment to the second.
+fn record_force(
+    sets: &mut [ComparisonSet; 2],
+    is_moment: bool,
+    both: [f64; 2],
+    t: f64,
+    name: &str,
+) {
+    let (kind, unit) = if is_moment { (1, "N m") } else { (0, "N") };
+    record(&mut sets[kind], both, unit, t, name);
+}
+
 const POSES: FindingSpec<'_> = FindingSpec {
     key: "motion-poses",
     check: Check::MultibodyMotion,
@@ -121,10 +133,6 @@ impl MultibodySystem {
         Ok(findings)
     }
 
-    fn body_name(&self, body: usize) -> &str {
-        self.mechanism.bodies.get(body).map_or("", |b| &b.name)
-    }
-
     /// The claimed frames. Where no row depends on whole revolutions, a claim may leave them out.
     fn comparable_poses(&self, claim: &MotionSample, sample: &MotionSample) -> Vec<[f64; 3]> {
         let counts_revolutions = self.frames.rows.counts_revolutions();
@@ -140,64 +148,70 @@ impl MultibodySystem {
     }
 
     fn poses(&self, pairs: &Pairs<'_>) -> Finding {
-        let [mut lengths, mut angles] = [(); 2].map(|()| ComparisonSet::default());
-        for (claim, sample) in pairs {
-            let claimed = self.comparable_poses(claim, sample);
-            for (b, (one, other)) in claimed.iter().zip(&sample.poses).enumerate() {
-                let from = pairs[0].1.poses[b];
-                let (name, t) = (self.body_name(b), sample.t);
-                let moved = [0, 1, 2].map(|i| [one, other].map(|pose| pose[i] - from[i]));
-                for values in &moved[..2] {
-                    record(&mut lengths, *values, "m", t, name);
-                }
-                record(&mut angles, moved[2], "rad", t, name);
-            }
-        }
+        let from = &pairs[0].1.poses;
+        let moved = |b: usize, pose: [f64; 3]| [0, 1, 2].map(|i| pose[i] - from[b][i]);
         // Frames may all rotate about their origins without moving, and those of slides do not rotate.
-        let (size, length, angle) = (self.frames.size, lengths.scale, angles.scale);
-        lengths.scale = length.max(angle.min(1.0) * size);
-        angles.scale = angle.max(length / size).min(1.0);
-        finding(&POSES, pairs, [lengths, angles])
+        self.frames_finding(&POSES, pairs, ["m", "rad"], 1.0, |claim, sample| {
+            let claimed = self.comparable_poses(claim, sample);
+            let both = claimed.iter().zip(&sample.poses).enumerate();
+            both.map(|(b, (one, other))| [moved(b, *one), moved(b, *other)])
+                .collect()
+        })
     }
 
     fn velocities(&self, pairs: &Pairs<'_>) -> Finding {
+        let units = ["m/s", "rad/s"];
+        self.frames_finding(&VELOCITIES, pairs, units, f64::INFINITY, |claim, sample| {
+            let both = claim.velocities.iter().zip(&sample.velocities);
+            both.map(|(one, other)| [*one, *other]).collect()
+        })
+    }
+
+    /// A finding over what all frames have, claimed and reference: the scale of lengths is at least that of angles at
+    /// an arm of the size, and the reverse; that of angles at most `max_angle`.
+    fn frames_finding(
+        &self,
+        spec: &FindingSpec<'_>,
+        pairs: &Pairs<'_>,
+        units: [&'static str; 2],
+        max_angle: f64,
+        values: impl Fn(&MotionSample, &MotionSample) -> Vec<[[f64; 3]; 2]>,
+    ) -> Finding {
         let [mut lengths, mut angles] = [(); 2].map(|()| ComparisonSet::default());
         for (claim, sample) in pairs {
-            for (b, (one, other)) in claim.velocities.iter().zip(&sample.velocities).enumerate() {
-                let (name, t) = (self.body_name(b), sample.t);
+            for (body, [one, other]) in values(claim, sample).into_iter().enumerate() {
+                let name = self.mechanism.bodies.get(body).map_or("", |b| &b.name);
                 for i in 0..2 {
-                    record(&mut lengths, [one[i], other[i]], "m/s", t, name);
+                    record(&mut lengths, [one[i], other[i]], units[0], sample.t, name);
                 }
-                record(&mut angles, [one[2], other[2]], "rad/s", t, name);
+                record(&mut angles, [one[2], other[2]], units[1], sample.t, name);
             }
         }
         let (size, length, angle) = (self.frames.size, lengths.scale, angles.scale);
-        lengths.scale = length.max(angle * size);
-        angles.scale = angle.max(length / size);
-        finding(&VELOCITIES, pairs, [lengths, angles])
+        lengths.scale = length.max(angle.min(max_angle) * size);
+        angles.scale = angle.max(length / size).min(max_angle);
+        finding(spec, pairs, [lengths, angles])
     }
 
     fn reactions(&self, pairs: &Pairs<'_>, determinate: &[bool]) -> Finding {
         let reactions = self.mechanism.reactions();
-        let [mut forces, mut moments] = [(); 2].map(|()| ComparisonSet::default());
+        let mut sets = [(); 2].map(|()| ComparisonSet::default());
         for (claim, sample) in pairs {
             let both = claim.reactions.iter().zip(&sample.reactions);
             for (k, (&one, &other)) in both.enumerate().filter(|(k, _)| determinate[*k]) {
                 let name = self.mechanism.reaction_name(reactions[k]);
-                let (series, unit) = match reactions[k].component == Component::Moment {
-                    true => (&mut moments, "N m"),
-                    false => (&mut forces, "N"),
-                };
-                record(series, [one, other], unit, sample.t, &name);
+                let is_moment = reactions[k].component == Component::Moment;
+                record_force(&mut sets, is_moment, [one, other], sample.t, &name);
             }
         }
         // Moments that all vanish are small beside what the forces do at an arm of the size.
-        moments.scale = moments.scale.max(forces.scale * self.frames.size);
-        finding(&REACTIONS, pairs, [forces, moments])
+        sets[1].scale = sets[1].scale.max(sets[0].scale * self.frames.size);
+        finding(&REACTIONS, pairs, sets)
     }
 
     fn actuator_forces(&self, pairs: &Pairs<'_>) -> Finding {
-        let [mut forces, mut moments, mut work] = [(); 3].map(|()| ComparisonSet::default());
+        let mut sets = [(); 2].map(|()| ComparisonSet::default());
+        let mut work = ComparisonSet::default();
         let actuators = self.mechanism.actuators.iter();
         let names = actuators.map(|a| (a.coordinate().is_angle(), a.name.as_str()));
         let drives = self.drives.iter();
@@ -210,13 +224,10 @@ impl MultibodySystem {
             let claimed = claim.tau.iter().chain(&claim.drive_forces);
             let reference = sample.tau.iter().chain(&sample.drive_forces);
             for (&(angle, name), (&one, &other)) in names.iter().zip(claimed.zip(reference)) {
-                let (series, unit) = match angle {
-                    true => (&mut moments, "N m"),
-                    false => (&mut forces, "N"),
-                };
-                record(series, [one, other], unit, t, name);
+                record_force(&mut sets, angle, [one, other], t, name);
             }
         }
+        let [forces, moments] = sets;
         finding(&ACTUATOR_FORCES, pairs, [forces, moments, work])
     }
 

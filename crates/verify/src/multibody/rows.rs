@@ -43,13 +43,6 @@ impl DenseMechanism {
         both
     }
 
-    /// ∂Φ/∂x of all rows, row after row.
-    pub(super) fn jacobian(&self, x: &[f64]) -> Vec<f64> {
-        let mut jacobian = vec![0.0; self.rows.len() * self.rows.columns()];
-        self.rows.jacobian(x, &mut jacobian);
-        jacobian
-    }
-
     /// One row's rate: its line of the Jacobian times the velocities.
     pub(super) fn row_velocity(&self, jacobian: &[f64], row: usize, v: &[f64]) -> f64 {
         let n = self.rows.columns();

@@ -147,15 +147,10 @@ impl<'a> DenseState<'a> {
         bodies.filter_map(|(b, body)| Some((b, body.column?)))
     }
 
-    /// The largest |ω|, or |v| per size.
-    pub(super) fn scaled_norm(&self, velocities: &[f64]) -> f64 {
-        self.dense.scaled_norm(velocities)
-    }
-
     /// How much rounding may have moved the dense motion, relative to it.
     pub(super) fn relative_rounding_bound(&self) -> f64 {
         let of = |bound: &[f64], value: &[f64]| {
-            let (bound, value) = (self.scaled_norm(bound), self.scaled_norm(value));
+            let [bound, value] = [bound, value].map(|v| self.dense.scaled_norm(v));
             if bound == 0.0 { 0.0 } else { bound / value }
         };
         self.pose_rounding_bound
@@ -215,7 +210,8 @@ impl<'a> DenseState<'a> {
 
     /// t with v t + ½ a t² = the longest step; a second where nothing moves.
     pub(super) fn time_step(&self) -> f64 {
-        let [v, a] = [&self.solution.x_dot, &self.solution.x_ddot].map(|x| self.scaled_norm(x));
+        let DenseSolution { x_dot, x_ddot, .. } = &self.solution;
+        let [v, a] = [x_dot, x_ddot].map(|x| self.dense.scaled_norm(x));
         let step = 2.0 * MAX_DIFFERENCE_STEP / (v + (v * v + 2.0 * a * MAX_DIFFERENCE_STEP).sqrt());
         if step.is_finite() { step } else { 1.0 }
     }

@@ -20,7 +20,7 @@ use super::{ClaimedState, StateChecker};
 use crate::checks::MAX_DIFFERENCE_STEP;
 use crate::comparison::{ComparisonSet, FindingSpec};
 use crate::dense::{DenseMechanism, add_scaled};
-use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
+use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives, slope};
 use crate::wrenches::BodyWrench;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Mechanism, vec2};
@@ -88,11 +88,11 @@ impl StateChecker<'_> {
         let mut matrix = ComparisonSet::with_individual_scales();
         let mut kinetic = ComparisonSet::default();
         for m in &self.dense_states {
-            let index = states.iter().position(|state| std::ptr::eq(state, m.state));
-            let claimed = index.and_then(|k| claimed.get(k));
+            let mut claims = states.iter().zip(claimed);
+            let claimed = claims.find(|(state, _)| std::ptr::eq(*state, m.state));
             let n = m.state.q.len();
             let at = |i: usize, j: usize| {
-                let value = claimed.and_then(|claimed| claimed.get(i * n + j));
+                let value = claimed.and_then(|(_, claimed)| claimed.get(i * n + j));
                 value.copied().unwrap_or(f64::NAN)
             };
             let dense = m.mass_matrix();
@@ -119,7 +119,7 @@ impl StateChecker<'_> {
 
     /// (3), of the actuators and of the reactions.
     fn lagrange(&self) -> Vec<Finding> {
-        let (size, actuator_row) = (self.dense.size(), self.dense.actuator_row());
+        let actuator_row = self.dense.actuator_row();
         let rows = self.rows();
         let [mut of_actuators, mut released] = [(); 2].map(|()| ComparisonSet::default());
         let states = self.dense_states.par_iter();
@@ -127,11 +127,8 @@ impl StateChecker<'_> {
         for (m, forces) in self.dense_states.iter().zip(forces) {
             let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
-            for (k, ((claimed, force), (moment, name))) in
-                claimed.zip(forces).zip(&rows).enumerate()
-            {
+            for (k, ((claimed, force), (arm, name))) in claimed.zip(forces).zip(&rows).enumerate() {
                 let Some(force) = force else { continue };
-                let arm = if *moment { 1.0 / size } else { 1.0 };
                 let (value, error) = (force.value * arm, force.error * arm);
                 let numbers = [claimed * arm - value, largest_force.max(value.abs()), error];
                 let set = match k < actuator_row {
@@ -225,12 +222,12 @@ impl DenseState<'_> {
         let rates: Vec<_> = (actuator_row..).zip(state.q_dot.iter().copied()).collect();
         let rounding = self.relative_rounding_bound().max(f64::EPSILON);
         let step = MAX_DIFFERENCE_STEP / dense.scaled_norm(u);
-        let slopes = derivatives(DerivativeOrder::First, step, rounding, |h| {
+        let slope = slope(step, rounding, |h| {
             let value = self.configuration.row_values[row] + h;
             let opened = dense.step_row(&self.configuration, row, u, value).ok()?;
-            Some(vec![dense.kinetic_energy(&opened, &rates)])
+            Some(dense.kinetic_energy(&opened, &rates))
         });
-        slopes.first().copied().unwrap_or(none(f64::NAN))
+        slope.unwrap_or(none(f64::NAN))
     }
 
     /// The power of the loads at the velocities `u`, W.
