@@ -4,7 +4,7 @@ use crate::algebra::{
     Term, atan2, is_zero, names, number, plus, scale, sqrt, square, symbol, times, zero,
 };
 use crate::error::SymbolicError;
-use crate::loops::pair_name;
+use crate::loops::{SlideTerm, pair_name};
 use crate::polar::{Polar, angle_partials, square_of};
 use crate::positions::{PositionFormulas, Vector, cross, dot, perp, rotate, square_norm};
 use crate::symbol_table::PartialDerivatives;
@@ -125,8 +125,7 @@ impl PositionFormulas<'_> {
     fn line_circle(&mut self, group: usize, class: usize, slide: usize, closure: usize) {
         let joint = self.loop_joint_name(closure);
         let but = [slide];
-        let mut slide_terms = self.loops[closure].slide_terms.iter();
-        let Some(slide_term) = slide_terms.find(|p| p.slide == slide).cloned() else {
+        let Some(slide_term) = self.slide_term(closure, slide) else {
             return;
         };
         let d = self.known_part(group, closure, &but);
@@ -308,10 +307,14 @@ impl PositionFormulas<'_> {
 
     /// The direction in which a loop passes a slide.
     fn slide_direction(&mut self, closure: usize, slide: usize) -> Vector {
+        match self.slide_term(closure, slide) {
+            Some(slide_term) => self.travel_direction(slide_term.frame, slide_term.local),
+            None => [zero(), zero()],
+        }
+    }
+
+    fn slide_term(&self, closure: usize, slide: usize) -> Option<SlideTerm> {
         let mut slide_terms = self.loops[closure].slide_terms.iter();
-        let Some(slide_term) = slide_terms.find(|p| p.slide == slide).cloned() else {
-            return [zero(), zero()];
-        };
-        self.travel_direction(slide_term.frame, slide_term.local)
+        slide_terms.find(|p| p.slide == slide).cloned()
     }
 }

@@ -96,50 +96,46 @@ impl OutputStyle<'_> {
     fn product(&self, term: &Term, precedence: Precedence) -> String {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         factors(term, &mut above, &mut below);
-        if let Self::Latex(_, constant) = self {
-            self.halves(&mut above, &mut below);
-            above.sort_by_key(|t| factor_order(t, constant));
-            below.sort_by_key(|t| factor_order(t, constant));
-            let join = |terms: &[Term], precedence: Precedence| {
-                let one = |t: &Term| self.write(t, precedence);
-                terms.iter().map(one).collect::<Vec<_>>().join(" \\, ")
-            };
-            let of = |terms: &[Term]| match terms {
-                [] => "1".to_owned(),
-                [one] => join(std::slice::from_ref(one), Precedence::Lowest),
-                many => join(many, Precedence::Product),
-            };
-            return if below.is_empty() {
-                let text = join(&above, Precedence::Product);
-                if precedence == Precedence::Highest {
-                    self.in_brackets(&text)
-                } else {
-                    text
-                }
-            } else {
-                format!("\\frac{{{}}}{{{}}}", of(&above), of(&below))
-            };
-        }
-        let join = |terms: &[Term]| {
+        let join = |terms: &[Term], separator: &str| {
             let one = |t: &Term| self.write(t, Precedence::Product);
-            terms.iter().map(one).collect::<Vec<_>>().join(" * ")
+            terms.iter().map(one).collect::<Vec<_>>().join(separator)
         };
-        let mut text = if above.is_empty() {
-            "1.0".to_owned()
-        } else {
-            join(&above)
+        let (text, binds_tighter) = match self {
+            Self::Latex(_, constant) => {
+                self.halves(&mut above, &mut below);
+                above.sort_by_key(|t| factor_order(t, constant));
+                below.sort_by_key(|t| factor_order(t, constant));
+                let of = |terms: &[Term]| match terms {
+                    [] => "1".to_owned(),
+                    [one] => self.write(one, Precedence::Lowest),
+                    many => join(many, " \\, "),
+                };
+                if !below.is_empty() {
+                    return format!("\\frac{{{}}}{{{}}}", of(&above), of(&below));
+                }
+                (join(&above, " \\, "), Precedence::Product)
+            }
+            Self::Code(_) => {
+                let product = match above.as_slice() {
+                    [] => "1.0".to_owned(),
+                    factors => join(factors, " * "),
+                };
+                match below.as_slice() {
+                    [] => (product, Precedence::Product),
+                    [one] => {
+                        let divisor = self.write(one, Precedence::Highest);
+                        (format!("{product} / {divisor}"), Precedence::Lowest)
+                    }
+                    many => (
+                        format!("{product} / ({})", join(many, " * ")),
+                        Precedence::Lowest,
+                    ),
+                }
+            }
         };
-        match below.as_slice() {
-            [] => {}
-            [one] => text = format!("{text} / {}", self.write(one, Precedence::Highest)),
-            many => text = format!("{text} / ({})", join(many)),
-        }
-        if precedence == Precedence::Highest
-            || (precedence == Precedence::Product && !below.is_empty())
-        {
-            self.in_brackets(&text)
-        } else {
-            text
+        match precedence > binds_tighter {
+            true => self.in_brackets(&text),
+            false => text,
         }
     }
 

@@ -421,7 +421,7 @@ impl<'a> PositionFormulas<'a> {
         }
     }
 
-    /// The way of a joint of the tree along its slide, from the ground.
+    /// The vector of a tree joint's travel, from the ground.
     pub(crate) fn joint_travel(&mut self, tree_joint: &TreeJoint) -> Vector {
         let Some((slide, away)) = tree_joint.slide else {
             return [zero(), zero()];

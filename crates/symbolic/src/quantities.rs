@@ -113,25 +113,18 @@ pub(crate) fn result_quantities(
     angle: bool,
 ) -> Vec<Quantity> {
     let moment = reaction.is_some_and(|r| r.component.unit() == "N m");
-    let of_reaction = match (moment, angle) {
-        (true, true) => "kg m²",
-        (false, false) => "kg",
-        _ => "kg m",
-    };
     let what = [
         "generalised inertia",
         "half its derivative",
         "what q̈ contributes to the reaction",
         "what q̇² contributes to the reaction",
     ];
-    let inertia = if angle { "kg m²" } else { "kg" };
-    let per = if angle { "kg m²" } else { "kg/m" };
-    let rate = match (moment, angle) {
-        (_, true) => of_reaction,
-        (true, false) => "kg",
-        (false, false) => "kg/m",
+    let units = match (angle, moment) {
+        (true, true) => ["kg m²"; 4],
+        (true, false) => ["kg m²", "kg m²", "kg m", "kg m"],
+        (false, true) => ["kg", "kg/m", "kg m", "kg"],
+        (false, false) => ["kg", "kg/m", "kg", "kg/m"],
     };
-    let units = [inertia, per, of_reaction, rate];
     let quantities = results.iter().zip(what).zip(units);
     quantities
         .map(|((assignment, what), unit)| {

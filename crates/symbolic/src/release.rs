@@ -64,41 +64,33 @@ impl PositionFormulas<'_> {
         let unsupported = SymbolicError::Reaction(reaction);
         let (pair, coupling) = self.plan.joint_parts(joint);
         let is_relation = matches!(self.mechanism.joints[joint.0].kind, JointKind::Coupling(_));
-        match (component, pair, coupling) {
+        let pairs = self.plan.pairs();
+        Ok(match (component, pair, coupling) {
             (Component::Tooth | Component::Tangent | Component::Force, _, Some(coupling)) => {
-                return Ok(Released::Coupling(coupling));
+                Released::Coupling(coupling)
             }
-            (Component::Moment, _, Some(coupling)) if is_relation => {
-                return Ok(Released::Coupling(coupling));
-            }
-            (Component::Moment, Some(pair), _) => return Ok(Released::Moment(pair)),
-            // Along a direction of a pair, below; or there is nothing to release, which is refused there.
-            (Component::X | Component::Y | Component::Normal | Component::Axial, _, _)
-            | (Component::Tooth | Component::Tangent | Component::Force, _, None)
-            | (Component::Moment, None, _) => {}
-        }
-        let pair = pair.ok_or(unsupported.clone())?;
-        let described = self.plan.pairs()[pair];
-        let direction = match (component, described.kind) {
-            (Component::X, _) => [number(1.0), zero()],
-            (Component::Y, _) => [zero(), number(1.0)],
-            (Component::Normal, PairKind::Prismatic { axes, .. }) => {
-                let (frame, axis) = self.to_frame(described.bodies[0], axes[0]);
-                let axis = self.direction(frame, axis, "direction of the guide");
-                perp(&rotate(&axis, &self.angle(frame)))
-            }
+            (Component::Moment, _, Some(coupling)) if is_relation => Released::Coupling(coupling),
+            (Component::Moment, Some(pair), _) => Released::Moment(pair),
+            (Component::X, Some(pair), _) => Released::Pair(pair, [number(1.0), zero()]),
+            (Component::Y, Some(pair), _) => Released::Pair(pair, [zero(), number(1.0)]),
+            (Component::Normal, Some(pair), _) => match pairs[pair].kind {
+                PairKind::Prismatic { axes, .. } => {
+                    let (frame, axis) = self.to_frame(pairs[pair].bodies[0], axes[0]);
+                    let axis = self.direction(frame, axis, "direction of the guide");
+                    Released::Pair(pair, perp(&rotate(&axis, &self.angle(frame))))
+                }
+                PairKind::Revolute | PairKind::Rigid { .. } => return Err(unsupported),
+            },
             // The line of a distance is the x axis of its second body.
-            (Component::Axial, _) => {
-                let (frame, axis) = self.to_frame(described.bodies[1], Vec2::IDENTITY);
+            (Component::Axial, Some(pair), _) => {
+                let (frame, axis) = self.to_frame(pairs[pair].bodies[1], Vec2::IDENTITY);
                 let axis = self.direction(frame, axis, "direction of the line");
-                rotate(&axis, &self.angle(frame))
+                Released::Pair(pair, rotate(&axis, &self.angle(frame)))
             }
-            (Component::Normal, PairKind::Revolute | PairKind::Rigid { .. })
-            | (Component::Moment | Component::Tooth | Component::Tangent | Component::Force, _) => {
-                return Err(unsupported);
-            }
-        };
-        Ok(Released::Pair(pair, direction))
+            (Component::X | Component::Y | Component::Normal | Component::Axial, None, _)
+            | (Component::Tooth | Component::Tangent | Component::Force, _, None)
+            | (Component::Moment, None, _) => return Err(unsupported),
+        })
     }
 
     /// By body: its rotation from its frame for each unit.

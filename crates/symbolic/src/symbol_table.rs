@@ -174,8 +174,8 @@ impl SymbolTable {
         below: &[&str],
         vector: &Vector,
     ) -> Vector {
-        let axes = [0, 1].map(|i| [below, &[["x", "y"][i]]].concat());
-        [0, 1].map(|i| self.assign(letter, &axes[i], &vector[i]))
+        let components = [("x", &vector[0]), ("y", &vector[1])];
+        components.map(|(axis, value)| self.assign(letter, &[below, &[axis]].concat(), value))
     }
 
     /// Writes a step down whose derivatives are known.

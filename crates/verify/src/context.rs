@@ -6,8 +6,9 @@ use crate::comparison::{Comparison, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
-use crate::subject::{Coefficients, Subject, SubjectError};
+use crate::subject::{Subject, SubjectError};
 use dwell_geometry::{Component, Reaction};
+use dwell_kinetostatics::Coefficients;
 use rayon::iter::Either;
 use rayon::prelude::*;
 
@@ -93,9 +94,12 @@ impl<'a> CheckContext<'a> {
             Some(Ok(poses)) => DenseMechanism::with_meshed_gears(mechanism, masses, &poses)?,
             _ => DenseMechanism::new(mechanism, masses)?,
         };
-        let close = |&q: &f64| CheckedPosition::new(&dense, subject, q).map_err(|e| (q, e));
-        let (positions, not_closed): (Vec<_>, Vec<_>) =
-            case.positions.par_iter().map(close).partition_map(either);
+        let close = |&q: &f64| {
+            let poses = subject.poses(q).map_err(|e| (q, e.to_string()))?;
+            CheckedPosition::new(&dense, &poses, q).map_err(|e| (q, e.to_string()))
+        };
+        let closed = case.positions.par_iter().map(close);
+        let (positions, not_closed): (Vec<_>, Vec<_>) = closed.partition_map(either);
         let reactions = mechanism.reactions();
         let varying_bodies = varying_bodies(&dense, &positions);
         let scales = scales(&dense, &positions, &varying_bodies, &reactions);
@@ -193,17 +197,17 @@ pub(crate) fn either<T, E>(result: Result<T, E>) -> Either<T, E> {
 }
 
 impl CheckedPosition {
-    fn new(dense: &DenseMechanism, subject: &dyn Subject, q: f64) -> Result<Self, String> {
-        let poses = subject.poses(q).map_err(|e| e.to_string())?;
-        Self::closed(dense, &poses, q).map_err(|e| e.to_string())
-    }
-
-    fn closed(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self> {
+    fn new(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self> {
         let (configuration, closing_correction) = dense.close_at(poses, &[q])?;
         let unit_velocities = dense.unit_velocities(&configuration);
         let reference = dense.coefficients(&configuration, &unit_velocities);
-        let (rounding_bound, pose_rounding_bound) =
-            rounding_bounds(dense, &configuration, &reference, &unit_velocities)?;
+        let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
+        let coefficients =
+            |at: &Configuration| Ok(flat(&dense.coefficients(at, &dense.unit_velocities(at))));
+        let exact = flat(&reference);
+        let (bounds, pose_rounding_bound) =
+            dense.rounding_bounds(&configuration, &unit_velocities, &exact, coefficients)?;
+        let (a, b) = bounds[2..].split_at(reference.a.len());
         Ok(Self {
             q,
             closing_correction,
@@ -211,7 +215,12 @@ impl CheckedPosition {
             configuration,
             unit_velocities,
             reference,
-            rounding_bound,
+            rounding_bound: Coefficients {
+                m: bounds[0],
+                half_dm: bounds[1],
+                a: a.to_vec(),
+                b: b.to_vec(),
+            },
             pose_rounding_bound,
         })
     }
@@ -258,29 +267,6 @@ impl CheckedPosition {
         let share = |&b: &usize| dense.body_inertia(b, at, u, u);
         bodies.iter().map(share).sum()
     }
-}
-
-/// What rounding does to the coefficients and to the pose.
-fn rounding_bounds(
-    dense: &DenseMechanism,
-    configuration: &Configuration,
-    reference: &Coefficients,
-    unit_velocities: &[Vec<f64>],
-) -> Result<(Coefficients, f64)> {
-    let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
-    let exact = flat(reference);
-    let (bounds, pose_bound) =
-        dense.rounding_bounds(configuration, unit_velocities, &exact, |at| {
-            Ok(flat(&dense.coefficients(at, &dense.unit_velocities(at))))
-        })?;
-    let (a, b) = bounds[2..].split_at(reference.a.len());
-    let bounds = Coefficients {
-        m: bounds[0],
-        half_dm: bounds[1],
-        a: a.to_vec(),
-        b: b.to_vec(),
-    };
-    Ok((bounds, pose_bound))
 }
 
 /// 0 for a force, 1 for a moment.

@@ -14,8 +14,8 @@
 use crate::constraint_closing::Configuration;
 use crate::dense::{DenseBody, DenseMechanism, add_scaled};
 use crate::differences::{DerivativeOrder, Extrapolated, derivatives};
-use crate::subject::Coefficients;
 use dwell_geometry::{Vec2, vec2};
+use dwell_kinetostatics::Coefficients;
 
 impl DenseMechanism {
     /// ⟨u, w⟩ of the whole mechanism, eq. (1), kg m² for two speeds per rad/s.
