@@ -1,7 +1,6 @@
 //! Constants and named steps, one below the other, as on a sheet of paper.
 
 use crate::algebra::{self, Term, chain_rule, derivative, plus, symbol, times, zero};
-use crate::positions::Vector;
 use std::collections::{BTreeMap, HashMap};
 
 /// A number of the scene.
@@ -172,8 +171,8 @@ impl SymbolTable {
         &mut self,
         letter: &str,
         below: &[&str],
-        vector: &Vector,
-    ) -> Vector {
+        vector: &[Term; 2],
+    ) -> [Term; 2] {
         let components = [("x", &vector[0]), ("y", &vector[1])];
         components.map(|(axis, value)| self.assign(letter, &[below, &[axis]].concat(), value))
     }

@@ -112,12 +112,9 @@ impl<'a> ExtrapolationSolver<'a> {
             let at_min_step = step * speed_scale <= MIN_STEP;
             let (accepted, factor) = self.try_step(step, &derivative, at_min_step)?;
             let next = step * factor;
-            let was_shortened = accepted.is_some() && reaches_target;
-            self.step = if was_shortened {
-                self.step.max(next)
-            } else {
-                next
-            };
+            // A step cut short by `to` does not shorten the next one.
+            let arrives = accepted.is_some() && reaches_target;
+            self.step = if arrives { self.step.max(next) } else { next };
             if let Some(y) = accepted {
                 self.t = if reaches_target { to } else { self.t + step };
                 self.y = y;
