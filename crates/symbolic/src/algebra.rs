@@ -2,17 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-pub(crate) use arael_sym::{E as Term, Expr as Node};
-
-/// A named quantity.
-pub(crate) fn symbol(code: &str) -> Term {
-    arael_sym::symbol(code)
-}
-
-/// A number.
-pub(crate) fn number(value: f64) -> Term {
-    arael_sym::constant(value)
-}
+/// A term and its kinds, a named quantity, a number, functions, and what several terms share: each part with a new
+/// name, and what is left of the terms.
+pub(crate) use arael_sym::{
+    E as Term, Expr as Node, atan2, constant as number, cse as common_subexpressions, sqrt, symbol,
+};
 
 /// What is nothing.
 pub(crate) fn zero() -> Term {
@@ -25,14 +19,6 @@ pub(crate) fn cos(angle: &Term) -> Term {
 
 pub(crate) fn sin(angle: &Term) -> Term {
     arael_sym::sin(angle.clone())
-}
-
-pub(crate) fn sqrt(term: Term) -> Term {
-    arael_sym::sqrt(term)
-}
-
-pub(crate) fn atan2(y: Term, x: Term) -> Term {
-    arael_sym::atan2(y, x)
 }
 
 pub(crate) fn square(term: &Term) -> Term {
@@ -116,11 +102,24 @@ pub(crate) fn names(term: &Term) -> BTreeSet<String> {
 
 /// The derivative of a term by everything in it that has a rate: Σ ∂term/∂x · rate of x.
 pub(crate) fn derivative(term: &Term, derivatives: &BTreeMap<String, Term>) -> Term {
+    let all = names(term).into_iter();
+    let varying = all.filter(|name| derivatives.contains_key(name));
+    let partials = varying.map(|name| {
+        let partial = term.diff(name.as_str());
+        (name, partial)
+    });
+    chain_rule(partials, derivatives)
+}
+
+/// Σ partial derivative by x · rate of x.
+pub(crate) fn chain_rule(
+    partials: impl IntoIterator<Item = (String, Term)>,
+    derivatives: &BTreeMap<String, Term>,
+) -> Term {
     let mut sum = zero();
-    for name in names(term) {
+    for (name, partial) in partials {
         if let Some(rate) = derivatives.get(&name) {
-            let by = term.diff(name.as_str());
-            sum = plus(&sum, &times(&by, rate));
+            sum = plus(&sum, &times(&partial, rate));
         }
     }
     sum.simplify()
@@ -129,9 +128,4 @@ pub(crate) fn derivative(term: &Term, derivatives: &BTreeMap<String, Term>) -> T
 /// A term's value; not a number where a name in it has none.
 pub(crate) fn value(term: &Term, values: &HashMap<&str, f64>) -> f64 {
     term.eval(values).unwrap_or(f64::NAN)
-}
-
-/// What several terms share, each part with a new name, and what is left of the terms.
-pub(crate) fn common_subexpressions(terms: &[Term]) -> (Vec<(String, Term)>, Vec<Term>) {
-    arael_sym::cse(terms)
 }

@@ -1,10 +1,10 @@
 //! The closed forms of a mechanism: positions, m, ½m′, and a and b of a reaction, as named steps.
 
-use crate::algebra::{self, Term, derivative, number, plus, square, symbol, times, zero};
+use crate::algebra::{self, Term, derivative, number, plus, square, times, zero};
 use crate::error::SymbolicError;
 use crate::positions::PositionFormulas;
 use crate::quantities::{Quantity, result_quantities};
-use crate::symbol_table::{Assignment, Constant, DerivativeKind, SymbolTable, needed};
+use crate::symbol_table::{Assignment, Constant, DerivativeKind, SymbolTable};
 use dwell_geometry::{BodyId, Mechanism, Plan, Reaction};
 use dwell_kinetostatics::Mass;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -65,6 +65,7 @@ impl<'a> Symbolic<'a> {
         plan: &'a Plan,
     ) -> Result<Self, SymbolicError> {
         let mut positions = PositionFormulas::new(mechanism, masses, plan)?;
+        let moment_of_inertia = "moment of inertia about its centre of mass";
         let mut inertial_bodies = Vec::new();
         for tree_joint in &plan.tree().joints {
             let Some(mass) = masses.get(tree_joint.body) else {
@@ -79,12 +80,7 @@ impl<'a> Symbolic<'a> {
             inertial_bodies.push(SymbolicMass {
                 body: tree_joint.body,
                 mass: named("m", mass.mass, "kg", "mass"),
-                inertia: named(
-                    "I",
-                    mass.inertia,
-                    "kg m²",
-                    "moment of inertia about its centre of mass",
-                ),
+                inertia: named("I", mass.inertia, "kg m²", moment_of_inertia),
             });
         }
         inertial_bodies.retain(|one| one.mass.is_some() || one.inertia.is_some());
@@ -112,15 +108,10 @@ impl<'a> Symbolic<'a> {
         let second =
             symbols.differentiate(&first, DerivativeKind::Second, &mut by_coordinate, &none);
         let mut by_release = BTreeMap::new();
-        let mut virtual_assignments = Vec::new();
-        if let Some(release) = &release {
-            virtual_assignments = symbols.differentiate(
-                &base,
-                DerivativeKind::Virtual,
-                &mut by_release,
-                &release.shifts,
-            );
-        }
+        let shifts = release.as_ref().map(|release| &release.shifts);
+        let virtual_assignments = shifts.map_or_else(Vec::new, |shifts| {
+            symbols.differentiate(&base, DerivativeKind::Virtual, &mut by_release, shifts)
+        });
         let derivatives = Derivatives {
             positions: &positions,
             by_q: &by_coordinate,
@@ -161,14 +152,14 @@ impl<'a> Symbolic<'a> {
             if let (Some(mass), Some(centre)) =
                 (&one.mass, &derivatives.positions.mass_centres[one.body])
             {
-                let both = centre.iter().map(|code| derivatives.of_term(&symbol(code)));
+                let both = centre.iter().map(|step| derivatives.of_term(step));
                 displacements.push((mass, both.collect()));
             }
             for (weight, displacements) in displacements {
                 let mut body_sums: [Term; 4] = std::array::from_fn(|_| zero());
                 for [first, second, virtual_displacement] in &displacements {
                     let products = [
-                        square_or_zero(first),
+                        square(first),
                         times(first, second),
                         times(first, virtual_displacement),
                         times(second, virtual_displacement),
@@ -182,34 +173,16 @@ impl<'a> Symbolic<'a> {
                 }
             }
         }
-        let count = if derivatives.extra_rotation.is_some() {
-            4
-        } else {
-            2
-        };
-        let names = [
-            ("m", "m"),
-            ("half_dm", "\\tfrac{1}{2} m'"),
-            ("a", "a"),
-            ("b", "b"),
-        ];
-        let mut assignments = Vec::new();
-        for ((code, latex), sum) in names.into_iter().zip(sums).take(count) {
-            assignments.push(Assignment {
-                code: symbols.result_name(code, latex),
-                value: sum.simplify(),
-                partials: None,
-            });
-        }
-        assignments
-    }
-}
-
-fn square_or_zero(term: &Term) -> Term {
-    if algebra::is_zero(term) {
-        zero()
-    } else {
-        square(term).simplify()
+        let released = derivatives.extra_rotation.is_some();
+        let names = ["m", "half_dm", "a", "b"];
+        let latex = ["m", "\\tfrac{1}{2} m'", "a", "b"];
+        let results = names.into_iter().zip(latex).zip(sums);
+        results
+            .take(if released { 4 } else { 2 })
+            .map(|((code, latex), sum)| {
+                Assignment::new(symbols.result_name(code, latex), sum.simplify())
+            })
+            .collect()
     }
 }
 
@@ -233,13 +206,10 @@ impl Derivatives<'_> {
     /// The same of a body's angle, which a released couple rotates from its frame.
     fn of_angle(&self, body: usize) -> [Term; 3] {
         let frame = self.positions.plan.frames().orientations[body].frame;
-        let [first, second, virtual_rotation] = self.of_term(&self.positions.angle(frame));
+        let mut derivatives = self.of_term(&self.positions.angle(frame));
         let extra = self.extra_rotation.map_or(0.0, |turned| turned[body]);
-        [
-            first,
-            second,
-            plus(&virtual_rotation, &number(extra)).simplify(),
-        ]
+        derivatives[2] = plus(&derivatives[2], &number(extra)).simplify();
+        derivatives
     }
 }
 
@@ -259,24 +229,21 @@ impl ClosedForm {
 
     /// Leaves out what no quantity needs.
     fn prune(&mut self) {
-        let all: Vec<Assignment> = self.assignments().cloned().collect();
-        let wanted = self.quantities.iter().map(|q| q.code.clone());
-        let needed_names = needed(&all, wanted);
-        let needed_names: BTreeSet<&str> = needed_names.iter().map(|s| s.code.as_str()).collect();
-        for (_, assignments) in &mut self.sections {
-            assignments.retain(|assignment| needed_names.contains(assignment.code.as_str()));
+        let quantities = self.quantities.iter();
+        let mut needed: BTreeSet<String> = quantities.map(|q| q.code.clone()).collect();
+        for (_, assignments) in self.sections.iter_mut().rev() {
+            for assignment in assignments.iter().rev() {
+                if needed.contains(&assignment.code) {
+                    needed.extend(algebra::names(&assignment.value));
+                }
+            }
+            assignments.retain(|assignment| needed.contains(&assignment.code));
         }
         self.sections
             .retain(|(_, assignments)| !assignments.is_empty());
-        let mut used: Vec<String> = Vec::new();
-        for assignment in self.assignments() {
-            used.extend(algebra::names(&assignment.value));
-        }
         let constants = self.symbols.constants.iter();
-        self.constants = constants
-            .filter(|c| used.contains(&c.code))
-            .cloned()
-            .collect();
+        let used = constants.filter(|c| needed.contains(&c.code));
+        self.constants = used.cloned().collect();
     }
 
     /// All steps in their order.
@@ -300,10 +267,8 @@ impl ClosedForm {
                 let up = pattern >> (k % 8) & 1 == 1;
                 1.0 + if up { f64::EPSILON } else { -f64::EPSILON }
             };
-            for (largest, (value, value_at)) in largest
-                .iter_mut()
-                .zip(self.perturbed(q, perturb).iter().zip(&value_at))
-            {
+            let moved = self.perturbed(q, perturb).into_iter().zip(&value_at);
+            for (largest, (value, value_at)) in largest.iter_mut().zip(moved) {
                 *largest = largest.max((value - value_at).abs());
             }
         }
@@ -314,11 +279,8 @@ impl ClosedForm {
         let mut values: HashMap<&str, f64> = HashMap::new();
         values.insert(&self.coordinate.code, q * perturb(0));
         for (k, constant) in self.constants.iter().enumerate() {
-            let by = if constant.unit.is_empty() {
-                1.0
-            } else {
-                perturb(k + 1)
-            };
+            let exact = constant.unit.is_empty();
+            let by = if exact { 1.0 } else { perturb(k + 1) };
             values.insert(&constant.code, constant.value * by);
         }
         for assignment in self.assignments() {

@@ -5,7 +5,6 @@ use crate::closed_form::{ClosedForm, FormulaSection};
 use crate::format::{Language, OutputStyle};
 use crate::symbol_table::Assignment;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 
 /// Characters of LaTeX on one line: two or three of them are one in print.
 const WIDTH: usize = 200;
@@ -44,128 +43,95 @@ impl ClosedForm {
 
     /// A function of the coordinate in a language, that gives all quantities: what steps share is computed
     /// once. `name` is its name, and `about` stands in the comment above it.
+    //
+    // Long: every part of it in every language.
     pub fn code(&self, language: Language, name: &str, about: &str) -> String {
-        let lines = self.lines();
+        let style = OutputStyle::Code(language);
+        let kind = camel(name);
+        let (q, of) = (&self.coordinate.code, &self.coordinate);
+        let of = format!("Of the {}, {}", of.meaning, of.unit);
         // A title may hold anything: it must not end the comment that it stands in.
         let about = &about.replace(['\n', '\r'], " ").replace("*/", "* /");
-        match language {
-            Language::Rust => self.rust(name, about, &lines),
-            Language::C => self.c(name, about, &lines),
-            Language::Python => self.python(name, about, &lines),
+        let mut text = match language {
+            Language::Rust => format!(
+                "// {about}\n\n/// What [`{name}`] gives.\n#[allow(non_snake_case)]\n#[derive(Debug, Clone, Copy)]\npub struct {kind} {{\n"
+            ),
+            Language::C => format!("/* {about} */\n\n#include <math.h>\n\ntypedef struct {{\n"),
+            Language::Python => format!(
+                "# {about}\n\nfrom math import atan2, cos, sin, sqrt\n\n\ndef {name}({q}):\n    \"\"\"{of}:\n\n"
+            ),
+        };
+        for quantity in &self.quantities {
+            let code = &quantity.code;
+            let meaning = format!("{}, {}", quantity.meaning, quantity.unit);
+            text += &match language {
+                Language::Rust => format!("    /// {meaning}\n    pub {code}: f64,\n"),
+                Language::C => format!("    double {code}; /* {meaning} */\n"),
+                Language::Python => format!("    {code}: {meaning}\n"),
+            };
         }
+        text += &match language {
+            Language::Rust => format!(
+                "}}\n\n/// {of}.\n#[allow(non_snake_case, unused_parens)]\npub fn {name}({q}: f64) -> {kind} {{\n"
+            ),
+            Language::C => {
+                format!("}} {name}_result;\n\n/* {of}. */\n{name}_result {name}(double {q})\n{{\n")
+            }
+            Language::Python => "    \"\"\"\n".to_owned(),
+        };
+        for constant in &self.constants {
+            let (code, value, unit) = (&constant.code, constant.value, constant.unit);
+            let separator = if unit.is_empty() { "" } else { ", " };
+            let meaning = format!("{}{separator}{unit}", constant.meaning);
+            text += &match language {
+                Language::Rust => format!("    // {meaning}\n    let {code}: f64 = {value:?};\n"),
+                Language::C => format!("    const double {code} = {value:?}; /* {meaning} */\n"),
+                Language::Python => format!("    {code} = {value:?}  # {meaning}\n"),
+            };
+        }
+        for (code, term) in self.lines() {
+            let value = style.text(&term);
+            text += &match language {
+                Language::Rust => format!("    let {code}: f64 = {value};\n"),
+                Language::C => format!("    const double {code} = {value};\n"),
+                Language::Python => format!("    {code} = {value}\n"),
+            };
+        }
+        let (begin, end) = match language {
+            Language::Rust => (format!("    {kind} {{\n"), "    }\n}\n"),
+            Language::C => (format!("    return ({name}_result){{\n"), "    };\n}\n"),
+            Language::Python => ("    return {\n".to_owned(), "    }\n"),
+        };
+        text += &begin;
+        for code in self.quantities.iter().map(|quantity| &quantity.code) {
+            text += &match language {
+                Language::Rust => format!("        {code},\n"),
+                Language::C => format!("        .{code} = {code},\n"),
+                Language::Python => format!("        \"{code}\": {code},\n"),
+            };
+        }
+        text + end
+    }
+
+    /// Steps that are more than another name, in all parts.
+    pub fn assignment_count(&self) -> usize {
+        self.assignments().filter(|s| !is_atomic(&s.value)).count()
     }
 
     /// Names and terms in the order in which they can be computed, what is shared among them.
     fn lines(&self) -> Vec<(String, Term)> {
-        let assignments: Vec<&Assignment> = self.assignments().collect();
-        let values: Vec<Term> = assignments.iter().map(|s| s.value.clone()).collect();
+        let values: Vec<Term> = self.assignments().map(|s| s.value.clone()).collect();
         let (shared_terms, reduced_terms) = common_subexpressions(&values);
         let shared_terms: BTreeMap<String, Term> = shared_terms.into_iter().collect();
         let mut emitted = BTreeSet::new();
         let mut lines = Vec::new();
-        for (assignment, term) in assignments.iter().zip(reduced_terms) {
+        for (assignment, term) in self.assignments().zip(reduced_terms) {
             emit_dependencies(&term, &shared_terms, &mut emitted, &mut lines);
             lines.push((assignment.code.clone(), term));
         }
+        let rename = |(code, _): &mut (String, Term)| *code = code.replace("__x", "t");
+        lines.iter_mut().for_each(rename);
         lines
-            .into_iter()
-            .map(|(code, term)| (code.replace("__x", "t"), term))
-            .collect()
-    }
-
-    fn rust(&self, name: &str, about: &str, lines: &[(String, Term)]) -> String {
-        let style = OutputStyle::Code(Language::Rust);
-        let kind = camel(name);
-        let mut text = format!(
-            "// {about}\n\n/// What [`{name}`] gives.\n#[allow(non_snake_case)]\n#[derive(Debug, Clone, Copy)]\npub struct {kind} {{\n"
-        );
-        for q in &self.quantities {
-            let _ = writeln!(text, "    /// {}, {}", q.meaning, q.unit);
-            let _ = writeln!(text, "    pub {}: f64,", q.code);
-        }
-        let of = &self.coordinate;
-        let _ = writeln!(
-            text,
-            "}}\n\n/// Of the {}, {}.\n#[allow(non_snake_case, unused_parens)]\npub fn {name}({}: f64) -> {kind} {{",
-            of.meaning, of.unit, of.code
-        );
-        for c in &self.constants {
-            let _ = writeln!(text, "    // {}{}", c.meaning, unit(c.unit));
-            let _ = writeln!(text, "    let {}: f64 = {:?};", c.code, c.value);
-        }
-        for (code, term) in lines {
-            let _ = writeln!(text, "    let {code}: f64 = {};", style.text(term));
-        }
-        let _ = writeln!(text, "    {kind} {{");
-        for q in &self.quantities {
-            let _ = writeln!(text, "        {},", q.code);
-        }
-        text + "    }\n}\n"
-    }
-
-    fn c(&self, name: &str, about: &str, lines: &[(String, Term)]) -> String {
-        let style = OutputStyle::Code(Language::C);
-        let mut text = format!("/* {about} */\n\n#include <math.h>\n\ntypedef struct {{\n");
-        for q in &self.quantities {
-            let _ = writeln!(
-                text,
-                "    double {}; /* {}, {} */",
-                q.code, q.meaning, q.unit
-            );
-        }
-        let of = &self.coordinate;
-        let _ = writeln!(
-            text,
-            "}} {name}_result;\n\n/* Of the {}, {}. */\n{name}_result {name}(double {})\n{{",
-            of.meaning, of.unit, of.code
-        );
-        for c in &self.constants {
-            let (meaning, unit) = (&c.meaning, unit(c.unit));
-            let _ = writeln!(
-                text,
-                "    const double {} = {:?}; /* {meaning}{unit} */",
-                c.code, c.value
-            );
-        }
-        for (code, term) in lines {
-            let _ = writeln!(text, "    const double {code} = {};", style.text(term));
-        }
-        let _ = writeln!(text, "    return ({name}_result){{");
-        for q in &self.quantities {
-            let _ = writeln!(text, "        .{0} = {0},", q.code);
-        }
-        text + "    };\n}\n"
-    }
-
-    fn python(&self, name: &str, about: &str, lines: &[(String, Term)]) -> String {
-        let style = OutputStyle::Code(Language::Python);
-        let of = &self.coordinate;
-        let mut text = format!(
-            "# {about}\n\nfrom math import atan2, cos, sin, sqrt\n\n\ndef {name}({}):\n    \"\"\"Of the {}, {}:\n\n",
-            of.code, of.meaning, of.unit
-        );
-        for q in &self.quantities {
-            let _ = writeln!(text, "    {}: {}, {}", q.code, q.meaning, q.unit);
-        }
-        text.push_str("    \"\"\"\n");
-        for c in &self.constants {
-            let _ = writeln!(
-                text,
-                "    {} = {:?}  # {}{}",
-                c.code,
-                c.value,
-                c.meaning,
-                unit(c.unit)
-            );
-        }
-        for (code, term) in lines {
-            let _ = writeln!(text, "    {code} = {}", style.text(term));
-        }
-        text.push_str("    return {\n");
-        for q in &self.quantities {
-            let _ = writeln!(text, "        \"{0}\": {0},", q.code);
-        }
-        text + "    }\n"
     }
 }
 
@@ -186,14 +152,6 @@ fn emit_dependencies(
     }
 }
 
-fn unit(unit: &str) -> String {
-    if unit.is_empty() {
-        String::new()
-    } else {
-        format!(", {unit}")
-    }
-}
-
 /// The name of a type from that of a function.
 fn camel(name: &str) -> String {
     let mut text = String::new();
@@ -203,11 +161,4 @@ fn camel(name: &str) -> String {
         text.push_str(chars.as_str());
     }
     text
-}
-
-impl ClosedForm {
-    /// Steps that are more than another name, in all parts.
-    pub fn assignment_count(&self) -> usize {
-        self.assignments().filter(|s| !is_atomic(&s.value)).count()
-    }
 }

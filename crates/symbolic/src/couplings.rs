@@ -2,6 +2,7 @@
 
 use crate::algebra::{Term, names, number, plus, scale, times, zero};
 use crate::error::SymbolicError;
+use crate::loops::owner_name;
 use crate::positions::PositionFormulas;
 use dwell_geometry::groups::Unknown;
 use dwell_geometry::lower::Owner;
@@ -18,76 +19,57 @@ impl PositionFormulas<'_> {
         if row.law.is_some() {
             return Err(self.unsupported(group, "a coupling is given by a law"));
         }
-        let angular = row.angular;
+        let unit = |angular, length| if row.angular { angular } else { length };
         let (mut known_terms, mut unknown_coefficient) = (zero(), zero());
         for &(frame, by) in &row.dependent.angles {
-            let coefficient = self.coefficient(&row.owner, by, if angular { "" } else { "m" });
-            if unknown == Unknown::ClassAngle(self.orientation_class(frame)) {
+            let coefficient = self.coefficient(row.owner, by, unit("", "m"));
+            let known_angle = if unknown == Unknown::ClassAngle(self.orientation_class(frame)) {
                 unknown_coefficient = plus(&unknown_coefficient, &coefficient);
-                known_terms = plus(
-                    &known_terms,
-                    &times(&coefficient, &self.relative_angle(frame)),
-                );
+                self.relative_angle(frame)
+            } else if self.counts_revolutions(frame) {
+                self.angle(frame)
             } else {
-                if !self.counts_revolutions(frame) {
-                    return Err(
-                        self.unsupported(group, "a coupling counts the revolutions of a dyad")
-                    );
-                }
-                known_terms = plus(&known_terms, &times(&coefficient, &self.angle(frame)));
-            }
+                return Err(self.unsupported(group, "a coupling counts the revolutions of a dyad"));
+            };
+            known_terms = plus(&known_terms, &times(&coefficient, &known_angle));
         }
         for &(slide, by) in &row.dependent.slides {
-            let coefficient = self.coefficient(&row.owner, by, if angular { "rad/m" } else { "" });
+            let coefficient = self.coefficient(row.owner, by, unit("rad/m", ""));
             if unknown == Unknown::SlideTravel(slide) {
                 unknown_coefficient = plus(&unknown_coefficient, &coefficient);
             } else {
-                let travel = self.travels[slide].clone().unwrap_or_else(zero);
-                known_terms = plus(&known_terms, &times(&coefficient, &travel));
+                known_terms = plus(&known_terms, &times(&coefficient, &self.travel(slide)));
             }
         }
         let constant = row.dependent.constant;
-        let constant = self.coefficient(&row.owner, constant, if angular { "rad" } else { "m" });
+        let constant = self.coefficient(row.owner, constant, unit("rad", "m"));
         let value = (-(plus(&known_terms, &constant)) / unknown_coefficient.clone()).simplify();
-        let code = match unknown {
+        let step = match unknown {
             Unknown::ClassAngle(class) => {
                 let reference_frame = self.plan.class_frame(class);
                 let name = self.frame_name(reference_frame);
-                let code = self.symbols.new_name("theta", &[&name]);
-                self.angles[reference_frame] = Some(self.symbols.assign(&code, &value));
-                code
+                let angle = self.symbols.assign("theta", &[&name], &value);
+                self.angles[reference_frame] = Some(angle.clone());
+                angle
             }
-            Unknown::SlideTravel(slide) => {
-                let code = self.travel_name(slide);
-                self.travels[slide] = Some(self.symbols.assign(&code, &value));
-                code
-            }
+            Unknown::SlideTravel(slide) => self.assign_travel(slide, &value),
         };
-        self.solved_couplings[coupling] = Some((code, unknown_coefficient.simplify()));
+        self.solved_couplings[coupling] = Some((step, unknown_coefficient.simplify()));
         Ok(())
     }
 
     /// A number of a relation as a constant; nothing and one need no name.
-    fn coefficient(&mut self, owner: &Owner, value: f64, unit: &'static str) -> Term {
+    fn coefficient(&mut self, owner: Owner, value: f64, unit: &'static str) -> Term {
         if value == 0.0 || value.abs() == 1.0 {
             return number(value);
         }
-        let name = match *owner {
-            Owner::Joint(joint) => self.mechanism.joints[joint.0].name.clone(),
-            Owner::Actuator(actuator) => self.mechanism.actuators[actuator.0].name.clone(),
-        };
-        let known = self
-            .coefficients
-            .iter()
-            .find(|w| w.0 == value.abs() && w.1 == name);
-        let term = match known {
+        let name = owner_name(self.mechanism, owner);
+        let mut known = self.coefficients.iter();
+        let term = match known.find(|w| w.0 == value.abs() && w.1 == name) {
             Some((.., term)) => term.clone(),
             None => {
-                let k = self.next_number();
                 let meaning = format!("number of {name}");
-                let term = self
-                    .symbols
-                    .add_constant(("c", &[&k]), value.abs(), unit, meaning);
+                let term = self.numbered_constant("c", value.abs(), unit, meaning);
                 self.coefficients.push((value.abs(), name, term.clone()));
                 term
             }

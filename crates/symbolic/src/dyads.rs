@@ -4,9 +4,9 @@ use crate::algebra::{
     Term, atan2, is_zero, names, number, plus, scale, sqrt, square, symbol, times, zero,
 };
 use crate::error::SymbolicError;
-use crate::loops::pair_name;
+use crate::loops::{SlideTerm, pair_name};
 use crate::polar::{Polar, angle_partials, square_of};
-use crate::positions::{PositionFormulas, Vector, cross, dot, perp, rotate};
+use crate::positions::{PositionFormulas, Vector, cross, dot, perp, rotate, square_norm};
 use crate::symbol_table::PartialDerivatives;
 use dwell_geometry::Vec2;
 use dwell_geometry::groups::Unknown;
@@ -28,36 +28,32 @@ impl PositionFormulas<'_> {
             parts.loops.as_slice(),
             parts.couplings.as_slice(),
         ) {
-            (&[unknown], &[], &[relation]) => self.solve_coupling(group, unknown, relation),
+            (&[unknown], &[], &[relation]) => self.solve_coupling(group, unknown, relation)?,
             (&[Unknown::ClassAngle(one), Unknown::ClassAngle(two)], &[c], &[])
                 if self.loops[c].axis.is_none() =>
             {
                 self.triangle(group, [one, two], c);
-                Ok(())
             }
             (&[Unknown::ClassAngle(class), Unknown::SlideTravel(slide)], &[c], &[])
                 if self.loops[c].axis.is_none() && single(c, slide, self) =>
             {
                 self.line_circle(group, class, slide, c);
-                Ok(())
             }
             (&[Unknown::ClassAngle(class)], &[c], &[]) if self.loops[c].axis.is_some() => {
                 self.point_on_line(group, class, c);
-                Ok(())
             }
             (&[Unknown::SlideTravel(slide)], &[c], &[]) if self.loops[c].axis.is_some() => {
                 self.slide_to_line(group, slide, c);
-                Ok(())
             }
             (&[Unknown::SlideTravel(one), Unknown::SlideTravel(two)], &[c], &[])
                 if single(c, one, self) && single(c, two, self) =>
             {
                 self.two_slides(group, [one, two], c);
-                Ok(())
             }
-            (.., []) => Err(self.unsupported(group, "they are no dyad")),
-            _ => Err(self.unsupported(group, "loops and couplings are solved together")),
+            (.., []) => return Err(self.unsupported(group, "they are no dyad")),
+            _ => return Err(self.unsupported(group, "loops and couplings are solved together")),
         }
+        Ok(())
     }
 
     pub(crate) fn loop_joint_name(&self, closure: usize) -> String {
@@ -66,17 +62,12 @@ impl PositionFormulas<'_> {
 
     /// The steps of the part of a loop that is known before its group.
     fn known_part(&mut self, group: usize, closure: usize, but: &[usize]) -> Vector {
-        let known = self.loop_part(
-            closure,
-            |formulas, f| !formulas.in_group(group, f),
-            |formulas, f| formulas.angle(f),
-            but,
-        );
+        let pick = |own: &Self, frame| !own.in_group(group, frame);
+        let known = self.loop_part(closure, pick, Self::angle, but);
         let joint = self.loop_joint_name(closure);
-        let codes = ["x", "y"].map(|axis| self.symbols.new_name("d", &[&joint, axis]));
-        let pair = [0, 1].map(|i| self.symbols.assign(&codes[i], &known[i]));
-        self.loop_symbols[closure].known_part = Some(codes);
-        pair
+        let known = self.symbols.assign_vector("d", &[&joint], &known);
+        self.loop_symbols[closure].known_part = Some(known.clone());
+        known
     }
 
     fn known_part_at_assembly(&self, group: usize, closure: usize, but: &[usize]) -> Vec2 {
@@ -84,21 +75,12 @@ impl PositionFormulas<'_> {
     }
 
     /// ±√ of a term, the branch of the group as a constant.
-    fn signed_root(
-        &mut self,
-        (letter, below): (&str, &[&str]),
-        radicand: &Term,
-        branch: f64,
-    ) -> Term {
-        let joint = below.first().copied().unwrap_or_default().to_owned();
-        let sign = self.symbols.add_constant(
-            ("sigma", &[&joint]),
-            if branch < 0.0 { -1.0 } else { 1.0 },
-            "",
-            format!("branch of the dyad that {joint} closes"),
-        );
-        let code = self.symbols.new_name(letter, below);
-        let root_symbol = symbol(&code);
+    fn signed_root(&mut self, letter: &str, joint: &str, radicand: &Term, branch: f64) -> Term {
+        let sign = if branch < 0.0 { -1.0 } else { 1.0 };
+        let meaning = format!("branch of the dyad that {joint} closes");
+        let symbols = &mut self.symbols;
+        let sign = symbols.add_constant(("sigma", &[joint]), sign, "", meaning);
+        let code = symbols.new_name(letter, &[joint]);
         let radicand = radicand.simplify();
         // Of h² = R the derivative is R′/2h.
         let half = |name: &String| {
@@ -107,11 +89,10 @@ impl PositionFormulas<'_> {
         };
         let partials = PartialDerivatives {
             quotient_partials: names(&radicand).iter().map(half).collect(),
-            denominator: root_symbol,
+            denominator: symbol(&code),
             extra_partials: Vec::new(),
         };
-        self.symbols
-            .assign_with_partials(&code, sign * sqrt(radicand.clone()), partials)
+        symbols.assign_with_partials(code, sign * sqrt(radicand.clone()), partials)
     }
 
     /// Two classes whose vectors close a triangle with the known part of the loop.
@@ -119,43 +100,23 @@ impl PositionFormulas<'_> {
         let joint = self.loop_joint_name(closure);
         let d = self.known_part(group, closure, &[]);
         let [one, two] = classes.map(|class| self.polar(closure, class, &[]));
-        let code = self.symbols.new_name("D", &[&joint]);
-        let distance = self
-            .symbols
-            .assign(&code, &plus(&square(&d[0]), &square(&d[1])));
-        let code = self.symbols.new_name("f", &[&joint]);
+        let distance = self.symbols.assign("D", &[&joint], &square_norm(&d));
         let square_difference = two.square.clone() - one.square.clone();
         let along = square_difference / (number(2.0) * distance.clone()) - number(0.5);
-        let along = self.symbols.assign(&code, &along);
-        let (first, known) = (
-            self.loop_part_at_assembly(
-                closure,
-                |formulas, f| formulas.orientation_class(f) == classes[0],
-                &[],
-            ),
-            self.known_part_at_assembly(group, closure, &[]),
-        );
+        let along = self.symbols.assign("f", &[&joint], &along);
+        let first = self.class_part_at_assembly(closure, classes[0], &[]);
+        let known = self.known_part_at_assembly(group, closure, &[]);
         let radicand = one.square.clone() / distance - square(&along);
-        let across = self.signed_root(("h", &[&joint]), &radicand, known.cross(first));
+        let across = self.signed_root("h", &joint, &radicand, known.cross(first));
         let r = [
             times(&along, &d[0]) - times(&across, &d[1]),
             times(&along, &d[1]) + times(&across, &d[0]),
         ];
-        let r = self.assign_vector("r", &[&joint, "1"], &r);
+        let r = self.symbols.assign_vector("r", &[&joint, "1"], &r);
         self.orient_class(classes[0], &r, &one);
         let rest = [0, 1].map(|i| -(d[i].clone()) - r[i].clone());
-        let rest = self.assign_vector("r", &[&joint, "2"], &rest);
+        let rest = self.symbols.assign_vector("r", &[&joint, "2"], &rest);
         self.orient_class(classes[1], &rest, &two);
-    }
-
-    /// Two steps for a vector.
-    fn assign_vector(&mut self, letter: &str, below: &[&str], value: &Vector) -> Vector {
-        ["x", "y"].map(|axis| {
-            let mut names = below.to_vec();
-            names.push(axis);
-            let code = self.symbols.new_name(letter, &names);
-            self.symbols.assign(&code, &value[usize::from(axis == "y")])
-        })
     }
 
     /// A class turns and a slide travels until a loop closes.
@@ -164,8 +125,7 @@ impl PositionFormulas<'_> {
     fn line_circle(&mut self, group: usize, class: usize, slide: usize, closure: usize) {
         let joint = self.loop_joint_name(closure);
         let but = [slide];
-        let mut slide_terms = self.loops[closure].slide_terms.iter();
-        let Some(slide_term) = slide_terms.find(|p| p.slide == slide).cloned() else {
+        let Some(slide_term) = self.slide_term(closure, slide) else {
             return;
         };
         let d = self.known_part(group, closure, &but);
@@ -173,31 +133,16 @@ impl PositionFormulas<'_> {
         let along = slide_term.local.rotate(self.rotation[slide_term.frame]);
         let rotates_with_class = self.orientation_class(slide_term.frame) == class;
         let at_start = self.slide_travel[slide];
-        let class_part_at_start = self.loop_part_at_assembly(
-            closure,
-            |formulas, f| formulas.orientation_class(f) == class,
-            &but,
-        );
-        let known_at_start = self.known_part_at_assembly(group, closure, &but);
         if rotates_with_class {
-            let w = self.loop_part(
-                closure,
-                |formulas, f| formulas.orientation_class(f) == class,
-                |formulas, f| formulas.relative_angle(f),
-                &but,
-            );
+            let w = self.class_part(closure, class, &but);
             let u = rotate(&u, &self.relative_angle(slide_term.frame));
-            let code = self.symbols.new_name("D", &[&joint]);
-            let distance = self
-                .symbols
-                .assign(&code, &plus(&square(&d[0]), &square(&d[1])));
+            let distance = self.symbols.assign("D", &[&joint], &square_norm(&d));
             let offset = cross(&w, &u);
-            let branch = at_start + class_part_at_start.dot(along);
+            let own = self.class_part_at_assembly(closure, class, &but);
             let radicand = plus(&distance, &-square_of(&offset));
-            let signed_root = self.signed_root(("g", &[&joint]), &radicand, branch);
-            let code = self.travel_name(slide);
-            let travel = self.symbols.assign(&code, &(signed_root - dot(&w, &u)));
-            self.travels[slide] = Some(travel.clone());
+            let branch = at_start + own.dot(along);
+            let signed_root = self.signed_root("g", &joint, &radicand, branch);
+            let travel = self.assign_travel(slide, &(signed_root - dot(&w, &u)));
             let reached = [0, 1].map(|i| plus(&w[i], &times(&u[i], &travel)));
             let mut polar = if w.iter().all(is_zero) && is_zero(&u[1]) {
                 // The slide is the whole vector: its travel's sign is the branch.
@@ -216,25 +161,22 @@ impl PositionFormulas<'_> {
         } else {
             let u = rotate(&u, &self.angle(slide_term.frame));
             let polar = self.polar(closure, class, &but);
-            let offset = self.symbols.new_name("k", &[&joint]);
-            let offset = self.symbols.assign(&offset, &cross(&d, &u));
-            let branch = at_start + known_at_start.dot(along);
+            let offset = self.symbols.assign("k", &[&joint], &cross(&d, &u));
+            let known = self.known_part_at_assembly(group, closure, &but);
             let radicand = polar.square.clone() - square(&offset);
-            let signed_root = self.signed_root(("g", &[&joint]), &radicand, branch);
-            let code = self.travel_name(slide);
-            let travel = self.symbols.assign(&code, &(signed_root - dot(&d, &u)));
-            self.travels[slide] = Some(travel.clone());
+            let branch = at_start + known.dot(along);
+            let signed_root = self.signed_root("g", &joint, &radicand, branch);
+            let travel = self.assign_travel(slide, &(signed_root - dot(&d, &u)));
             let r = [0, 1].map(|i| -(d[i].clone()) - times(&u[i], &travel));
-            let r = self.assign_vector("r", &[&joint], &r);
+            let r = self.symbols.assign_vector("r", &[&joint], &r);
             self.orient_class(class, &r, &polar);
         }
     }
 
     /// Notes the normal distance and the travel of a loop that closes along its normal only.
-    fn close_along_normal(&mut self, closure: usize, normal: String, travel: &Term) {
+    fn close_along_normal(&mut self, closure: usize, normal: Term, travel: &Term) {
         let joint = self.loop_joint_name(closure);
-        let code = self.symbols.new_name("s", &[&joint]);
-        let travel = self.symbols.assign(&code, travel);
+        let travel = self.symbols.assign("s", &[&joint], travel);
         self.loop_symbols[closure].normal_distance = Some((normal, travel));
     }
 
@@ -262,21 +204,20 @@ impl PositionFormulas<'_> {
         let (axis, at_start) = self.line_direction(closure, Self::angle);
         let normal = perp(&axis);
         let polar = self.polar(closure, class, &[]);
-        let code = self.symbols.new_name("kappa", &[&joint]);
-        let offset = self.symbols.assign(&code, &-dot(&normal, &d));
-        let own =
-            self.loop_part_at_assembly(closure, |own, f| own.orientation_class(f) == class, &[]);
+        let kappa = -dot(&normal, &d);
+        let offset = self.symbols.assign("kappa", &[&joint], &kappa);
+        let own = self.class_part_at_assembly(closure, class, &[]);
         let radicand = polar.square.clone() - square(&offset);
-        let signed_root = self.signed_root(("g", &[&joint]), &radicand, own.dot(at_start));
+        let signed_root = self.signed_root("g", &joint, &radicand, own.dot(at_start));
         let travel = plus(&dot(&axis, &d), &signed_root);
-        self.close_along_normal(closure, code, &travel);
+        self.close_along_normal(closure, offset.clone(), &travel);
         let level = axis == [number(1.0), number(0.0)];
         let r = if level {
             [signed_root, offset]
         } else {
             let r =
                 [0, 1].map(|i| plus(&times(&axis[i], &signed_root), &times(&normal[i], &offset)));
-            self.assign_vector("r", &[&joint], &r)
+            self.symbols.assign_vector("r", &[&joint], &r)
         };
         self.orient_class(class, &r, &polar);
     }
@@ -285,45 +226,31 @@ impl PositionFormulas<'_> {
     fn guided_point(&mut self, group: usize, class: usize, closure: usize, d: &Vector) {
         let joint = self.loop_joint_name(closure);
         let class_root = self.plan.class_frame(class);
-        let w = self.loop_part(
-            closure,
-            |formulas, f| formulas.orientation_class(f) == class,
-            |formulas, f| formulas.relative_angle(f),
-            &[],
-        );
+        let w = self.class_part(closure, class, &[]);
         let (axis, at_start) = self.line_direction(closure, Self::relative_angle);
-        let normal = perp(&axis);
-        let kappa = self.symbols.new_name("kappa", &[&joint]);
-        let offset = self.symbols.assign(&kappa, &-dot(&normal, &w));
+        let kappa = -dot(&perp(&axis), &w);
+        let offset = self.symbols.assign("kappa", &[&joint], &kappa);
         let passes = w.iter().all(is_zero);
-        let branch = self
-            .known_part_at_assembly(group, closure, &[])
-            .dot(at_start);
-        let code = self.symbols.new_name("D", &[&joint]);
-        let distance = self
-            .symbols
-            .assign(&code, &plus(&square(&d[0]), &square(&d[1])));
-        let radicand = if passes {
-            distance.clone()
-        } else {
-            distance.clone() - square(&offset)
-        };
-        let along = self.signed_root(("g", &[&joint]), &radicand, branch);
+        let known = self.known_part_at_assembly(group, closure, &[]);
+        let branch = known.dot(at_start);
+        let distance = self.symbols.assign("D", &[&joint], &square_norm(d));
+        let mut radicand = distance.clone();
+        if !passes {
+            radicand = radicand - square(&offset);
+        }
+        let along = self.signed_root("g", &joint, &radicand, branch);
         let travel = plus(&along, &dot(&axis, &w));
-        self.close_along_normal(closure, kappa.clone(), &travel);
-        let codes = [0, 1].map(|i| d[i].to_string());
-        let mut partials = angle_partials(&codes, d, &distance);
+        self.close_along_normal(closure, offset.clone(), &travel);
+        let mut partials = angle_partials(d, &distance);
+        let quotient_partials = &mut partials.quotient_partials;
+        quotient_partials.push((offset.to_string(), -along.clone()));
         let name = self.frame_name(class_root);
         let mut angle = if passes {
             // ρ is √D here.
-            partials.quotient_partials.push((kappa, -along));
             let [x, y] = [0, 1].map(|i| scale(&d[i], if branch < 0.0 { -1.0 } else { 1.0 }));
             atan2(y, x)
         } else {
-            partials.quotient_partials.push((kappa, -along.clone()));
-            partials
-                .quotient_partials
-                .push((along.to_string(), offset.clone()));
+            quotient_partials.push((along.to_string(), offset.clone()));
             atan2(d[1].clone(), d[0].clone()) - atan2(offset, along)
         };
         if let Some(line_angle) = self.line_angle(closure) {
@@ -331,7 +258,7 @@ impl PositionFormulas<'_> {
             partials.extra_partials.extend(line_angle.1);
         }
         let code = self.symbols.new_name("theta", &[&name]);
-        let angle = self.symbols.assign_with_partials(&code, angle, partials);
+        let angle = self.symbols.assign_with_partials(code, angle, partials);
         self.angles[class_root] = Some(angle);
     }
 
@@ -347,14 +274,9 @@ impl PositionFormulas<'_> {
         if constant_angle == 0.0 {
             return (!is_zero(&relative_angle)).then_some((relative_angle, partials));
         }
-        let k = self.next_number();
-        let meaning = format!(
-            "{}: direction of the guide, from its x axis",
-            self.frame_name(frame)
-        );
-        let constant_angle =
-            self.symbols
-                .add_constant(("alpha", &[&k]), constant_angle, "rad", meaning);
+        let name = self.frame_name(frame);
+        let meaning = format!("{name}: direction of the guide, from its x axis");
+        let constant_angle = self.numbered_constant("alpha", constant_angle, "rad", meaning);
         Some((plus(&constant_angle, &relative_angle), partials))
     }
 
@@ -365,14 +287,11 @@ impl PositionFormulas<'_> {
         let (axis, _) = self.line_direction(closure, Self::angle);
         let normal = perp(&axis);
         let u = self.slide_direction(closure, slide);
-        let code = self.symbols.new_name("kappa", &[&joint]);
-        let offset = self.symbols.assign(&code, &-dot(&normal, &d));
-        let name = self.travel_name(slide);
-        let travel = (offset / dot(&normal, &u)).simplify();
-        let travel = self.symbols.assign(&name, &travel);
-        self.travels[slide] = Some(travel.clone());
+        let kappa = -dot(&normal, &d);
+        let offset = self.symbols.assign("kappa", &[&joint], &kappa);
+        let travel = self.assign_travel(slide, &(offset.clone() / dot(&normal, &u)));
         let line_travel = plus(&dot(&axis, &d), &times(&dot(&axis, &u), &travel));
-        self.close_along_normal(closure, code, &line_travel);
+        self.close_along_normal(closure, offset, &line_travel);
     }
 
     /// Two slides travel until a loop closes.
@@ -382,18 +301,20 @@ impl PositionFormulas<'_> {
         let area = cross(&one, &two);
         let values = [-(cross(&d, &two) / area.clone()), -(cross(&one, &d) / area)];
         for (slide, value) in slides.into_iter().zip(values) {
-            let name = self.travel_name(slide);
-            self.travels[slide] = Some(self.symbols.assign(&name, &value));
+            self.assign_travel(slide, &value);
         }
     }
 
     /// The direction in which a loop passes a slide.
     fn slide_direction(&mut self, closure: usize, slide: usize) -> Vector {
-        let slide_terms = self.loops[closure].slide_terms.iter();
-        let Some(slide_term) = slide_terms.clone().find(|p| p.slide == slide).cloned() else {
-            return [zero(), zero()];
-        };
-        let u = self.direction(slide_term.frame, slide_term.local, "direction of travel");
-        rotate(&u, &self.angle(slide_term.frame))
+        match self.slide_term(closure, slide) {
+            Some(slide_term) => self.travel_direction(slide_term.frame, slide_term.local),
+            None => [zero(), zero()],
+        }
+    }
+
+    fn slide_term(&self, closure: usize, slide: usize) -> Option<SlideTerm> {
+        let mut slide_terms = self.loops[closure].slide_terms.iter();
+        slide_terms.find(|p| p.slide == slide).cloned()
     }
 }

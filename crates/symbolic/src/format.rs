@@ -43,21 +43,21 @@ impl OutputStyle<'_> {
             let positive = found.remove(first);
             found.insert(0, positive);
         }
-        let several = found.len() > 1;
-        let precedence = |minus: bool| match (several, minus) {
-            (false, false) => Precedence::Lowest,
-            _ => Precedence::Product,
+        let only_one = found.len() == 1;
+        let text = |(minus, term): (bool, Term)| {
+            let precedence = match only_one && !minus {
+                true => Precedence::Lowest,
+                false => Precedence::Product,
+            };
+            (minus, self.single(&term, precedence))
         };
-        found
-            .iter()
-            .map(|(minus, term)| (*minus, self.single(term, precedence(*minus))))
-            .collect()
+        found.into_iter().map(text).collect()
     }
 
     fn write(&self, term: &Term, precedence: Precedence) -> String {
         let summands = self.summands(term);
         if let [(false, _)] = summands.as_slice() {
-            return self.single(&without_sign(term), precedence);
+            return self.single(&unsigned(term).0, precedence);
         }
         let mut text = String::new();
         for (k, (minus, one)) in summands.iter().enumerate() {
@@ -96,50 +96,46 @@ impl OutputStyle<'_> {
     fn product(&self, term: &Term, precedence: Precedence) -> String {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         factors(term, &mut above, &mut below);
-        if let Self::Latex(_, constant) = self {
-            self.halves(&mut above, &mut below);
-            above.sort_by_key(|t| factor_order(t, constant));
-            below.sort_by_key(|t| factor_order(t, constant));
-            let join = |terms: &[Term], precedence: Precedence| {
-                let one = |t: &Term| self.write(t, precedence);
-                terms.iter().map(one).collect::<Vec<_>>().join(" \\, ")
-            };
-            let of = |terms: &[Term]| match terms {
-                [] => "1".to_owned(),
-                [one] => join(std::slice::from_ref(one), Precedence::Lowest),
-                many => join(many, Precedence::Product),
-            };
-            return if below.is_empty() {
-                let text = join(&above, Precedence::Product);
-                if precedence == Precedence::Highest {
-                    self.in_brackets(&text)
-                } else {
-                    text
-                }
-            } else {
-                format!("\\frac{{{}}}{{{}}}", of(&above), of(&below))
-            };
-        }
-        let join = |terms: &[Term]| {
+        let join = |terms: &[Term], separator: &str| {
             let one = |t: &Term| self.write(t, Precedence::Product);
-            terms.iter().map(one).collect::<Vec<_>>().join(" * ")
+            terms.iter().map(one).collect::<Vec<_>>().join(separator)
         };
-        let mut text = if above.is_empty() {
-            "1.0".to_owned()
-        } else {
-            join(&above)
+        let (text, binds_tighter) = match self {
+            Self::Latex(_, constant) => {
+                self.halves(&mut above, &mut below);
+                above.sort_by_key(|t| factor_order(t, constant));
+                below.sort_by_key(|t| factor_order(t, constant));
+                let of = |terms: &[Term]| match terms {
+                    [] => "1".to_owned(),
+                    [one] => self.write(one, Precedence::Lowest),
+                    many => join(many, " \\, "),
+                };
+                if !below.is_empty() {
+                    return format!("\\frac{{{}}}{{{}}}", of(&above), of(&below));
+                }
+                (join(&above, " \\, "), Precedence::Product)
+            }
+            Self::Code(_) => {
+                let product = match above.as_slice() {
+                    [] => "1.0".to_owned(),
+                    factors => join(factors, " * "),
+                };
+                match below.as_slice() {
+                    [] => (product, Precedence::Product),
+                    [one] => {
+                        let divisor = self.write(one, Precedence::Highest);
+                        (format!("{product} / {divisor}"), Precedence::Lowest)
+                    }
+                    many => (
+                        format!("{product} / ({})", join(many, " * ")),
+                        Precedence::Lowest,
+                    ),
+                }
+            }
         };
-        match below.as_slice() {
-            [] => {}
-            [one] => text = format!("{text} / {}", self.write(one, Precedence::Highest)),
-            many => text = format!("{text} / ({})", join(many)),
-        }
-        if precedence == Precedence::Highest
-            || (precedence == Precedence::Product && !below.is_empty())
-        {
-            self.in_brackets(&text)
-        } else {
-            text
+        match precedence > binds_tighter {
+            true => self.in_brackets(&text),
+            false => text,
         }
     }
 
@@ -166,18 +162,15 @@ impl OutputStyle<'_> {
                 let exponent = self.write(exponent, Precedence::Lowest);
                 // A function's power stands at its name, a derivative's outside brackets.
                 match base.as_ref() {
-                    Node::Cos(angle) | Node::Sin(angle) if whole == Some(2) => {
-                        let name = if matches!(base.as_ref(), Node::Cos(_)) {
-                            "\\cos"
-                        } else {
-                            "\\sin"
-                        };
-                        format!("{name}^2 {}", self.write(angle, Precedence::Highest))
+                    Node::Cos(angle) if whole == Some(2) => {
+                        format!("\\cos^2 {}", self.write(angle, Precedence::Highest))
                     }
-                    Node::Sym(_) if !tight.contains(['\'', ' ']) => {
-                        format!("{tight}^{{{exponent}}}")
+                    Node::Sin(angle) if whole == Some(2) => {
+                        format!("\\sin^2 {}", self.write(angle, Precedence::Highest))
                     }
-                    Node::Sym(_) => format!("{{{tight}}}^{{{exponent}}}"),
+                    Node::Sym(_) if tight.contains(['\'', ' ']) => {
+                        format!("{{{tight}}}^{{{exponent}}}")
+                    }
                     _ => format!("{tight}^{{{exponent}}}"),
                 }
             }
@@ -223,46 +216,29 @@ impl OutputStyle<'_> {
                 }
                 _ => format!("{value:?}"),
             },
-            Node::Cos(angle) => self.function("cos", &[angle]),
-            Node::Sin(angle) => self.function("sin", &[angle]),
-            Node::Sqrt(inner) => self.function("sqrt", &[inner]),
-            Node::Atan2(y, x) => self.function("atan2", &[y, x]),
+            Node::Cos(angle) => self.function("cos", angle, None),
+            Node::Sin(angle) => self.function("sin", angle, None),
+            Node::Sqrt(inner) => self.function("sqrt", inner, None),
+            Node::Atan2(y, x) => self.function("atan2", y, Some(x)),
             // The closed forms hold nothing else.
             _ => format!("{term}"),
         }
     }
 
-    fn function(&self, name: &str, of: &[&Term]) -> String {
-        let arguments = || {
-            let all: Vec<String> = of
-                .iter()
-                .map(|t| self.write(t, Precedence::Lowest))
-                .collect();
-            all.join(", ")
-        };
-        match self {
-            Self::Latex(..) => match (name, of) {
-                ("sqrt", _) => format!("\\sqrt{{{}}}", arguments()),
-                ("atan2", _) => format!("\\operatorname{{atan2}}\\left({}\\right)", arguments()),
-                (_, [angle]) => format!("\\{name} {}", self.write(angle, Precedence::Highest)),
-                _ => format!("\\{name}\\left({}\\right)", arguments()),
-            },
-            Self::Code(Language::Rust) => match of {
-                [one] => format!("{}.{name}()", self.write(one, Precedence::Highest)),
-                [one, rest @ ..] => {
-                    let rest: Vec<String> = rest
-                        .iter()
-                        .map(|t| self.write(t, Precedence::Lowest))
-                        .collect();
-                    format!(
-                        "{}.{name}({})",
-                        self.write(one, Precedence::Highest),
-                        rest.join(", ")
-                    )
-                }
-                [] => String::new(),
-            },
-            Self::Code(_) => format!("{name}({})", arguments()),
+    fn function(&self, name: &str, first: &Term, second: Option<&Term>) -> String {
+        let lowest = |term: &Term| self.write(term, Precedence::Lowest);
+        let highest = || self.write(first, Precedence::Highest);
+        let all: Vec<String> = [first].into_iter().chain(second).map(lowest).collect();
+        let all = all.join(", ");
+        match (self, name) {
+            (Self::Latex(..), "sqrt") => format!("\\sqrt{{{all}}}"),
+            (Self::Latex(..), "atan2") => format!("\\operatorname{{atan2}}\\left({all}\\right)"),
+            (Self::Latex(..), _) => format!("\\{name} {}", highest()),
+            (Self::Code(Language::Rust), _) => {
+                let second = second.map(lowest).unwrap_or_default();
+                format!("{}.{name}({second})", highest())
+            }
+            (Self::Code(_), _) => format!("{name}({all})"),
         }
     }
 }
@@ -331,11 +307,6 @@ fn unsigned(term: &Term) -> (Term, bool) {
         }
         _ => (term.clone(), false),
     }
-}
-
-/// A term of one summand without its sign, which is known to be plus.
-fn without_sign(term: &Term) -> Term {
-    unsigned(term).0
 }
 
 fn factors(term: &Term, above: &mut Vec<Term>, below: &mut Vec<Term>) {

@@ -3,7 +3,7 @@
 
 use dwell_geometry::frames::Frames;
 use dwell_geometry::lower::{Owner, PairKind};
-use dwell_geometry::{Mechanism, Plan, Vec2};
+use dwell_geometry::{Mechanism, Plan, Vec2, vec2};
 
 /// A constant vector on a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,24 +44,38 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The vector between two points of a body, in its frame.
 pub(crate) fn vector_between(frames: &Frames, body: usize, from: Vec2, to: Vec2) -> Vec2 {
-    let rounding = ROUNDING * (from.norm() + to.norm());
-    let clean = |d: f64| if d.abs() <= rounding { 0.0 } else { d };
-    let difference = dwell_geometry::vec2(clean(to.x - from.x), clean(to.y - from.y));
+    let difference = without_rounding(to - from, from.norm() + to.norm());
     rotated_constant(difference, frames.orientations[body].offset)
+}
+
+/// A vector whose components are nothing where they are rounding of terms of a size.
+pub(crate) fn without_rounding(vector: Vec2, terms: f64) -> Vec2 {
+    let rounding = ROUNDING * terms;
+    let clean = |d: f64| if d.abs() <= rounding { 0.0 } else { d };
+    vec2(clean(vector.x), clean(vector.y))
+}
+
+/// A vector with its sign, so that the same vector reversed is the same constant: it points along x, or y.
+pub(crate) fn forward(local: Vec2) -> (Vec2, f64) {
+    let back = local.x < 0.0 || (local.x == 0.0 && local.y < 0.0);
+    let sign = if back { -1.0 } else { 1.0 };
+    (local * sign + Vec2::ZERO, sign)
 }
 
 /// A vector by a constant rotation; what a rotation by quarter turns leaves of a component is
 /// nothing.
 pub(crate) fn rotated_constant(vector: Vec2, by: Vec2) -> Vec2 {
-    let rotated = vector.rotate(by);
-    let rounding = ROUNDING * vector.norm();
-    let clean = |d: f64| if d.abs() <= rounding { 0.0 } else { d };
-    dwell_geometry::vec2(clean(rotated.x), clean(rotated.y))
+    without_rounding(vector.rotate(by), vector.norm())
 }
 
 /// The name of the joint or actuator that a kinematic pair comes from.
 pub(crate) fn pair_name(mechanism: &Mechanism, plan: &Plan, pair: usize) -> String {
-    match plan.pairs()[pair].owner {
+    owner_name(mechanism, plan.pairs()[pair].owner)
+}
+
+/// The name of a joint or actuator.
+pub(crate) fn owner_name(mechanism: &Mechanism, owner: Owner) -> String {
+    match owner {
         Owner::Joint(joint) => mechanism.joints[joint.0].name.clone(),
         Owner::Actuator(actuator) => mechanism.actuators[actuator.0].name.clone(),
     }
@@ -140,7 +154,7 @@ impl LoopEquation {
         self.link_vectors.push(LinkVector {
             body,
             frame: frames.orientations[body].frame,
-            local: self::vector_between(frames, body, from, to) * sign,
+            local: vector_between(frames, body, from, to) * sign,
             joints,
         });
     }

@@ -1,12 +1,16 @@
 //! Positions as functions of the coordinate: the groups in their order, each a few named steps, then
 //! the points that carry the bodies and their centres of mass.
 
-use crate::algebra::{Term, cos, is_zero, number, plus, scale, sin, symbol, times, zero};
+use crate::algebra::{Term, cos, is_zero, number, plus, scale, sin, square, symbol, times, zero};
 use crate::error::SymbolicError;
-use crate::loops::{LinkVector, LoopEquation, pair_name, rotated_constant, vector_between};
+use crate::loops::{
+    LinkVector, LoopEquation, forward, pair_name, rotated_constant, vector_between,
+    without_rounding,
+};
 use crate::symbol_table::{SymbolTable, is_greek};
 use dwell_geometry::frames::RotationSource;
 use dwell_geometry::groups::Unknown;
+use dwell_geometry::tree::TreeJoint;
 use dwell_geometry::{BodyId, Mechanism, Plan, Vec2};
 use dwell_kinetostatics::Mass;
 use std::collections::HashMap;
@@ -18,10 +22,10 @@ pub(crate) type Vector = [Term; 2];
 #[derive(Debug, Clone, Default)]
 pub(crate) struct LoopSymbols {
     /// The steps of the known part of the loop.
-    pub(crate) known_part: Option<[String; 2]>,
+    pub(crate) known_part: Option<Vector>,
     /// Where it closes along a normal only: the step of the normal distance that is left for what turns or
     /// travels, and the travel along the axis.
-    pub(crate) normal_distance: Option<(String, Term)>,
+    pub(crate) normal_distance: Option<(Term, Term)>,
 }
 
 /// The positions of a mechanism.
@@ -35,13 +39,13 @@ pub(crate) struct PositionFormulas<'a> {
     pub(crate) loops: Vec<LoopEquation>,
     pub(crate) loop_symbols: Vec<LoopSymbols>,
     /// By relation: the step that solves it, and by what the relation grows with it.
-    pub(crate) solved_couplings: Vec<Option<(String, Term)>>,
+    pub(crate) solved_couplings: Vec<Option<(Term, Term)>>,
     /// Numbers of relations: their size, whose they are, their names.
     pub(crate) coefficients: Vec<(f64, String, Term)>,
     /// By body: the steps of its root; none for the ground.
-    pub(crate) joint_origins: Vec<Option<[String; 2]>>,
+    pub(crate) joint_origins: Vec<Option<Vector>>,
     /// By body with mass: the steps of its centre.
-    pub(crate) mass_centres: Vec<Option<[String; 2]>>,
+    pub(crate) mass_centres: Vec<Option<Vector>>,
     /// What was found of angles and travels: by frame, and by slide.
     pub(crate) angles: Vec<Option<Term>>,
     pub(crate) travels: Vec<Option<Term>>,
@@ -64,10 +68,10 @@ impl<'a> PositionFormulas<'a> {
         let mut pose = plan.pose::<f64>();
         plan.positions(plan.assembly_coordinates(), &mut pose)?;
         let mut symbols = SymbolTable::default();
-        let q = if is_greek(&actuator.name) {
-            symbols.new_name(&actuator.name, &[])
-        } else {
-            symbols.new_name("q", &[&actuator.name])
+        let name = actuator.name.as_str();
+        let q = match is_greek(name) {
+            true => symbols.new_name(name, &[]),
+            false => symbols.new_name("q", &[name]),
         };
         let bodies = plan.frames().orientations.len();
         let mut positions = Self {
@@ -165,26 +169,43 @@ impl<'a> PositionFormulas<'a> {
     }
 
     /// The next number for a constant.
-    pub(crate) fn next_number(&mut self) -> String {
+    fn next_number(&mut self) -> String {
         self.constant_count += 1;
         self.constant_count.to_string()
     }
 
+    /// A constant by a letter and the next number.
+    pub(crate) fn numbered_constant(
+        &mut self,
+        letter: &str,
+        value: f64,
+        unit: &'static str,
+        meaning: String,
+    ) -> Term {
+        let k = self.next_number();
+        let symbols = &mut self.symbols;
+        symbols.add_constant((letter, &[&k]), value, unit, meaning)
+    }
+
+    /// The vector of a key, which is made only once.
+    fn cached_vector(
+        &mut self,
+        key: (usize, u64, u64),
+        make: impl FnOnce(&mut Self) -> Vector,
+    ) -> Vector {
+        if let Some(found) = self.vectors.get(&key) {
+            return found.clone();
+        }
+        let made = make(self);
+        self.vectors.insert(key, made.clone());
+        made
+    }
+
     /// A constant vector in its frame, by the names of its components, m.
     pub(crate) fn frame_vector(&mut self, frame: usize, local: Vec2, meaning: &str) -> Vector {
-        // The same vector reversed is no other constant.
-        let back = local.x < 0.0 || (local.x == 0.0 && local.y < 0.0);
-        let sign = if back { -1.0 } else { 1.0 };
-        let forth = local * sign + Vec2::ZERO;
+        let (forth, sign) = forward(local);
         let key = (frame, forth.x.to_bits(), forth.y.to_bits());
-        let found = match self.vectors.get(&key) {
-            Some(found) => found.clone(),
-            None => {
-                let found = self.constant_vector(forth, meaning);
-                self.vectors.insert(key, found.clone());
-                found
-            }
-        };
+        let found = self.cached_vector(key, |own| own.constant_vector(forth, meaning));
         found.map(|c| if is_zero(&c) { c } else { scale(&c, sign) })
     }
 
@@ -193,26 +214,19 @@ impl<'a> PositionFormulas<'a> {
             return [zero(), zero()];
         }
         let k = self.next_number();
-        let meaning = meaning.to_owned();
-        if local.y == 0.0 {
-            let l = self
-                .symbols
-                .add_constant(("l", &[&k]), local.x, "m", meaning);
-            return [l, zero()];
+        let mut named = |letter, value, what| {
+            let meaning = format!("{meaning}{what}");
+            let symbols = &mut self.symbols;
+            symbols.add_constant((letter, &[&k]), value, "m", meaning)
+        };
+        match (local.x == 0.0, local.y == 0.0) {
+            (_, true) => [named("l", local.x, ""), zero()],
+            (true, false) => [zero(), named("l", local.y, ", across")],
+            (false, false) => [
+                named("u", local.x, ", along its x axis"),
+                named("v", local.y, ", along its y axis"),
+            ],
         }
-        if local.x == 0.0 {
-            let l = self
-                .symbols
-                .add_constant(("l", &[&k]), local.y, "m", meaning + ", across");
-            return [zero(), l];
-        }
-        let along = format!("{meaning}, along its x axis");
-        let across = format!("{meaning}, along its y axis");
-        let u = self.symbols.add_constant(("u", &[&k]), local.x, "m", along);
-        let v = self
-            .symbols
-            .add_constant(("v", &[&k]), local.y, "m", across);
-        [u, v]
     }
 
     /// A constant direction in its frame.
@@ -220,27 +234,52 @@ impl<'a> PositionFormulas<'a> {
         if local.y == 0.0 || local.x == 0.0 {
             return [number(local.x), number(local.y)];
         }
-        let back = local.x < 0.0;
-        let sign = if back { -1.0 } else { 1.0 };
-        let forth = local * sign;
+        let (forth, sign) = forward(local);
         // Directions and vectors of one metre are different things: the sign bit keeps them apart.
         let key = (frame, forth.x.to_bits(), !forth.y.to_bits());
-        let found = match self.vectors.get(&key) {
-            Some(found) => found.clone(),
-            None => {
-                let k = self.next_number();
-                let angle = self.symbols.add_constant(
-                    ("alpha", &[&k]),
-                    forth.angle(),
-                    "rad",
-                    format!("{}: {meaning}, from its x axis", self.frame_name(frame)),
-                );
-                let found = [cos(&angle), sin(&angle)];
-                self.vectors.insert(key, found.clone());
-                found
-            }
-        };
+        let found = self.cached_vector(key, |own| {
+            let meaning = format!("{}: {meaning}, from its x axis", own.frame_name(frame));
+            let angle = own.numbered_constant("alpha", forth.angle(), "rad", meaning);
+            [cos(&angle), sin(&angle)]
+        });
         found.map(|c| scale(&c, sign))
+    }
+
+    /// The direction of a slide's travel, from the ground.
+    pub(crate) fn travel_direction(&mut self, frame: usize, local: Vec2) -> Vector {
+        let along = self.direction(frame, local, "direction of travel");
+        rotate(&along, &self.angle(frame))
+    }
+
+    /// The travel of a slide, so far as it is known.
+    pub(crate) fn travel(&self, slide: usize) -> Term {
+        self.travels[slide].clone().unwrap_or_else(zero)
+    }
+
+    /// Writes down the travel of a slide that has been found.
+    pub(crate) fn assign_travel(&mut self, slide: usize, value: &Term) -> Term {
+        let pair = self.plan.tree().slide_pairs[slide];
+        let name = pair_name(self.mechanism, self.plan, pair);
+        let travel = self.symbols.assign("s", &[&name], value);
+        self.travels[slide] = Some(travel.clone());
+        travel
+    }
+
+    /// A loop's part that rotates with a class, from its class frame, without the travel of the slides `but`.
+    pub(crate) fn class_part(&mut self, closure: usize, class: usize, but: &[usize]) -> Vector {
+        let pick = |own: &Self, frame| own.orientation_class(frame) == class;
+        self.loop_part(closure, pick, Self::relative_angle, but)
+    }
+
+    /// The same in numbers, at the start.
+    pub(crate) fn class_part_at_assembly(
+        &self,
+        closure: usize,
+        class: usize,
+        but: &[usize],
+    ) -> Vec2 {
+        let pick = |own: &Self, frame| own.orientation_class(frame) == class;
+        self.loop_part_at_assembly(closure, pick, but)
     }
 
     /// A loop's part on the frames that are picked, turned by `angle`, without the travel of the slides
@@ -258,10 +297,8 @@ impl<'a> PositionFormulas<'a> {
             let meaning = self.meaning(link_vector);
             match frames.iter_mut().find(|f| f.0 == link_vector.frame) {
                 Some((_, sum, meaning_text)) => {
-                    let joined = *sum + link_vector.local;
-                    let rounding = 4.0 * f64::EPSILON * (sum.norm() + link_vector.local.norm());
-                    let clean = |d: f64| if d.abs() <= rounding { 0.0 } else { d };
-                    *sum = dwell_geometry::vec2(clean(joined.x), clean(joined.y));
+                    let terms = sum.norm() + link_vector.local.norm();
+                    *sum = without_rounding(*sum + link_vector.local, terms);
                     let name = pair_name(self.mechanism, self.plan, loop_equation.loop_joint);
                     *meaning_text = format!(
                         "{}: in the loop of {name}",
@@ -283,7 +320,7 @@ impl<'a> PositionFormulas<'a> {
                 let along =
                     self.direction(slide_term.frame, slide_term.local, "direction of travel");
                 let along = rotate(&along, &angle(self, slide_term.frame));
-                let travel = self.travels[slide_term.slide].clone().unwrap_or_else(zero);
+                let travel = self.travel(slide_term.slide);
                 sum = add(&sum, &along.map(|c| times(&c, &travel)));
             }
         }
@@ -299,11 +336,8 @@ impl<'a> PositionFormulas<'a> {
     ) -> Vec2 {
         let loop_equation = &self.loops[closure];
         let mut sum = Vec2::ZERO;
-        for link_vector in loop_equation
-            .link_vectors
-            .iter()
-            .filter(|p| pick(self, p.frame))
-        {
+        let link_vectors = loop_equation.link_vectors.iter();
+        for link_vector in link_vectors.filter(|p| pick(self, p.frame)) {
             sum += link_vector.local.rotate(self.rotation[link_vector.frame]);
         }
         let slide_terms = loop_equation.slide_terms.iter();
@@ -323,15 +357,13 @@ impl<'a> PositionFormulas<'a> {
     ) -> Option<Vec2> {
         let loop_equation = &self.loops[closure];
         let class_root = self.plan.class_frame(class);
-        let mut link_vectors = loop_equation
-            .link_vectors
-            .iter()
-            .filter(|p| self.orientation_class(p.frame) == class);
+        let in_class = |frame| self.orientation_class(frame) == class;
         let mut slide_terms = loop_equation.slide_terms.iter();
-        if slide_terms.any(|p| self.orientation_class(p.frame) == class && !but.contains(&p.slide))
-        {
+        if slide_terms.any(|p| in_class(p.frame) && !but.contains(&p.slide)) {
             return None;
         }
+        let link_vectors = loop_equation.link_vectors.iter();
+        let mut link_vectors = link_vectors.filter(|p| in_class(p.frame));
         link_vectors.try_fold(Vec2::ZERO, |sum, p| {
             (p.frame == class_root).then_some(sum + p.local)
         })
@@ -359,16 +391,11 @@ impl<'a> PositionFormulas<'a> {
             let name = self.body_or_joint_name(parent);
             let arm = self.frame_vector(frame, local, &format!("{name}: from {start} to {joint}"));
             let mut joint_origin = rotate(&arm, &self.angle(frame));
-            if let Some(codes) = &self.joint_origins[parent] {
-                joint_origin = add(&[symbol(&codes[0]), symbol(&codes[1])], &joint_origin);
+            if let Some(parent_origin) = &self.joint_origins[parent] {
+                joint_origin = add(parent_origin, &joint_origin);
             }
-            if let Some((slide, away)) = tree_joint.slide {
-                let body_frame = frames.orientations[tree_joint.body].frame;
-                let along = self.direction(body_frame, away, "direction of travel");
-                let along = rotate(&along, &self.angle(body_frame));
-                let travel = self.travels[slide].clone().unwrap_or_else(zero);
-                joint_origin = add(&joint_origin, &along.map(|c| times(&c, &travel)));
-            }
+            let travel = self.joint_travel(tree_joint);
+            let joint_origin = add(&joint_origin, &travel);
             self.joint_origins[tree_joint.body] = Some(self.assign_point(&[&joint], &joint_origin));
         }
         for tree_joint in &tree.joints {
@@ -389,18 +416,24 @@ impl<'a> PositionFormulas<'a> {
             let meaning = format!("{name}: from {joint} to the centre of mass");
             let arm = self.frame_vector(frame, local, &meaning);
             let arm = rotate(&arm, &self.angle(frame));
-            let centre = add(&[symbol(&joint_origin[0]), symbol(&joint_origin[1])], &arm);
+            let centre = add(&joint_origin, &arm);
             self.mass_centres[body] = Some(self.assign_point(&["G", &name], &centre));
         }
     }
 
+    /// The vector of a tree joint's travel, from the ground.
+    pub(crate) fn joint_travel(&mut self, tree_joint: &TreeJoint) -> Vector {
+        let Some((slide, away)) = tree_joint.slide else {
+            return [zero(), zero()];
+        };
+        let frame = self.plan.frames().orientations[tree_joint.body].frame;
+        let along = self.travel_direction(frame, away);
+        along.map(|c| times(&c, &self.travel(slide)))
+    }
+
     /// The two steps of a point.
-    fn assign_point(&mut self, below: &[&str], at: &Vector) -> [String; 2] {
-        ["x", "y"].map(|letter| {
-            let code = self.symbols.new_name(letter, below);
-            self.symbols.assign(&code, &at[usize::from(letter == "y")]);
-            code
-        })
+    fn assign_point(&mut self, below: &[&str], [x, y]: &Vector) -> Vector {
+        [("x", x), ("y", y)].map(|(letter, value)| self.symbols.assign(letter, below, value))
     }
 
     /// The bodies and joints of a group that has no closed form.
@@ -411,13 +444,6 @@ impl<'a> PositionFormulas<'a> {
             joints: self.plan.group_joints(group),
             what,
         }
-    }
-
-    /// Names the travel of a slide that has been found.
-    pub(crate) fn travel_name(&mut self, slide: usize) -> String {
-        let pair = self.plan.tree().slide_pairs[slide];
-        let name = pair_name(self.mechanism, self.plan, pair);
-        self.symbols.new_name("s", &[&name])
     }
 
     /// Whether a frame turns with one of a group's unknowns.
@@ -456,6 +482,11 @@ pub(crate) fn rotate([x, y]: &Vector, angle: &Term) -> Vector {
 /// A vector turned by +90°.
 pub(crate) fn perp([x, y]: &Vector) -> Vector {
     [(-y.clone()).simplify(), x.clone()]
+}
+
+/// The square of a vector's length.
+pub(crate) fn square_norm([x, y]: &Vector) -> Term {
+    plus(&square(x), &square(y))
 }
 
 pub(crate) fn dot(a: &Vector, b: &Vector) -> Term {

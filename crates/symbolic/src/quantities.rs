@@ -43,14 +43,9 @@ pub enum QuantityOrigin {
 
 impl PositionFormulas<'_> {
     pub(crate) fn coordinate(&self, symbols: &SymbolTable, code: &str) -> Quantity {
-        let angle = self.plan.is_angle(0);
-        Quantity {
-            code: code.to_owned(),
-            latex: symbols.latex_names(code),
-            unit: if angle { "rad" } else { "m" },
-            meaning: format!("coordinate {}", self.mechanism.actuators[0].name),
-            origin: QuantityOrigin::Coordinate,
-        }
+        let unit = if self.plan.is_angle(0) { "rad" } else { "m" };
+        let meaning = format!("coordinate {}", self.mechanism.actuators[0].name);
+        symbols.quantity(code.to_owned(), unit, meaning, QuantityOrigin::Coordinate)
     }
 
     /// Angles and travels, and the points of the bodies.
@@ -59,18 +54,14 @@ impl PositionFormulas<'_> {
         symbols: &SymbolTable,
         derivatives: &BTreeMap<String, Term>,
     ) -> Vec<Quantity> {
-        let quantity = |code: String, unit, meaning, of| Quantity {
-            latex: symbols.latex_names(&code),
-            code,
-            unit,
-            meaning,
-            origin: of,
-        };
         let mut found = Vec::new();
+        let mut add = |code, unit, meaning, of| {
+            found.push(symbols.quantity(code, unit, meaning, of));
+        };
         for (frame, angle) in self.angles.iter().enumerate() {
             if let Some(code) = angle.as_ref().and_then(symbol_name) {
                 let meaning = format!("angle of {}", self.frame_name(frame));
-                found.push(quantity(code, "rad", meaning, QuantityOrigin::Frame(frame)));
+                add(code, "rad", meaning, QuantityOrigin::Frame(frame));
             }
         }
         let travel = |pair| format!("travel of {}", pair_name(self.mechanism, self.plan, pair));
@@ -78,7 +69,7 @@ impl PositionFormulas<'_> {
             let actuator = self.plan.actuated_slides()[slide];
             if let (Some(code), None) = (variable.as_ref().and_then(symbol_name), actuator) {
                 let meaning = travel(self.plan.tree().slide_pairs[slide]);
-                found.push(quantity(code, "m", meaning, QuantityOrigin::Slide(slide)));
+                add(code, "m", meaning, QuantityOrigin::Slide(slide));
             }
         }
         let loops = self.loop_symbols.iter().zip(&self.loops);
@@ -86,7 +77,7 @@ impl PositionFormulas<'_> {
             let distance = loop_symbols.normal_distance.as_ref();
             if let Some(code) = distance.and_then(|n| symbol_name(&n.1)) {
                 let meaning = travel(loop_equation.loop_joint);
-                found.push(quantity(code, "m", meaning, QuantityOrigin::Closure(c)));
+                add(code, "m", meaning, QuantityOrigin::Closure(c));
             }
         }
         let joint_origin: fn(usize, usize) -> QuantityOrigin = QuantityOrigin::JointOrigin;
@@ -96,18 +87,17 @@ impl PositionFormulas<'_> {
             (&self.mass_centres, "the centre of mass of", mass_centre),
         ];
         for (points, what, of) in points {
-            for (body, point) in points.iter().enumerate() {
-                let (Some(point), true) = (point, body < self.mechanism.bodies.len()) else {
-                    continue;
-                };
-                let known = |code: &String| found.iter().any(|q: &Quantity| q.code == *code);
-                if !point.iter().any(|code| derivatives.contains_key(code)) || known(&point[0]) {
+            let named = points.iter().take(self.mechanism.bodies.len()).enumerate();
+            for (body, point) in named.filter_map(|(body, point)| Some((body, point.as_ref()?))) {
+                let codes = [0, 1].map(|k| point[k].to_string());
+                let moves = codes.iter().any(|code| derivatives.contains_key(code));
+                if !moves || found.iter().any(|q: &Quantity| q.code == codes[0]) {
                     continue;
                 }
-                for (k, (code, axis)) in point.iter().zip(["x", "y"]).enumerate() {
+                for (k, (code, axis)) in codes.into_iter().zip(["x", "y"]).enumerate() {
                     let name = self.mechanism.body_name(BodyId(body));
                     let meaning = format!("{axis} of {what} {name}");
-                    found.push(quantity(code.clone(), "m", meaning, of(body, k)));
+                    found.push(symbols.quantity(code, "m", meaning, of(body, k)));
                 }
             }
         }
@@ -123,35 +113,43 @@ pub(crate) fn result_quantities(
     angle: bool,
 ) -> Vec<Quantity> {
     let moment = reaction.is_some_and(|r| r.component.unit() == "N m");
-    let of_reaction = match (moment, angle) {
-        (true, true) => "kg m²",
-        (false, false) => "kg",
-        _ => "kg m",
-    };
     let what = [
         "generalised inertia",
         "half its derivative",
         "what q̈ contributes to the reaction",
         "what q̇² contributes to the reaction",
     ];
-    let inertia = if angle { "kg m²" } else { "kg" };
-    let per = if angle { "kg m²" } else { "kg/m" };
-    let rate = match (moment, angle) {
-        (_, true) => of_reaction,
-        (true, false) => "kg",
-        (false, false) => "kg/m",
+    let units = match (angle, moment) {
+        (true, true) => ["kg m²"; 4],
+        (true, false) => ["kg m²", "kg m²", "kg m", "kg m"],
+        (false, true) => ["kg", "kg/m", "kg m", "kg"],
+        (false, false) => ["kg", "kg/m", "kg", "kg/m"],
     };
-    let units = [inertia, per, of_reaction, rate];
     let quantities = results.iter().zip(what).zip(units);
     quantities
-        .map(|((assignment, what), unit)| Quantity {
-            code: assignment.code.clone(),
-            latex: symbols.latex_names(&assignment.code),
-            unit,
-            meaning: what.to_owned(),
-            origin: QuantityOrigin::Result,
+        .map(|((assignment, what), unit)| {
+            let code = assignment.code.clone();
+            symbols.quantity(code, unit, what.to_owned(), QuantityOrigin::Result)
         })
         .collect()
+}
+
+impl SymbolTable {
+    fn quantity(
+        &self,
+        code: String,
+        unit: &'static str,
+        meaning: String,
+        origin: QuantityOrigin,
+    ) -> Quantity {
+        Quantity {
+            latex: self.latex_names(&code),
+            code,
+            unit,
+            meaning,
+            origin,
+        }
+    }
 }
 
 /// The name that a plain derivative is.

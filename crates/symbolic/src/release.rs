@@ -4,7 +4,7 @@
 //! which is all that a and b take of it, the known part of each loop is shifted by a sum over its pieces, and
 //! the points of the bodies are shifted by what carries them.
 
-use crate::algebra::{Term, number, scale, symbol, times, zero};
+use crate::algebra::{Term, number, scale, times, zero};
 use crate::error::SymbolicError;
 use crate::positions::{PositionFormulas, Vector, add, perp, rotate};
 use dwell_geometry::frames::AngularConstraintSource;
@@ -25,8 +25,15 @@ enum Released {
 /// A released joint: what it adds to each step, and to each body's angle beside its frame's.
 #[derive(Debug, Clone)]
 pub(crate) struct Release {
+    released: Released,
     pub(crate) shifts: BTreeMap<String, Term>,
     pub(crate) extra_rotation: Vec<f64>,
+}
+
+impl Release {
+    fn shift(&mut self, step: &Term, by: Term) {
+        self.shifts.insert(step.to_string(), by);
+    }
 }
 
 impl PositionFormulas<'_> {
@@ -38,18 +45,18 @@ impl PositionFormulas<'_> {
             return Err(SymbolicError::Reaction(reaction));
         }
         let released = self.released_constraint(reaction)?;
-        let extra_rotation = self.extra_rotations(&released);
-        let mut shifts = BTreeMap::new();
+        let mut release = Release {
+            extra_rotation: self.extra_rotations(&released),
+            shifts: BTreeMap::new(),
+            released,
+        };
         for closure in 0..self.loops.len() {
-            self.shift_loop(closure, &released, &extra_rotation, &mut shifts);
+            self.shift_loop(closure, &mut release);
         }
-        self.shift_joint_origins(&released, &extra_rotation, &mut shifts);
-        self.shift_mass_centres(&extra_rotation, &mut shifts);
-        self.shift_couplings(&released, &extra_rotation, &mut shifts);
-        Ok(Release {
-            shifts,
-            extra_rotation,
-        })
+        self.shift_joint_origins(&mut release);
+        self.shift_mass_centres(&mut release);
+        self.shift_couplings(&mut release);
+        Ok(release)
     }
 
     fn released_constraint(&mut self, reaction: Reaction) -> Result<Released, SymbolicError> {
@@ -57,41 +64,33 @@ impl PositionFormulas<'_> {
         let unsupported = SymbolicError::Reaction(reaction);
         let (pair, coupling) = self.plan.joint_parts(joint);
         let is_relation = matches!(self.mechanism.joints[joint.0].kind, JointKind::Coupling(_));
-        match (component, pair, coupling) {
+        let pairs = self.plan.pairs();
+        Ok(match (component, pair, coupling) {
             (Component::Tooth | Component::Tangent | Component::Force, _, Some(coupling)) => {
-                return Ok(Released::Coupling(coupling));
+                Released::Coupling(coupling)
             }
-            (Component::Moment, _, Some(coupling)) if is_relation => {
-                return Ok(Released::Coupling(coupling));
-            }
-            (Component::Moment, Some(pair), _) => return Ok(Released::Moment(pair)),
-            // Along a direction of a pair, below; or there is nothing to release, which is refused there.
-            (Component::X | Component::Y | Component::Normal | Component::Axial, _, _)
-            | (Component::Tooth | Component::Tangent | Component::Force, _, None)
-            | (Component::Moment, None, _) => {}
-        }
-        let pair = pair.ok_or(unsupported.clone())?;
-        let described = self.plan.pairs()[pair];
-        let direction = match (component, described.kind) {
-            (Component::X, _) => [number(1.0), zero()],
-            (Component::Y, _) => [zero(), number(1.0)],
-            (Component::Normal, PairKind::Prismatic { axes, .. }) => {
-                let (frame, axis) = self.to_frame(described.bodies[0], axes[0]);
-                let axis = self.direction(frame, axis, "direction of the guide");
-                perp(&rotate(&axis, &self.angle(frame)))
-            }
+            (Component::Moment, _, Some(coupling)) if is_relation => Released::Coupling(coupling),
+            (Component::Moment, Some(pair), _) => Released::Moment(pair),
+            (Component::X, Some(pair), _) => Released::Pair(pair, [number(1.0), zero()]),
+            (Component::Y, Some(pair), _) => Released::Pair(pair, [zero(), number(1.0)]),
+            (Component::Normal, Some(pair), _) => match pairs[pair].kind {
+                PairKind::Prismatic { axes, .. } => {
+                    let (frame, axis) = self.to_frame(pairs[pair].bodies[0], axes[0]);
+                    let axis = self.direction(frame, axis, "direction of the guide");
+                    Released::Pair(pair, perp(&rotate(&axis, &self.angle(frame))))
+                }
+                PairKind::Revolute | PairKind::Rigid { .. } => return Err(unsupported),
+            },
             // The line of a distance is the x axis of its second body.
-            (Component::Axial, _) => {
-                let (frame, axis) = self.to_frame(described.bodies[1], Vec2::IDENTITY);
+            (Component::Axial, Some(pair), _) => {
+                let (frame, axis) = self.to_frame(pairs[pair].bodies[1], Vec2::IDENTITY);
                 let axis = self.direction(frame, axis, "direction of the line");
-                rotate(&axis, &self.angle(frame))
+                Released::Pair(pair, rotate(&axis, &self.angle(frame)))
             }
-            (Component::Normal, PairKind::Revolute | PairKind::Rigid { .. })
-            | (Component::Moment | Component::Tooth | Component::Tangent | Component::Force, _) => {
-                return Err(unsupported);
-            }
-        };
-        Ok(Released::Pair(pair, direction))
+            (Component::X | Component::Y | Component::Normal | Component::Axial, None, _)
+            | (Component::Tooth | Component::Tangent | Component::Force, _, None)
+            | (Component::Moment, None, _) => return Err(unsupported),
+        })
     }
 
     /// By body: its rotation from its frame for each unit.
@@ -112,166 +111,118 @@ impl PositionFormulas<'_> {
         extra_rotation
     }
 
-    fn shift_loop(
-        &mut self,
-        closure: usize,
-        released: &Released,
-        extra_rotation: &[f64],
-        shifts: &mut BTreeMap<String, Term>,
-    ) {
-        let Some(gap) = self.loop_symbols[closure].known_part.clone() else {
+    fn shift_loop(&mut self, closure: usize, release: &mut Release) {
+        let Some(known_part) = self.loop_symbols[closure].known_part.clone() else {
             return;
         };
+        let rotation = |body: usize| release.extra_rotation[body];
         let loop_equation = self.loops[closure].clone();
         let mut sum = [zero(), zero()];
-        for link_vector in loop_equation
-            .link_vectors
-            .iter()
-            .filter(|p| extra_rotation[p.body] != 0.0)
-        {
+        let link_vectors = loop_equation.link_vectors.iter();
+        for link_vector in link_vectors.filter(|p| rotation(p.body) != 0.0) {
             let meaning = self.meaning(link_vector);
             let vector = self.frame_vector(link_vector.frame, link_vector.local, &meaning);
             let vector = rotate(&vector, &self.angle(link_vector.frame));
-            sum = add(
-                &sum,
-                &perp(&vector).map(|c| scale(&c, extra_rotation[link_vector.body])),
-            );
+            let shift = perp(&vector).map(|c| scale(&c, rotation(link_vector.body)));
+            sum = add(&sum, &shift);
         }
-        for slide_term in loop_equation
-            .slide_terms
-            .iter()
-            .filter(|p| extra_rotation[p.body] != 0.0)
-        {
-            let along = self.direction(slide_term.frame, slide_term.local, "direction of travel");
-            let along = rotate(&along, &self.angle(slide_term.frame));
-            let travel = self.travels[slide_term.slide].clone().unwrap_or_else(zero);
-            let travel = scale(&travel, extra_rotation[slide_term.body]);
+        let slide_terms = loop_equation.slide_terms.iter();
+        for slide_term in slide_terms.filter(|p| rotation(p.body) != 0.0) {
+            let along = self.travel_direction(slide_term.frame, slide_term.local);
+            let travel = scale(&self.travel(slide_term.slide), rotation(slide_term.body));
             sum = add(&sum, &perp(&along).map(|c| times(&c, &travel)));
         }
-        if let Released::Pair(released_pair, along) = released {
-            for &(_, sign) in loop_equation
-                .tree_pairs
-                .iter()
-                .filter(|(b, _)| b == released_pair)
-            {
-                sum = add(&sum, &along.clone().map(|c| scale(&c, sign)));
-            }
-            if loop_equation.loop_joint == *released_pair {
-                sum = add(&sum, &along.clone().map(|c| scale(&c, -1.0)));
+        if let Released::Pair(released_pair, along) = &release.released {
+            let closing_pair = (loop_equation.loop_joint, -1.0);
+            for &(pair, sign) in loop_equation.tree_pairs.iter().chain([&closing_pair]) {
+                if pair == *released_pair {
+                    sum = add(&sum, &along.clone().map(|c| scale(&c, sign)));
+                }
             }
         }
-        for (code, shift) in gap.into_iter().zip(sum) {
-            shifts.insert(code, shift.simplify());
+        for (step, shift) in known_part.iter().zip(sum) {
+            release.shift(step, shift.simplify());
         }
-        if let (Some((code, travel)), Some((body, ..))) = (
-            self.loop_symbols[closure].normal_distance.clone(),
-            loop_equation.axis,
-        ) && extra_rotation[body] != 0.0
+        let normal_distance = self.loop_symbols[closure].normal_distance.as_ref();
+        if let (Some((step, travel)), Some((body, ..))) = (normal_distance, loop_equation.axis)
+            && release.extra_rotation[body] != 0.0
         {
-            shifts.insert(code, scale(&travel, extra_rotation[body]));
+            release.shift(step, scale(travel, release.extra_rotation[body]));
         }
     }
 
-    fn shift_joint_origins(
-        &mut self,
-        released: &Released,
-        extra_rotation: &[f64],
-        shifts: &mut BTreeMap<String, Term>,
-    ) {
-        for index in 0..self.plan.tree().joints.len() {
-            let tree_joint = self.plan.tree().joints[index];
-            let kinematic_pair = self.plan.pairs()[tree_joint.pair];
-            let mut sum = [zero(), zero()];
-            let parent = self.joint_origins[tree_joint.parent].clone();
-            let joint_origin = self.joint_origins[tree_joint.body].clone();
-            let (Some(joint_origin), parent_rotation) =
-                (joint_origin, extra_rotation[tree_joint.parent])
-            else {
+    fn shift_joint_origins(&mut self, release: &mut Release) {
+        for tree_joint in &self.plan.tree().joints {
+            let bodies = self.plan.pairs()[tree_joint.pair].bodies;
+            let Some(joint_origin) = self.joint_origins[tree_joint.body].clone() else {
                 continue;
             };
-            let first = extra_rotation[kinematic_pair.bodies[0]];
+            let mut sum = [zero(), zero()];
+            let parent_rotation = release.extra_rotation[tree_joint.parent];
+            let first = release.extra_rotation[bodies[0]];
             if parent_rotation != 0.0 || first != 0.0 {
                 // From the parent's root, and the travel along the first body's axis.
-                let mut whole = joint_origin.clone().map(|c| symbol(&c));
-                if let Some(parent) = parent {
-                    let parent = parent.map(|c| scale(&symbol(&c), -1.0));
-                    whole = add(&whole, &parent);
+                let mut whole = joint_origin.clone();
+                if let Some(parent) = &self.joint_origins[tree_joint.parent] {
+                    whole = add(&whole, &parent.clone().map(|c| scale(&c, -1.0)));
                 }
-                let mut along = [zero(), zero()];
-                if let Some((slide, away)) = tree_joint.slide {
-                    let body_frame = self.plan.frames().orientations[tree_joint.body].frame;
-                    let vector = self.direction(body_frame, away, "direction of travel");
-                    let vector = rotate(&vector, &self.angle(body_frame));
-                    let travel = self.travels[slide].clone().unwrap_or_else(zero);
-                    along = vector.map(|c| times(&c, &travel));
-                }
+                let along = self.joint_travel(tree_joint);
                 let arm = add(&whole, &along.clone().map(|c| scale(&c, -1.0)));
-                sum = add(
-                    &perp(&arm).map(|c| times(&c, &number(parent_rotation))),
-                    &sum,
-                );
-                sum = add(&perp(&along).map(|c| times(&c, &number(first))), &sum);
+                for (vector, rotation) in [(arm, parent_rotation), (along, first)] {
+                    let shift = perp(&vector).map(|c| times(&c, &number(rotation)));
+                    sum = add(&shift, &sum);
+                }
             }
-            if let Released::Pair(released, along) = released
+            if let Released::Pair(released, along) = &release.released
                 && *released == tree_joint.pair
             {
-                let sign = if kinematic_pair.bodies[1] == tree_joint.body {
-                    1.0
-                } else {
-                    -1.0
-                };
+                let is_second = bodies[1] == tree_joint.body;
+                let sign = if is_second { 1.0 } else { -1.0 };
                 sum = add(&sum, &along.clone().map(|c| scale(&c, sign)));
             }
-            for (code, shift) in joint_origin.into_iter().zip(sum) {
-                shifts.insert(code, shift.simplify());
+            for (step, shift) in joint_origin.iter().zip(sum) {
+                release.shift(step, shift.simplify());
             }
         }
     }
 
-    fn shift_mass_centres(&self, extra_rotation: &[f64], shifts: &mut BTreeMap<String, Term>) {
-        for (body, &parent_rotation) in extra_rotation.iter().enumerate() {
-            let (Some(centre), Some(joint_origin)) = (
-                self.mass_centres[body].clone(),
-                self.joint_origins[body].clone(),
-            ) else {
+    fn shift_mass_centres(&self, release: &mut Release) {
+        let points = self.mass_centres.iter().zip(&self.joint_origins);
+        for (body, points) in points.enumerate() {
+            let (Some(centre), Some(joint_origin)) = points else {
                 continue;
             };
-            if parent_rotation != 0.0 && centre != joint_origin {
-                let arm = [0, 1].map(|i| symbol(&centre[i]) - symbol(&joint_origin[i]));
-                let arm = perp(&arm).map(|c| scale(&c, parent_rotation).simplify());
-                shifts.extend(centre.into_iter().zip(arm));
+            let rotation = release.extra_rotation[body];
+            if rotation != 0.0 && centre != joint_origin {
+                let arm = [0, 1].map(|i| centre[i].clone() - joint_origin[i].clone());
+                for (step, shift) in centre.iter().zip(perp(&arm)) {
+                    release.shift(step, scale(&shift, rotation).simplify());
+                }
             }
         }
     }
 
-    fn shift_couplings(
-        &self,
-        released: &Released,
-        extra_rotation: &[f64],
-        shifts: &mut BTreeMap<String, Term>,
-    ) {
+    fn shift_couplings(&self, release: &mut Release) {
         let mut pose = self.plan.pose::<f64>();
         let plan = self.plan;
-        if plan
-            .positions(plan.assembly_coordinates(), &mut pose)
-            .is_err()
-        {
+        let start = plan.assembly_coordinates();
+        if plan.positions(start, &mut pose).is_err() {
             return;
         }
-        for coupling in 0..self.solved_couplings.len() {
-            let Some((code, slope)) = &self.solved_couplings[coupling] else {
+        for (coupling, solved) in self.solved_couplings.iter().enumerate() {
+            let Some((step, slope)) = solved else {
                 continue;
             };
             let mut shift = 0.0;
             plan.coupling_angle_derivatives(coupling, &pose, |body, factor| {
-                shift += factor * extra_rotation[body];
+                shift += factor * release.extra_rotation[body];
             });
-            if matches!(released, Released::Coupling(r) if *r == coupling) {
+            if matches!(release.released, Released::Coupling(r) if r == coupling) {
                 shift -= 1.0;
             }
             if shift != 0.0 {
                 let shift = number(-shift) / slope.clone();
-                shifts.insert(code.clone(), shift.simplify());
+                release.shift(step, shift.simplify());
             }
         }
     }

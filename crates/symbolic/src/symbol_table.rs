@@ -1,7 +1,7 @@
 //! Constants and named steps, one below the other, as on a sheet of paper.
 
-use crate::algebra::{self, Term, derivative, plus, symbol, times, zero};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use crate::algebra::{self, Term, chain_rule, derivative, plus, symbol, times, zero};
+use std::collections::{BTreeMap, HashMap};
 
 /// A number of the scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +27,17 @@ pub(crate) struct Assignment {
     pub(crate) partials: Option<PartialDerivatives>,
 }
 
+impl Assignment {
+    pub(crate) fn new(code: String, value: Term) -> Self {
+        let partials = None;
+        Self {
+            code,
+            value,
+            partials,
+        }
+    }
+}
+
 /// The derivatives of a step by the names it is made of: that of a root by what is under it, of an angle
 /// by the coordinates of what it points along.
 #[derive(Debug, Clone)]
@@ -40,8 +51,8 @@ pub(crate) struct PartialDerivatives {
 
 impl PartialDerivatives {
     fn derivative(&self, derivatives: &BTreeMap<String, Term>) -> Term {
-        let quotient = chain_rule(&self.quotient_partials, derivatives);
-        let extra = chain_rule(&self.extra_partials, derivatives);
+        let quotient = chain_rule(self.quotient_partials.clone(), derivatives);
+        let extra = chain_rule(self.extra_partials.clone(), derivatives);
         if algebra::is_zero(&quotient) {
             return extra;
         }
@@ -72,13 +83,11 @@ pub(crate) struct SymbolTable {
 impl SymbolTable {
     /// A name that nothing else has: a letter and what stands below it.
     pub(crate) fn new_name(&mut self, letter: &str, below: &[&str]) -> String {
-        let mut code = letter.to_owned();
-        for part in below {
-            code.push('_');
-            code.extend(part.chars().map(code_char));
-        }
+        // Letters and digits are what a name in code may hold.
+        let base = [&[letter], below].concat().join("_");
+        let base = base.replace(|c: char| !c.is_ascii_alphanumeric(), "_");
         let mut below: Vec<String> = below.iter().map(|part| upright(part)).collect();
-        let base = code.clone();
+        let mut code = base.clone();
         let mut suffix = 1;
         while self.latex_names.contains_key(&code) {
             suffix += 1;
@@ -148,29 +157,41 @@ impl SymbolTable {
         symbol(&code)
     }
 
-    /// Writes a step down.
-    pub(crate) fn assign(&mut self, code: &str, value: &Term) -> Term {
-        self.assignments.push(Assignment {
-            code: code.to_owned(),
-            value: value.simplify(),
-            partials: None,
-        });
-        symbol(code)
+    /// Writes a step down, by a new name.
+    pub(crate) fn assign(&mut self, letter: &str, below: &[&str], value: &Term) -> Term {
+        let code = self.new_name(letter, below);
+        let step = symbol(&code);
+        self.assignments
+            .push(Assignment::new(code, value.simplify()));
+        step
+    }
+
+    /// Two steps for a vector.
+    pub(crate) fn assign_vector(
+        &mut self,
+        letter: &str,
+        below: &[&str],
+        vector: &[Term; 2],
+    ) -> [Term; 2] {
+        let components = [("x", &vector[0]), ("y", &vector[1])];
+        components.map(|(axis, value)| self.assign(letter, &[below, &[axis]].concat(), value))
     }
 
     /// Writes a step down whose derivatives are known.
     pub(crate) fn assign_with_partials(
         &mut self,
-        code: &str,
+        code: String,
         value: Term,
         partials: PartialDerivatives,
     ) -> Term {
+        let step = symbol(&code);
+        let partials = Some(partials);
         self.assignments.push(Assignment {
-            code: code.to_owned(),
+            code,
             value,
-            partials: Some(partials),
+            partials,
         });
-        symbol(code)
+        step
     }
 
     /// The derivative of every step so far that has one, as further steps: by the names in `rates`,
@@ -199,11 +220,7 @@ impl SymbolTable {
             let symbol_or_value = if algebra::is_atomic(&value) {
                 value
             } else {
-                found.push(Assignment {
-                    code: code.clone(),
-                    value,
-                    partials: None,
-                });
+                found.push(Assignment::new(code.clone(), value));
                 symbol(&code)
             };
             derivatives.insert(assignment.code.clone(), symbol_or_value);
@@ -224,38 +241,6 @@ fn quotient_derivative(
         return Some(zero());
     }
     Some((above / below).simplify())
-}
-
-fn chain_rule(partials: &[(String, Term)], derivatives: &BTreeMap<String, Term>) -> Term {
-    let mut sum = zero();
-    for (name, partial) in partials {
-        if let Some(derivative) = derivatives.get(name) {
-            sum = plus(&sum, &times(partial, derivative));
-        }
-    }
-    sum.simplify()
-}
-
-/// The steps that the terms named need, in their order.
-pub(crate) fn needed(
-    assignments: &[Assignment],
-    wanted: impl IntoIterator<Item = String>,
-) -> Vec<Assignment> {
-    let mut wanted: BTreeSet<String> = wanted.into_iter().collect();
-    let mut needed: Vec<Assignment> = Vec::new();
-    for assignment in assignments.iter().rev() {
-        if wanted.contains(&assignment.code) {
-            wanted.extend(algebra::names(&assignment.value));
-            needed.push(assignment.clone());
-        }
-    }
-    needed.reverse();
-    needed
-}
-
-/// A character that a name in code may hold.
-fn code_char(c: char) -> char {
-    if c.is_ascii_alphanumeric() { c } else { '_' }
 }
 
 /// The letters that LaTeX knows by name.
@@ -281,19 +266,10 @@ fn greek(letter: &str) -> String {
 
 /// A word as an index: single letters and numbers as they are, words upright.
 fn upright(word: &str) -> String {
-    let mut chars = word.chars();
-    if let (Some(c), None) = (chars.next(), chars.next())
-        && c.is_ascii_alphanumeric()
-    {
+    let is_word = word.chars().all(|c| c.is_ascii_alphanumeric());
+    if word.chars().all(|c| c.is_ascii_digit()) || is_word && word.len() == 1 {
         return word.to_owned();
     }
-    if word.chars().all(|c| c.is_ascii_digit()) {
-        return word.to_owned();
-    }
-    let style = if word.chars().all(|c| c.is_ascii_alphanumeric()) {
-        "mathrm"
-    } else {
-        "text"
-    };
+    let style = if is_word { "mathrm" } else { "text" };
     format!("\\{style}{{{}}}", word.replace('_', "\\_"))
 }

@@ -1,6 +1,6 @@
 //! Quantities of bodies that loads and laws depend on, from their frames and velocities alone.
 
-use dwell_geometry::{BodyId, JointKind, Vec2, vec2};
+use dwell_geometry::{BodyId, Coordinate, JointKind, Mechanism, Vec2, vec2};
 
 /// The axis, in the first body, along which a joint has a travel.
 pub(crate) fn slide_axis(kind: JointKind) -> Option<Vec2> {
@@ -40,13 +40,34 @@ impl BodyMotion<'_> {
         Some(vec2(vx, vy) + point.rotate(self.rotation(body)?).perp() * omega)
     }
 
+    /// A direction of a body, in the plane.
+    pub(crate) fn direction(&self, body: BodyId, direction: Vec2) -> Option<Vec2> {
+        Some(direction.rotate(self.rotation(body)?))
+    }
+
+    /// Value and velocity of a coordinate; none if the mechanism does not have it.
+    pub(crate) fn coordinate(&self, mechanism: &Mechanism, of: Coordinate) -> Option<[f64; 2]> {
+        match of {
+            Coordinate::Angle(bodies) => self.angle(bodies),
+            Coordinate::Length { bodies, points } => self.length(bodies, points),
+            Coordinate::Travel(joint) => {
+                let joint = mechanism.joints.get(joint.0)?;
+                let axis = slide_axis(joint.kind)?;
+                self.travel(joint.bodies, joint.points, axis)
+            }
+        }
+    }
+
+    /// A point of each of two bodies.
+    pub(crate) fn points(&self, [a, b]: [BodyId; 2], points: [Vec2; 2]) -> Option<[Vec2; 2]> {
+        Some([self.point(a, points[0])?, self.point(b, points[1])?])
+    }
+
     /// The vector between two points, and its rate.
     pub(crate) fn gap(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> Option<[Vec2; 2]> {
-        Some([
-            self.point(bodies[1], points[1])? - self.point(bodies[0], points[0])?,
-            self.point_velocity(bodies[1], points[1])?
-                - self.point_velocity(bodies[0], points[0])?,
-        ])
+        let [from, to] = self.points(bodies, points)?;
+        let velocity = |i: usize| self.point_velocity(bodies[i], points[i]);
+        Some([to - from, velocity(1)? - velocity(0)?])
     }
 
     /// Angle of the second body from the first, with the whole revolutions of their frames, and its rate.
@@ -63,7 +84,7 @@ impl BodyMotion<'_> {
         axis: Vec2,
     ) -> Option<[f64; 2]> {
         let [gap, rate] = self.gap(bodies, points)?;
-        let axis_in_plane = axis.rotate(self.rotation(bodies[0])?);
+        let axis_in_plane = self.direction(bodies[0], axis)?;
         let axis_rate = axis_in_plane.perp() * self.velocities.get(bodies[0].0)?[2];
         let rate = axis_in_plane.dot(rate) + axis_rate.dot(gap);
         Some([axis_in_plane.dot(gap), rate])

@@ -21,10 +21,7 @@ pub struct Case<'a> {
 /// angle or at an end, and every part of the range is visited however few there are.
 pub fn spread(range: Range, count: usize) -> Vec<f64> {
     const GOLDEN: f64 = 0.618_033_988_749_894_8;
-    let (low, high) = match range.limits() {
-        None => (0.0, TAU),
-        Some((low, high)) => (low, high),
-    };
+    let (low, high) = range.limits().unwrap_or((0.0, TAU));
     let mut share = 0.5 * GOLDEN;
     (0..count)
         .map(|_| {

@@ -70,6 +70,12 @@ impl LargestDifference {
         self.record_failure(format!("the subject failed: {error}"));
     }
 
+    /// The worse of two, of several quantities.
+    pub(crate) fn merge_each<const N: usize>(these: [Self; N], others: [Self; N]) -> [Self; N] {
+        let mut others = others.into_iter();
+        these.map(|one| one.merge(others.next().unwrap_or_default()))
+    }
+
     /// The worse of two.
     pub(crate) fn merge(mut self, other: Self) -> Self {
         let count = self.count + other.count;
@@ -89,6 +95,44 @@ impl LargestDifference {
 /// Whether `new` is worse than `old`. What is not a number is the worst there is, and stays.
 fn is_worse(new: f64, old: f64) -> bool {
     !old.is_nan() && (new.is_nan() || new > old)
+}
+
+/// Comparisons of one kind and unit, whose scale is only known when all are there: the largest that any of them has.
+#[derive(Default)]
+pub(crate) struct ComparisonSet {
+    pub(crate) scale: f64,
+    comparisons: Vec<(Comparison, String)>,
+    /// Whether each is checked by its own scale.
+    individual_scales: bool,
+}
+
+impl ComparisonSet {
+    /// A balance must hold in every state, however small its terms are there.
+    pub(crate) fn with_individual_scales() -> Self {
+        Self {
+            individual_scales: true,
+            ..Self::default()
+        }
+    }
+
+    /// Adds a comparison, whose scale is what that of all is at least.
+    pub(crate) fn add(&mut self, comparison: Comparison, location: String) {
+        // A maximum drops what is not a number, but then the difference is not one either.
+        self.scale = self.scale.max(comparison.numbers[1]);
+        self.comparisons.push((comparison, location));
+    }
+
+    /// The largest difference relative to the scale.
+    pub(crate) fn largest(self) -> LargestDifference {
+        let mut worst = LargestDifference::default();
+        for (mut comparison, location) in self.comparisons {
+            if !self.individual_scales {
+                comparison.numbers[1] = self.scale;
+            }
+            worst.record(&comparison, || location);
+        }
+        worst
+    }
 }
 
 /// The constant texts of a finding, and its tolerance.

@@ -12,7 +12,6 @@
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
 use crate::lu::Lu;
-use dwell_geometry::Vec2;
 use faer::Mat;
 use std::f64::consts::TAU;
 
@@ -42,13 +41,6 @@ pub struct Configuration {
 }
 
 impl DenseMechanism {
-    /// Where a point given in a body's own frame is in the plane, m.
-    pub fn point(&self, closed: &Configuration, body: usize, point: Vec2) -> Vec2 {
-        let ground = self.bodies[self.mechanism.ground].shift;
-        let of = &self.bodies[body];
-        ground + self.frame_point(of, &closed.x, point - of.shift)
-    }
-
     /// Closes every row at its imposed value, starting from the coordinates `guess`.
     pub fn close(&self, guess: &[f64], row_values: &[f64]) -> Result<Configuration> {
         if guess.len() != self.rows.columns() || row_values.len() != self.rows.len() {
@@ -154,7 +146,7 @@ impl DenseMechanism {
         }
         let independent_rows = self.select_independent_rows(&from.x);
         if independent_rows.len() != self.rows.columns() {
-            return Err(DenseError::Singular { pivot: 0.0 });
+            return Err(DenseError::Singular(0.0));
         }
         let best = Self {
             independent_rows,
@@ -256,7 +248,7 @@ impl DenseMechanism {
         let all: Vec<usize> = (0..residual.len()).collect();
         match self.largest_residual(&residual, &all) {
             open if open <= MAX_RESIDUAL => Ok(()),
-            residual => Err(DenseError::RedundantRowsOpen { residual }),
+            residual => Err(DenseError::RedundantRowsOpen(residual)),
         }
     }
 
@@ -268,19 +260,24 @@ impl DenseMechanism {
         }
     }
 
+    /// ∂Φ/∂x of all rows, row after row.
+    pub(crate) fn jacobian(&self, x: &[f64]) -> Vec<f64> {
+        let mut jacobian = vec![0.0; self.rows.len() * self.rows.columns()];
+        self.rows.jacobian(x, &mut jacobian);
+        jacobian
+    }
+
     /// R J C of eq. (1) at the coordinates `x`.
     pub(crate) fn scaled_jacobian(&self, x: &[f64]) -> Mat<f64> {
         let (rows, columns) = (self.rows.len(), self.rows.columns());
-        let mut jacobian = vec![0.0; rows * columns];
-        self.rows.jacobian(x, &mut jacobian);
+        let jacobian = self.jacobian(x);
         Mat::from_fn(rows, columns, |i, j| {
             jacobian[i * columns + j] * self.row_scale[i] * self.column_scale(j)
         })
     }
 
     fn factor(&self, x: &[f64]) -> Result<Lu> {
-        Lu::new(self.independent_part(&self.scaled_jacobian(x)))
-            .map_err(|pivot| DenseError::Singular { pivot })
+        Lu::new(self.independent_part(&self.scaled_jacobian(x))).map_err(DenseError::Singular)
     }
 
     /// The rows that are solved.
@@ -295,7 +292,7 @@ impl DenseMechanism {
     pub(crate) fn multipliers(&self, at: &Configuration, q: &[f64]) -> Result<Vec<f64>> {
         let rows = self.independent_part(&self.scaled_jacobian(&at.x));
         let lu = Lu::new(rows.transpose().to_owned());
-        let lu = lu.map_err(|pivot| DenseError::Singular { pivot })?;
+        let lu = lu.map_err(DenseError::Singular)?;
         let mut right = Mat::from_fn(q.len(), 1, |c, _| q[c] * self.column_scale(c));
         lu.solve(&mut right);
         let mut multipliers = vec![0.0; self.rows.len()];

@@ -6,8 +6,9 @@ use crate::comparison::{Comparison, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::dense::DenseMechanism;
 use crate::error::{DenseError, Result};
-use crate::subject::{Coefficients, Subject, SubjectError};
+use crate::subject::{Subject, SubjectError};
 use dwell_geometry::{Component, Reaction};
+use dwell_kinetostatics::Coefficients;
 use rayon::iter::Either;
 use rayon::prelude::*;
 
@@ -85,7 +86,7 @@ impl<'a> CheckContext<'a> {
     pub fn new(case: &'a Case<'a>, subject: &'a dyn Subject) -> Result<Self> {
         let actuators = case.mechanism.actuators.len();
         if actuators != 1 {
-            return Err(DenseError::Actuators { actuators });
+            return Err(DenseError::Actuators(actuators));
         }
         let (mechanism, masses) = (case.mechanism, case.masses);
         let dense = match case.positions.first().map(|&q| subject.poses(q)) {
@@ -93,15 +94,12 @@ impl<'a> CheckContext<'a> {
             Some(Ok(poses)) => DenseMechanism::with_meshed_gears(mechanism, masses, &poses)?,
             _ => DenseMechanism::new(mechanism, masses)?,
         };
-        let close = |&q: &f64| CheckedPosition::new(&dense, subject, q).map_err(|e| (q, e));
-        let (positions, not_closed): (Vec<_>, Vec<_>) = case
-            .positions
-            .par_iter()
-            .map(close)
-            .partition_map(|result| match result {
-                Ok(position) => Either::Left(position),
-                Err(reason) => Either::Right(reason),
-            });
+        let close = |&q: &f64| {
+            let poses = subject.poses(q).map_err(|e| (q, e.to_string()))?;
+            CheckedPosition::new(&dense, &poses, q).map_err(|e| (q, e.to_string()))
+        };
+        let closed = case.positions.par_iter().map(close);
+        let (positions, not_closed): (Vec<_>, Vec<_>) = closed.partition_map(either);
         let reactions = mechanism.reactions();
         let varying_bodies = varying_bodies(&dense, &positions);
         let scales = scales(&dense, &positions, &varying_bodies, &reactions);
@@ -186,25 +184,30 @@ impl<'a> CheckContext<'a> {
             worst
         };
         let all: Vec<[LargestDifference; N]> = self.positions.par_iter().map(at).collect();
-        all.into_iter().fold(empty(), |sum, next| {
-            let mut next = next.into_iter();
-            sum.map(|w| w.merge(next.next().unwrap_or_default()))
-        })
+        all.into_iter().fold(empty(), LargestDifference::merge_each)
+    }
+}
+
+/// What succeeded to the left, why the others failed to the right.
+pub(crate) fn either<T, E>(result: Result<T, E>) -> Either<T, E> {
+    match result {
+        Ok(done) => Either::Left(done),
+        Err(reason) => Either::Right(reason),
     }
 }
 
 impl CheckedPosition {
-    fn new(dense: &DenseMechanism, subject: &dyn Subject, q: f64) -> Result<Self, String> {
-        let poses = subject.poses(q).map_err(|e| e.to_string())?;
-        Self::closed(dense, &poses, q).map_err(|e| e.to_string())
-    }
-
-    fn closed(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self> {
+    fn new(dense: &DenseMechanism, poses: &[[f64; 3]], q: f64) -> Result<Self> {
         let (configuration, closing_correction) = dense.close_at(poses, &[q])?;
         let unit_velocities = dense.unit_velocities(&configuration);
         let reference = dense.coefficients(&configuration, &unit_velocities);
-        let (rounding_bound, pose_rounding_bound) =
-            rounding_bounds(dense, &configuration, &reference, &unit_velocities)?;
+        let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
+        let coefficients =
+            |at: &Configuration| Ok(flat(&dense.coefficients(at, &dense.unit_velocities(at))));
+        let exact = flat(&reference);
+        let (bounds, pose_rounding_bound) =
+            dense.rounding_bounds(&configuration, &unit_velocities, &exact, coefficients)?;
+        let (a, b) = bounds[2..].split_at(reference.a.len());
         Ok(Self {
             q,
             closing_correction,
@@ -212,7 +215,12 @@ impl CheckedPosition {
             configuration,
             unit_velocities,
             reference,
-            rounding_bound,
+            rounding_bound: Coefficients {
+                m: bounds[0],
+                half_dm: bounds[1],
+                a: a.to_vec(),
+                b: b.to_vec(),
+            },
             pose_rounding_bound,
         })
     }
@@ -225,12 +233,16 @@ impl CheckedPosition {
         unit: &'static str,
         location: impl FnOnce() -> String,
     ) {
-        let comparison = Comparison {
+        worst.record(&self.comparison(numbers, unit), location);
+    }
+
+    /// A comparison at this position.
+    pub(crate) fn comparison(&self, numbers: [f64; 3], unit: &'static str) -> Comparison {
+        Comparison {
             numbers,
             unit,
             condition_number: self.condition_number,
-        };
-        worst.record(&comparison, location);
+        }
     }
 
     /// Rounding of an energy relative to itself, which next to a dead point is not the last place.
@@ -255,29 +267,6 @@ impl CheckedPosition {
         let share = |&b: &usize| dense.body_inertia(b, at, u, u);
         bodies.iter().map(share).sum()
     }
-}
-
-/// What rounding does to the coefficients and to the pose.
-fn rounding_bounds(
-    dense: &DenseMechanism,
-    configuration: &Configuration,
-    reference: &Coefficients,
-    unit_velocities: &[Vec<f64>],
-) -> Result<(Coefficients, f64)> {
-    let flat = |c: &Coefficients| [&[c.m, c.half_dm][..], &c.a, &c.b].concat();
-    let exact = flat(reference);
-    let (bounds, pose_bound) =
-        dense.rounding_bounds(configuration, unit_velocities, &exact, |at| {
-            Ok(flat(&dense.coefficients(at, &dense.unit_velocities(at))))
-        })?;
-    let (a, b) = bounds[2..].split_at(reference.a.len());
-    let bounds = Coefficients {
-        m: bounds[0],
-        half_dm: bounds[1],
-        a: a.to_vec(),
-        b: b.to_vec(),
-    };
-    Ok((bounds, pose_bound))
 }
 
 /// 0 for a force, 1 for a moment.

@@ -35,14 +35,12 @@ const DECADES: i32 = 12;
 pub fn half_dm_curve(context: &CheckContext<'_>, position: &CheckedPosition) -> Option<ErrorCurve> {
     let half_dm = context.subject.coefficients(position.q).ok()?.half_dm;
     let scale = context.scales.half_dm;
-    let curve = ErrorCurve::new(
-        "½m′".to_owned(),
-        position.q,
-        half_dm,
-        scale,
-        |order, h| central_difference(order, h, |h| context.energy_at(position, h)),
-    );
-    Some(curve)
+    let energy = |h: f64| context.energy_at(position, h);
+    let difference = |order, h| central_difference(order, h, energy);
+    let name = "½m′".to_owned();
+    Some(ErrorCurve::new(
+        name, position.q, half_dm, scale, difference,
+    ))
 }
 
 /// The curve for b of one reaction as ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂ with the constraint really released.
@@ -67,17 +65,14 @@ pub fn reaction_curve(
         Some(dense.inertia(&configuration, &u1, &u2))
     };
     let m1 = |h: f64| context.opened_m(position, reaction, h);
-    let curve = ErrorCurve::new(
-        format!("{name}, b"),
-        position.q,
-        reference,
-        scale,
-        |order, h| {
-            let m12 = central_difference(order, h, m12)?;
-            Some(m12 - 0.5 * central_difference(order, h * per_step, m1)?)
-        },
-    );
-    Some(curve)
+    let difference = |order, h| {
+        let m12 = central_difference(order, h, m12)?;
+        Some(m12 - 0.5 * central_difference(order, h * per_step, m1)?)
+    };
+    let name = format!("{name}, b");
+    Some(ErrorCurve::new(
+        name, position.q, reference, scale, difference,
+    ))
 }
 
 impl ErrorCurve {
@@ -88,7 +83,11 @@ impl ErrorCurve {
         scale: f64,
         difference: impl Fn(u32, f64) -> Option<f64>,
     ) -> Self {
-        let curve = |order| errors(reference, scale, |h| difference(order, h));
+        let steps = (0..=PER_DECADE * DECADES).map(|i| f64::from(i) / f64::from(PER_DECADE));
+        let steps = steps.map(|decades| 10_f64.powf(-1.0 - decades));
+        // At the steps the mechanism can take.
+        let error = |order, h| Some((h, (difference(order, h)? - reference).abs() / scale));
+        let curve = |order| steps.clone().filter_map(|h| error(order, h)).collect();
         Self {
             quantity,
             q,
@@ -99,14 +98,4 @@ impl ErrorCurve {
             sixth_order: curve(6),
         }
     }
-}
-
-/// Relative errors at the steps the mechanism can take.
-fn errors(reference: f64, scale: f64, difference: impl Fn(f64) -> Option<f64>) -> Vec<(f64, f64)> {
-    (0..=PER_DECADE * DECADES)
-        .filter_map(|i| {
-            let h = 10_f64.powf(-1.0 - f64::from(i) / f64::from(PER_DECADE));
-            Some((h, (difference(h)? - reference).abs() / scale))
-        })
-        .collect()
 }

@@ -104,13 +104,6 @@ impl DenseMechanism {
         })
     }
 
-    /// Meshes the gears as they stand in the frames of all bodies: there their rows vanish.
-    pub fn mesh(&mut self, poses: &[[f64; 3]]) -> Result<()> {
-        let x = self.coordinates(poses)?;
-        self.rows.mesh(&x);
-        Ok(())
-    }
-
     /// The size of the mechanism, m: what a radian is compared with.
     pub fn size(&self) -> f64 {
         self.size
@@ -173,6 +166,12 @@ impl DenseMechanism {
             vec2(x[c], x[c + 1]) + point.rotate(Vec2::from_angle(x[c + 2]))
         })
     }
+}
+
+/// Adds a multiple of a vector to another.
+pub(crate) fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
+    let both = to.iter_mut().zip(more);
+    both.for_each(|(to, more)| *to += factor * more);
 }
 
 /// The condition number of the dense scaled rows of a mechanism, those of its joints and actuators, in the

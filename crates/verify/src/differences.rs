@@ -92,6 +92,17 @@ where
     tables.into_iter().map(|s| s.best).collect()
 }
 
+/// The first derivative at zero of a single value; none where no step could be taken.
+pub(crate) fn slope(
+    first_step: f64,
+    rounding: f64,
+    mut f: impl FnMut(f64) -> Option<f64>,
+) -> Option<Extrapolated> {
+    let first = DerivativeOrder::First;
+    let slopes = derivatives(first, first_step, rounding, |h| Some(vec![f(h)?]));
+    slopes.first().copied()
+}
+
 impl NevilleTable {
     fn new() -> Self {
         Self {

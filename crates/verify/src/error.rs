@@ -38,11 +38,8 @@ pub enum DenseError {
         length: f64,
     },
     /// The checks of the reduced model are those of one degree of freedom.
-    #[error("{actuators} actuators: the reduced model is that of one")]
-    Actuators {
-        /// Number of actuators.
-        actuators: usize,
-    },
+    #[error("{0} actuators: the reduced model is that of one")]
+    Actuators(usize),
     /// A given number is not finite, or there are too few of them.
     #[error("the poses to start from are incomplete or not finite")]
     InvalidPoses,
@@ -56,19 +53,13 @@ pub enum DenseError {
         /// Size of the last one, relative to the mechanism's size.
         last_step: f64,
     },
-    /// Rows that repeat others are not met where these are.
-    #[error("redundant rows have a residual of {residual:.1e} of the size")]
-    RedundantRowsOpen {
-        /// The largest residual, relative to the mechanism's size.
-        residual: f64,
-    },
+    /// Rows that repeat others are not met where these are: the largest residual, relative to the mechanism's size.
+    #[error("redundant rows have a residual of {0:.1e} of the size")]
+    RedundantRowsOpen(f64),
     /// They were met on the other side of a dead point.
     #[error("the rows close on another assembly branch")]
     OtherBranch,
-    /// The rows depend on each other in this configuration.
-    #[error("the rows are dependent here: smallest pivot {pivot:.1e} of the largest")]
-    Singular {
-        /// Smallest pivot relative to the largest.
-        pivot: f64,
-    },
+    /// The rows depend on each other in this configuration: the smallest pivot relative to the largest.
+    #[error("the rows are dependent here: smallest pivot {0:.1e} of the largest")]
+    Singular(f64),
 }

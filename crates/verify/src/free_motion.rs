@@ -89,13 +89,7 @@ pub fn check_free_motion<R: ReducedModel>(
     case: &FreeMotionCase,
 ) -> Result<CheckedFreeMotion, DynamicsError> {
     let orbit = Orbit::new(model, case.initial_state)?;
-    let scales = MotionScales::new(model, case, &orbit)?;
-    let motion = Motion {
-        model,
-        case,
-        orbit: &orbit,
-        scales: &scales,
-    };
+    let motion = Motion::new(model, case, &orbit)?;
     let methods = [Method::Bdf, Method::Tsit45].into_iter();
     let tasks = methods.flat_map(|m| TOLERANCE_EXPONENTS.rev().map(move |power| (m, power)));
     let tasks: Vec<(Method, i32)> = tasks.collect();
@@ -122,18 +116,24 @@ pub fn check_free_motion<R: ReducedModel>(
     })
 }
 
-/// The largest speed and reactions over a revolution.
-struct MotionScales {
-    speed: f64,
-    /// By reaction: the largest of its unit.
-    reactions: Vec<f64>,
+/// A motion with its references.
+struct Motion<'a, R> {
+    model: &'a R,
+    case: &'a FreeMotionCase,
+    orbit: &'a Orbit,
+    /// The largest speed over a revolution, and by reaction the largest of its unit.
+    speed_scale: f64,
+    reaction_scales: Vec<f64>,
 }
 
-impl MotionScales {
-    fn new<R: ReducedModel>(
-        model: &R,
-        case: &FreeMotionCase,
-        orbit: &Orbit,
+/// The largest change of the velocity and its time, and that of a reaction as [`Motion::reaction_difference`].
+type Periodicity = ((f64, f64), ((f64, f64, usize), f64));
+
+impl<'a, R: ReducedModel> Motion<'a, R> {
+    fn new(
+        model: &'a R,
+        case: &'a FreeMotionCase,
+        orbit: &'a Orbit,
     ) -> Result<Self, DynamicsError> {
         let mut outputs = ReducedOutputs::new(model);
         let (mut speed, mut largest) = (0.0_f64, vec![0.0_f64; case.reactions.len()]);
@@ -150,49 +150,33 @@ impl MotionScales {
             let same = all.filter(|((_, u), _)| *u == unit).map(|(_, v)| *v);
             same.fold(0.0, f64::max)
         };
-        let reactions = case.reactions.iter().map(|(_, u)| of_unit(u)).collect();
-        Ok(Self { speed, reactions })
+        let reaction_scales = case.reactions.iter().map(|(_, u)| of_unit(u)).collect();
+        Ok(Self {
+            model,
+            case,
+            orbit,
+            speed_scale: speed,
+            reaction_scales,
+        })
     }
-}
 
-/// The reactions in a state of the free motion, with q̈ from the equation of motion.
-fn reactions<R: ReducedModel>(
-    outputs: &mut ReducedOutputs<'_, R>,
-    state: ReducedState,
-) -> Result<Vec<f64>, DynamicsError> {
-    outputs.evaluate(state.q, state.q_dot)?;
-    Ok(outputs.reactions.clone())
-}
-
-/// Largest difference of the reactions in two states, relative to their scales and absolute, and of which reaction.
-fn reaction_difference<R: ReducedModel>(
-    outputs: &mut ReducedOutputs<'_, R>,
-    [one, other]: [ReducedState; 2],
-    scales: &MotionScales,
-) -> Result<(f64, f64, usize), DynamicsError> {
-    let (r, s) = (reactions(outputs, one)?, reactions(outputs, other)?);
-    let mut worst = (0.0, 0.0, 0);
-    for (k, ((r, s), scale)) in r.iter().zip(&s).zip(&scales.reactions).enumerate() {
-        let difference = (r - s).abs();
-        if difference > worst.0 * scale {
-            worst = (difference / scale, difference, k);
+    /// Largest difference of the reactions in two states, relative to their scales and absolute, and of which reaction.
+    fn reaction_difference(
+        &self,
+        outputs: &mut ReducedOutputs<'_, R>,
+        [one, other]: [ReducedState; 2],
+    ) -> Result<(f64, f64, usize), DynamicsError> {
+        let (r, s) = (reactions(outputs, one)?, reactions(outputs, other)?);
+        let mut worst = (0.0, 0.0, 0);
+        for (k, ((r, s), scale)) in r.iter().zip(&s).zip(&self.reaction_scales).enumerate() {
+            let difference = (r - s).abs();
+            if difference > worst.0 * scale {
+                worst = (difference / scale, difference, k);
+            }
         }
+        Ok(worst)
     }
-    Ok(worst)
-}
 
-/// The largest change of the velocity and its time, and that of a reaction as [`reaction_difference`].
-type Periodicity = ((f64, f64), ((f64, f64, usize), f64));
-
-/// A motion with its references.
-struct Motion<'a, R> {
-    model: &'a R,
-    case: &'a FreeMotionCase,
-    orbit: &'a Orbit,
-    scales: &'a MotionScales,
-}
-
-impl<R: ReducedModel> Motion<'_, R> {
     fn run(
         &self,
         method: Method,
@@ -232,7 +216,7 @@ impl<R: ReducedModel> Motion<'_, R> {
             for state in steps.iter().step_by(steps.len() / COMPARED_STATES + 1) {
                 let exact = self.orbit.state_at(state.t);
                 let both = [*state, exact];
-                let error = reaction_difference(&mut outputs, both, self.scales)?.0;
+                let error = self.reaction_difference(&mut outputs, both)?.0;
                 reaction_error = reaction_error.max(error);
             }
         }
@@ -268,7 +252,7 @@ impl<R: ReducedModel> Motion<'_, R> {
                 velocity = (change, state.t);
             }
             let both = [state, start];
-            let difference = reaction_difference(&mut outputs, both, self.scales)?;
+            let difference = self.reaction_difference(&mut outputs, both)?;
             if difference.0 > reaction.0.0 {
                 reaction = (difference, state.t);
             }
@@ -282,7 +266,7 @@ impl<R: ReducedModel> Motion<'_, R> {
         run: &ToleranceRun,
         solution: &Solution,
     ) -> Result<Vec<Finding>, DynamicsError> {
-        let (case, orbit, scales) = (self.case, self.orbit, self.scales);
+        let (case, orbit) = (self.case, self.orbit);
         let (name, lower) = (run.method.name(), run.method.name().to_lowercase());
         let ([period, energy], reason) = tolerances(run.method);
         // Measured over ten revolutions; the energy error grows in proportion to them.
@@ -297,7 +281,7 @@ impl<R: ReducedModel> Motion<'_, R> {
         let late = self.first_revolution_error(solution);
         let [t, drift] = run.largest_drift();
         let ((change, after), (reaction, late_at)) = self.periodicity(solution)?;
-        let periodic = [change, change / scales.speed];
+        let periodic = [change, change / self.speed_scale];
         let mut findings = vec![
             Finding {
                 comparison: format!("the first revolution of {name} with the quadrature"),
@@ -336,6 +320,15 @@ impl<R: ReducedModel> Motion<'_, R> {
         }));
         Ok(findings)
     }
+}
+
+/// The reactions in a state of the free motion, with q̈ from the equation of motion.
+fn reactions<R: ReducedModel>(
+    outputs: &mut ReducedOutputs<'_, R>,
+    state: ReducedState,
+) -> Result<Vec<f64>, DynamicsError> {
+    outputs.evaluate(state.q, state.q_dot)?;
+    Ok(outputs.reactions.clone())
 }
 
 /// The quadrature against a reference value, where there is one.

@@ -45,7 +45,6 @@
 //! Source: L. Jordi, E. Zayas, S. Cardona, *Reduced parameters for the dynamic study of a system
 //! of one degree of freedom*, TMT 2008; cited as (Jordi, Zayas & Cardona 2008, eq. n).
 
-mod all;
 mod body_motion;
 mod case;
 pub mod checks;
@@ -68,8 +67,8 @@ mod state;
 mod subject;
 mod wrenches;
 
-pub use all::verify_all;
 pub use case::{Case, spread};
+pub use checks::verify_all;
 pub use comparison::FindingSpec;
 pub use constraint_closing::Configuration;
 pub use context::{CheckContext, CheckedPosition, Scales};
@@ -77,11 +76,12 @@ pub use curves::{ErrorCurve, half_dm_curve, reaction_curve};
 pub use dense::{DenseMechanism, condition_number};
 pub use dwell_findings::Finding;
 pub use dwell_geometry::Range;
+pub use dwell_kinetostatics::Coefficients;
 pub use error::DenseError;
 pub use free_motion::{CheckedFreeMotion, FreeMotionCase, ToleranceRun, check_free_motion};
 pub use loads::{load_wrenches, magnitude_by_reactions};
 pub use multibody::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 pub use rank::{Rank, Ranks, rank};
 pub use state::{ClaimedState, check_energies, check_states};
-pub use subject::{Coefficients, InverseDynamics, Subject, SubjectError};
+pub use subject::{InverseDynamics, Subject, SubjectError};
 pub use wrenches::BodyWrench;

@@ -3,7 +3,7 @@
 
 use crate::body_motion::BodyMotion;
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{BodyId, JointId, Mechanism, Reaction, Vec2};
+use dwell_geometry::{BodyId, Component, JointId, Mechanism, Reaction, Vec2};
 use dwell_kinetostatics::{Guide, Load, LoadKind, Magnitude, Mass, Mesh, PitchLines};
 
 /// The forces of a load of the given magnitude, with the bodies' frames and their velocities
@@ -25,15 +25,9 @@ pub fn load_wrenches(
         poses: bodies,
         velocities,
     };
-    let couple = |[first, second]: [BodyId; 2], couple: f64| {
-        let exist = first.0.max(second.0) < bodies.len();
-        let wrenches = [(first, -couple), (second, couple)].map(|(body, couple)| BodyWrench {
-            body,
-            force: Vec2::ZERO,
-            point: Vec2::ZERO,
-            couple,
-        });
-        exist.then(|| wrenches.into())
+    let couple = |on: [BodyId; 2], couple: f64| {
+        let exist = on.iter().all(|body| body.0 < bodies.len());
+        exist.then(|| BodyWrench::pair(on, Vec2::ZERO, Vec2::ZERO, couple).into())
     };
     let force_at = |body: BodyId, point: Vec2, force: Vec2| {
         Some(BodyWrench {
@@ -63,8 +57,7 @@ pub fn load_wrenches(
             direction,
             body_fixed,
         } => {
-            let rotation = motion.rotation(body)?;
-            let follower = direction.rotate(rotation);
+            let follower = motion.direction(body, direction)?;
             let direction = if body_fixed { follower } else { direction };
             Some(vec![force_at(body, point, direction * magnitude)?])
         }
@@ -75,10 +68,9 @@ pub fn load_wrenches(
             free_length: free,
         } => {
             let [d, _] = motion.gap(bodies, points)?;
-            let stretch = if free == 0.0 {
-                1.0
-            } else {
-                1.0 - free / d.norm()
+            let stretch = match free {
+                0.0 => 1.0,
+                _ => 1.0 - free / d.norm(),
             };
             pull(bodies, points, d * (-magnitude * stretch))
         }
@@ -119,7 +111,8 @@ pub fn magnitude_by_reactions(
 ) -> f64 {
     match &load.magnitude {
         Magnitude::Separating(teeth) => {
-            let tooth = tooth_row(mechanism, teeth.joint).and_then(|row| reactions.get(row));
+            let row = reaction_row(mechanism, teeth.joint, Component::Tooth);
+            let tooth = row.and_then(|row| reactions.get(row));
             tooth.map_or(f64::NAN, |force| force.abs() * teeth.angle.tan())
         }
         Magnitude::Constant(_)
@@ -131,64 +124,44 @@ pub fn magnitude_by_reactions(
     }
 }
 
-/// The row of the tooth force of a joint.
-pub(crate) fn tooth_row(mechanism: &Mechanism, joint: JointId) -> Option<usize> {
-    let is_tooth =
-        |r: &Reaction| r.joint == joint && r.component == dwell_geometry::Component::Tooth;
-    mechanism.reactions().iter().position(is_tooth)
+/// The row of a joint's reaction.
+pub(crate) fn reaction_row(
+    mechanism: &Mechanism,
+    joint: JointId,
+    component: Component,
+) -> Option<usize> {
+    let wanted = Reaction { joint, component };
+    mechanism.reactions().iter().position(|r| *r == wanted)
 }
 
 /// The forces on two bodies whose teeth push each other apart: of gears along the line of centres, away from where the
 /// pitch circles touch; of a rack along the perpendicular from its pitch line to the pinion's centre.
 fn separating_wrenches(mesh: Mesh, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
-    let [first, second] = mesh.bodies;
-    let center = motion.point(second, mesh.points[1])?;
-    let [gap, _] = motion.gap(mesh.bodies, mesh.points)?;
+    let [first_center, center] = motion.points(mesh.bodies, mesh.points)?;
+    let gap = center - first_center;
     let (at, away) = match mesh.pitch {
         PitchLines::Circles { radii, internal } => {
             let line = gap * (1.0 / gap.norm());
-            let first_center = motion.point(first, mesh.points[0])?;
             // Seen from the first gear, the circles touch beyond the second only if the second is in its ring.
-            let touch = if internal && radii[0] < radii[1] {
-                -radii[0]
-            } else {
-                radii[0]
-            };
-            (
-                first_center + line * touch,
-                if internal { -line } else { line },
-            )
+            let in_ring = internal && radii[0] < radii[1];
+            let touch = if in_ring { -radii[0] } else { radii[0] };
+            let away = if internal { -line } else { line };
+            (first_center + line * touch, away)
         }
         PitchLines::Line { axis, .. } => {
-            let t = axis.rotate(motion.rotation(first)?);
+            let t = motion.direction(mesh.bodies[0], axis)?;
             let from_line = gap - t * t.dot(gap);
             (center - from_line, from_line * (1.0 / from_line.norm()))
         }
     };
-    let wrench = |body, force| BodyWrench {
-        body,
-        force,
-        point: at,
-        couple: 0.0,
-    };
-    Some(vec![
-        wrench(first, -(away * force)),
-        wrench(second, away * force),
-    ])
+    Some(BodyWrench::pair(mesh.bodies, away * force, at, 0.0).into())
 }
 
 /// A force along a guide: it acts on both bodies at the second's point.
 fn guide_wrenches(guide: Guide, force: f64, motion: &BodyMotion<'_>) -> Option<Vec<BodyWrench>> {
-    let [first, second] = guide.bodies;
-    let on_second = guide.axis.rotate(motion.rotation(first)?) * force;
-    let at = motion.point(second, guide.points[1])?;
-    let wrench = |body, force| BodyWrench {
-        body,
-        force,
-        point: at,
-        couple: 0.0,
-    };
-    Some(vec![wrench(first, -on_second), wrench(second, on_second)])
+    let on_second = motion.direction(guide.bodies[0], guide.axis)? * force;
+    let at = motion.point(guide.bodies[1], guide.points[1])?;
+    Some(BodyWrench::pair(guide.bodies, on_second, at, 0.0).into())
 }
 
 #[cfg(test)]

@@ -12,10 +12,10 @@
 //! so m₁ = ⟨u₁, u₁⟩, m₁₂ = ⟨u₁, u₂⟩, with u₁ and u₂ the unit velocities of the two coordinates.
 
 use crate::constraint_closing::Configuration;
-use crate::dense::{DenseBody, DenseMechanism};
+use crate::dense::{DenseBody, DenseMechanism, add_scaled};
 use crate::differences::{DerivativeOrder, Extrapolated, derivatives};
-use crate::subject::Coefficients;
 use dwell_geometry::{Vec2, vec2};
+use dwell_kinetostatics::Coefficients;
 
 impl DenseMechanism {
     /// ⟨u, w⟩ of the whole mechanism, eq. (1), kg m² for two speeds per rad/s.
@@ -37,9 +37,7 @@ impl DenseMechanism {
     pub fn kinetic_energy(&self, at: &Configuration, rates: &[(usize, f64)]) -> f64 {
         let mut x_dot = vec![0.0; self.rows.columns()];
         for &(row, rate) in rates {
-            for (v, u) in x_dot.iter_mut().zip(self.unit_velocity(at, row)) {
-                *v += u * rate;
-            }
+            add_scaled(&mut x_dot, rate, &self.unit_velocity(at, row));
         }
         0.5 * self.inertia(at, &x_dot, &x_dot)
     }

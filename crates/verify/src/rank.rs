@@ -77,7 +77,7 @@ pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks> {
     let all = dense.scaled_jacobian(&x);
     if !all.is_all_finite() {
         // Two points in one place have no direction.
-        return Err(DenseError::Singular { pivot: f64::NAN });
+        return Err(DenseError::Singular(f64::NAN));
     }
     let joints = all.subrows(0, dense.actuator_row());
     Ok(Ranks {
@@ -89,7 +89,7 @@ pub fn rank(mechanism: &Mechanism, poses: &[[f64; 3]]) -> Result<Ranks> {
 fn rank_of(dense: &DenseMechanism, matrix: MatRef<'_, f64>) -> Result<Rank> {
     let (rows, columns) = matrix.shape();
     let svd = matrix.svd();
-    let svd = svd.map_err(|_| DenseError::Singular { pivot: f64::NAN })?;
+    let svd = svd.map_err(|_| DenseError::Singular(f64::NAN))?;
     let singular_values: Vec<f64> = svd.S().column_vector().iter().copied().collect();
     let largest = singular_values.first().copied().unwrap_or(0.0);
     let is_zero = |&&s: &&f64| s <= ZERO_SINGULAR_VALUE * largest;

@@ -10,37 +10,26 @@ use dwell_kinetostatics::Mass;
 const INDEPENDENCE_TOLERANCE: f64 = 1e-9;
 
 impl DenseMechanism {
-    /// The same where joints repeat each other: a largest set of independent rows is solved, found
-    /// in the configuration with the frames `poses` of all bodies.
-    pub(crate) fn with_redundant_rows(
+    /// The same with its gears meshed as they stand in the configuration with the frames `poses` of all bodies. Where
+    /// joints repeat each other, a largest set of independent rows is solved, found there.
+    pub(crate) fn with_meshed_gears(
         mechanism: &Mechanism,
         masses: &[Mass],
         poses: &[[f64; 3]],
     ) -> Result<Self> {
         let mut dense = Self::without_rank_check(mechanism, masses)?;
         let (rows, columns) = (dense.rows.len(), dense.rows.columns());
-        if rows == columns {
-            return Ok(dense);
+        let x = dense.coordinates(poses)?;
+        if rows != columns {
+            dense.independent_rows = dense.select_independent_rows(&x);
+            if dense.independent_rows.len() != columns {
+                return Err(DenseError::NotSquare { rows, columns });
+            }
+            for row in rank(mechanism, poses)?.with_actuators.dependent_rows {
+                dense.determinate[row] = false;
+            }
         }
-        let independent_rows = dense.select_independent_rows(&dense.coordinates(poses)?);
-        if independent_rows.len() != columns {
-            return Err(DenseError::NotSquare { rows, columns });
-        }
-        dense.independent_rows = independent_rows;
-        for row in rank(mechanism, poses)?.with_actuators.dependent_rows {
-            dense.determinate[row] = false;
-        }
-        Ok(dense)
-    }
-
-    /// The same with its gears meshed as they stand there.
-    pub(crate) fn with_meshed_gears(
-        mechanism: &Mechanism,
-        masses: &[Mass],
-        poses: &[[f64; 3]],
-    ) -> Result<Self> {
-        let mut dense = Self::with_redundant_rows(mechanism, masses, poses)?;
-        dense.mesh(poses)?;
+        dense.rows.mesh(&x);
         Ok(dense)
     }
 

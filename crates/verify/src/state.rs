@@ -17,24 +17,23 @@
 //! q(t) = q + q̇ t + ½ q̈ t², closed without any velocity. (5) and (6) take the dense motion. (3)
 //! and the acts of (4) to (6) share nothing but the poses.
 
-mod comparison_set;
 mod dense_state;
 mod energies;
 
 pub use energies::check_energies;
 
-use crate::comparison::{FindingSpec, LargestDifference};
+use crate::comparison::{ComparisonSet, FindingSpec, LargestDifference};
+use crate::context::either;
 use crate::dense::DenseMechanism;
 use crate::differences::NO_ESTIMATE;
 use crate::error::DenseError;
 use crate::wrenches::BodyWrench;
-use comparison_set::ComparisonSet;
-use dense_state::DenseState;
+use dense_state::{DenseState, check_counts};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{Component, Mechanism, Reaction};
+use dwell_geometry::{Component, Mechanism};
 use dwell_kinetostatics::Mass;
-use rayon::iter::Either;
 use rayon::prelude::*;
+use std::fmt::Display;
 
 /// A claimed state. What is given by body is in the order of [`Mechanism::bodies`], the ground
 /// included.
@@ -161,12 +160,11 @@ struct StateChecker<'a> {
 impl<'a> StateChecker<'a> {
     fn new(dense: &'a DenseMechanism, states: &'a [ClaimedState]) -> Self {
         let of = |state: &'a ClaimedState| {
-            DenseState::new(dense, state).map_err(|error| format!("t = {} s: {error}", state.t))
+            let described = |why: &dyn Display| format!("t = {} s: {why}", state.t);
+            check_counts(dense, state).map_err(|why| described(&why))?;
+            DenseState::new(dense, state).map_err(|error| described(&error))
         };
-        let (dense_states, failures) = states.par_iter().map(of).partition_map(|one| match one {
-            Ok(one) => Either::Left(one),
-            Err(reason) => Either::Right(reason),
-        });
+        let (dense_states, failures) = states.par_iter().map(of).partition_map(either);
         Self {
             dense,
             dense_states,
@@ -192,42 +190,56 @@ impl<'a> StateChecker<'a> {
         spec.finding(format!("{} states", self.state_count), worst)
     }
 
-    /// By row, the actuators' after the reactions': whether its multiplier is a moment, and its name.
-    fn rows(&self) -> Vec<(bool, String)> {
+    /// By row, the actuators' after the reactions': what makes a force of its multiplier, and its name.
+    fn rows(&self) -> Vec<(f64, String)> {
         let mechanism = &self.dense.mechanism;
-        let of_reaction =
-            |r: Reaction| (r.component == Component::Moment, mechanism.reaction_name(r));
-        let joints = mechanism.reactions().into_iter().map(of_reaction);
+        let arm = |moment: bool| if moment { 1.0 / self.dense.size() } else { 1.0 };
+        let reactions = mechanism.reactions().into_iter();
+        let reactions = reactions.map(|r| {
+            (
+                arm(r.component == Component::Moment),
+                mechanism.reaction_name(r),
+            )
+        });
         let actuators = mechanism.actuators.iter();
-        let actuators = actuators.map(|a| (a.coordinate().is_angle(), a.name.clone()));
-        joints.chain(actuators).collect()
+        let actuators = actuators.map(|a| (arm(a.coordinate().is_angle()), a.name.clone()));
+        reactions.chain(actuators).collect()
+    }
+
+    /// One comparison in each state, by its own scale.
+    fn one_each(
+        &self,
+        spec: &FindingSpec<'_>,
+        unit: &'static str,
+        numbers: impl Fn(&DenseState<'_>) -> [f64; 3],
+    ) -> Finding {
+        let mut comparisons = ComparisonSet::with_individual_scales();
+        for m in &self.dense_states {
+            m.compare(&mut comparisons, numbers(m), unit, "");
+        }
+        self.finding(spec, comparisons)
     }
 
     fn poses(&self) -> Finding {
-        let mut comparisons = ComparisonSet::new("");
-        for m in &self.dense_states {
-            comparisons.add(m, [m.closing_correction, 1.0, m.pose_rounding_bound], "");
-        }
-        self.finding(&POSES, comparisons)
+        self.one_each(&POSES, "", |m| {
+            [m.closing_correction, 1.0, m.pose_rounding_bound]
+        })
     }
 
     fn branch(&self) -> Finding {
-        let mut comparisons = ComparisonSet::new("");
         let positive = |m: &DenseState<'_>| m.configuration.lu.positive();
-        for m in &self.dense_states {
-            let other = self.dense_states.first().map(positive) != Some(positive(m));
-            comparisons.add(m, [f64::from(u8::from(other)), 1.0, 0.0], "");
-        }
-        self.finding(&BRANCH, comparisons)
+        let first = self.dense_states.first().map(positive);
+        let is_other = |m: &DenseState<'_>| first != Some(positive(m));
+        self.one_each(&BRANCH, "", |m| [f64::from(is_other(m)), 1.0, 0.0])
     }
 
     /// Velocities and accelerations of the moved frames, (1) and (2).
     fn motions(&self) -> [Finding; 2] {
         let size = self.dense.size();
-        let (mut first, mut second) = (ComparisonSet::new("m/s"), ComparisonSet::new("m/s2"));
+        let [mut first, mut second] = [(); 2].map(|()| ComparisonSet::default());
         for m in &self.dense_states {
             let [speed, acceleration] =
-                [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.scaled_norm(x) * size);
+                [&m.solution.x_dot, &m.solution.x_ddot].map(|x| m.dense.scaled_norm(x) * size);
             let acceleration = acceleration.max(speed * speed / size);
             for (body, column) in m.moving_bodies() {
                 let name = &self.dense.mechanism.bodies[body].name;
@@ -235,10 +247,11 @@ impl<'a> StateChecker<'a> {
                     let arm = if c == column + 2 { size } else { 1.0 };
                     let difference = (m.claimed_dot[c] - m.solution.x_dot[c]) * arm;
                     let numbers = [difference, speed, m.bounds.x_dot[c] * arm];
-                    first.add(m, numbers, name);
+                    m.compare(&mut first, numbers, "m/s", name);
                     let difference = (m.claimed_ddot[c] - m.solution.x_ddot[c]) * arm;
                     let error = m.bounds.x_ddot[c] * arm;
-                    second.add(m, [difference, acceleration, error], name);
+                    let numbers = [difference, acceleration, error];
+                    m.compare(&mut second, numbers, "m/s2", name);
                 }
             }
         }
@@ -249,22 +262,21 @@ impl<'a> StateChecker<'a> {
     }
 
     fn reactions(&self) -> Finding {
-        let size = self.dense.size();
         let rows = self.rows();
-        let mut comparisons = ComparisonSet::new("N");
+        let mut comparisons = ComparisonSet::default();
         for m in &self.dense_states {
             let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
-            for (k, (claimed, (moment, name))) in claimed.zip(&rows).enumerate() {
+            for (k, (claimed, (arm, name))) in claimed.zip(&rows).enumerate() {
                 // Of a reaction that is not determined, (4) checks what it does with the others.
                 if !self.dense.determinate[k] {
                     continue;
                 }
-                let arm = if *moment { 1.0 / size } else { 1.0 };
                 let dense = m.solution.multipliers[k] * arm;
                 let error = m.bounds.multipliers[k] * arm;
                 let scale = largest_force.max(dense.abs());
-                comparisons.add(m, [claimed * arm - dense, scale, error], name);
+                let numbers = [claimed * arm - dense, scale, error];
+                m.compare(&mut comparisons, numbers, "N", name);
             }
         }
         self.finding(&REACTIONS, comparisons)
@@ -272,7 +284,7 @@ impl<'a> StateChecker<'a> {
 
     /// Check 8, by claimed accelerations and by positions alone.
     fn newton_euler(&self) -> [Finding; 2] {
-        let (mut claimed, mut differenced) = (ComparisonSet::new("N"), ComparisonSet::new("N"));
+        let [mut claimed, mut differenced] = [(); 2].map(|()| ComparisonSet::default());
         let size = self.dense.size();
         let states = self.dense_states.par_iter();
         let from_positions: Vec<_> = states.map(DenseState::second_differences).collect();
@@ -289,12 +301,13 @@ impl<'a> StateChecker<'a> {
                     let terms = net.terms[c] * arm;
                     let error = m.pose_rounding_bound * terms;
                     let scale = terms + exact.abs() * arm;
-                    claimed.add(m, [(net.sum[c] - exact) * arm, scale, error], name);
+                    let numbers = [(net.sum[c] - exact) * arm, scale, error];
+                    m.compare(&mut claimed, numbers, "N", name);
                     let factor = inertia * arm;
                     let second = second.get(3 * i + c).copied().unwrap_or(NO_ESTIMATE);
                     let difference = net.sum[c] * arm - factor * second.value;
-                    let error = error + factor * second.error;
-                    differenced.add(m, [difference, scale, error], name);
+                    let numbers = [difference, scale, error + factor * second.error];
+                    m.compare(&mut differenced, numbers, "N", name);
                 }
             }
         }
@@ -305,38 +318,20 @@ impl<'a> StateChecker<'a> {
     }
 
     fn power(&self) -> Finding {
-        let mut comparisons = ComparisonSet::with_individual_scales("W");
-        for m in &self.dense_states {
+        self.one_each(&POWER, "W", |m| {
             let (difference, terms) = m.power_balance();
-            let error = m.relative_rounding_bound() * terms;
-            comparisons.add(m, [difference, terms, error], "");
-        }
-        self.finding(&POWER, comparisons)
+            [difference, terms, m.relative_rounding_bound() * terms]
+        })
     }
 
     fn momentum(&self) -> Finding {
-        let mut comparisons = ComparisonSet::with_individual_scales("N");
+        let mut comparisons = ComparisonSet::with_individual_scales();
         for m in &self.dense_states {
             for (difference, terms, what) in m.momentum_balance() {
-                let error = m.relative_rounding_bound() * terms;
-                comparisons.add(m, [difference, terms, error], what);
+                let numbers = [difference, terms, m.relative_rounding_bound() * terms];
+                m.compare(&mut comparisons, numbers, "N", what);
             }
         }
         self.finding(&MOMENTUM, comparisons)
     }
-}
-
-/// Why a state cannot be measured.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-enum StateError {
-    #[error("{found} {what} where there are {expected}")]
-    Count {
-        what: &'static str,
-        found: usize,
-        expected: usize,
-    },
-    #[error("a load acts on body {body}, but there are {bodies} bodies")]
-    Load { body: usize, bodies: usize },
-    #[error(transparent)]
-    Dense(#[from] DenseError),
 }

@@ -1,10 +1,10 @@
 //! The forces of joints and actuators at points, and couples: from the definitions of
 //! [`Component`](dwell_geometry::Component) and the positions of the bodies, never from the rows.
 
-use crate::body_motion::slide_axis;
+use crate::body_motion::{BodyMotion, slide_axis};
 use crate::constraint_closing::Configuration;
-use crate::dense::DenseMechanism;
-use dwell_geometry::{BodyId, Coordinate, Joint, JointId, JointKind, Vec2, vec2};
+use crate::dense::{DenseBody, DenseMechanism};
+use dwell_geometry::{BodyId, Coordinate, Joint, JointKind, Mechanism, Vec2, vec2};
 
 /// The force of a load on one body. A load between two bodies has two of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,17 +19,7 @@ pub struct BodyWrench {
     pub couple: f64,
 }
 
-/// One force on one body at a point of the plane, and a couple.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct DenseWrench {
-    pub(crate) body: usize,
-    pub(crate) force: Vec2,
-    /// From the ground's moved origin.
-    pub(crate) point: Vec2,
-    pub(crate) couple: f64,
-}
-
-impl DenseWrench {
+impl BodyWrench {
     /// Moment about a point.
     pub(crate) fn moment(&self, about: Vec2) -> f64 {
         (self.point - about).cross(self.force) + self.couple
@@ -38,6 +28,21 @@ impl DenseWrench {
     /// Moment about a point with its terms taken as absolute values: what rounding is relative to.
     pub(crate) fn moment_terms(&self, about: Vec2) -> f64 {
         (self.point - about).norm() * self.force.norm() + self.couple.abs()
+    }
+
+    /// A force at a point and a couple on the second body, and their opposites on the first.
+    pub(crate) fn pair(
+        [first, second]: [BodyId; 2],
+        force: Vec2,
+        point: Vec2,
+        couple: f64,
+    ) -> [Self; 2] {
+        [(first, -force, -couple), (second, force, couple)].map(|(body, force, couple)| Self {
+            body,
+            force,
+            point,
+            couple,
+        })
     }
 }
 
@@ -50,13 +55,13 @@ pub(crate) struct NetWrench {
 }
 
 impl NetWrench {
-    pub(crate) fn of<'a>(wrenches: impl Iterator<Item = &'a DenseWrench>, about: Vec2) -> Self {
+    pub(crate) fn of<'a>(wrenches: impl Iterator<Item = &'a BodyWrench>, about: Vec2) -> Self {
         let mut net = Self::default();
         wrenches.for_each(|wrench| net.add(wrench, about));
         net
     }
 
-    pub(crate) fn add(&mut self, wrench: &DenseWrench, about: Vec2) {
+    pub(crate) fn add(&mut self, wrench: &BodyWrench, about: Vec2) {
         self.sum[0] += wrench.force.x;
         self.sum[1] += wrench.force.y;
         self.sum[2] += wrench.moment(about);
@@ -68,98 +73,59 @@ impl NetWrench {
 
 /// Gathers forces in pairs: that of the first body on the second, and the opposite on the first.
 struct ActionReaction<'a> {
-    dense: &'a DenseMechanism,
-    at: &'a Configuration,
-    wrenches: Vec<DenseWrench>,
-}
-
-/// A joint's two points and its first body's rotation, in the plane.
-struct JointGeometry {
-    bodies: [BodyId; 2],
-    points: [Vec2; 2],
-    rotation: Vec2,
+    mechanism: &'a Mechanism,
+    motion: BodyMotion<'a>,
+    wrenches: Vec<BodyWrench>,
 }
 
 impl ActionReaction<'_> {
     fn add(&mut self, bodies: [BodyId; 2], force: Vec2, at: Vec2, couple: f64) {
-        for (body, sign) in bodies.into_iter().zip([-1.0, 1.0]) {
-            self.wrenches.push(DenseWrench {
-                body: body.0,
-                force: force * sign,
-                point: at,
-                couple: couple * sign,
-            });
-        }
+        self.wrenches
+            .extend(BodyWrench::pair(bodies, force, at, couple));
     }
 
-    fn force(&mut self, geometry: &JointGeometry, force: Vec2, at: Vec2) {
-        self.add(geometry.bodies, force, at, 0.0);
-    }
-
-    fn couple(&mut self, bodies: [BodyId; 2], couple: f64) {
-        self.add(bodies, Vec2::ZERO, Vec2::ZERO, couple);
-    }
-
-    fn joint_geometry(&self, bodies: [BodyId; 2], points: [Vec2; 2]) -> JointGeometry {
-        let of = |i: usize| &self.dense.bodies[bodies[i].0];
-        let column = of(0).column;
-        JointGeometry {
-            bodies,
-            points: [0, 1].map(|i| self.dense.frame_point(of(i), &self.at.x, points[i])),
-            rotation: column.map_or(Vec2::IDENTITY, |c| Vec2::from_angle(self.at.x[c + 2])),
-        }
-    }
-
-    // Long: an arm for each kind of joint.
-    fn joint(&mut self, joint: &Joint, reaction: &[f64]) {
-        let geometry = self.joint_geometry(joint.bodies, joint.points);
-        let [first, second] = geometry.points;
-        let axis_in_plane = |axis: Vec2| axis.rotate(geometry.rotation);
-        match (joint.kind, reaction) {
-            (JointKind::Revolute, &[x, y]) => self.force(&geometry, vec2(x, y), second),
-            (JointKind::Weld { .. }, &[x, y, moment]) => {
-                self.add(joint.bodies, vec2(x, y), second, moment);
-            }
+    // Long: an arm for each kind of joint. Without a value is what the mechanism does not have.
+    fn joint(&mut self, joint: &Joint, reaction: &[f64]) -> Option<()> {
+        let bodies = joint.bodies;
+        let [first, second] = self.motion.points(bodies, joint.points)?;
+        let rotation = self.motion.rotation(bodies[0])?;
+        let axis_in_plane = |axis: Vec2| axis.rotate(rotation);
+        let (force, point, moment) = match (joint.kind, reaction) {
+            (JointKind::Revolute, &[x, y]) => (vec2(x, y), second, 0.0),
+            (JointKind::Weld { .. }, &[x, y, moment]) => (vec2(x, y), second, moment),
             (JointKind::Prismatic { axes }, &[normal, moment]) => {
-                let n = axis_in_plane(axes[0]).perp();
-                self.add(joint.bodies, n * normal, second, moment);
+                (axis_in_plane(axes[0]).perp() * normal, second, moment)
             }
             (JointKind::Slot { axis }, &[normal]) => {
-                self.force(&geometry, axis_in_plane(axis).perp() * normal, second);
+                (axis_in_plane(axis).perp() * normal, second, 0.0)
             }
             (JointKind::Gear { radii, internal }, &[tooth]) => {
                 // The pitch point is a radius from both centres: between them, or beyond the
                 // centre of the smaller one of an internal pair.
                 let line = unit(second - first);
-                let outwards = if internal && radii[0] > radii[1] {
-                    line
-                } else {
-                    -line
-                };
+                let beyond = internal && radii[0] > radii[1];
+                let outwards = if beyond { line } else { -line };
                 // Rotates the second gear counter-clockwise.
                 let force = outwards.perp() * tooth;
-                self.force(&geometry, force, second + outwards * radii[1]);
+                (force, second + outwards * radii[1], 0.0)
             }
             (JointKind::Rack { axis, radius }, &[tooth]) => {
                 let t = axis_in_plane(axis);
-                self.force(&geometry, t * tooth, second - t.perp() * radius);
+                (t * tooth, second - t.perp() * radius, 0.0)
             }
             (JointKind::Rolling { axis, radius }, &[normal, tangent]) => {
                 let (t, n) = (axis_in_plane(axis), axis_in_plane(axis).perp());
-                self.force(&geometry, n * normal + t * tangent, second - n * radius);
+                (n * normal + t * tangent, second - n * radius, 0.0)
             }
-            (JointKind::Distance { .. }, &[axial]) => {
-                self.force(&geometry, unit(second - first) * axial, second);
-            }
+            (JointKind::Distance { .. }, &[axial]) => (unit(second - first) * axial, second, 0.0),
             (JointKind::Coupling(r), &[generalised_force]) => {
-                let Some(relation) = self.dense.mechanism.couplings.get(r) else {
-                    return;
-                };
+                let relation = self.mechanism.couplings.get(r)?;
                 // No work is lost: what the law gives to one coordinate it takes from the other.
-                let value = self.coordinate_value(relation.independent);
+                let independent = relation.independent;
+                let [value, _] = self.motion.coordinate(self.mechanism, independent)?;
                 let slope = relation.law.eval(value)[1];
-                self.force_along(relation.dependent, generalised_force);
-                self.force_along(relation.independent, -slope * generalised_force);
+                self.force_along(relation.dependent, generalised_force)?;
+                return self.force_along(independent, -slope * generalised_force);
             }
             // The reactions are not those of the mechanism: another check has refused it.
             (
@@ -173,52 +139,33 @@ impl ActionReaction<'_> {
                 | JointKind::Distance { .. }
                 | JointKind::Coupling(_),
                 _,
-            ) => {}
-        }
-    }
-
-    /// The joint that a travel belongs to, and its axis in the first body.
-    fn slide_axis(&self, joint: JointId) -> Option<(JointGeometry, Vec2)> {
-        let joint = self.dense.mechanism.joints.get(joint.0)?;
-        let axis = slide_axis(joint.kind)?;
-        let geometry = self.joint_geometry(joint.bodies, joint.points);
-        let axis = axis.rotate(geometry.rotation);
-        Some((geometry, axis))
+            ) => return None,
+        };
+        self.add(bodies, force, point, moment);
+        Some(())
     }
 
     /// A force along a coordinate, of its first body on its second: it does positive work when
     /// the coordinate grows.
-    fn force_along(&mut self, coordinate: Coordinate, generalised_force: f64) {
-        match coordinate {
-            Coordinate::Angle(bodies) => self.couple(bodies, generalised_force),
+    fn force_along(&mut self, coordinate: Coordinate, generalised_force: f64) -> Option<()> {
+        let (bodies, points, axis) = match coordinate {
+            Coordinate::Angle(bodies) => {
+                self.add(bodies, Vec2::ZERO, Vec2::ZERO, generalised_force);
+                return Some(());
+            }
             Coordinate::Travel(joint) => {
-                if let Some((geometry, axis)) = self.slide_axis(joint) {
-                    self.force(&geometry, axis * generalised_force, geometry.points[1]);
-                }
+                let joint = self.mechanism.joints.get(joint.0)?;
+                (joint.bodies, joint.points, Some(slide_axis(joint.kind)?))
             }
-            Coordinate::Length { bodies, points } => {
-                let geometry = self.joint_geometry(bodies, points);
-                let line = unit(geometry.points[1] - geometry.points[0]);
-                self.force(&geometry, line * generalised_force, geometry.points[1]);
-            }
-        }
-    }
-
-    fn coordinate_value(&self, coordinate: Coordinate) -> f64 {
-        let angle = |b: BodyId| {
-            let column = self.dense.bodies[b.0].column;
-            column.map_or(0.0, |c| self.at.x[c + 2])
+            Coordinate::Length { bodies, points } => (bodies, points, None),
         };
-        match coordinate {
-            Coordinate::Angle([first, second]) => angle(second) - angle(first),
-            Coordinate::Travel(joint) => self.slide_axis(joint).map_or(0.0, |(geometry, axis)| {
-                axis.dot(geometry.points[1] - geometry.points[0])
-            }),
-            Coordinate::Length { bodies, points } => {
-                let [first, second] = self.joint_geometry(bodies, points).points;
-                (second - first).norm()
-            }
-        }
+        let [first, second] = self.motion.points(bodies, points)?;
+        let line = match axis {
+            Some(axis) => self.motion.direction(bodies[0], axis)?,
+            None => unit(second - first),
+        };
+        self.add(bodies, line * generalised_force, second, 0.0);
+        Some(())
     }
 }
 
@@ -227,16 +174,56 @@ fn unit(v: Vec2) -> Vec2 {
 }
 
 impl DenseMechanism {
-    /// All forces of joints and actuators on bodies, the ground among them.
+    /// Forces on bodies at points of the plane, with their points from the ground's moved origin.
+    pub(crate) fn shifted_wrenches(&self, wrenches: &[BodyWrench]) -> Vec<BodyWrench> {
+        let ground = self.bodies[self.mechanism.ground].shift;
+        let shifted = wrenches.iter().map(|wrench| BodyWrench {
+            // A pure couple acts nowhere, and its point, wherever it was put, must not cost digits.
+            point: match wrench.force {
+                Vec2::ZERO => Vec2::ZERO,
+                _ => wrench.point - ground,
+            },
+            ..*wrench
+        });
+        shifted.collect()
+    }
+
+    /// Adds `sign` times forces on bodies, at points from the ground's moved origin, to the forces of the coordinates `x`.
+    pub(crate) fn add_wrenches<'w>(
+        &self,
+        x: &[f64],
+        wrenches: impl IntoIterator<Item = &'w BodyWrench>,
+        sign: f64,
+        forces: &mut [f64],
+    ) {
+        for wrench in wrenches {
+            if let Some(c) = self.bodies[wrench.body.0].column {
+                forces[c] += sign * wrench.force.x;
+                forces[c + 1] += sign * wrench.force.y;
+                forces[c + 2] += sign * wrench.moment(vec2(x[c], x[c + 1]));
+            }
+        }
+    }
+
+    /// All forces of joints and actuators on bodies, the ground among them, at points from the ground's moved origin.
     pub(crate) fn joint_wrenches(
         &self,
         at: &Configuration,
         reactions: &[f64],
         tau: &[f64],
-    ) -> Vec<DenseWrench> {
+    ) -> Vec<BodyWrench> {
+        let pose = |body: &DenseBody| {
+            body.column
+                .map_or([0.0; 3], |c| [0, 1, 2].map(|i| at.x[c + i]))
+        };
+        let poses: Vec<[f64; 3]> = self.bodies.iter().map(pose).collect();
         let mut pairs = ActionReaction {
-            dense: self,
-            at,
+            mechanism: &self.mechanism,
+            // Forces do not depend on velocities.
+            motion: BodyMotion {
+                poses: &poses,
+                velocities: &vec![[0.0; 3]; poses.len()],
+            },
             wrenches: Vec::new(),
         };
         let mut remaining = reactions;

@@ -52,12 +52,7 @@ impl Subject for PlanSubject {
         let mut workspace = self.exact.workspace();
         let evaluated = self.exact.coefficients(q, &mut workspace, &mut at);
         evaluated.map_err(subject_error(q))?;
-        Ok(Coefficients {
-            m: at.m,
-            half_dm: at.half_dm,
-            a: at.a,
-            b: at.b,
-        })
+        Ok(at)
     }
 
     fn inverse_dynamics(

@@ -25,12 +25,12 @@
 //! moment as a couple.
 
 use super::row_step;
-use crate::comparison::{FindingSpec, LargestDifference};
+use crate::comparison::{ComparisonSet, FindingSpec, LargestDifference};
 use crate::constraint_closing::Configuration;
 use crate::context::{CheckContext, CheckedPosition, FORCE_MIN_SHARE};
 use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
 use crate::subject::SubjectError;
-use crate::wrenches::{DenseWrench, NetWrench};
+use crate::wrenches::{BodyWrench, NetWrench};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::Vec2;
 use dwell_laws::Polynomial;
@@ -85,16 +85,9 @@ const FINDINGS: [(FindingSpec<'_>, &str); 5] = [
     (EULER, "N m"),
 ];
 
-/// One balance in one motion at one position.
-struct Balance {
-    /// Index in [`FINDINGS`].
-    finding: usize,
-    body: Option<usize>,
-    difference: f64,
-    /// The sum of absolute terms.
-    terms: f64,
-    reference_error: f64,
-}
+/// One balance in one motion at one position: its index in [`FINDINGS`], the body, and the difference with the sum of
+/// absolute terms and the error of the reference.
+type Balance = (usize, Option<usize>, [f64; 3]);
 
 /// The five findings. The scale of a balance is the largest of its kind in the same motion at any position.
 pub(crate) fn balances(context: &CheckContext<'_>) -> Vec<Finding> {
@@ -103,31 +96,25 @@ pub(crate) fn balances(context: &CheckContext<'_>) -> Vec<Finding> {
         context.positions.par_iter().map(of).collect();
     let mut worst: [LargestDifference; 5] = Default::default();
     for (i, motion @ [q_dot, q_ddot]) in MOTIONS.into_iter().enumerate() {
-        let mut scales = [0.0_f64; 5];
+        let mut sets: [ComparisonSet; 5] = Default::default();
         // Where nothing but q̈ does work the terms m q̇ q̈ are the largest there are.
-        scales[0] = 1e-3 * context.scales.m * (q_dot * q_ddot).abs();
-        for balance in all.iter().flat_map(|motions| &motions[i]).flatten() {
-            scales[balance.finding] = scales[balance.finding].max(balance.terms);
-        }
-        for force in [1, 3] {
-            let by_moments = FORCE_MIN_SHARE * scales[force + 1] / context.dense.size();
-            scales[force] = scales[force].max(by_moments);
-        }
+        sets[0].scale = 1e-3 * context.scales.m * (q_dot * q_ddot).abs();
         for (position, motions) in context.positions.iter().zip(&all) {
-            let balances = match &motions[i] {
-                Ok(balances) => balances,
-                Err(error) => {
-                    worst.iter_mut().for_each(|w| w.record_error(error));
-                    continue;
+            match &motions[i] {
+                Ok(balances) => {
+                    for &(finding, body, numbers) in balances {
+                        let comparison = position.comparison(numbers, FINDINGS[finding].1);
+                        sets[finding].add(comparison, location(context, position.q, motion, body));
+                    }
                 }
-            };
-            for b in balances {
-                let numbers = [b.difference, scales[b.finding], b.reference_error];
-                let location = || location(context, position.q, motion, b.body);
-                let ((_, unit), worst) = (FINDINGS[b.finding], &mut worst[b.finding]);
-                position.record(worst, numbers, unit, location);
+                Err(error) => worst.iter_mut().for_each(|w| w.record_error(error)),
             }
         }
+        for force in [1, 3] {
+            let by_moments = FORCE_MIN_SHARE * sets[force + 1].scale / context.dense.size();
+            sets[force].scale = sets[force].scale.max(by_moments);
+        }
+        worst = LargestDifference::merge_each(worst, sets.map(ComparisonSet::largest));
     }
     let (domain, count) = (context.domain(), MOTIONS.len());
     let domain = format!("{domain}, each passed in {count} motions");
@@ -162,51 +149,40 @@ fn balances_in_motion(
     // The time it takes to go one step of q: |q̇| t + ½ |q̈| t² = h.
     let h = row_step(context, position.unit_velocity());
     let step = 2.0 * h / (q_dot.abs() + (q_dot * q_dot + 2.0 * q_ddot.abs() * h).sqrt());
+    let (order, rounding) = (DerivativeOrder::First, position.energy_rounding());
     let rate = |of: &dyn Fn(&Configuration, &[f64]) -> Vec<f64>| {
-        derivatives(
-            DerivativeOrder::First,
-            step,
-            position.energy_rounding(),
-            |t| {
-                let (configuration, x_dot) = state_at(context, position, &law, t)?;
-                Some(of(&configuration, &x_dot))
-            },
-        )
+        derivatives(order, step, rounding, |t| {
+            let (configuration, x_dot) = state_at(context, position, &law, t)?;
+            Some(of(&configuration, &x_dot))
+        })
     };
     let component = |all: &[Extrapolated], c: usize| all.get(c).copied().unwrap_or(NO_ESTIMATE);
     let energy_rate = rate(&|at, x_dot| vec![0.5 * dense.inertia(at, x_dot, x_dot)]);
     let energy_rate = component(&energy_rate, 0);
-    let mut balances = vec![Balance {
-        finding: 0,
-        body: None,
-        difference: subject.tau * q_dot - energy_rate.value,
-        terms: energy_rate.value.abs(),
-        reference_error: energy_rate.error,
-    }];
+    let difference = subject.tau * q_dot - energy_rate.value;
+    let power = [difference, energy_rate.value.abs(), energy_rate.error];
+    let mut balances = vec![(0, None, power)];
     let momentum = rate(&|at, x_dot| dense.momentum(at, x_dot).to_vec());
     let momentum = std::array::from_fn(|c| component(&momentum, c));
     let (net, errors) = momentum_balance(context, &wrenches, momentum);
-    push(&mut balances, 1, None, net, errors);
+    balances.extend(components(1, None, net, errors));
     let rounding = position.pose_rounding();
     let second = dense.second_differences(at, step, rounding, |t, q| q[0] = law.eval(t)[0]);
     let moving = (0..dense.bodies.len()).filter(|&b| dense.bodies[b].column.is_some());
     for (i, body) in moving.enumerate() {
         let second = [0, 1, 2].map(|c| component(&second, 3 * i + c));
         let (net, errors) = body_balance(context, position, &wrenches, body, second);
-        push(&mut balances, 3, Some(body), net, errors);
+        balances.extend(components(3, Some(body), net, errors));
     }
     Ok(balances)
 }
 
-/// Adds a balance of forces and moments: findings `first` and the next.
-fn push(to: &mut Vec<Balance>, first: usize, body: Option<usize>, net: NetWrench, error: [f64; 3]) {
-    to.extend([0, 1, 2].map(|c| Balance {
-        finding: first + usize::from(c == 2),
-        body,
-        difference: net.sum[c],
-        terms: net.terms[c],
-        reference_error: error[c],
-    }));
+/// A balance of forces and moments: findings `first` and the next.
+fn components(first: usize, body: Option<usize>, net: NetWrench, error: [f64; 3]) -> [Balance; 3] {
+    [0, 1, 2].map(|c| {
+        let numbers = [net.sum[c], net.terms[c], error[c]];
+        (first + usize::from(c == 2), body, numbers)
+    })
 }
 
 /// The mechanism at time `t` of a motion through a position, with its velocities.
@@ -227,7 +203,7 @@ fn state_at(
 /// (2) and (3), with the errors of the rates.
 fn momentum_balance(
     context: &CheckContext<'_>,
-    wrenches: &[DenseWrench],
+    wrenches: &[BodyWrench],
     rate: [Extrapolated; 3],
 ) -> (NetWrench, [f64; 3]) {
     let force = rate[0].value.abs().max(rate[1].value.abs());
@@ -236,7 +212,7 @@ fn momentum_balance(
         terms: [force, force, rate[2].value.abs()],
     };
     let ground = context.case.mechanism.ground;
-    for wrench in wrenches.iter().filter(|wrench| wrench.body == ground) {
+    for wrench in wrenches.iter().filter(|wrench| wrench.body.0 == ground) {
         net.add(wrench, Vec2::ZERO);
     }
     // The ground's action on the mechanism is opposite to what acts on the ground.
@@ -248,7 +224,7 @@ fn momentum_balance(
 fn body_balance(
     context: &CheckContext<'_>,
     position: &CheckedPosition,
-    wrenches: &[DenseWrench],
+    wrenches: &[BodyWrench],
     body: usize,
     second: [Extrapolated; 3],
 ) -> (NetWrench, [f64; 3]) {
@@ -260,7 +236,7 @@ fn body_balance(
         terms: rate.map(f64::abs),
     };
     let center = context.dense.center(of, &position.configuration);
-    for wrench in wrenches.iter().filter(|wrench| wrench.body == body) {
+    for wrench in wrenches.iter().filter(|wrench| wrench.body.0 == body) {
         net.add(wrench, center);
     }
     (net, std::array::from_fn(|c| inertias[c] * second[c].error))

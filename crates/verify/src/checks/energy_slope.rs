@@ -11,7 +11,7 @@
 use super::row_step;
 use crate::comparison::FindingSpec;
 use crate::context::CheckContext;
-use crate::differences::{DerivativeOrder, derivatives};
+use crate::differences::slope;
 use dwell_findings::{Check, Finding};
 
 const DIFFERENCES: FindingSpec<'_> = FindingSpec {
@@ -37,11 +37,8 @@ pub(crate) fn energy_slope(context: &CheckContext<'_>) -> Vec<Finding> {
         let half_dm = context.subject.coefficients(position.q)?.half_dm;
         let step = row_step(context, position.unit_velocity());
         let rounding = position.energy_rounding();
-        let slope = derivatives(DerivativeOrder::First, step, rounding, |h| {
-            Some(vec![context.energy_at(position, h)?])
-        });
-        let slope = slope.first().map(|e| (e.value, e.error));
-        let (slope, error) = slope.unwrap_or((f64::NAN, 0.0));
+        let slope = slope(step, rounding, |h| context.energy_at(position, h));
+        let (slope, error) = slope.map_or((f64::NAN, 0.0), |e| (e.value, e.error));
         let (location, unit) = (|| context.location(position.q), "kg m2/rad");
         position.record(differences, [half_dm - slope, scale, error], unit, location);
         let by_power = half_dm - position.reference.half_dm;

@@ -1,7 +1,7 @@
 //! The independent checks, one file each, numbered as [`dwell_findings::Check`].
 
 mod balances;
-pub(crate) mod closure;
+mod closure;
 mod energy_slope;
 mod kinetic_energy;
 mod published;
@@ -9,15 +9,40 @@ mod reference_values;
 mod released_constraint;
 mod spectral;
 
-pub(crate) use balances::balances;
-pub(crate) use energy_slope::energy_slope;
-pub(crate) use kinetic_energy::kinetic_energy;
 pub use published::{PublishedPoint, PublishedSample, published};
 pub use reference_values::{ComparedValue, compare_values};
-pub(crate) use released_constraint::released_constraint;
-pub(crate) use spectral::spectral;
 
+use crate::case::Case;
 use crate::context::CheckContext;
+use crate::subject::Subject;
+use dwell_findings::Finding;
+use rayon::prelude::*;
+
+/// Compares a subject with every check, in parallel. The findings come in a fixed order, that of
+/// the checks' numbers. If the mechanism itself cannot be written in dense rows, there is one
+/// failed finding that says why.
+pub fn verify_all(
+    case: &Case<'_>,
+    subject: &dyn Subject,
+    samples: &[PublishedSample],
+) -> Vec<Finding> {
+    let context = match CheckContext::new(case, subject) {
+        Ok(context) => context,
+        Err(error) => return vec![closure::not_dense(&error)],
+    };
+    let checks: [fn(&CheckContext<'_>) -> Vec<Finding>; 6] = [
+        closure::closure,
+        kinetic_energy::kinetic_energy,
+        energy_slope::energy_slope,
+        spectral::spectral,
+        released_constraint::released_constraint,
+        balances::balances,
+    ];
+    let all = checks.par_iter().flat_map_iter(|check| check(&context));
+    let mut findings: Vec<Finding> = all.collect();
+    findings.extend(published(case, subject, samples));
+    findings
+}
 
 /// The longest step of a difference rotates no body by more than this (rad), nor moves one by more
 /// than this many sizes, to first order. Measured on the test mechanisms: from 0.12 to

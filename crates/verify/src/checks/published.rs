@@ -6,7 +6,7 @@ use crate::comparison::{Comparison, FindingSpec, LargestDifference};
 use crate::dense::condition_number;
 use crate::subject::{Subject, SubjectError};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{BodyId, Component, Reaction, Vec2};
+use dwell_geometry::{BodyId, Component, Vec2};
 
 /// A point of a body and where it was published to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,14 +73,18 @@ pub fn published(
     subject: &dyn Subject,
     samples: &[PublishedSample],
 ) -> Vec<Finding> {
-    let reactions = case.mechanism.reactions();
     let mut worst: [LargestDifference; 5] = Default::default();
+    let reactions = case.mechanism.reactions();
+    let moments: Vec<bool> = reactions
+        .iter()
+        .map(|r| r.component == Component::Moment)
+        .collect();
     for sample in samples {
         let poses = subject.poses(sample.q).unwrap_or_default();
         let condition_number = condition_number(case.mechanism, &poses);
-        let result = compare(case, subject, sample, |kind, k, difference, unit| {
+        let result = compare(&moments, subject, sample, |kind, k, difference, unit| {
             let comparison = Comparison {
-                numbers: [difference, scale(&reactions, samples, kind, k), 0.0],
+                numbers: [difference, scale(&moments, samples, kind, k), 0.0],
                 unit,
                 condition_number,
             };
@@ -120,19 +124,17 @@ pub fn published(
 }
 
 /// The largest published value of a kind; of a and b that of the unit of reaction `k`.
-fn scale(reactions: &[Reaction], samples: &[PublishedSample], kind: usize, k: usize) -> f64 {
-    let is_moment = |k| component(reactions, k) == Some(Component::Moment);
+fn scale(moments: &[bool], samples: &[PublishedSample], kind: usize, k: usize) -> f64 {
+    let is_moment = |k| moments.get(k) == Some(&true);
     let values = |s: &PublishedSample| -> Vec<f64> {
         let in_k = is_moment(k);
         let same = s.reactions.iter().filter(|r| is_moment(r.0) == in_k);
+        let half_dm = s.half_dm.filter(|_| in_k);
         match kind {
             0 => s.m.into_iter().collect(),
             1 => s.half_dm.into_iter().collect(),
             2 => same.map(|r| r.1).chain(s.m.filter(|_| in_k)).collect(),
-            3 => same
-                .map(|r| r.2)
-                .chain(s.half_dm.filter(|_| in_k))
-                .collect(),
+            3 => same.map(|r| r.2).chain(half_dm).collect(),
             _ => {
                 let points = s.points.iter();
                 points.flat_map(|p| [p.position.x, p.position.y]).collect()
@@ -143,13 +145,9 @@ fn scale(reactions: &[Reaction], samples: &[PublishedSample], kind: usize, k: us
     all.fold(0.0, |max: f64, value| max.max(value.abs()))
 }
 
-fn component(reactions: &[Reaction], k: usize) -> Option<Component> {
-    reactions.get(k).map(|r| r.component)
-}
-
 /// Calls `record(kind, index, difference, unit)` for everything in a sample.
 fn compare(
-    case: &Case<'_>,
+    moments: &[bool],
     subject: &dyn Subject,
     sample: &PublishedSample,
     mut record: impl FnMut(usize, usize, f64, &'static str),
@@ -161,9 +159,8 @@ fn compare(
     if let Some(half_dm) = sample.half_dm {
         record(1, 0, coefficients.half_dm - half_dm, "kg m2/rad");
     }
-    let all = case.mechanism.reactions();
     for &(k, a, b) in &sample.reactions {
-        let units = coefficient_units(component(&all, k) == Some(Component::Moment));
+        let units = coefficient_units(moments.get(k) == Some(&true));
         // An index that is not there is a difference that is not a number, and fails.
         let of = |values: &[f64]| values.get(k).copied().unwrap_or(f64::NAN);
         record(2, k, of(&coefficients.a) - a, units[0]);

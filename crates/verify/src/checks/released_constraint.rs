@@ -25,7 +25,7 @@
 use super::{coefficient_units, row_step};
 use crate::comparison::FindingSpec;
 use crate::context::{CheckContext, CheckedPosition};
-use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
+use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives, slope};
 use dwell_findings::{Check, Finding};
 
 const A: FindingSpec<'_> = FindingSpec {
@@ -100,10 +100,10 @@ fn b_by_differences(
     position: &CheckedPosition,
 ) -> Vec<Option<Extrapolated>> {
     let (dense, row) = (&context.dense, context.dense.actuator_row());
-    let (first, rounding) = (DerivativeOrder::First, position.energy_rounding());
+    let rounding = position.energy_rounding();
     let step = row_step(context, position.unit_velocity());
     // All m₁₂ along q₁ at once: the released velocities are columns of one inverse.
-    let along_q1 = derivatives(first, step, rounding, |h| {
+    let along_q1 = derivatives(DerivativeOrder::First, step, rounding, |h| {
         let configuration = context.stepped(position, h)?;
         let velocities = dense.unit_velocities(&configuration);
         let u1 = velocities.last()?;
@@ -112,8 +112,7 @@ fn b_by_differences(
     });
     let along_q2 = |k: usize| {
         let step = row_step(context, &position.unit_velocities[k]);
-        let m1 = |h: f64| Some(vec![context.opened_m(position, k, h)?]);
-        derivatives(first, step, rounding, m1).first().copied()
+        slope(step, rounding, |h| context.opened_m(position, k, h))
     };
     let estimate = |k: usize| match (along_q1.get(k), along_q2(k)) {
         (Some(m12), Some(m1)) => Extrapolated {

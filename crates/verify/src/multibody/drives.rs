@@ -5,14 +5,6 @@ use super::{MultibodyError, MultibodySystem, Result};
 use dwell_geometry::{Actuator, ActuatorKind, Coordinate, Mechanism};
 use dwell_kinetostatics::{Drive, DriveKind};
 
-/// The output of a drive at an instant.
-pub(super) struct DriveOutput {
-    /// The force on the coordinate, N·m or N.
-    pub(super) force: f64,
-    /// The rate of its current (A/s) or integral (rad/s or m/s), if it has one.
-    pub(super) state_rate: f64,
-}
-
 /// The rotor's inertia on the coordinate, kg m² or kg.
 pub(super) fn rotor_inertia(kind: &DriveKind) -> f64 {
     match kind {
@@ -67,41 +59,34 @@ impl MultibodySystem {
     /// Kinetic energy of the rotors, ½ N² J ṡ², J.
     pub(super) fn rotor_energy(&self, at: &MultibodyState) -> f64 {
         let energy = self.drives.iter().map(|drive| {
-            let speed = self.coordinate(drive.coordinate, at).map_or(0.0, |s| s[1]);
+            let coordinate = at.motion().coordinate(&self.mechanism, drive.coordinate);
+            let speed = coordinate.map_or(0.0, |s| s[1]);
             0.5 * rotor_inertia(&drive.kind) * speed * speed
         });
         energy.sum()
     }
 
-    /// A drive at its coordinate's speed, with its current (A) or integral (rad or m) in `state`.
+    /// A drive at its coordinate's speed, with its current (A) or integral (rad or m) in `state`: its force on
+    /// the coordinate, N·m or N, and the rate of that state.
     pub(super) fn drive_output(
         &self,
-        drive: usize,
+        kind: &DriveKind,
         speed: f64,
         state: f64,
         at: &MultibodyState,
-    ) -> Option<DriveOutput> {
-        match &self.drives.get(drive)?.kind {
-            DriveKind::AppliedForce(force) => Some(DriveOutput {
-                force: self.magnitude(force, at)?,
-                state_rate: 0.0,
-            }),
+    ) -> Option<[f64; 2]> {
+        match kind {
+            DriveKind::AppliedForce(force) => Some([self.magnitude(force, at)?, 0.0]),
             // u = R i + L di/dt + k (N q̇): the rotor rotates N times as fast, and its torque acts N-fold.
             DriveKind::Motor(motor) => {
                 let net_voltage = self.magnitude(&motor.voltage, at)?
                     - motor.torque_constant * motor.gear_ratio * speed;
-                let algebraic = motor.inductance == 0.0;
-                let (current, state_rate) = match algebraic {
-                    true => (net_voltage / motor.resistance, 0.0),
-                    false => {
-                        let drop = net_voltage - motor.resistance * state;
-                        (state, drop / motor.inductance)
-                    }
+                let (current, state_rate) = match motor.inductance {
+                    0.0 => (net_voltage / motor.resistance, 0.0),
+                    inductance => (state, (net_voltage - motor.resistance * state) / inductance),
                 };
-                Some(DriveOutput {
-                    force: motor.gear_ratio * (motor.torque_constant * current),
-                    state_rate,
-                })
+                let force = motor.gear_ratio * (motor.torque_constant * current);
+                Some([force, state_rate])
             }
             // At its limit it integrates only what brings it back.
             DriveKind::SpeedController(regulator) => {
@@ -110,10 +95,7 @@ impl MultibodySystem {
                     regulator.proportional_gain * error + regulator.integral_gain * state;
                 let force = unlimited.clamp(-regulator.limit, regulator.limit);
                 let outward = force != unlimited && error * unlimited > 0.0;
-                Some(DriveOutput {
-                    force,
-                    state_rate: if outward { 0.0 } else { error },
-                })
+                Some([force, if outward { 0.0 } else { error }])
             }
         }
     }

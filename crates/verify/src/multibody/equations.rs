@@ -1,13 +1,11 @@
 //! Equation (1) at one instant.
 
 use super::drives::rotor_inertia;
-use super::friction::FrictionResponse;
+use super::friction::depends_on_reactions;
 use super::state::MultibodyState;
 use super::{MotionSample, MultibodyError, MultibodySystem, Result};
-use crate::dense::DenseMechanism;
+use crate::dense::{DenseMechanism, add_scaled};
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{Vec2, vec2};
-use dwell_kinetostatics::Magnitude;
 use faer::Mat;
 
 /// The equations from a start on: gears meshed, rows chosen.
@@ -41,8 +39,9 @@ struct AppliedForces {
     drive_state_rates: Vec<f64>,
 }
 
-/// The rows at a state.
+/// A state with the rows there.
 struct EvaluationPoint<'a> {
+    at: MultibodyState,
     x: &'a [f64],
     v: &'a [f64],
     drive_states: &'a [f64],
@@ -52,11 +51,6 @@ struct EvaluationPoint<'a> {
 
 /// Accelerations, and multipliers by row.
 type AugmentedSolution = (Vec<f64>, Vec<f64>);
-
-fn add_scaled(to: &mut [f64], factor: f64, more: &[f64]) {
-    let both = to.iter_mut().zip(more);
-    both.for_each(|(to, more)| *to += factor * more);
-}
 
 impl MultibodyOde<'_> {
     /// Number of states.
@@ -74,24 +68,10 @@ impl MultibodyOde<'_> {
         }
     }
 
-    /// Adds forces on bodies to those on the coordinates: forces, and moments about the centres.
+    /// Adds forces on bodies to those on the coordinates.
     fn add_wrenches(&self, wrenches: &[BodyWrench], x: &[f64], force: &mut [f64]) {
-        let ground = self.frames.bodies[self.system.mechanism.ground].shift;
-        for wrench in wrenches {
-            let Some(c) = self.frames.bodies[wrench.body.0].column else {
-                continue;
-            };
-            let arm = wrench.point - ground - vec2(x[c], x[c + 1]);
-            force[c] += wrench.force.x;
-            force[c + 1] += wrench.force.y;
-            let is_couple = wrench.force == Vec2::ZERO;
-            let moment = if is_couple {
-                0.0
-            } else {
-                arm.cross(wrench.force)
-            };
-            force[c + 2] += moment + wrench.couple;
-        }
+        let wrenches = self.frames.shifted_wrenches(wrenches);
+        self.frames.add_wrenches(x, &wrenches, 1.0, force);
     }
 
     /// The masses without any force.
@@ -115,54 +95,43 @@ impl MultibodyOde<'_> {
     }
 
     /// All loads but those that depend on reactions; none if a magnitude cannot be evaluated.
-    fn add_loads(
-        &self,
-        at: &MultibodyState,
-        point: &EvaluationPoint<'_>,
-        to: &mut AppliedForces,
-    ) -> Option<()> {
+    fn add_loads(&self, point: &EvaluationPoint<'_>, to: &mut AppliedForces) -> Option<()> {
+        let at = &point.at;
         for (i, load) in self.system.loads.iter().enumerate() {
-            if matches!(
-                load.magnitude,
-                Magnitude::Friction(_) | Magnitude::Separating(_)
-            ) {
+            if depends_on_reactions(&load.magnitude) {
                 continue;
             }
             let magnitude = self.system.magnitude(&load.magnitude, at)?;
             let wrenches = self.system.wrenches(i, magnitude, at);
             self.add_wrenches(&wrenches, point.x, &mut to.force);
             if !load.is_conservative() {
-                to.power += wrenches.iter().map(|wrench| at.power(wrench)).sum::<f64>();
+                to.power += at.power(&wrenches);
             }
         }
         Some(())
     }
 
     /// All drives: the rotors' inertia I on s̈ = J ẍ + Φ̇ₓ ẋ joins the masses as Jᵀ I J.
-    fn add_drives(
-        &self,
-        at: &MultibodyState,
-        point: &EvaluationPoint<'_>,
-        to: &mut AppliedForces,
-    ) -> Option<()> {
+    fn add_drives(&self, point: &EvaluationPoint<'_>, to: &mut AppliedForces) -> Option<()> {
+        let at = &point.at;
         let n = self.frames.rows.columns();
         for (d, drive) in self.system.drives.iter().enumerate() {
             let row = self.frames.actuator_row() + self.system.modes.len() + d;
             let velocity = self.frames.row_velocity(&point.jacobian, row, point.v);
             let state = point.drive_states[d];
-            let output = self.system.drive_output(d, velocity, state, at)?;
+            let [force, state_rate] = self.system.drive_output(&drive.kind, velocity, state, at)?;
             let inertia = rotor_inertia(&drive.kind);
             let jacobian_row = &point.jacobian[row * n..][..n];
-            let force = output.force - inertia * point.velocity_products[row];
-            add_scaled(&mut to.force, force, jacobian_row);
+            let net_force = force - inertia * point.velocity_products[row];
+            add_scaled(&mut to.force, net_force, jacobian_row);
             for (i, a) in jacobian_row.iter().enumerate() {
                 for (j, b) in jacobian_row.iter().enumerate() {
                     to.mass[(i, j)] += inertia * a * b;
                 }
             }
-            to.power += output.force * velocity;
-            to.drive_forces.push(output.force);
-            to.drive_state_rates.push(output.state_rate);
+            to.power += force * velocity;
+            to.drive_forces.push(force);
+            to.drive_state_rates.push(state_rate);
         }
         Some(())
     }
@@ -171,15 +140,15 @@ impl MultibodyOde<'_> {
     pub(super) fn solve(&self, t: f64, y: &[f64]) -> Result<MultibodySolution> {
         let frames = &self.frames;
         let n = frames.rows.columns();
-        let not_finite = MultibodyError::NotFinite { t };
+        let not_finite = MultibodyError::NotFinite(t);
         if y.iter().any(|y| !y.is_finite()) {
             return Err(not_finite);
         }
-        let at = self.state(t, y);
         let (x, v) = (&y[..n], &y[n..2 * n]);
         let mut velocity_products = vec![0.0; frames.rows.len()];
         frames.rows.velocity_product(x, v, &mut velocity_products);
         let point = EvaluationPoint {
+            at: self.state(t, y),
             x,
             v,
             drive_states: &y[2 * n..],
@@ -187,11 +156,9 @@ impl MultibodyOde<'_> {
             velocity_products,
         };
         let mut applied = self.assemble_masses();
-        let loads = self.add_loads(&at, &point, &mut applied);
-        loads.ok_or(not_finite)?;
-        let drives = self.add_drives(&at, &point, &mut applied);
-        drives.ok_or(not_finite)?;
-        let (a, multipliers) = self.solve_with_friction(&at, &point, &mut applied)?;
+        self.add_loads(&point, &mut applied).ok_or(not_finite)?;
+        self.add_drives(&point, &mut applied).ok_or(not_finite)?;
+        let (a, multipliers) = self.solve_with_friction(&point, &mut applied)?;
         let velocities = &self.prescribed_values(t)[1];
         let rates = multipliers.iter().zip(velocities);
         for (tau, velocity) in rates.skip(frames.actuator_row()) {
@@ -205,39 +172,34 @@ impl MultibodyOde<'_> {
             derivative,
             multipliers,
             drive_forces: applied.drive_forces,
-            state: at,
+            state: point.at,
         })
     }
 
     /// Accelerations and multipliers under all forces, with the frictions.
     fn solve_with_friction(
         &self,
-        at: &MultibodyState,
         point: &EvaluationPoint<'_>,
         applied: &mut AppliedForces,
     ) -> Result<AugmentedSolution> {
-        let not_finite = MultibodyError::NotFinite { t: at.t };
+        let at = &point.at;
+        let not_finite = MultibodyError::NotFinite(at.t);
         let frictions = self.system.frictions();
         let mut forces = vec![std::mem::take(&mut applied.force)];
-        for (load, _) in &frictions {
+        for &load in &frictions {
             let mut unit = vec![0.0; self.frames.rows.columns()];
-            self.add_wrenches(&self.system.wrenches(*load, 1.0, at), point.x, &mut unit);
+            self.add_wrenches(&self.system.wrenches(load, 1.0, at), point.x, &mut unit);
             forces.push(unit);
         }
-        let found = self.solve_augmented(&applied.mass, point, &forces, at.t)?;
+        let found = self.solve_augmented(&applied.mass, point, &forces)?;
         let mut found = found.into_iter();
         let (mut a, mut multipliers) = found.next().ok_or(not_finite)?;
         let (unit_accelerations, unit_reactions): (Vec<_>, Vec<_>) = found.unzip();
-        let response = FrictionResponse {
-            frictionless: multipliers.clone(),
-            unit_responses: unit_reactions,
-        };
-        let friction_forces = self.solve_friction(&frictions, &response, at)?;
-        for (k, &force) in friction_forces.iter().enumerate() {
+        let friction_forces = self.solve_friction(&frictions, &multipliers, &unit_reactions, at)?;
+        for (k, force) in friction_forces.into_iter().enumerate() {
             add_scaled(&mut a, force, &unit_accelerations[k]);
-            add_scaled(&mut multipliers, force, &response.unit_responses[k]);
-            let wrenches = self.system.wrenches(frictions[k].0, force, at);
-            applied.power += wrenches.iter().map(|wrench| at.power(wrench)).sum::<f64>();
+            add_scaled(&mut multipliers, force, &unit_reactions[k]);
+            applied.power += at.power(&self.system.wrenches(frictions[k], force, at));
         }
         Ok((a, multipliers))
     }
@@ -249,9 +211,8 @@ impl MultibodyOde<'_> {
         mass: &Mat<f64>,
         point: &EvaluationPoint<'_>,
         forces: &[Vec<f64>],
-        t: f64,
     ) -> Result<Vec<AugmentedSolution>> {
-        let frames = &self.frames;
+        let (frames, t) = (&self.frames, point.at.t);
         let (n, m) = (frames.rows.columns(), self.active_rows.len());
         let scale = |c| frames.column_scale(c);
         let scaled = |i: usize, j: usize| mass[(i, j)] * scale(i) * scale(j);

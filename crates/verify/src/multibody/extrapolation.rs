@@ -40,13 +40,8 @@ pub(super) struct ExtrapolationSolver<'a> {
     duration: f64,
 }
 
-/// What came of an attempted step.
-enum StepResult {
-    /// The new state, and by what the length may change.
-    Accepted(Vec<f64>, f64),
-    /// By what the length must change.
-    Rejected(f64),
-}
+/// What came of an attempted step: the new state, if it is accepted, and by what the length changes.
+type StepResult = (Option<Vec<f64>>, f64);
 
 /// Evaluations of the table up to row k, the first at the start of the step.
 fn evaluation_count(k: usize) -> f64 {
@@ -106,7 +101,7 @@ impl<'a> ExtrapolationSolver<'a> {
     /// Goes on to a time.
     pub(super) fn advance_to(&mut self, to: f64) -> Result<()> {
         while self.t < to {
-            let stuck = MultibodyError::AccuracyNotReached { t: self.t };
+            let stuck = MultibodyError::AccuracyNotReached(self.t);
             self.steps_left = self.steps_left.checked_sub(1).ok_or(stuck)?;
             let remaining = to - self.t;
             // No crumb is left behind.
@@ -114,19 +109,16 @@ impl<'a> ExtrapolationSolver<'a> {
             let step = if reaches_target { remaining } else { self.step };
             let derivative = self.ode.solve(self.t, &self.y)?.derivative;
             let speed_scale = self.update_scales(&derivative);
-            match self.try_step(step, &derivative, step * speed_scale <= MIN_STEP)? {
-                StepResult::Accepted(y, factor) => {
-                    self.t = if reaches_target { to } else { self.t + step };
-                    self.y = y;
-                    let next = step * factor;
-                    self.step = if reaches_target {
-                        self.step.max(next)
-                    } else {
-                        next
-                    };
-                    self.ode.project(self.t, &mut self.y)?;
-                }
-                StepResult::Rejected(factor) => self.step = step * factor,
+            let at_min_step = step * speed_scale <= MIN_STEP;
+            let (accepted, factor) = self.try_step(step, &derivative, at_min_step)?;
+            let next = step * factor;
+            // A step cut short by `to` does not shorten the next one.
+            let arrives = accepted.is_some() && reaches_target;
+            self.step = if arrives { self.step.max(next) } else { next };
+            if let Some(y) = accepted {
+                self.t = if reaches_target { to } else { self.t + step };
+                self.y = y;
+                self.ode.project(self.t, &mut self.y)?;
             }
         }
         Ok(())
@@ -141,7 +133,7 @@ impl<'a> ExtrapolationSolver<'a> {
                 Ok(first) => first,
                 Err(error) if at_min_step => return Err(error),
                 // The midpoint rule went where there is no motion.
-                Err(_) => return Ok(StepResult::Rejected(0.25)),
+                Err(_) => return Ok((None, 0.25)),
             };
             let mut row = vec![first];
             for (j, coarse) in previous_row.iter().enumerate() {
@@ -164,12 +156,12 @@ impl<'a> ExtrapolationSolver<'a> {
                     if k + 2 < MAX_COLUMNS && cost <= cheapest {
                         factor = growth * evaluation_count(k + 1) / evaluation_count(k);
                     }
-                    return Ok(StepResult::Accepted(row.swap_remove(k), factor));
+                    return Ok((Some(row.swap_remove(k)), factor));
                 }
             }
             previous_row = row;
         }
-        Ok(StepResult::Rejected(factor.min(0.7)))
+        Ok((None, factor.min(0.7)))
     }
 
     fn error_norm(&self, one: &[f64], other: &[f64]) -> f64 {

@@ -10,27 +10,27 @@ use super::equations::MultibodyOde;
 use super::state::MultibodyState;
 use super::{MultibodyError, MultibodySystem, Result};
 use crate::body_motion::slide_axis;
-use crate::loads::tooth_row;
+use crate::dense::add_scaled;
+use crate::loads::reaction_row;
 use crate::lu::Lu;
-use dwell_geometry::{Component, JointKind, Reaction};
-use dwell_kinetostatics::{Friction, FrictionContact, LoadKind, Magnitude, PressureAngle};
+use dwell_geometry::{Component, JointKind};
+use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude, PressureAngle};
 use faer::Mat;
 
 const MAX_NEWTON_STEPS: usize = 100;
 /// Newton's change of a friction, relative to the largest, that is none.
 const CONVERGED_CHANGE: f64 = 1e-15;
 
-/// How a load answers to the reactions of its joint.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum ReactionLaw {
-    Friction(Friction),
-    Teeth(PressureAngle),
-}
-
-/// Reactions by row: without these loads, and what a unit of each adds.
-pub(super) struct FrictionResponse {
-    pub(super) frictionless: Vec<f64>,
-    pub(super) unit_responses: Vec<Vec<f64>>,
+/// Whether a load answers to the reactions of its joint.
+pub(super) fn depends_on_reactions(magnitude: &Magnitude) -> bool {
+    match magnitude {
+        Magnitude::Friction(_) | Magnitude::Separating(_) => true,
+        Magnitude::Constant(_)
+        | Magnitude::Law(..)
+        | Magnitude::Expression(..)
+        | Magnitude::Function(..)
+        | Magnitude::External(_) => false,
+    }
 }
 
 impl MultibodySystem {
@@ -65,36 +65,20 @@ impl MultibodySystem {
     }
 
     /// The loads that answer to reactions.
-    pub(super) fn frictions(&self) -> Vec<(usize, ReactionLaw)> {
-        let loads = self.loads.iter().enumerate();
-        loads
-            .filter_map(|(i, load)| match load.magnitude {
-                Magnitude::Friction(friction) => Some((i, ReactionLaw::Friction(friction))),
-                Magnitude::Separating(teeth) => Some((i, ReactionLaw::Teeth(teeth))),
-                Magnitude::Constant(_)
-                | Magnitude::Law(..)
-                | Magnitude::Expression(..)
-                | Magnitude::Function(..)
-                | Magnitude::External(_) => None,
-            })
-            .collect()
-    }
-
-    /// The row of a joint's reaction.
-    fn reaction_row(&self, friction: &Friction, component: Component) -> Option<usize> {
-        let joint = friction.joint;
-        let reactions = self.mechanism.reactions();
-        let wanted = Reaction { joint, component };
-        reactions.iter().position(|r| *r == wanted)
+    pub(super) fn frictions(&self) -> Vec<usize> {
+        let depends = |load: &usize| depends_on_reactions(&self.loads[*load].magnitude);
+        (0..self.loads.len()).filter(depends).collect()
     }
 
     /// µ tanh(v/v₀), or −tan α.
-    fn factor(&self, load: usize, law: &ReactionLaw, at: &MultibodyState) -> Option<f64> {
-        let friction = match law {
-            ReactionLaw::Friction(friction) => friction,
-            ReactionLaw::Teeth(teeth) => return Some(-teeth.angle.tan()),
+    fn factor(&self, load: &Load, at: &MultibodyState) -> Option<f64> {
+        if let Magnitude::Separating(teeth) = &load.magnitude {
+            return Some(-teeth.angle.tan());
+        }
+        let Magnitude::Friction(friction) = &load.magnitude else {
+            return None;
         };
-        let [_, velocity] = match self.loads.get(load)?.kind {
+        let [_, velocity] = match load.kind {
             LoadKind::SlideForce(guide) => {
                 at.motion().travel(guide.bodies, guide.points, guide.axis)?
             }
@@ -113,20 +97,20 @@ impl MultibodySystem {
     }
 
     /// g or |T|, with its derivative by every row that it depends on.
-    fn contact_force(&self, law: &ReactionLaw, reactions: &[f64]) -> (f64, Vec<(usize, f64)>) {
-        let friction = match law {
-            ReactionLaw::Friction(friction) => friction,
-            ReactionLaw::Teeth(teeth) => {
-                let row = tooth_row(&self.mechanism, teeth.joint);
-                return row.map_or((f64::NAN, vec![]), |row| {
-                    (reactions[row].abs(), vec![(row, reactions[row].signum())])
-                });
-            }
-        };
-        let row = |component| {
-            let row = self.reaction_row(friction, component)?;
+    fn contact_force(&self, load: &Load, reactions: &[f64]) -> (f64, Vec<(usize, f64)>) {
+        let row_of = |joint, component| {
+            let row = reaction_row(&self.mechanism, joint, component)?;
             Some((row, reactions[row]))
         };
+        let magnitude = |(row, force): (usize, f64)| (force.abs(), vec![(row, force.signum())]);
+        let none = (f64::NAN, vec![]);
+        if let Magnitude::Separating(teeth) = &load.magnitude {
+            return row_of(teeth.joint, Component::Tooth).map_or(none, magnitude);
+        }
+        let Magnitude::Friction(friction) = &load.magnitude else {
+            return none;
+        };
+        let row = |component| row_of(friction.joint, component);
         let (FrictionContact::Pin { radius: size } | FrictionContact::Guide { length: size }) =
             friction.contact;
         if let (Some((i, x)), Some((j, y))) = (row(Component::X), row(Component::Y)) {
@@ -147,40 +131,41 @@ impl MultibodySystem {
                 let gradient = vec![(i, 0.5 * (s + t)), (j, (s - t) / size)];
                 (near.abs() + far.abs(), gradient)
             }
-            _ => (n.abs(), vec![(i, n.signum())]),
+            _ => magnitude((i, n)),
         }
     }
 }
 
 impl MultibodyOde<'_> {
-    /// The friction forces that agree with the reactions which they cause.
+    /// The friction forces that agree with the reactions which they cause: those without these loads, and what a
+    /// unit of each adds.
     pub(super) fn solve_friction(
         &self,
-        frictions: &[(usize, ReactionLaw)],
-        response: &FrictionResponse,
+        frictions: &[usize],
+        frictionless: &[f64],
+        unit_reactions: &[Vec<f64>],
         at: &MultibodyState,
     ) -> Result<Vec<f64>> {
         let n = frictions.len();
         if n == 0 {
             return Ok(vec![]);
         }
-        let self_locking = MultibodyError::SelfLocking { t: at.t };
-        let factor = |(load, law): &_| self.system.factor(*load, law, at);
-        let factors: Option<Vec<f64>> = frictions.iter().map(factor).collect();
-        let factors = factors.ok_or(MultibodyError::NotFinite { t: at.t })?;
+        let self_locking = MultibodyError::SelfLocking(at.t);
+        let loads = || frictions.iter().map(|&load| &self.system.loads[load]);
+        let factors: Option<Vec<f64>> = loads().map(|load| self.system.factor(load, at)).collect();
+        let factors = factors.ok_or(MultibodyError::NotFinite(at.t))?;
         let mut force = vec![0.0_f64; n];
         for _ in 0..MAX_NEWTON_STEPS {
-            let mut reactions = response.frictionless.clone();
-            for (force, unit) in force.iter().zip(&response.unit_responses) {
-                let both = reactions.iter_mut().zip(unit);
-                both.for_each(|(r, u)| *r += force * u);
+            let mut reactions = frictionless.to_vec();
+            for (force, unit) in force.iter().zip(unit_reactions) {
+                add_scaled(&mut reactions, *force, unit);
             }
             let mut matrix = Mat::<f64>::identity(n, n);
             let mut step = Mat::zeros(n, 1);
-            for (j, ((_, law), factor)) in frictions.iter().zip(&factors).enumerate() {
-                let (contact_force, gradient) = self.system.contact_force(law, &reactions);
+            for (j, (load, factor)) in loads().zip(&factors).enumerate() {
+                let (contact_force, gradient) = self.system.contact_force(load, &reactions);
                 step[(j, 0)] = -(force[j] + factor * contact_force);
-                for (k, unit) in response.unit_responses.iter().enumerate() {
+                for (k, unit) in unit_reactions.iter().enumerate() {
                     let sensitivity: f64 = gradient.iter().map(|&(row, s)| s * unit[row]).sum();
                     matrix[(j, k)] += factor * sensitivity;
                 }

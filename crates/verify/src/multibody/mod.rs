@@ -66,12 +66,9 @@ pub enum MultibodyError {
     /// The poses, velocities or times are missing, not finite or not in order.
     #[error("the initial state or the times are incomplete, not finite or not increasing")]
     InvalidStart,
-    /// Positions that do not close.
-    #[error("at t = {t} s the constraint equations do not close")]
-    NotClosed {
-        /// Time, s.
-        t: f64,
-    },
+    /// Positions that do not close, at a time, s.
+    #[error("at t = {0} s the constraint equations do not close")]
+    NotClosed(f64),
     /// The equations have no single solution.
     #[error("at t = {t} s the equations of motion are singular: smallest pivot {pivot:.1e}")]
     Singular {
@@ -80,26 +77,17 @@ pub enum MultibodyError {
         /// Smallest pivot relative to the largest.
         pivot: f64,
     },
-    /// No friction found that fits the reactions it makes.
+    /// No friction found that fits the reactions it makes, at a time, s.
     #[error(
-        "at t = {t} s no friction force satisfies the friction law: the mechanism is self-locking"
+        "at t = {0} s no friction force satisfies the friction law: the mechanism is self-locking"
     )]
-    SelfLocking {
-        /// Time, s.
-        t: f64,
-    },
-    /// A load, drive or law that is no number.
-    #[error("at t = {t} s a load, drive or law is not a finite number")]
-    NotFinite {
-        /// Time, s.
-        t: f64,
-    },
-    /// The accuracy is out of reach.
-    #[error("at t = {t} s the accuracy needs too many or too short steps")]
-    AccuracyNotReached {
-        /// Time, s.
-        t: f64,
-    },
+    SelfLocking(f64),
+    /// A load, drive or law that is no number at a time, s.
+    #[error("at t = {0} s a load, drive or law is not a finite number")]
+    NotFinite(f64),
+    /// The accuracy is out of reach from a time on, s.
+    #[error("at t = {0} s the accuracy needs too many or too short steps")]
+    AccuracyNotReached(f64),
 }
 
 /// A motion at one instant: of the multibody equations, or one that is claimed. What is given by

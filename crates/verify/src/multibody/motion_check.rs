@@ -1,9 +1,9 @@
 //! A claimed motion against the multibody equations.
 
 use super::{MotionSample, MultibodyError, MultibodySystem, Result};
-use crate::comparison::{Comparison, FindingSpec, LargestDifference};
+use crate::comparison::{Comparison, ComparisonSet, FindingSpec, LargestDifference};
 use dwell_findings::{Check, Finding};
-use dwell_geometry::{Component, Reaction};
+use dwell_geometry::Component;
 use std::f64::consts::TAU;
 
 /// Checks a claimed motion: the multibody equations start in its first sample, and are followed
@@ -27,46 +27,32 @@ pub fn check_motion(
 /// Claimed samples with those of the multibody equations.
 type Pairs<'a> = [(&'a MotionSample, &'a MotionSample)];
 
-/// Values of one kind of all samples.
-struct ComparedSeries<'a> {
+/// Adds a value of a sample; the scale of the set is at least the reference.
+fn record(
+    to: &mut ComparisonSet,
+    [claimed, reference]: [f64; 2],
     unit: &'static str,
-    /// The scale is no larger and no smaller than these.
-    max_scale: f64,
-    min_scale: f64,
-    /// Claimed and reference value, time and name.
-    values: Vec<([f64; 2], f64, &'a str)>,
+    t: f64,
+    name: &str,
+) {
+    let comparison = Comparison {
+        numbers: [claimed - reference, reference.abs(), 0.0],
+        unit,
+        condition_number: 1.0,
+    };
+    to.add(comparison, format!("t = {t} s, {name}"));
 }
 
-impl<'a> ComparedSeries<'a> {
-    fn new(unit: &'static str) -> Self {
-        Self {
-            unit,
-            max_scale: f64::INFINITY,
-            min_scale: 0.0,
-            values: vec![],
-        }
-    }
-
-    fn record(&mut self, claimed: f64, reference: f64, t: f64, name: &'a str) {
-        self.values.push(([claimed, reference], t, name));
-    }
-
-    fn largest(&self) -> f64 {
-        let values = self.values.iter().map(|([_, value], ..)| value.abs());
-        values.fold(0.0, f64::max)
-    }
-
-    fn compare_into(&self, worst: &mut LargestDifference) {
-        let scale = self.largest().max(self.min_scale).min(self.max_scale);
-        for ([claimed, reference], t, name) in &self.values {
-            let comparison = Comparison {
-                numbers: [claimed - reference, scale, 0.0],
-                unit: self.unit,
-                condition_number: 1.0,
-            };
-            worst.record(&comparison, || format!("t = {t} s, {name}"));
-        }
-    }
+/// Adds a force to the first set, or a moment to the second.
+fn record_force(
+    sets: &mut [ComparisonSet; 2],
+    is_moment: bool,
+    both: [f64; 2],
+    t: f64,
+    name: &str,
+) {
+    let (kind, unit) = if is_moment { (1, "N m") } else { (0, "N") };
+    record(&mut sets[kind], both, unit, t, name);
 }
 
 const POSES: FindingSpec<'_> = FindingSpec {
@@ -103,10 +89,13 @@ const ENERGY: FindingSpec<'_> = FindingSpec {
     ..POSES
 };
 
-fn finding(spec: &FindingSpec<'_>, pairs: &Pairs<'_>, all: &[ComparedSeries<'_>]) -> Finding {
-    let mut worst = LargestDifference::default();
-    all.iter()
-        .for_each(|series| series.compare_into(&mut worst));
+fn finding<const N: usize>(
+    spec: &FindingSpec<'_>,
+    pairs: &Pairs<'_>,
+    all: [ComparisonSet; N],
+) -> Finding {
+    let all = all.into_iter().map(ComparisonSet::largest);
+    let worst = all.fold(LargestDifference::default(), LargestDifference::merge);
     Finding {
         integrated: true,
         ..spec.finding(format!("{} instants of a motion", pairs.len()), worst)
@@ -144,10 +133,6 @@ impl MultibodySystem {
         Ok(findings)
     }
 
-    fn body_name(&self, body: usize) -> &str {
-        self.mechanism.bodies.get(body).map_or("", |b| &b.name)
-    }
-
     /// The claimed frames. Where no row depends on whole revolutions, a claim may leave them out.
     fn comparable_poses(&self, claim: &MotionSample, sample: &MotionSample) -> Vec<[f64; 3]> {
         let counts_revolutions = self.frames.rows.counts_revolutions();
@@ -163,93 +148,93 @@ impl MultibodySystem {
     }
 
     fn poses(&self, pairs: &Pairs<'_>) -> Finding {
-        let (mut lengths, mut angles) = (ComparedSeries::new("m"), ComparedSeries::new("rad"));
-        angles.max_scale = 1.0;
-        for (claim, sample) in pairs {
-            let claimed = self.comparable_poses(claim, sample);
-            for (b, (one, other)) in claimed.iter().zip(&sample.poses).enumerate() {
-                let from = pairs[0].1.poses[b];
-                let (name, t) = (self.body_name(b), sample.t);
-                for i in 0..2 {
-                    lengths.record(one[i] - from[i], other[i] - from[i], t, name);
-                }
-                angles.record(one[2] - from[2], other[2] - from[2], t, name);
-            }
-        }
+        let from = &pairs[0].1.poses;
+        let moved = |b: usize, pose: [f64; 3]| [0, 1, 2].map(|i| pose[i] - from[b][i]);
         // Frames may all rotate about their origins without moving, and those of slides do not rotate.
-        let size = self.frames.size;
-        (lengths.min_scale, angles.min_scale) =
-            (angles.largest().min(1.0) * size, lengths.largest() / size);
-        finding(&POSES, pairs, &[lengths, angles])
+        self.frames_finding(&POSES, pairs, ["m", "rad"], 1.0, |claim, sample| {
+            let claimed = self.comparable_poses(claim, sample);
+            let both = claimed.iter().zip(&sample.poses).enumerate();
+            both.map(|(b, (one, other))| [moved(b, *one), moved(b, *other)])
+                .collect()
+        })
     }
 
     fn velocities(&self, pairs: &Pairs<'_>) -> Finding {
-        let (mut lengths, mut angles) = (ComparedSeries::new("m/s"), ComparedSeries::new("rad/s"));
+        let units = ["m/s", "rad/s"];
+        self.frames_finding(&VELOCITIES, pairs, units, f64::INFINITY, |claim, sample| {
+            let both = claim.velocities.iter().zip(&sample.velocities);
+            both.map(|(one, other)| [*one, *other]).collect()
+        })
+    }
+
+    /// A finding over what all frames have, claimed and reference: the scale of lengths is at least that of angles at
+    /// an arm of the size, and the reverse; that of angles at most `max_angle`.
+    fn frames_finding(
+        &self,
+        spec: &FindingSpec<'_>,
+        pairs: &Pairs<'_>,
+        units: [&'static str; 2],
+        max_angle: f64,
+        values: impl Fn(&MotionSample, &MotionSample) -> Vec<[[f64; 3]; 2]>,
+    ) -> Finding {
+        let [mut lengths, mut angles] = [(); 2].map(|()| ComparisonSet::default());
         for (claim, sample) in pairs {
-            for (b, (one, other)) in claim.velocities.iter().zip(&sample.velocities).enumerate() {
-                let (name, t) = (self.body_name(b), sample.t);
+            for (body, [one, other]) in values(claim, sample).into_iter().enumerate() {
+                let name = self.mechanism.bodies.get(body).map_or("", |b| &b.name);
                 for i in 0..2 {
-                    lengths.record(one[i], other[i], t, name);
+                    record(&mut lengths, [one[i], other[i]], units[0], sample.t, name);
                 }
-                angles.record(one[2], other[2], t, name);
+                record(&mut angles, [one[2], other[2]], units[1], sample.t, name);
             }
         }
-        let size = self.frames.size;
-        (lengths.min_scale, angles.min_scale) = (angles.largest() * size, lengths.largest() / size);
-        finding(&VELOCITIES, pairs, &[lengths, angles])
+        let (size, length, angle) = (self.frames.size, lengths.scale, angles.scale);
+        lengths.scale = length.max(angle.min(max_angle) * size);
+        angles.scale = angle.max(length / size).min(max_angle);
+        finding(spec, pairs, [lengths, angles])
     }
 
     fn reactions(&self, pairs: &Pairs<'_>, determinate: &[bool]) -> Finding {
         let reactions = self.mechanism.reactions();
-        let named = |r: &Reaction| {
-            let moment = r.component == Component::Moment;
-            (moment, self.mechanism.reaction_name(*r))
-        };
-        let named: Vec<(bool, String)> = reactions.iter().map(named).collect();
-        let (mut forces, mut moments) = (ComparedSeries::new("N"), ComparedSeries::new("N m"));
+        let mut sets = [(); 2].map(|()| ComparisonSet::default());
         for (claim, sample) in pairs {
             let both = claim.reactions.iter().zip(&sample.reactions);
-            for (k, (one, other)) in both.enumerate() {
-                let (moment, name) = &named[k];
-                if determinate[k] {
-                    let series = if *moment { &mut moments } else { &mut forces };
-                    series.record(*one, *other, sample.t, name);
-                }
+            for (k, (&one, &other)) in both.enumerate().filter(|(k, _)| determinate[*k]) {
+                let name = self.mechanism.reaction_name(reactions[k]);
+                let is_moment = reactions[k].component == Component::Moment;
+                record_force(&mut sets, is_moment, [one, other], sample.t, &name);
             }
         }
         // Moments that all vanish are small beside what the forces do at an arm of the size.
-        moments.min_scale = forces.largest() * self.frames.size;
-        finding(&REACTIONS, pairs, &[forces, moments])
+        sets[1].scale = sets[1].scale.max(sets[0].scale * self.frames.size);
+        finding(&REACTIONS, pairs, sets)
     }
 
     fn actuator_forces(&self, pairs: &Pairs<'_>) -> Finding {
-        let (mut forces, mut moments) = (ComparedSeries::new("N"), ComparedSeries::new("N m"));
-        let mut work = ComparedSeries::new("J");
+        let mut sets = [(); 2].map(|()| ComparisonSet::default());
+        let mut work = ComparisonSet::default();
         let actuators = self.mechanism.actuators.iter();
         let names = actuators.map(|a| (a.coordinate().is_angle(), a.name.as_str()));
         let drives = self.drives.iter();
         let names = names.chain(drives.map(|d| (d.coordinate.is_angle(), d.name.as_str())));
         let names: Vec<_> = names.collect();
         for (claim, sample) in pairs {
-            work.record(claim.work, sample.work, sample.t, "work");
-            for energy in [sample.kinetic, sample.work] {
-                work.min_scale = work.min_scale.max(energy.abs());
-            }
+            let t = sample.t;
+            record(&mut work, [claim.work, sample.work], "J", t, "work");
+            work.scale = work.scale.max(sample.kinetic.abs());
             let claimed = claim.tau.iter().chain(&claim.drive_forces);
             let reference = sample.tau.iter().chain(&sample.drive_forces);
-            for (&(angle, name), (one, other)) in names.iter().zip(claimed.zip(reference)) {
-                let series = if angle { &mut moments } else { &mut forces };
-                series.record(*one, *other, sample.t, name);
+            for (&(angle, name), (&one, &other)) in names.iter().zip(claimed.zip(reference)) {
+                record_force(&mut sets, angle, [one, other], t, name);
             }
         }
-        finding(&ACTUATOR_FORCES, pairs, &[forces, moments, work])
+        let [forces, moments] = sets;
+        finding(&ACTUATOR_FORCES, pairs, [forces, moments, work])
     }
 
     /// The energies of the claim's own poses and velocities; with its work they must balance.
     fn energy(&self, pairs: &Pairs<'_>) -> Finding {
-        let mut series = ComparedSeries::new("J");
+        let mut series = ComparisonSet::default();
         let mut initial = None;
-        let mut energy_scale = 0.0_f64;
         for (claim, sample) in pairs {
             let [kinetic, potential] = self.energies(&super::state::MultibodyState {
                 t: claim.t,
@@ -258,15 +243,18 @@ impl MultibodySystem {
             });
             let sum = kinetic + potential - claim.work;
             let from = *initial.get_or_insert([sum, potential, claim.potential]);
-            series.record(sum - from[0], 0.0, sample.t, "kinetic + potential - work");
-            series.record(claim.kinetic - kinetic, 0.0, sample.t, "kinetic");
             let rise = (claim.potential - from[2]) - (potential - from[1]);
-            series.record(rise, 0.0, sample.t, "potential");
+            for (difference, name) in [
+                (sum - from[0], "kinetic + potential - work"),
+                (claim.kinetic - kinetic, "kinetic"),
+                (rise, "potential"),
+            ] {
+                record(&mut series, [difference, 0.0], "J", sample.t, name);
+            }
             for energy in [kinetic, potential - from[1], claim.work] {
-                energy_scale = energy_scale.max(energy.abs());
+                series.scale = series.scale.max(energy.abs());
             }
         }
-        series.min_scale = energy_scale;
-        finding(&ENERGY, pairs, &[series])
+        finding(&ENERGY, pairs, [series])
     }
 }

@@ -43,13 +43,6 @@ impl DenseMechanism {
         both
     }
 
-    /// ∂Φ/∂x of all rows, row after row.
-    pub(super) fn jacobian(&self, x: &[f64]) -> Vec<f64> {
-        let mut jacobian = vec![0.0; self.rows.len() * self.rows.columns()];
-        self.rows.jacobian(x, &mut jacobian);
-        jacobian
-    }
-
     /// One row's rate: its line of the Jacobian times the velocities.
     pub(super) fn row_velocity(&self, jacobian: &[f64], row: usize, v: &[f64]) -> f64 {
         let n = self.rows.columns();
@@ -185,7 +178,7 @@ impl MultibodyOde<'_> {
         let open = |&row: &usize| residual[row].abs() * frames.row_scale[row] / frames.size;
         let closed = |row: &usize| open(row) <= MAX_RESIDUAL;
         if !converged || !self.candidate_rows.iter().all(closed) {
-            return Err(MultibodyError::NotClosed { t });
+            return Err(MultibodyError::NotClosed(t));
         }
         let jacobian = frames.jacobian(x);
         let velocity_error = |row| row_velocities[row] - frames.row_velocity(&jacobian, row, v);

@@ -1,10 +1,10 @@
 //! A state of the multibody equations: coordinates, magnitudes of loads, energies.
 
 use super::{MultibodyError, MultibodySystem, Result};
-use crate::body_motion::{BodyMotion, slide_axis};
+use crate::body_motion::BodyMotion;
 use crate::loads::load_wrenches;
 use crate::wrenches::BodyWrench;
-use dwell_geometry::{BodyId, Coordinate, Vec2, vec2};
+use dwell_geometry::{BodyId, Vec2, vec2};
 use dwell_kinetostatics::{LoadKind, Magnitude, Signal};
 
 /// Frames of all bodies and their rates at a time.
@@ -23,35 +23,30 @@ impl MultibodyState {
         }
     }
 
-    /// Power of a force on a body.
-    pub(super) fn power(&self, wrench: &BodyWrench) -> f64 {
-        let body = wrench.body.0;
-        let ([x, y, _], [vx, vy, omega]) = (self.poses[body], self.velocities[body]);
-        let arm = wrench.point - vec2(x, y);
-        wrench.force.dot(vec2(vx, vy) + arm.perp() * omega) + wrench.couple * omega
+    /// Power of forces on bodies.
+    pub(super) fn power(&self, wrenches: &[BodyWrench]) -> f64 {
+        let power = |wrench: &BodyWrench| {
+            let body = wrench.body.0;
+            let ([x, y, _], [vx, vy, omega]) = (self.poses[body], self.velocities[body]);
+            let arm = wrench.point - vec2(x, y);
+            wrench.force.dot(vec2(vx, vy) + arm.perp() * omega) + wrench.couple * omega
+        };
+        wrenches.iter().map(power).sum()
     }
 }
 
 impl MultibodySystem {
-    /// Value and velocity of a coordinate; none if the mechanism does not have it.
-    pub(super) fn coordinate(&self, of: Coordinate, at: &MultibodyState) -> Option<[f64; 2]> {
-        match of {
-            Coordinate::Angle(bodies) => at.motion().angle(bodies),
-            Coordinate::Length { bodies, points } => at.motion().length(bodies, points),
-            Coordinate::Travel(joint) => {
-                let joint = self.mechanism.joints.get(joint.0)?;
-                let axis = slide_axis(joint.kind)?;
-                at.motion().travel(joint.bodies, joint.points, axis)
-            }
+    fn signal(&self, signal: Signal, at: &MultibodyState) -> Option<f64> {
+        let coordinate = |of| at.motion().coordinate(&self.mechanism, of);
+        match signal {
+            Signal::Time => Some(at.t),
+            Signal::Value(of) => Some(coordinate(of)?[0]),
+            Signal::Velocity(of) => Some(coordinate(of)?[1]),
         }
     }
 
-    fn signal(&self, signal: Signal, at: &MultibodyState) -> Option<f64> {
-        match signal {
-            Signal::Time => Some(at.t),
-            Signal::Value(coordinate) => Some(self.coordinate(coordinate, at)?[0]),
-            Signal::Velocity(coordinate) => Some(self.coordinate(coordinate, at)?[1]),
-        }
+    fn signals(&self, signals: &[Signal], at: &MultibodyState) -> Option<Vec<f64>> {
+        signals.iter().map(|s| self.signal(*s, at)).collect()
     }
 
     /// A magnitude; none if it needs a coordinate or a signal that is not there. What depends on reactions, and
@@ -61,14 +56,12 @@ impl MultibodySystem {
             Magnitude::Constant(value) => Some(*value),
             Magnitude::Law(signal, law) => Some(law.eval(self.signal(*signal, at)?)[0]),
             Magnitude::Expression(expression, signals) => {
-                let signals = signals.iter().map(|s| self.signal(*s, at));
-                let values = signals.collect::<Option<Vec<f64>>>()?;
+                let values = self.signals(signals, at)?;
                 let enough = expression.variables().len() <= values.len();
                 enough.then(|| expression.eval(&values))
             }
             Magnitude::Function(function, signals) => {
-                let signals = signals.iter().map(|s| self.signal(*s, at));
-                Some(function.value(&signals.collect::<Option<Vec<f64>>>()?))
+                Some(function.value(&self.signals(signals, at)?))
             }
             Magnitude::Friction(_) | Magnitude::Separating(_) | Magnitude::External(_) => None,
         }
@@ -76,12 +69,19 @@ impl MultibodySystem {
 
     /// The forces of a load of a given magnitude.
     pub(super) fn wrenches(&self, load: usize, force: f64, at: &MultibodyState) -> Vec<BodyWrench> {
-        let (ground, masses) = (self.mechanism.ground, &self.masses);
-        let wrenches = self.loads.get(load).and_then(|load| {
-            let (poses, velocities) = (&at.poses, &at.velocities);
-            load_wrenches(&load.kind, force, ground, masses, poses, velocities)
-        });
+        let load = self.loads.get(load);
+        let wrenches = load.and_then(|load| self.wrenches_of(&load.kind, force, at));
         wrenches.unwrap_or_default()
+    }
+
+    fn wrenches_of(
+        &self,
+        kind: &LoadKind,
+        force: f64,
+        at: &MultibodyState,
+    ) -> Option<Vec<BodyWrench>> {
+        let (ground, masses) = (self.mechanism.ground, &self.masses);
+        load_wrenches(kind, force, ground, masses, &at.poses, &at.velocities)
     }
 
     /// All bodies at the origin and at rest: to see which bodies and coordinates exist.
@@ -99,8 +99,7 @@ impl MultibodySystem {
         let at = self.rest_state();
         for (i, load) in self.loads.iter().enumerate() {
             let wrong = |what| MultibodyError::Load { load: i, what };
-            let (ground, masses) = (self.mechanism.ground, &self.masses);
-            load_wrenches(&load.kind, 0.0, ground, masses, &at.poses, &at.velocities)
+            self.wrenches_of(&load.kind, 0.0, &at)
                 .ok_or(wrong("it acts on a body that is not there"))?;
             match &load.magnitude {
                 Magnitude::Friction(friction) => self.check_friction(&load.kind, friction),

@@ -1,13 +1,14 @@
 //! One state closed densely, with all that it is compared with.
 
-use super::{ClaimedState, StateError};
+use super::ClaimedState;
 use crate::checks::MAX_DIFFERENCE_STEP;
+use crate::comparison::{Comparison, ComparisonSet};
 use crate::constraint_closing::Configuration;
-use crate::dense::DenseMechanism;
+use crate::dense::{DenseBody, DenseMechanism, add_scaled};
 use crate::differences::Extrapolated;
 use crate::error::Result;
-use crate::wrenches::{DenseWrench, NetWrench};
-use dwell_geometry::{Vec2, vec2};
+use crate::wrenches::{BodyWrench, NetWrench};
+use dwell_geometry::{BodyId, Vec2, vec2};
 
 /// A state with its dense solution.
 pub(super) struct DenseState<'a> {
@@ -24,8 +25,8 @@ pub(super) struct DenseState<'a> {
     pub(super) claimed_ddot: Vec<f64>,
     pub(super) pose_rounding_bound: f64,
     pub(super) condition_number: f64,
-    pub(super) load_wrenches: Vec<DenseWrench>,
-    joint_wrenches: Vec<DenseWrench>,
+    pub(super) load_wrenches: Vec<BodyWrench>,
+    joint_wrenches: Vec<BodyWrench>,
 }
 
 /// Velocities and accelerations of the moved frames, and the multipliers: reactions, then actuator forces.
@@ -41,19 +42,20 @@ impl DenseSolution {
         state: &ClaimedState,
         at: &Configuration,
         unit_velocities: &[Vec<f64>],
-        loads: &[DenseWrench],
+        loads: &[BodyWrench],
     ) -> Result<Self> {
         let actuator_row = dense.actuator_row();
         let mut x_dot = vec![0.0; dense.rows.columns()];
         for (u, rate) in unit_velocities[actuator_row..].iter().zip(&state.q_dot) {
-            for (v, u) in x_dot.iter_mut().zip(u) {
-                *v += u * rate;
-            }
+            add_scaled(&mut x_dot, *rate, u);
         }
         let mut rates = vec![0.0; dense.rows.len()];
         rates[actuator_row..].copy_from_slice(&state.q_ddot);
         let x_ddot = dense.acceleration(at, &x_dot, &rates);
-        let forces = required_forces(dense, at, &x_dot, &x_ddot, loads);
+        // M ẍ + h − f: what the joints and actuators have to exert.
+        let inertia = inertia_wrenches(dense, at, &x_dot, &x_ddot);
+        let mut forces = vec![0.0; dense.rows.columns()];
+        dense.add_wrenches(&at.x, inertia.iter().chain(loads), -1.0, &mut forces);
         Ok(Self {
             multipliers: dense.multipliers(at, &forces)?,
             x_dot,
@@ -66,46 +68,30 @@ impl DenseSolution {
     }
 }
 
-/// M ẍ + h − f in dense coordinates: what the joints and actuators have to exert.
-fn required_forces(
+/// The inertia forces −m a_G and couples −I α of all moving bodies.
+fn inertia_wrenches(
     dense: &DenseMechanism,
     at: &Configuration,
     x_dot: &[f64],
     x_ddot: &[f64],
-    loads: &[DenseWrench],
-) -> Vec<f64> {
-    let mut forces = vec![0.0; dense.rows.columns()];
-    let origin = |c: usize| vec2(at.x[c], at.x[c + 1]);
-    let mut add = |c: usize, force: Vec2, moment: f64| {
-        forces[c] += force.x;
-        forces[c + 1] += force.y;
-        forces[c + 2] += moment;
+) -> Vec<BodyWrench> {
+    let wrench = |(b, body): (usize, &DenseBody)| {
+        Some(BodyWrench {
+            body: BodyId(b),
+            force: -(dense.center_acceleration(body, at, x_dot, x_ddot) * body.mass.mass),
+            point: dense.center(body, at),
+            couple: -(body.mass.inertia * x_ddot[body.column? + 2]),
+        })
     };
-    for body in &dense.bodies {
-        if let Some(c) = body.column {
-            let force = dense.center_acceleration(body, at, x_dot, x_ddot) * body.mass.mass;
-            let arm = dense.center(body, at) - origin(c);
-            let moment = arm.cross(force) + body.mass.inertia * x_ddot[c + 2];
-            add(c, force, moment);
-        }
-    }
-    for load in loads {
-        if let Some(c) = dense.bodies[load.body].column {
-            add(c, -load.force, -load.moment(origin(c)));
-        }
-    }
-    forces
+    dense.bodies.iter().enumerate().filter_map(wrench).collect()
 }
 
 impl<'a> DenseState<'a> {
-    pub(super) fn new(
-        dense: &'a DenseMechanism,
-        state: &'a ClaimedState,
-    ) -> Result<Self, StateError> {
-        check_counts(dense, state)?;
+    /// A state that has passed [`check_counts`].
+    pub(super) fn new(dense: &'a DenseMechanism, state: &'a ClaimedState) -> Result<Self> {
         let (configuration, closing_correction) = dense.close_at(&state.poses, &state.q)?;
         dense.check_redundant_rows(&configuration)?;
-        let loads = shifted_wrenches(dense, state);
+        let loads = dense.shifted_wrenches(&state.load_wrenches);
         let velocities = dense.unit_velocities(&configuration);
         let solution = DenseSolution::new(dense, state, &configuration, &velocities, &loads)?;
         let exact = solution.flat();
@@ -135,21 +121,36 @@ impl<'a> DenseState<'a> {
         })
     }
 
+    /// One comparison in the state: the difference, what the scale is at least, and the error of the reference. `what`
+    /// names the quantity after the state; empty where there is only one.
+    pub(super) fn compare(
+        &self,
+        set: &mut ComparisonSet,
+        numbers: [f64; 3],
+        unit: &'static str,
+        what: &str,
+    ) {
+        let separator = if what.is_empty() { "" } else { ", " };
+        let location = format!("t = {} s{separator}{what}", self.state.t);
+        let condition_number = self.condition_number;
+        let comparison = Comparison {
+            numbers,
+            unit,
+            condition_number,
+        };
+        set.add(comparison, location);
+    }
+
     /// The moving bodies with their columns.
     pub(super) fn moving_bodies(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let bodies = self.dense.bodies.iter().enumerate();
         bodies.filter_map(|(b, body)| Some((b, body.column?)))
     }
 
-    /// The largest |ω|, or |v| per size.
-    pub(super) fn scaled_norm(&self, velocities: &[f64]) -> f64 {
-        self.dense.scaled_norm(velocities)
-    }
-
     /// How much rounding may have moved the dense motion, relative to it.
     pub(super) fn relative_rounding_bound(&self) -> f64 {
         let of = |bound: &[f64], value: &[f64]| {
-            let (bound, value) = (self.scaled_norm(bound), self.scaled_norm(value));
+            let [bound, value] = [bound, value].map(|v| self.dense.scaled_norm(v));
             if bound == 0.0 { 0.0 } else { bound / value }
         };
         self.pose_rounding_bound
@@ -175,7 +176,7 @@ impl<'a> DenseState<'a> {
         let body_at = &self.dense.bodies[body];
         let center = self.dense.center(body_at, &self.configuration);
         let all = self.joint_wrenches.iter().chain(&self.load_wrenches);
-        NetWrench::of(all.filter(|a| a.body == body), center)
+        NetWrench::of(all.filter(|a| a.body.0 == body), center)
     }
 
     /// m a_G and I α with the claimed motion.
@@ -209,7 +210,8 @@ impl<'a> DenseState<'a> {
 
     /// t with v t + ½ a t² = the longest step; a second where nothing moves.
     pub(super) fn time_step(&self) -> f64 {
-        let [v, a] = [&self.solution.x_dot, &self.solution.x_ddot].map(|x| self.scaled_norm(x));
+        let DenseSolution { x_dot, x_ddot, .. } = &self.solution;
+        let [v, a] = [x_dot, x_ddot].map(|x| self.dense.scaled_norm(x));
         let step = 2.0 * MAX_DIFFERENCE_STEP / (v + (v * v + 2.0 * a * MAX_DIFFERENCE_STEP).sqrt());
         if step.is_finite() { step } else { 1.0 }
     }
@@ -225,13 +227,10 @@ impl<'a> DenseState<'a> {
         for (tau, rate) in self.state.tau.iter().zip(&self.state.q_dot) {
             add(tau * rate, (tau * rate).abs());
         }
-        let (at, u, a) = (
-            &self.configuration,
-            &self.solution.x_dot,
-            &self.solution.x_ddot,
-        );
+        let (at, solution) = (&self.configuration, &self.solution);
+        let (u, a) = (&solution.x_dot, &solution.x_ddot);
         for load in &self.load_wrenches {
-            if let Some(c) = self.dense.bodies[load.body].column {
+            if let Some(c) = self.dense.bodies[load.body.0].column {
                 let arm = load.point - vec2(at.x[c], at.x[c + 1]);
                 let v = vec2(u[c], u[c + 1]);
                 add(load.force.dot(v), load.force.norm() * v.norm());
@@ -256,8 +255,8 @@ impl<'a> DenseState<'a> {
     /// terms: x, y, and the moment about the ground's moved origin over the size, N.
     pub(super) fn momentum_balance(&self) -> [(f64, f64, &'static str); 3] {
         let ground = self.dense.mechanism.ground;
-        let on_ground = self.joint_wrenches.iter().filter(|a| a.body == ground);
-        let on_bodies = self.load_wrenches.iter().filter(|a| a.body != ground);
+        let on_ground = self.joint_wrenches.iter().filter(|a| a.body.0 == ground);
+        let on_bodies = self.load_wrenches.iter().filter(|a| a.body.0 != ground);
         let mut total = NetWrench::of(on_bodies, Vec2::ZERO);
         // The ground's action is the opposite of what acts on it.
         let on_ground = NetWrench::of(on_ground, Vec2::ZERO);
@@ -265,22 +264,9 @@ impl<'a> DenseState<'a> {
             total.sum[c] -= on_ground.sum[c];
             total.terms[c] += on_ground.terms[c];
         }
-        let (at, u, a) = (
-            &self.configuration,
-            &self.solution.x_dot,
-            &self.solution.x_ddot,
-        );
-        for body in &self.dense.bodies {
-            if let Some(c) = body.column {
-                let force = self.dense.center_acceleration(body, at, u, a) * body.mass.mass;
-                let center = self.dense.center(body, at);
-                let couple = body.mass.inertia * a[c + 2];
-                total.sum[0] -= force.x;
-                total.sum[1] -= force.y;
-                total.sum[2] -= center.cross(force) + couple;
-                total.terms[0] += force.norm();
-                total.terms[2] += center.norm() * force.norm() + couple.abs();
-            }
+        let DenseSolution { x_dot, x_ddot, .. } = &self.solution;
+        for wrench in inertia_wrenches(self.dense, &self.configuration, x_dot, x_ddot) {
+            total.add(&wrench, Vec2::ZERO);
         }
         let size = self.dense.size();
         [
@@ -292,7 +278,7 @@ impl<'a> DenseState<'a> {
 }
 
 /// Everything must be there, and as many as there should be.
-fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Result<(), StateError> {
+pub(super) fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Result<(), String> {
     let (bodies, actuators) = (dense.bodies.len(), dense.mechanism.actuators.len());
     let counts = [
         ("coordinates", state.q.len(), actuators),
@@ -305,34 +291,15 @@ fn check_counts(dense: &DenseMechanism, state: &ClaimedState) -> Result<(), Stat
         ("actuator forces", state.tau.len(), actuators),
     ];
     if let Some((what, found, expected)) = counts.into_iter().find(|c| c.1 != c.2) {
-        return Err(StateError::Count {
-            what,
-            found,
-            expected,
-        });
+        return Err(format!("{found} {what} where there are {expected}"));
     }
     let mut loaded = state.load_wrenches.iter().map(|l| l.body.0);
     match loaded.find(|&b| b >= bodies) {
-        Some(body) => Err(StateError::Load { body, bodies }),
+        Some(body) => Err(format!(
+            "a load acts on body {body}, but there are {bodies} bodies"
+        )),
         None => Ok(()),
     }
-}
-
-/// The loads with their points from the ground's moved origin.
-fn shifted_wrenches(dense: &DenseMechanism, state: &ClaimedState) -> Vec<DenseWrench> {
-    let ground = dense.bodies[dense.mechanism.ground].shift;
-    let shifted = state.load_wrenches.iter().map(|load| DenseWrench {
-        body: load.body.0,
-        force: load.force,
-        // A pure couple acts nowhere, and its point, wherever it was put, must not cost digits.
-        point: if load.force == Vec2::ZERO {
-            Vec2::ZERO
-        } else {
-            load.point - ground
-        },
-        couple: load.couple,
-    });
-    shifted.collect()
 }
 
 /// The claimed accelerations of the moved frames, in dense order.

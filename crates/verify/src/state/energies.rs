@@ -15,13 +15,13 @@
 //! dense side are used: no acceleration, no multiplier, no mass times acceleration. Of one freedom
 //! without loads, (3) is τ = m q̈ + ½ m′ q̇² and R = a q̈ + b q̇².
 
-use super::comparison_set::ComparisonSet;
 use super::dense_state::DenseState;
 use super::{ClaimedState, StateChecker};
 use crate::checks::MAX_DIFFERENCE_STEP;
-use crate::comparison::FindingSpec;
-use crate::dense::DenseMechanism;
-use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives};
+use crate::comparison::{ComparisonSet, FindingSpec};
+use crate::dense::{DenseMechanism, add_scaled};
+use crate::differences::{DerivativeOrder, Extrapolated, NO_ESTIMATE, derivatives, slope};
+use crate::wrenches::BodyWrench;
 use dwell_findings::{Check, Finding};
 use dwell_geometry::{Mechanism, vec2};
 use dwell_kinetostatics::Mass;
@@ -85,14 +85,14 @@ pub fn check_energies(
 impl StateChecker<'_> {
     /// (1) and (2).
     fn energies(&self, states: &[ClaimedState], claimed: &[Vec<f64>]) -> [Finding; 2] {
-        let mut matrix = ComparisonSet::with_individual_scales("kg m2");
-        let mut kinetic = ComparisonSet::new("J");
+        let mut matrix = ComparisonSet::with_individual_scales();
+        let mut kinetic = ComparisonSet::default();
         for m in &self.dense_states {
-            let index = states.iter().position(|state| std::ptr::eq(state, m.state));
-            let claimed = index.and_then(|k| claimed.get(k));
+            let mut claims = states.iter().zip(claimed);
+            let claimed = claims.find(|(state, _)| std::ptr::eq(*state, m.state));
             let n = m.state.q.len();
             let at = |i: usize, j: usize| {
-                let value = claimed.and_then(|claimed| claimed.get(i * n + j));
+                let value = claimed.and_then(|(_, claimed)| claimed.get(i * n + j));
                 value.copied().unwrap_or(f64::NAN)
             };
             let dense = m.mass_matrix();
@@ -103,13 +103,13 @@ impl StateChecker<'_> {
                     let [one, other] = [i, j].map(|k| &self.dense.mechanism.actuators[k].name);
                     let error = m.relative_rounding_bound() * scale;
                     let numbers = [at(i, j) - dense[i][j], scale, error];
-                    matrix.add(m, numbers, &format!("{one} {other}"));
+                    m.compare(&mut matrix, numbers, "kg m2", &format!("{one} {other}"));
                     half += 0.5 * m.state.q_dot[i] * at(i, j) * m.state.q_dot[j];
                 }
             }
             let energy = m.claimed_energy();
             let error = m.relative_rounding_bound() * energy;
-            kinetic.add(m, [half - energy, energy, error], "");
+            m.compare(&mut kinetic, [half - energy, energy, error], "J", "");
         }
         [
             self.finding(&MASS_MATRIX, matrix),
@@ -119,26 +119,23 @@ impl StateChecker<'_> {
 
     /// (3), of the actuators and of the reactions.
     fn lagrange(&self) -> Vec<Finding> {
-        let (size, actuator_row) = (self.dense.size(), self.dense.actuator_row());
+        let actuator_row = self.dense.actuator_row();
         let rows = self.rows();
-        let mut of_actuators = ComparisonSet::new("N");
-        let mut released = ComparisonSet::new("N");
+        let [mut of_actuators, mut released] = [(); 2].map(|()| ComparisonSet::default());
         let states = self.dense_states.par_iter();
         let forces: Vec<_> = states.map(DenseState::lagrange).collect();
         for (m, forces) in self.dense_states.iter().zip(forces) {
             let claimed = m.state.reactions.iter().chain(&m.state.tau);
             let largest_force = m.largest_force();
-            for (k, ((claimed, force), (moment, name))) in
-                claimed.zip(forces).zip(&rows).enumerate()
-            {
+            for (k, ((claimed, force), (arm, name))) in claimed.zip(forces).zip(&rows).enumerate() {
                 let Some(force) = force else { continue };
-                let arm = if *moment { 1.0 / size } else { 1.0 };
                 let (value, error) = (force.value * arm, force.error * arm);
                 let numbers = [claimed * arm - value, largest_force.max(value.abs()), error];
-                match k < actuator_row {
-                    true => released.add(m, numbers, name),
-                    false => of_actuators.add(m, numbers, name),
-                }
+                let set = match k < actuator_row {
+                    true => &mut released,
+                    false => &mut of_actuators,
+                };
+                m.compare(set, numbers, "N", name);
             }
         }
         let determinate = self.dense.determinate[..actuator_row].iter();
@@ -207,7 +204,7 @@ impl DenseState<'_> {
             let mut x_dot = vec![0.0; dense.rows.columns()];
             for (i, u) in velocities[actuator_row..].iter().enumerate() {
                 let rate = state.q_dot[i] + t * state.q_ddot[i];
-                x_dot.iter_mut().zip(u).for_each(|(v, u)| *v += u * rate);
+                add_scaled(&mut x_dot, rate, u);
             }
             let momentum = |u: &Vec<f64>| dense.inertia(&configuration, u, &x_dot);
             Some(velocities.iter().map(momentum).collect())
@@ -225,18 +222,18 @@ impl DenseState<'_> {
         let rates: Vec<_> = (actuator_row..).zip(state.q_dot.iter().copied()).collect();
         let rounding = self.relative_rounding_bound().max(f64::EPSILON);
         let step = MAX_DIFFERENCE_STEP / dense.scaled_norm(u);
-        let slopes = derivatives(DerivativeOrder::First, step, rounding, |h| {
+        let slope = slope(step, rounding, |h| {
             let value = self.configuration.row_values[row] + h;
             let opened = dense.step_row(&self.configuration, row, u, value).ok()?;
-            Some(vec![dense.kinetic_energy(&opened, &rates)])
+            Some(dense.kinetic_energy(&opened, &rates))
         });
-        slopes.first().copied().unwrap_or(none(f64::NAN))
+        slope.unwrap_or(none(f64::NAN))
     }
 
     /// The power of the loads at the velocities `u`, W.
     fn load_power(&self, u: &[f64]) -> f64 {
-        let power = |load: &crate::wrenches::DenseWrench| {
-            self.dense.bodies[load.body].column.map_or(0.0, |c| {
+        let power = |load: &BodyWrench| {
+            self.dense.bodies[load.body.0].column.map_or(0.0, |c| {
                 let origin = vec2(self.configuration.x[c], self.configuration.x[c + 1]);
                 load.force.dot(vec2(u[c], u[c + 1])) + load.moment(origin) * u[c + 2]
             })
