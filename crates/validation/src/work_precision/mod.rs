@@ -25,10 +25,7 @@ use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::output::signed_png;
 use dwell_study::{Outcome, Progress, Step};
-use evaluator::{
-    MachineEvaluator, SinglePrecisionEvaluator, SinglePrecisionModel, TableEvaluator,
-    table_evaluation,
-};
+use evaluator::{MachineEvaluator, SinglePrecisionModel};
 use reference_solution::ReferenceSolution;
 use run::{Run, ToleranceSeries};
 use std::time::Instant;
@@ -203,68 +200,37 @@ fn evaluators<'s>(
     omitted: &mut Vec<String>,
 ) -> Vec<Box<dyn Evaluator + 's>> {
     let mut all: Vec<Box<dyn Evaluator + 's>> = match &subject.reduced {
-        Some(exact) => reduced_evaluators(exact, subject, effort, omitted),
-        None => machine_evaluators(subject, effort, omitted),
-    };
-    if let Some(exact) = &subject.reduced {
-        all.extend(extra(exact));
-    }
-    all
-}
-
-/// The reduced model itself, in single precision, and tables of it.
-fn reduced_evaluators<'s>(
-    exact: &ExactModel,
-    subject: &Subject,
-    effort: &Effort,
-    omitted: &mut Vec<String>,
-) -> Vec<Box<dyn Evaluator + 's>> {
-    let single = SinglePrecisionModel::new(exact);
-    let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
-        Box::new(ModelEvaluator::new(exact.clone(), Evaluation::Exact)),
-        Box::new(ModelEvaluator::new(single, Evaluation::SinglePrecision)),
-    ];
-    let domain = table_domain(exact.range(), subject.coordinate_range);
-    for &accuracy in &effort.table_accuracies {
-        let started = Instant::now();
-        match TabulatedModel::new(exact, accuracy, domain) {
-            Ok(model) => all.push(Box::new(ModelEvaluator {
-                build_time: started.elapsed().as_secs_f64(),
-                evaluation: table_evaluation(&model, accuracy),
-                model,
-            })),
-            Err(error) => omitted.push(format!("table {accuracy:.0e}: {error}")),
+        Some(exact) => vec![
+            Box::new(ModelEvaluator {
+                model: exact.clone(),
+                evaluation: Evaluation::Exact,
+                build_time: 0.0,
+            }),
+            Box::new(ModelEvaluator {
+                model: SinglePrecisionModel::new(exact),
+                evaluation: Evaluation::SinglePrecision,
+                build_time: 0.0,
+            }),
+        ],
+        None => {
+            let machine = |evaluation| MachineEvaluator {
+                subject,
+                evaluation,
+                table: None,
+                build_time: 0.0,
+            };
+            let [exact, single] = [Evaluation::Exact, Evaluation::SinglePrecision].map(machine);
+            vec![Box::new(exact), Box::new(single)]
         }
-    }
-    all
-}
-
-/// The machine itself, in single precision, and on tables.
-fn machine_evaluators<'s>(
-    subject: &'s Subject,
-    effort: &Effort,
-    omitted: &mut Vec<String>,
-) -> Vec<Box<dyn Evaluator + 's>> {
-    let machine = || MachineEvaluator {
-        machine: &subject.machine,
-        output_machine: &subject.output_machine,
-        initial_state: &subject.initial_state,
     };
-    let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
-        Box::new(machine()),
-        Box::new(SinglePrecisionEvaluator(machine())),
-    ];
-    let range = subject.machine.model().plan().range();
+    let range = match &subject.reduced {
+        Some(exact) => exact.range(),
+        None => subject.machine.model().plan().range(),
+    };
     let domain = table_domain(range, subject.coordinate_range);
     for &accuracy in &effort.table_accuracies {
-        let started = Instant::now();
-        match TabulatedMachine::new(&subject.machine, accuracy, domain) {
-            Ok(table) => all.push(Box::new(TableEvaluator {
-                build_time: started.elapsed().as_secs_f64(),
-                table,
-                accuracy,
-                exact: machine(),
-            })),
+        match table_evaluator(subject, accuracy, domain) {
+            Ok(table) => all.push(table),
             Err(error @ TabulationError::Table(_)) => {
                 omitted.push(format!("table {accuracy:.0e}: {error}"));
             }
@@ -274,7 +240,39 @@ fn machine_evaluators<'s>(
             }
         }
     }
+    if let Some(exact) = &subject.reduced {
+        all.extend(extra(exact));
+    }
     all
+}
+
+/// The reduced model, or else the machine, on a table.
+fn table_evaluator(
+    subject: &Subject,
+    accuracy: f64,
+    domain: TableDomain,
+) -> Result<Box<dyn Evaluator + '_>, TabulationError> {
+    let started = Instant::now();
+    let evaluation = |cells, bytes| Evaluation::Table {
+        accuracy,
+        cells,
+        bytes,
+    };
+    if let Some(exact) = &subject.reduced {
+        let model = TabulatedModel::new(exact, accuracy, domain)?;
+        return Ok(Box::new(ModelEvaluator {
+            build_time: started.elapsed().as_secs_f64(),
+            evaluation: evaluation(model.cells()[0], model.bytes()[0]),
+            model,
+        }));
+    }
+    let table = TabulatedMachine::new(&subject.machine, accuracy, domain)?;
+    Ok(Box::new(MachineEvaluator {
+        subject,
+        build_time: started.elapsed().as_secs_f64(),
+        evaluation: evaluation(table.cells()[0], table.bytes()),
+        table: Some(table),
+    }))
 }
 
 /// The range of a motion with a margin.

@@ -2,7 +2,7 @@
 
 use super::{Reference, check_keys, list, named_values, number, object, read_each};
 use crate::cases::model_states::{ModelStates, StateRequest};
-use crate::cases::state_quantity::{QuantityKind, StateQuantity};
+use crate::cases::state_quantity::{KINDS, StateQuantity};
 use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
@@ -81,17 +81,8 @@ fn by_actuator(value: &Value, scene: &Scene) -> Result<Vec<f64>, String> {
     actuators.iter().map(|a| number(value, &a.name)).collect()
 }
 
-/// The quantities of each finding, with the end of its key.
-const KINDS: [(QuantityKind, &str); 5] = [
-    (QuantityKind::Positions, "positions"),
-    (QuantityKind::Velocities, "velocities"),
-    (QuantityKind::Accelerations, "accelerations"),
-    (QuantityKind::Reactions, "reactions"),
-    (QuantityKind::ActuatorForces, "actuator-forces"),
-];
-
-/// A value with the kind of its quantity, by which its scale is found.
-type KindAndValue = (QuantityKind, ComparedValue);
+/// A value with the kind of its quantity.
+type KindAndValue = (&'static str, ComparedValue);
 
 impl ReferenceStates {
     /// The largest value of a unit in all samples.
@@ -123,16 +114,16 @@ impl ReferenceStates {
         if !unknown.is_empty() {
             findings.push(unknown_names(&unknown, &over, prefix));
         }
-        for (kind, key) in KINDS {
+        for kind in KINDS {
             let of_kind = values.iter().filter(|(of, _)| *of == kind);
             let values: Vec<_> = of_kind.map(|(_, value)| value.clone()).collect();
             if values.is_empty() {
                 continue;
             }
             let spec = FindingSpec {
-                key: &format!("{prefix}-{key}"),
+                key: &format!("{prefix}-{kind}"),
                 check: Check::ReferenceValues,
-                comparison: &format!("{} with {source}", key.replace('-', " ")),
+                comparison: &format!("{} with {source}", kind.replace('-', " ")),
                 scale: "the largest value of the same unit",
                 tolerance: self.tolerance,
                 tolerance_reason: &self.reason,
