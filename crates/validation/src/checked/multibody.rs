@@ -3,18 +3,16 @@
 use crate::cases::reference::{PublishedState, Reference};
 use crate::checked::free_motion_setup::FreeMotionSetup;
 use crate::error::ValidationError;
-use dwell_dynamics::{
-    CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Orbit, loads_with_drives,
-};
+use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Orbit};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
 use dwell_scene::{MotionDuration, Scene};
 use dwell_study::StudyError;
-use dwell_study::explain::{explain_machine, explain_motion};
+use dwell_study::explain::explain_motion;
 use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use dwell_study::models::loaded_model;
+use dwell_study::models::{loaded_model, with_drive_loads};
 use dwell_verify::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 use std::f64::consts::TAU;
 
@@ -88,14 +86,6 @@ fn solve_motion(
     let failure = motion_segments.failure.as_ref();
     run.stop_reason = failure.map(|e| explain(e).to_string());
     Ok(Some(run))
-}
-
-/// The scene with the loads through which its drives act.
-pub(crate) fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
-    let loads = loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives);
-    let mut scene_with_drives = scene.clone();
-    scene_with_drives.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
-    Ok(scene_with_drives)
 }
 
 /// Every step, segment by segment. Within the window of a change point's fit there are no reactions.

@@ -3,13 +3,13 @@
 
 use crate::cases::reference::Reference;
 use crate::checked::free_motion_setup::FreeMotionSetup;
-use crate::checked::multibody::with_drive_loads;
 use dwell_dynamics::{DynamicsError, Method, MotionClass, Options, Orbit};
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::{Load, Magnitude};
 use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, NamedEvent, Scene};
 use dwell_study::StudyError;
 use dwell_study::free_motion::compute::FreeMotionProblem;
+use dwell_study::models::with_drive_loads;
 use std::f64::consts::TAU;
 
 /// Tolerances of the integrator, from the coarsest to the finest; the finest has a tolerance of its own.

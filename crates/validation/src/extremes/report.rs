@@ -9,8 +9,8 @@ use dwell_report::{
     Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table, png,
     reproducible_text,
 };
-use dwell_study::Outcome;
-use dwell_study::StudyError;
+use dwell_study::output::chart;
+use dwell_study::{Outcome, StudyError};
 
 /// Most digits that a chart shows.
 const MAX_DIGITS: f64 = 17.0;
@@ -128,13 +128,13 @@ fn digits_chart(result: &SeriesResult) -> Chart {
         let marked = Series::line("typed error", typed_errors).stroke(Stroke::Points);
         series.push(marked.color(Paint::Ink));
     }
-    Chart {
-        title: parameter_series.description.clone(),
-        x: parameter_axis(result),
-        y: Axis::new("digits kept", "").with_range(0.0, MAX_DIGITS),
+    let y = Axis::new("digits kept", "").with_range(0.0, MAX_DIGITS);
+    chart(
+        &parameter_series.description,
+        parameter_axis(result),
+        y,
         series,
-        ..Chart::default()
-    }
+    )
 }
 
 fn ratio_chart(result: &SeriesResult) -> Chart {

@@ -3,7 +3,6 @@
 
 use crate::cases::reference::Reference;
 use crate::checked::free_motion_setup::FreeMotionSetup;
-use crate::checked::multibody::with_drive_loads;
 use dwell_dynamics::{DynamicsError, Machine, Method, OdeState, Options, Orbit, ReducedState};
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::ExactModel;
@@ -11,7 +10,7 @@ use dwell_scene::{FreeMotionSpec, Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_motion;
 use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use dwell_study::models::build_machine;
+use dwell_study::models::{build_machine, with_drive_loads};
 use dwell_study::number_format::digits;
 use std::f64::consts::TAU;
 

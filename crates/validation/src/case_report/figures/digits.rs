@@ -4,7 +4,7 @@ use dwell_findings::{Check, Finding};
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Row};
 use dwell_scene::Scene;
 use dwell_study::number_format::count;
-use dwell_study::output::scene_caption;
+use dwell_study::output::figure;
 
 /// Digits of a number: exact agreement has no more.
 const MAX_DIGITS: f64 = 16.0;
@@ -24,25 +24,23 @@ pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
         "tolerance over difference",
     ];
     let count = count(findings.len(), "finding");
-    Figure {
-        name: "digits".to_owned(),
-        title: "Digits of agreement".to_owned(),
-        caption: scene_caption(
-            scene,
-            "The largest relative difference of every finding and its tolerance, grouped by check.",
-        ),
-        columns: 1,
-        panels: vec![
-            Grid {
-                columns: columns.map(str::to_owned).into(),
-                groups,
-                values: Axis::new("digits that agree", "").with_range(0.0, MAX_DIGITS),
-                ..Grid::default()
-            }
-            .into(),
-        ],
-        provenance: format!("{count}, each with its own check and tolerance"),
-    }
+    let grid = Grid {
+        columns: columns.map(str::to_owned).into(),
+        groups,
+        values: Axis::new("digits that agree", "").with_range(0.0, MAX_DIGITS),
+        ..Grid::default()
+    };
+    let text =
+        "The largest relative difference of every finding and its tolerance, grouped by check.";
+    let provenance = format!("{count}, each with its own check and tolerance");
+    figure(
+        scene,
+        "digits",
+        "Digits of agreement",
+        text,
+        vec![grid.into()],
+        provenance,
+    )
 }
 
 fn row(finding: &Finding) -> Row {

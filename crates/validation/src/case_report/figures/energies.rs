@@ -1,9 +1,9 @@
 //! A free motion in time: coordinates, velocities, energies.
 
 use crate::checked::multibody::FreeMotionRun;
-use dwell_report::{Axis, Chart, Figure, Panel, Series, Stroke};
+use dwell_report::{Axis, Figure, Series, Stroke};
 use dwell_scene::Scene;
-use dwell_study::output::{scene_caption, symbol};
+use dwell_study::output::{chart, figure, symbol};
 
 /// Most points of a curve: there are thousands of steps.
 const MAX_POINTS: usize = 1500;
@@ -19,25 +19,22 @@ pub(crate) fn energies(scene: &Scene, run: &FreeMotionRun) -> Figure {
         let points = drawn_steps.iter().map(|&k| [run.steps[k].t, of(k)]);
         points.collect()
     };
-    let chart = |title: String, y: Axis, series: Vec<Series>| Chart {
-        title,
-        x: Axis::new("time", "s"),
-        y,
-        series,
-        ..Chart::default()
-    };
+    let time = || Axis::new("time", "s");
     let mut charts = Vec::new();
     for (a, actuator) in scene.mechanism.actuators.iter().enumerate() {
         let coordinate = actuator.coordinate();
-        let (name, unit) = match coordinate.is_angle() {
-            true => (symbol(&actuator.name), coordinate.unit()),
-            false => (actuator.name.clone(), coordinate.unit()),
+        let unit = coordinate.unit();
+        let name = match coordinate.is_angle() {
+            true => symbol(&actuator.name),
+            false => actuator.name.clone(),
         };
         let line = |i: usize| vec![Series::line("", curve(&|k| run.coordinates[k][a][i]))];
         let title = format!("Coordinate {name}");
-        charts.push(chart(title, Axis::new(name.clone(), unit), line(0)));
+        let axis = Axis::new(name.clone(), unit);
+        charts.push(chart(title, time(), axis, line(0)));
         let axis = Axis::new("velocity", format!("{unit}/s"));
-        charts.push(chart(format!("Velocity of {name}"), axis, line(1)));
+        let title = format!("Velocity of {name}");
+        charts.push(chart(title, time(), axis, line(1)));
     }
     let initial = run.steps.first().map_or(0.0, |first| first.potential);
     let lines = vec![
@@ -47,14 +44,15 @@ pub(crate) fn energies(scene: &Scene, run: &FreeMotionRun) -> Figure {
         Series::line("work", curve(&|k| run.steps[k].work)).stroke(Stroke::Dashed),
     ];
     let energy = Axis::new("energy", "J");
-    charts.push(chart("Energies".to_owned(), energy, lines));
+    charts.push(chart("Energies", time(), energy, lines));
     let text = "The free motion under loads and drives, checked by the full multibody equations. The potential energy is zero at the start; the work is that of all forces without a potential.";
-    Figure {
-        name: "motion".to_owned(),
-        title: "Free motion".to_owned(),
-        caption: scene_caption(scene, text),
-        columns: 1,
-        panels: vec![Panel::Stack(charts)],
-        provenance: FreeMotionRun::method_text(),
-    }
+    let provenance = FreeMotionRun::method_text();
+    figure(
+        scene,
+        "motion",
+        "Free motion",
+        text,
+        vec![charts.into()],
+        provenance,
+    )
 }

@@ -1,8 +1,8 @@
 //! Velocity and reactions in time: the paper's Figure 4.
 
 use crate::checked::history::History;
-use dwell_report::{Axis, Chart, Figure, Mark, Panel, Series};
-use dwell_study::output::{caption, coordinate_label, symbol};
+use dwell_report::{Axis, Figure, Mark, Panel, Series};
+use dwell_study::output::{self, coordinate_label, symbol};
 use dwell_study::{PreparedScene, SolverSettings};
 
 /// Periods that are drawn; more would only repeat.
@@ -21,15 +21,11 @@ pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure
         samples.iter().map(|&i| [all[i].t, of(i)]).collect()
     };
     let marks = revolution_marks(history, drawn);
-    let chart = |title: String, label: String, unit: &str, series: Vec<Series>| {
-        Panel::from(Chart {
-            title,
-            x: Axis::new("time", "s"),
-            y: Axis::new(label, unit),
-            series,
-            marks: marks.clone(),
-            ..Chart::default()
-        })
+    let chart = |title: String, label: String, unit: &str, series: Vec<Series>| -> Panel {
+        let (time, y) = (Axis::new("time", "s"), Axis::new(label, unit));
+        let mut chart = output::chart(title, time, y, series);
+        chart.marks.clone_from(&marks);
+        chart.into()
     };
     let q = symbol(prepared.coordinate_name());
     let angle = coordinate_label(prepared);
@@ -52,13 +48,18 @@ pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure
     });
     let fitted = fitted.unwrap_or_default();
     let text = format!("No torque. Reactions by R = a q̈ + b q̇².{fitted}");
+    let columns = if panels.len() > 2 { 2 } else { 1 };
+    let provenance = format!("reduced model, {}", SolverSettings::default().describe());
     Figure {
-        name: "motion".to_owned(),
-        title: "Free motion".to_owned(),
-        caption: caption(prepared, &text),
-        columns: if panels.len() > 2 { 2 } else { 1 },
-        panels,
-        provenance: format!("reduced model, {}", SolverSettings::default().describe()),
+        columns,
+        ..output::figure(
+            prepared.scene,
+            "motion",
+            "Free motion",
+            &text,
+            panels,
+            provenance,
+        )
     }
 }
 

@@ -7,7 +7,7 @@ use dwell_scene::{PathPoint, Scene};
 use dwell_study::bodies::{BodyPose, point_position};
 use dwell_study::explain::explain_position;
 use dwell_study::number_format::count;
-use dwell_study::output::{MechanismDrawing, caption, coordinate_label};
+use dwell_study::output::{MechanismDrawing, chart, coordinate_label, figure};
 use dwell_study::{PreparedScene, StudyError};
 use std::f64::consts::TAU;
 
@@ -99,14 +99,8 @@ pub(crate) fn mechanism(
         );
     }
     let positions = count(poses.q.len(), "position");
-    let figure = Figure {
-        name: "mechanism".to_owned(),
-        title: scene.title.clone(),
-        caption: caption(prepared, &text),
-        columns: 1,
-        panels,
-        provenance: format!("the mechanism at {positions}"),
-    };
+    let provenance = format!("the mechanism at {positions}");
+    let figure = figure(scene, "mechanism", &scene.title, &text, panels, provenance);
     Ok((figure, dwell))
 }
 
@@ -211,13 +205,12 @@ fn body_angle_panel(prepared: &PreparedScene<'_>, poses: &RangePoses, dwell: &Dw
         ],
         false => vec![band(from, to, label)],
     };
+    let x = Axis::degrees(coordinate_label(prepared));
+    let y = Axis::new(format!("angle of {name}"), "°");
+    let line = vec![Series::line("", points.collect())];
     Panel::from(Chart {
-        title: format!("Angle of {name}"),
-        x: Axis::degrees(coordinate_label(prepared)),
-        y: Axis::new(format!("angle of {name}"), "°"),
-        series: vec![Series::line("", points.collect())],
         marks,
-        ..Chart::default()
+        ..chart(format!("Angle of {name}"), x, y, line)
     })
 }
 
