@@ -4,6 +4,7 @@ use super::series::{
     MAX_ESTIMATE_RATIO, MIN_ILL_CONDITIONED, REQUIRED_CELL_FRACTION, ResultCell, SeriesResult,
 };
 use dwell_findings::{Check, Finding};
+use dwell_study::ranges::extent;
 
 /// The findings: of each row its floor and the safe side of its estimates, and of all rows how near the
 /// estimates are.
@@ -36,9 +37,7 @@ fn cell_with_max(
 /// A finding on a row, in parts of what is allowed, with where its largest value is.
 fn row_finding(result: &SeriesResult, key: &str, largest: f64, worst_at: String) -> Finding {
     let series = &result.series;
-    let values = series.values.iter().copied();
-    let from = values.clone().fold(f64::INFINITY, f64::min);
-    let to = values.fold(0.0, f64::max);
+    let [from, to] = extent(series.values.iter().copied());
     let (parameter, unit) = series.parameter;
     let key = format!("{}-{key}", series.key);
     Finding {

@@ -7,7 +7,8 @@ use dwell_dynamics::Method;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
 use dwell_scene::Scene;
 use dwell_study::number_format::{count, digits};
-use dwell_study::output::scene_caption;
+use dwell_study::output::{chart, figure as scene_figure};
+use dwell_study::ranges::extent;
 
 /// Margin at the outermost errors, as a factor.
 const AXIS_MARGIN: f64 = 4.0;
@@ -28,35 +29,33 @@ pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure
         false => "",
     };
     let reference_error = found.reference.error;
+    let text = format!(
+        "Each mark is one combination over t = 0 to {} s. Full marks: the mechanism itself, one tolerance after \
+         the other; where time is measured, crosses: single precision{hollow}. Grey line: the Pareto front, \
+         with names. Reference: {}; shaded: below its error ({}, {} and {} of the three errors). An evaluation \
+         is one of the equation of motion; a Jacobian counts as its dual numbers. Time is in units of one \
+         exact evaluation in the same process, the least of {}.",
+        digits(found.duration, 5),
+        found.reference.method,
+        digits(reference_error.coordinate, 1),
+        digits(reference_error.energy, 1),
+        digits_or_dash(reference_error.reaction, 1),
+        count(found.repetitions, "run"),
+    );
+    let panels = [
+        (ErrorQuantity::Coordinate, CostMeasure::Evaluations),
+        (ErrorQuantity::Coordinate, CostMeasure::Time),
+        (ErrorQuantity::Energy, CostMeasure::Evaluations),
+        (ErrorQuantity::Reaction, CostMeasure::Evaluations),
+    ];
+    let panels = panels.map(|(quantity, measure)| panel(found, quantity, measure));
+    let (title, provenance) = (
+        "Work–precision diagram",
+        "all combinations of evaluation, integrator and tolerance",
+    );
     Figure {
-        name: name.to_owned(),
-        title: "Work–precision diagram".to_owned(),
-        caption: scene_caption(
-            scene,
-            &format!(
-                "Each mark is one combination over t = 0 to {} s. Full marks: the mechanism itself, one tolerance after \
-                 the other; where time is measured, crosses: single precision{hollow}. Grey line: the Pareto front, \
-                 with names. Reference: {}; shaded: below its error ({}, {} and {} of the three errors). An evaluation \
-                 is one of the equation of motion; a Jacobian counts as its dual numbers. Time is in units of one \
-                 exact evaluation in the same process, the least of {}.",
-                digits(found.duration, 5),
-                found.reference.method,
-                digits(reference_error.coordinate, 1),
-                digits(reference_error.energy, 1),
-                digits_or_dash(reference_error.reaction, 1),
-                count(found.repetitions, "run"),
-            ),
-        ),
         columns: 2,
-        panels: [
-            (ErrorQuantity::Coordinate, CostMeasure::Evaluations),
-            (ErrorQuantity::Coordinate, CostMeasure::Time),
-            (ErrorQuantity::Energy, CostMeasure::Evaluations),
-            (ErrorQuantity::Reaction, CostMeasure::Evaluations),
-        ]
-        .map(|(quantity, measure)| panel(found, quantity, measure))
-        .into(),
-        provenance: "all combinations of evaluation, integrator and tolerance".to_owned(),
+        ..scene_figure(scene, name, title, &text, panels.into(), provenance)
     }
 }
 
@@ -108,15 +107,11 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
             "largest error of a reaction / largest of its unit",
         ),
     };
-    Chart {
-        title: title.to_owned(),
-        x: error_axis(found, quantity, label),
-        y: Axis::log(cost, ""),
-        series,
+    let (x, y) = (error_axis(found, quantity, label), Axis::log(cost, ""));
+    Panel::from(Chart {
         marks,
-        ..Chart::default()
-    }
-    .into()
+        ..chart(title, x, y, series)
+    })
 }
 
 /// The runs of every method: those of the mechanism itself and, in time, on tables and in single precision.
@@ -151,10 +146,9 @@ fn method_series(
 
 /// The axis of the errors, from below the floor to the largest that is one.
 fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Axis {
-    let all = || found.points.iter().map(|p| found.error_bound(p, quantity));
-    let finite = || all().filter(|e| e.is_finite() && *e > 0.0);
-    let max = finite().fold(0.0, f64::max).min(MAX_ERROR);
-    let min = finite().fold(f64::INFINITY, f64::min);
+    let all = found.points.iter().map(|p| found.error_bound(p, quantity));
+    let [min, max] = extent(all.filter(|e| e.is_finite() && *e > 0.0));
+    let max = max.min(MAX_ERROR);
     match min < max {
         true => Axis::log(label, "").with_range(min / AXIS_MARGIN, max * AXIS_MARGIN),
         false => Axis::log(label, ""),

@@ -6,12 +6,13 @@ use crate::checked::free_motion_setup::FreeMotionSetup;
 use dwell_dynamics::{DynamicsError, Machine, Method, OdeState, Options, Orbit, ReducedState};
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::ExactModel;
-use dwell_scene::{FreeMotionSpec, Scene, SceneLocation};
+use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_motion;
 use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
 use dwell_study::models::{build_machine, with_drive_loads};
 use dwell_study::number_format::digits;
+use dwell_study::ranges::extent;
 use std::f64::consts::TAU;
 
 /// Periods of a periodic motion, and revolutions or oscillations of another, at most.
@@ -60,7 +61,8 @@ impl Subject {
             return Err(no_free_coordinate(&scene));
         };
         let scene_with_drives = with_drive_loads(&scene)?;
-        let machine = build_machine(&scene, &motion, &[])?;
+        let problem = FreeMotionProblem::new(&scene, &scene_with_drives, &motion)?;
+        let machine = &problem.machine;
         if machine.free().is_empty() {
             return Err(no_free_coordinate(&scene));
         }
@@ -74,15 +76,20 @@ impl Subject {
             t: 0.0,
             y: machine.initial_state(q, q_dot),
         };
-        let orbit = orbit(&machine, &motion);
+        // A machine with more than one degree of freedom has none.
+        let is_one = machine.state_count() == 2 && motion.laws.len() == 1;
+        let orbit = is_one.then(|| Orbit::loaded(machine, problem.initial_reduced_state()));
+        let orbit = orbit.and_then(Result::ok);
         let scenes = [&scene, &scene_with_drives];
-        let (end, coordinate_range) = bound_duration(scenes, &motion, orbit.as_ref(), &mut notes)?;
+        let (end, coordinate_range) = bound_duration(scenes, &problem, orbit.as_ref(), &mut notes)?;
+        // The last time is the end, to the last bit.
+        let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
         let subject = Self {
-            reduced: reduced(&scene, &machine, &output_machine),
-            times: times(end),
+            reduced: reduced(&scene, machine, &output_machine),
+            times: before.chain([end]).collect(),
+            machine: problem.machine,
             scene,
             scene_with_drives,
-            machine,
             output_machine,
             reactions,
             initial_state,
@@ -141,12 +148,6 @@ impl Subject {
     }
 }
 
-/// The times at which states are compared. The last is the end, to the last bit.
-fn times(end: f64) -> Vec<f64> {
-    let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
-    before.chain([end]).collect()
-}
-
 /// The scene with a motion: its own, or a free motion from the assembly.
 fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, StudyError> {
     if scene.motion.is_some() {
@@ -185,15 +186,6 @@ fn no_free_coordinate(scene: &Scene) -> StudyError {
     error.into()
 }
 
-/// The motion by its energy. A machine with more than one degree of freedom has none.
-fn orbit(machine: &Machine, motion: &FreeMotionSpec) -> Option<Orbit> {
-    if machine.state_count() != 2 || motion.laws.len() != 1 {
-        return None;
-    }
-    let [q, q_dot] = [motion.initial_coordinates[0], motion.initial_velocities[0]];
-    Orbit::loaded(machine, ReducedState { t: 0.0, q, q_dot }).ok()
-}
-
 /// The reduced model with the reactions that are compared, where it is the whole equation of motion.
 fn reduced(scene: &Scene, machine: &Machine, output_machine: &Machine) -> Option<ExactModel> {
     let unloaded = scene.loads.is_empty() && scene.drives.is_empty();
@@ -205,11 +197,10 @@ fn reduced(scene: &Scene, machine: &Machine, output_machine: &Machine) -> Option
 /// The duration of the motion, and the range of its first free coordinate.
 fn bound_duration(
     [scene, scene_with_drives]: [&Scene; 2],
-    motion: &FreeMotionSpec,
+    free: &FreeMotionProblem<'_>,
     orbit: Option<&Orbit>,
     notes: &mut Vec<String>,
 ) -> Result<(f64, [f64; 2]), StudyError> {
-    let free = FreeMotionProblem::new(scene, scene_with_drives, motion)?;
     let requested = free.duration()?;
     let mut end = requested;
     if let Some(orbit) = orbit.filter(|orbit| requested > MAX_PERIODS * orbit.period) {
@@ -244,9 +235,8 @@ fn bound_duration(
         end = shorten_before_end(&motion_segments, reached, requested, notes);
     }
     let coordinate = |p: &OdeState| p.y.first().copied().unwrap_or(0.0);
-    let coordinates = || steps.iter().filter(|p| p.t <= end).map(coordinate);
-    let low = coordinates().fold(f64::INFINITY, f64::min);
-    Ok((end, [low, coordinates().fold(f64::NEG_INFINITY, f64::max)]))
+    let coordinates = steps.iter().filter(|p| p.t <= end).map(coordinate);
+    Ok((end, extent(coordinates)))
 }
 
 /// How much of a motion is integrated, and why.

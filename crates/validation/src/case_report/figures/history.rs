@@ -35,7 +35,7 @@ pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure
     let named = prepared.reaction_units();
     for (unit, noun) in [("N", "force"), ("N m", "moment")] {
         for (title, label, reactions) in reaction_panels(&named, unit, noun) {
-            let line = |(name, k)| Series::line(name, curve(&|i| history.rows[i][2 + k]));
+            let line = |(name, k)| Series::line(name, curve(&|i| history.rows[i][5 + k]));
             let lines = reactions.into_iter().map(line).collect();
             panels.push(chart(title, label, unit, lines));
         }

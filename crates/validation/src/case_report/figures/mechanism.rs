@@ -8,6 +8,7 @@ use dwell_study::bodies::{BodyPose, point_position};
 use dwell_study::explain::explain_position;
 use dwell_study::number_format::count;
 use dwell_study::output::{MechanismDrawing, chart, coordinate_label, figure};
+use dwell_study::ranges::extent;
 use dwell_study::{PreparedScene, StudyError};
 use std::f64::consts::TAU;
 
@@ -229,8 +230,8 @@ fn unwrapped_angles(poses: &RangePoses, body: BodyId) -> Vec<f64> {
 fn find_dwell(poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell {
     let mut angles = unwrapped_angles(poses, body);
     let extent = |some: &[f64]| {
-        let low = some.iter().copied().fold(f64::MAX, f64::min);
-        some.iter().copied().fold(f64::MIN, f64::max) - low
+        let [low, high] = extent(some.iter().copied());
+        high - low
     };
     let swing = extent(&angles);
     let mut q = poses.q.clone();

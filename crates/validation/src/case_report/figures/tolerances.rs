@@ -4,6 +4,7 @@ use dwell_dynamics::Method;
 use dwell_report::{Axis, Figure, Paint, Panel, Series, Stroke};
 use dwell_study::PreparedScene;
 use dwell_study::output::{chart, figure};
+use dwell_study::ranges::extent;
 use dwell_verify::{CheckedFreeMotion, ToleranceRun};
 
 /// Tolerances whose drift is drawn, as powers of ten.
@@ -42,8 +43,7 @@ pub(crate) fn drift(prepared: &PreparedScene<'_>, motion: &CheckedFreeMotion) ->
 /// The integrators and tolerances that are compared.
 fn tolerances_text(motion: &CheckedFreeMotion) -> String {
     let tolerances = motion.tolerance_runs.iter().map(|r| r.tolerance);
-    let max = tolerances.clone().fold(0.0, f64::max);
-    let min = tolerances.fold(f64::INFINITY, f64::min);
+    let [min, max] = extent(tolerances);
     let [bdf, other] = [Method::Bdf, Method::Tsit45].map(Method::name);
     format!("reduced model, {bdf} and {other}, tolerances {max:.0e} to {min:.0e}")
 }
@@ -72,22 +72,19 @@ pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeM
         let runs = runs.filter(|r| r.method == method).map(|r| [x(r), y(r)]);
         Series::line(method.name(), runs.collect()).stroke(Stroke::LineAndPoints)
     };
-    let panel = |title: &str, x: (Axis, Value), y: (&str, Value)| -> Panel {
-        let mut series = vec![of(Method::Bdf, x.1, y.1), of(Method::Tsit45, x.1, y.1)];
-        if x.0.label == "tolerance" {
+    let panel = |title: &str, (axis, x): &(Axis, Value), (label, y): (&str, Value)| -> Panel {
+        let mut series = vec![of(Method::Bdf, *x, y), of(Method::Tsit45, *x, y)];
+        if axis.label == "tolerance" {
             let diagonal = vec![[1e-13, 1e-13], [1e-4, 1e-4]];
             let equal = Series::line("error = tolerance", diagonal).stroke(Stroke::Dashed);
             series.push(equal.color(Paint::Grey));
         }
-        chart(title, x.0, Axis::log(y.0, ""), series).into()
+        chart(title, axis.clone(), Axis::log(label, ""), series).into()
     };
-    let evaluations = || {
-        let count: Value = |r| (r.statistics.evaluations + r.statistics.jacobians) as f64;
-        (Axis::log("evaluations of the equation", ""), count)
-    };
-    let tolerance = || (Axis::log("tolerance", ""), (|r| r.tolerance) as Value);
-    let milliseconds: Value = |r| r.wall_time * 1e3;
-    let time = (Axis::log("wall time", "ms"), milliseconds);
+    let count: Value = |r| (r.statistics.evaluations + r.statistics.jacobians) as f64;
+    let evaluations = (Axis::log("evaluations of the equation", ""), count);
+    let tolerance: (Axis, Value) = (Axis::log("tolerance", ""), |r| r.tolerance);
+    let time: (Axis, Value) = (Axis::log("wall time", "ms"), |r| r.wall_time * 1e3);
     let drift: (&str, Value) = ("largest |E / E₀ − 1|", |r| r.drift);
     let period: (&str, Value) = ("relative error of the period", |r| r.period_error);
     let reaction: (&str, Value) = ("largest relative error", |r| r.reaction_error);
@@ -96,23 +93,20 @@ pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeM
          Period: the first revolution against the quadrature. Energy: its largest drift. Reaction: the largest error \
          at the steps against the exact state at the same time, relative to the largest reaction. Wall times are minima of three runs on this machine, while other threads were running.";
     let panels = vec![
-        panel("Energy drift", evaluations(), drift),
-        panel("Period", evaluations(), period),
-        panel("Reactions", evaluations(), reaction),
-        panel("Time", time, drift),
-        panel("Error over tolerance", tolerance(), drift),
-        panel("Error over tolerance", tolerance(), of_reaction),
+        panel("Energy drift", &evaluations, drift),
+        panel("Period", &evaluations, period),
+        panel("Reactions", &evaluations, reaction),
+        panel("Time", &time, drift),
+        panel("Error over tolerance", &tolerance, drift),
+        panel("Error over tolerance", &tolerance, of_reaction),
     ];
-    let (name, title) = ("work-precision", "Cost against error");
+    let (name, title, provenance) = (
+        "work-precision",
+        "Cost against error",
+        tolerances_text(motion),
+    );
     Figure {
         columns: 2,
-        ..figure(
-            prepared.scene,
-            name,
-            title,
-            text,
-            panels,
-            tolerances_text(motion),
-        )
+        ..figure(prepared.scene, name, title, text, panels, provenance)
     }
 }
