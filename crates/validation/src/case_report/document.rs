@@ -88,31 +88,22 @@ fn dwell_sentence(scene: &Scene, dwell: &Dwell) -> String {
 
 /// Cost and errors of every method and tolerance.
 fn tolerance_runs_block(motion: &CheckedFreeMotion) -> Block {
-    let header = [
-        "Method",
-        "Tolerance",
-        "Steps",
-        "Evaluations",
-        "Jacobians",
-        "Time (ms)",
-        "Period",
-        "Energy",
-        "Reaction",
-        "Energy error / tolerance",
+    type Cell = fn(&ToleranceRun) -> String;
+    let columns: [(&str, Cell); 10] = [
+        ("Method", |r| r.method.name().to_owned()),
+        ("Tolerance", |r| format!("{:.0e}", r.tolerance)),
+        ("Steps", |r| r.statistics.steps.to_string()),
+        ("Evaluations", |r| r.statistics.evaluations.to_string()),
+        ("Jacobians", |r| r.statistics.jacobians.to_string()),
+        ("Time (ms)", |r| format!("{:.2}", r.wall_time * 1e3)),
+        ("Period", |r| format!("{:.1e}", r.period_error)),
+        ("Energy", |r| format!("{:.1e}", r.drift)),
+        ("Reaction", |r| format!("{:.1e}", r.reaction_error)),
+        ("Energy error / tolerance", |r| {
+            format!("{:.0}", r.drift / r.tolerance)
+        }),
     ];
-    let row = |r: &ToleranceRun| {
-        vec![
-            r.method.name().to_owned(),
-            format!("{:.0e}", r.tolerance),
-            r.statistics.steps.to_string(),
-            r.statistics.evaluations.to_string(),
-            r.statistics.jacobians.to_string(),
-            format!("{:.2}", r.wall_time * 1e3),
-            format!("{:.1e}", r.period_error),
-            format!("{:.1e}", r.drift),
-            format!("{:.1e}", r.reaction_error),
-            format!("{:.0}", r.drift / r.tolerance),
-        ]
-    };
-    table(&header, motion.tolerance_runs.iter().map(row))
+    let row = |r| columns.iter().map(|(_, cell)| cell(r)).collect();
+    let rows = motion.tolerance_runs.iter().map(row);
+    table(&columns.map(|(name, _)| name), rows)
 }

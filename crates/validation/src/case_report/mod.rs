@@ -6,4 +6,3 @@ pub(crate) mod finding_text;
 mod numbers;
 mod snapshot;
 pub(crate) mod validate;
-pub(crate) mod validation;

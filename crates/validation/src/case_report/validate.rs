@@ -5,11 +5,11 @@ use super::figures::{self, Dwell};
 use super::finding_text::findings_summary;
 use super::numbers::{numbers, tables};
 use super::snapshot::snapshot;
-use super::validation::Validation;
 use crate::cases::reference::Reference;
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
 use crate::report_parts::draw_figures;
+use dwell_findings::Check;
 use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::Scene;
 use dwell_study::output::signed_png;
@@ -18,6 +18,17 @@ use std::path::Path;
 
 /// Steps of the progress bar for one case: three of the analysis and two of the report.
 const PROGRESS_STEPS: usize = 5;
+
+/// A validated case.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Validation {
+    /// Summary, files and findings.
+    pub outcome: Outcome,
+    /// Values to the digits that every machine reproduces, and which findings pass.
+    pub snapshot: String,
+    /// The checks without findings, and in a few words why.
+    pub not_applicable: Vec<(Check, &'static str)>,
+}
 
 /// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`. The
 /// files are `NAME.md`, `NAME.json`, `NAME.txt` and the folder `NAME/` with figures and tables.

@@ -257,17 +257,15 @@ fn parse(value: &Value) -> Option<f64> {
 
 /// The number of a key.
 fn number(object: &Value, key: &str) -> Result<f64, String> {
-    match &object[key] {
-        Value::Null => Err(format!("`{key}` is missing")),
-        value => parse(value).ok_or_else(|| format!("`{key}` is not a number: {value}")),
-    }
+    optional(object, key)?.ok_or_else(|| format!("`{key}` is missing"))
 }
 
 /// The number of a key that may be absent.
 fn optional(object: &Value, key: &str) -> Result<Option<f64>, String> {
-    match &object[key] {
-        Value::Null => Ok(None),
-        _ => number(object, key).map(Some),
+    let value = &object[key];
+    match parse(value) {
+        None if !value.is_null() => Err(format!("`{key}` is not a number: {value}")),
+        number => Ok(number),
     }
 }
 

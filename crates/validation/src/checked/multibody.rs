@@ -101,7 +101,14 @@ fn collect_steps(
         let (machine, output_model) = chart.map_or((machine, output_model), |chart| {
             (&chart.machine, &chart.output_model)
         });
-        let mut reader = StateReader::new(scene, machine, output_model);
+        let mut reader = StateReader {
+            scene,
+            machine,
+            output_model,
+            workspace: machine.workspace(),
+            output_workspace: output_model.workspace(),
+            result: output_model.result_buffer(),
+        };
         // A segment begins with the state in which the last one ended.
         for point in solution.steps.iter().skip(usize::from(k > 0)) {
             if !machine.is_in_fit_window(&point.y) {
@@ -122,18 +129,7 @@ struct StateReader<'a> {
     result: InverseDynamics<f64>,
 }
 
-impl<'a> StateReader<'a> {
-    fn new(scene: &'a Scene, machine: &'a Machine, output_model: &'a Model) -> Self {
-        Self {
-            scene,
-            machine,
-            output_model,
-            workspace: machine.workspace(),
-            output_workspace: output_model.workspace(),
-            result: output_model.result_buffer(),
-        }
-    }
-
+impl StateReader<'_> {
     /// Adds a state to the run. Angles go on from those before: no step rotates a body by half a revolution.
     fn append(&mut self, at: &OdeState, run: &mut FreeMotionRun) -> Result<(), DynamicsError> {
         let machine = self.machine;

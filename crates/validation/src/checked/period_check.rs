@@ -87,13 +87,11 @@ fn check_period(scene: &Scene) -> Result<PeriodFindings, StudyError> {
         events: vec![event],
         ..spec.clone()
     };
-    let mut timed = scene.clone();
-    timed.motion = Some(timed_spec.clone());
-    let problem = FreeMotionProblem::new(&timed, &loaded_scene, &timed_spec)?;
+    let problem = FreeMotionProblem::new(scene, &loaded_scene, &timed_spec)?;
     let mut errors = Vec::new();
     for tolerance in TOLERANCES {
         let options = Options::new(Method::Tsit45, tolerance);
-        let motion = problem.solve(&timed, problem.duration()?, &options)?;
+        let motion = problem.solve(scene, problem.duration()?, &options)?;
         let times: Vec<f64> = motion.occurrences().map(|(_, o)| o.state.t).collect();
         let start_time = from.map_or(Some(0.0), |k: usize| times.get(k).copied());
         let (Some(start_time), Some(end_time)) = (start_time, times.get(to)) else {

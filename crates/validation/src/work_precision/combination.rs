@@ -94,7 +94,7 @@ impl Combination {
 }
 
 /// True errors: the largest over the compared times.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
     /// Of the free coordinates, rad or m.
     pub coordinate: f64,

@@ -68,11 +68,7 @@ impl<'s> ReferenceSolution<'s> {
             scales: Vec::new(),
             max_kinetic_energy: 0.0,
             initial_energy: 0.0,
-            error: Errors {
-                coordinate: 0.0,
-                energy: 0.0,
-                reaction: 0.0,
-            },
+            error: Errors::default(),
         };
         reference.evaluate_reference(exact)?;
         for other in &found.comparisons {
@@ -96,16 +92,12 @@ impl<'s> ReferenceSolution<'s> {
         let mut find = exact.reactions();
         let count = self.subject.reactions.len();
         let mut max_abs = vec![0.0_f64; count];
-        for k in 0..self.states.len() {
-            let t = self.subject.times[k];
-            let y = std::mem::take(&mut self.states[k]);
-            let [kinetic, potential] = self.energies(t, &y)?;
+        for (t, y) in self.subject.times.iter().zip(self.states.clone()) {
+            let [kinetic, potential] = self.energies(*t, &y)?;
             self.max_kinetic_energy = self.max_kinetic_energy.max(kinetic);
             size = size.max(kinetic + potential.abs());
             let mut reactions = vec![0.0; count];
-            let point = OdeState { t, y };
-            find(&point, &mut reactions)?;
-            self.states[k] = point.y;
+            find(&OdeState { t: *t, y }, &mut reactions)?;
             for (max, value) in max_abs.iter_mut().zip(&reactions) {
                 *max = max.max(value.abs());
             }
