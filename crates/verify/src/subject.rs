@@ -1,5 +1,7 @@
 //! What is checked: anything that yields the results of a mechanism of one degree of freedom.
 
+pub use dwell_kinetostatics::Coefficients;
+
 /// Why a subject could not answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{message} (at q = {q})")]
@@ -8,20 +10,6 @@ pub struct SubjectError {
     pub q: f64,
     /// Why, as it reads after "the subject failed:".
     pub message: String,
-}
-
-/// The reduced coefficients at one q. Reaction k is in the order of
-/// [`dwell_geometry::Mechanism::reactions`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct Coefficients {
-    /// Generalised inertia m, kg m².
-    pub m: f64,
-    /// ½ dm/dq, kg m² per rad.
-    pub half_dm: f64,
-    /// aₖ: what q̈ contributes to reaction k, its unit per rad/s².
-    pub a: Vec<f64>,
-    /// bₖ: what q̇² contributes to reaction k, its unit per (rad/s)².
-    pub b: Vec<f64>,
 }
 
 /// Actuator force and reactions in a given state, without loads.
@@ -39,7 +27,7 @@ pub trait Subject: Sync {
     /// The frame [x, y, θ] of every body, the ground included, in m and rad.
     fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError>;
 
-    /// The reduced coefficients at `q`.
+    /// The reduced coefficients at `q`; reactions are in the order of [`dwell_geometry::Mechanism::reactions`].
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError>;
 
     /// Forces at (`q`, `q_dot`, `q_ddot`) in rad, rad/s, rad/s².
