@@ -1,9 +1,10 @@
 //! Motions of the grid, each run twice to estimate its error.
 
 use super::mechanisms::TestMechanism;
+use super::series::{CellResult, cell};
 use dwell_dynamics::{
-    CoordinateMode, DynamicsError, Machine, OdeState, Options, ReducedState, Solution, solve,
-    solve_reduced,
+    CoordinateMode, DynamicsError, Machine, OdeState, Options, Orbit, ReducedState, Solution,
+    solve, solve_reduced,
 };
 use dwell_kinetostatics::{ExactModel, Load, ReducedModel as _};
 use dwell_numerics::{DoubleDouble, Scalar};
@@ -119,4 +120,14 @@ pub(super) fn loaded_motion(
     RunPair::of(&sampled(options, end), |options| {
         solve(machine, machine.model(), &start, end, options, &[]).and_then(compared_states)
     })
+}
+
+/// The period by quadrature with its estimated error; `orbit` is the orbit at a multiple of the initial state.
+pub(super) fn quadrature(
+    orbit: impl Fn(f64) -> Result<Orbit, DynamicsError>,
+    reference: DoubleDouble,
+) -> CellResult {
+    let exact = orbit(1.0).map_err(|e| e.to_string())?;
+    let error = estimate::of_period(&exact, orbit).map_err(|e| e.to_string())?;
+    cell((exact.period, error), reference)
 }

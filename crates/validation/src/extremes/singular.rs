@@ -2,8 +2,8 @@
 
 use super::closed_forms::{arc_cosine, dd, elliptic_k, exponential};
 use super::mechanisms::{SliderCrank, TestMechanism, mass, rotor};
-use super::run_pair::{loaded_motion, machine};
-use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
+use super::run_pair::{loaded_motion, machine, quadrature};
+use super::series::{ParameterSeries, Requirement, RunResult, decades, scaled_cell};
 use dwell_dynamics::{
     Atlas, Machine, MachineDescription, Method, OdeState, Options, Orbit, ReducedState,
 };
@@ -55,9 +55,7 @@ fn near_separatrix(sign: f64) -> ParameterSeries {
             let (t, q, q_dot) = (0.0, 0.0, q_dot * stretch);
             Orbit::loaded(&machine, ReducedState { t, q, q_dot })
         };
-        let exact = orbit(1.0)?;
-        let error = estimate::of_period(&exact, orbit)?;
-        Ok(vec![cell((exact.period, error), period)])
+        Ok(vec![quadrature(orbit, period)])
     };
     let (key, what) = match sign < 0.0 {
         true => (

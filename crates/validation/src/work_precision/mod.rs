@@ -119,8 +119,8 @@ pub fn measure_with(
     }
     let timed = || done("times");
     let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &timed);
-    let unit_times = unit_times.map_err(|e| subject.explain(&e))?;
-    let points = results(&mut reference, trials, unit_times.evaluation, &mut omitted);
+    let [evaluation_time, jacobian_time] = unit_times.map_err(|e| subject.explain(&e))?;
+    let points = results(&mut reference, trials, evaluation_time, &mut omitted);
     Ok(WorkPrecision {
         points,
         omitted,
@@ -132,8 +132,8 @@ pub fn measure_with(
         duration: subject.end(),
         unit: subject.unit(),
         repetitions: effort.repetitions.max(1),
-        evaluation_time: unit_times.evaluation,
-        jacobian_cost: unit_times.jacobian / unit_times.evaluation,
+        evaluation_time,
+        jacobian_cost: jacobian_time / evaluation_time,
     })
 }
 
@@ -301,16 +301,11 @@ fn cost(evaluator: &dyn Evaluator, run: &Run, evaluation_time: f64) -> Cost {
     }
 }
 
-/// The time of one evaluation and of one Jacobian, s.
-struct UnitTimes {
-    evaluation: f64,
-    jacobian: f64,
-}
-
 /// A combination with its evaluator and the best of its runs.
 type Trial<'e> = (&'e dyn Evaluator, Combination, Run);
 
-/// Runs everything again, one after the other, with the unit between them, and keeps the least times.
+/// Runs everything again, one after the other, with the unit between them, and keeps the least times. Returns the unit:
+/// the time of one evaluation and of one Jacobian, s.
 fn time_runs(
     subject: &Subject,
     reference: &ReferenceSolution<'_>,
@@ -318,16 +313,14 @@ fn time_runs(
     trials: &mut [Trial<'_>],
     effort: &Effort,
     done: &dyn Fn(),
-) -> Result<UnitTimes, DynamicsError> {
-    let mut unit_times = UnitTimes {
-        evaluation: f64::INFINITY,
-        jacobian: f64::INFINITY,
-    };
-    unit_times.update(subject, reference, exact)?;
+) -> Result<[f64; 2], DynamicsError> {
+    let mut unit_times = [f64::INFINITY; 2];
+    let mut update = || update_unit_times(&mut unit_times, subject, reference, exact);
+    update()?;
     for _ in 1..effort.repetitions {
         for (k, (evaluator, combination, best_run)) in trials.iter_mut().enumerate() {
             if k % 16 == 0 {
-                unit_times.update(subject, reference, exact)?;
+                update()?;
             }
             if best_run.statistics.evaluations > MAX_REPEATED_EVALUATIONS {
                 continue;
@@ -343,39 +336,36 @@ fn time_runs(
         }
         done();
     }
-    unit_times.update(subject, reference, exact)?;
+    update()?;
     done();
     Ok(unit_times)
 }
 
-impl UnitTimes {
-    /// Evaluates at every state of the reference: none depends on another, but each is at another position.
-    fn update(
-        &mut self,
-        subject: &Subject,
-        reference: &ReferenceSolution<'_>,
-        exact: &dyn Evaluator,
-    ) -> Result<(), DynamicsError> {
-        let mut system = exact.system()?;
-        let n = system.size();
-        let (mut out, mut matrix) = (vec![0.0; n], vec![0.0; n * n]);
-        let states = || reference.states.iter().zip(&subject.times);
-        let since =
-            |started: Instant| started.elapsed().as_secs_f64() / states().len().max(1) as f64;
-        for _ in 0..TIMING_PASSES {
-            let started = Instant::now();
-            for (y, &t) in states() {
-                system.rhs(t, y, &mut out)?;
-            }
-            self.evaluation = since(started).max(f64::MIN_POSITIVE).min(self.evaluation);
-            let started = Instant::now();
-            for (y, &t) in states() {
-                system.jacobian(t, y, &mut matrix)?;
-            }
-            self.jacobian = self.jacobian.min(since(started));
+/// Evaluates at every state of the reference: none depends on another, but each is at another position.
+fn update_unit_times(
+    [evaluation, jacobian]: &mut [f64; 2],
+    subject: &Subject,
+    reference: &ReferenceSolution<'_>,
+    exact: &dyn Evaluator,
+) -> Result<(), DynamicsError> {
+    let mut system = exact.system()?;
+    let n = system.size();
+    let (mut out, mut matrix) = (vec![0.0; n], vec![0.0; n * n]);
+    let states = || reference.states.iter().zip(&subject.times);
+    let since = |started: Instant| started.elapsed().as_secs_f64() / states().len().max(1) as f64;
+    for _ in 0..TIMING_PASSES {
+        let started = Instant::now();
+        for (y, &t) in states() {
+            system.rhs(t, y, &mut out)?;
         }
-        Ok(())
+        *evaluation = since(started).max(f64::MIN_POSITIVE).min(*evaluation);
+        let started = Instant::now();
+        for (y, &t) in states() {
+            system.jacobian(t, y, &mut matrix)?;
+        }
+        *jacobian = jacobian.min(since(started));
     }
+    Ok(())
 }
 
 /// Why there is no reference: no two methods reach the end.

@@ -103,7 +103,7 @@ impl<'s> ReferenceSolution<'s> {
             }
             self.reactions.push(reactions);
         }
-        let unit = |k: usize| self.subject.reaction_unit(k);
+        let unit = |k: usize| self.subject.reactions[k].component.unit();
         let of_unit = |k: usize| {
             let same = (0..count).filter(|&other| unit(other) == unit(k));
             same.map(|other| max_abs[other]).fold(0.0, f64::max)
@@ -205,6 +205,7 @@ fn from_integrators(
     all_series: &[ToleranceSeries],
     effort: &Effort,
 ) -> Result<Candidate, DynamicsError> {
+    let finest = effort.tolerance_exponents.last().map(|&k| 10_f64.powi(k));
     let mut found: Vec<(f64, String, Vec<Vec<f64>>)> = Vec::new();
     for series in all_series {
         let [.., (_, before), (fine, last)] = series.runs.as_slice() else {
@@ -214,8 +215,7 @@ fn from_integrators(
         let max_steps = STEP_FACTOR * effort.max_steps;
         let at = (series.method, finer_tolerance);
         // A series that the number of steps stopped before the last tolerance is not the best.
-        let complete =
-            effort.finest_tolerance() == Some(*fine) && series.predicted_steps() < max_steps as f64;
+        let complete = finest == Some(*fine) && series.predicted_steps() < max_steps as f64;
         let finer = (complete && finer_tolerance < 0.5 * fine)
             .then(|| solve(exact, subject, at, max_steps).ok());
         // A change over two decades is a change over one, and more.

@@ -124,11 +124,6 @@ impl Subject {
         }
     }
 
-    /// Unit of each reaction.
-    pub(super) fn reaction_unit(&self, k: usize) -> &'static str {
-        self.reactions[k].component.unit()
-    }
-
     pub(super) fn explain(&self, error: &DynamicsError) -> StudyError {
         explain_motion(&self.scene_with_drives, self.machine.model().plan(), error)
     }
