@@ -119,17 +119,12 @@ fn reduced_figures(
     let mut figures = vec![drawing, reduce::figures::reduced(prepared, &reduced.curves)];
     // The caption of the last one says which reactions are left out.
     figures.extend(reduce::figures::coefficients(prepared, &reduced.curves).0);
-    if let Some(history) = &reduced.history {
-        figures.push(figures::history(prepared, history));
-    }
-    if let Some(motion) = &reduced.motion {
-        figures.push(figures::drift(prepared, motion));
-    }
+    let (history, motion) = (reduced.history.as_ref(), reduced.motion.as_ref());
+    figures.extend(history.map(|history| figures::history(prepared, history)));
+    figures.extend(motion.map(|motion| figures::drift(prepared, motion)));
     if !reduced.error_curves.is_empty() {
         figures.push(figures::finite_differences(prepared, &reduced.error_curves));
     }
-    if let Some(motion) = &reduced.motion {
-        figures.push(figures::work_precision(prepared, motion));
-    }
+    figures.extend(motion.map(|motion| figures::work_precision(prepared, motion)));
     Ok((figures, dwell))
 }

@@ -10,9 +10,8 @@ use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
 use dwell_scene::{MotionDuration, Scene};
 use dwell_study::StudyError;
-use dwell_study::explain::explain_motion;
 use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use dwell_study::models::{loaded_model, with_drive_loads};
+use dwell_study::models::with_drive_loads;
 use dwell_verify::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 use std::f64::consts::TAU;
 
@@ -79,28 +78,26 @@ fn solve_motion(
         ..Options::new(METHOD, TOLERANCE)
     };
     let motion_segments = free.solve(scene, duration, &options)?;
-    let output_model = loaded_model(&scene_with_drives)?;
-    let explain = |e: &DynamicsError| explain_motion(&scene_with_drives, output_model.plan(), e);
-    let run = collect_steps(scene, &free.machine, &output_model, &motion_segments);
-    let mut run = run.map_err(|e| explain(&e))?;
+    let run = collect_steps(scene, &free, &motion_segments);
+    let mut run = run.map_err(|e| free.explain(&e))?;
     let failure = motion_segments.failure.as_ref();
-    run.stop_reason = failure.map(|e| explain(e).to_string());
+    run.stop_reason = failure.map(|e| free.explain(e).to_string());
     Ok(Some(run))
 }
 
 /// Every step, segment by segment. Within the window of a change point's fit there are no reactions.
 fn collect_steps(
     scene: &Scene,
-    machine: &Machine,
-    output_model: &Model,
+    problem: &FreeMotionProblem<'_>,
     motion_segments: &SegmentedMotion,
 ) -> Result<FreeMotionRun, DynamicsError> {
     let mut run = FreeMotionRun::default();
     for (k, (chart, solution)) in motion_segments.segments.iter().enumerate() {
         let chart = motion_segments.charts.get(*chart);
-        let (machine, output_model) = chart.map_or((machine, output_model), |chart| {
-            (&chart.machine, &chart.output_model)
-        });
+        let (machine, output_model) = match chart {
+            Some(chart) => (&chart.machine, &chart.output_model),
+            None => (&problem.machine, &problem.output_model),
+        };
         let mut reader = StateReader {
             scene,
             machine,

@@ -80,8 +80,8 @@ impl Subject {
         let is_one = machine.state_count() == 2 && motion.laws.len() == 1;
         let orbit = is_one.then(|| Orbit::loaded(machine, problem.initial_reduced_state()));
         let orbit = orbit.and_then(Result::ok);
-        let scenes = [&scene, &scene_with_drives];
-        let (end, coordinate_range) = bound_duration(scenes, &problem, orbit.as_ref(), &mut notes)?;
+        let bounds = bound_duration(&scene, &problem, orbit.as_ref(), &mut notes)?;
+        let (end, coordinate_range) = bounds;
         // The last time is the end, to the last bit.
         let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
         let subject = Self {
@@ -191,7 +191,7 @@ fn reduced(scene: &Scene, machine: &Machine, output_machine: &Machine) -> Option
 
 /// The duration of the motion, and the range of its first free coordinate.
 fn bound_duration(
-    [scene, scene_with_drives]: [&Scene; 2],
+    scene: &Scene,
     free: &FreeMotionProblem<'_>,
     orbit: Option<&Orbit>,
     notes: &mut Vec<String>,
@@ -215,8 +215,7 @@ fn bound_duration(
     let steps = first.map_or(&[][..], |(_, solution)| solution.steps.as_slice());
     let reached = steps.last().map_or(0.0, |last| last.t);
     if let Some(error) = motion_segments.failure.as_ref().filter(|_| reached == 0.0) {
-        let plan = free.machine.model().plan();
-        return Err(explain_motion(scene_with_drives, plan, error));
+        return Err(free.explain(error));
     }
     let (shortened, reason) = match orbit {
         Some(_) => (end, ""),
