@@ -154,8 +154,7 @@ impl Reference {
             computed_states: states,
             published_states: published,
             tolerances: Tolerances::read(&value["tolerances"])?,
-            notes: String::new(),
-            path: String::new(),
+            ..Self::default()
         })
     }
 }
@@ -277,13 +276,10 @@ fn sample(value: &Value, scene: &Scene) -> Result<PublishedSample, String> {
         (Some(radians), None) => radians,
         (None, Some(degrees)) => degrees.to_radians(),
     };
-    let mut points = Vec::new();
-    for (key, at) in fields {
-        if SAMPLE_KEYS.contains(&key.as_str()) || is_angle(key, scene) {
-            continue;
-        }
-        points.push(point(key, at, scene)?);
-    }
+    let is_point = |key: &str| !SAMPLE_KEYS.contains(&key) && !is_angle(key, scene);
+    let points = fields.iter().filter(|(key, _)| is_point(key));
+    let points = points.map(|(key, at)| point(key, at, scene));
+    let points = points.collect::<Result<_, String>>()?;
     let sample = PublishedSample {
         q,
         m: optional(value, "m1_kg_m2")?,

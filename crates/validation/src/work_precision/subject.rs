@@ -151,24 +151,10 @@ fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, Stu
     if scene.mechanism.actuators.is_empty() {
         return Err(no_free_coordinate(scene));
     }
-    let free_scene = FreeMotionSetup::new(scene, &Reference::default())?.scene;
-    let mut texts = Vec::new();
-    if let Some(motion) = &free_scene.motion {
-        let starts = motion.initial_coordinates.iter();
-        let starts = starts.zip(&motion.initial_velocities);
-        let actuators = scene.mechanism.actuators.iter().zip(starts);
-        for (actuator, (start, speed)) in actuators.filter(|(_, (_, speed))| **speed != 0.0) {
-            let unit = actuator.coordinate().unit();
-            let [start, speed] = [start, speed].map(|&v| digits(v, 6));
-            let name = &actuator.name;
-            texts.push(format!("{name} = {start} {unit} with {speed} {unit}/s"));
-        }
-    }
-    let starts = texts.join(", ");
-    notes.push(format!(
-        "without [motion], a free motion starts at {starts}"
-    ));
-    Ok(free_scene)
+    let setup = FreeMotionSetup::new(scene, &Reference::default())?;
+    let start = setup.initial_state_text();
+    notes.push(format!("without [motion], a free motion starts at {start}"));
+    Ok(setup.scene)
 }
 
 /// The error of a scene that cannot move.
