@@ -15,8 +15,8 @@ const COMPARED_TIMES: usize = 64;
 
 /// The states of a motion at the same times in a run and in its second.
 pub(super) struct RunPair {
-    pub(super) first: Vec<Vec<f64>>,
-    pub(super) second: Vec<Vec<f64>>,
+    first: Vec<Vec<f64>>,
+    second: Vec<Vec<f64>>,
 }
 
 impl RunPair {
@@ -29,7 +29,7 @@ impl RunPair {
     }
 
     /// Runs with some options, and with those that estimate the error.
-    fn of<E>(
+    pub(super) fn of<E>(
         options: &Options,
         run: impl Fn(&Options) -> Result<Vec<Vec<f64>>, E>,
     ) -> Result<Self, E> {
@@ -41,7 +41,7 @@ impl RunPair {
 }
 
 /// The options with samples at the compared times of a motion of some duration, s.
-fn sampled(options: &Options, duration: f64) -> Options {
+pub(super) fn sampled(options: &Options, duration: f64) -> Options {
     Options {
         sample_interval: Some(duration / COMPARED_TIMES as f64),
         ..*options

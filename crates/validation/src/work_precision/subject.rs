@@ -71,21 +71,20 @@ impl Subject {
         let determinate = all.filter(|&(k, _)| plan.is_determinate(k));
         let reactions: Vec<Reaction> = determinate.map(|(_, reaction)| reaction).collect();
         let output_machine = build_machine(&scene, &motion, &reactions)?;
-        let (q, q_dot) = (&motion.initial_coordinates, &motion.initial_velocities);
-        let initial_state = OdeState {
-            t: 0.0,
-            y: machine.initial_state(q, q_dot),
-        };
+        let initial_state = problem.initial_state();
+        // Without loads the reduced model is the whole equation of motion.
+        let unloaded = scene.loads.is_empty() && scene.drives.is_empty();
+        let reduced = (unloaded && machine.state_count() == 2)
+            .then(|| ExactModel::new(output_machine.model().clone()));
         // A machine with more than one degree of freedom has none.
         let is_one = machine.state_count() == 2 && motion.laws.len() == 1;
         let orbit = is_one.then(|| Orbit::loaded(machine, problem.initial_reduced_state()));
         let orbit = orbit.and_then(Result::ok);
-        let bounds = bound_duration(&scene, &problem, orbit.as_ref(), &mut notes)?;
-        let (end, coordinate_range) = bounds;
+        let (end, coordinate_range) = bound_duration(&scene, &problem, orbit.as_ref(), &mut notes)?;
         // The last time is the end, to the last bit.
         let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
         let subject = Self {
-            reduced: reduced(&scene, machine, &output_machine),
+            reduced: reduced.flatten(),
             times: before.chain([end]).collect(),
             machine: problem.machine,
             scene,
@@ -165,14 +164,6 @@ fn no_free_coordinate(scene: &Scene) -> StudyError {
     let (message, help) = (message.to_owned(), Some(help.to_owned()));
     let error = scene.error(message, help, &[(SceneLocation::Whole, label)]);
     error.into()
-}
-
-/// The reduced model with the reactions that are compared, where it is the whole equation of motion.
-fn reduced(scene: &Scene, machine: &Machine, output_machine: &Machine) -> Option<ExactModel> {
-    let unloaded = scene.loads.is_empty() && scene.drives.is_empty();
-    let one = unloaded && machine.state_count() == 2 && machine.model().plan().actuators() == 1;
-    one.then(|| ExactModel::new(output_machine.model().clone()))
-        .flatten()
 }
 
 /// The duration of the motion, and the range of its first free coordinate.

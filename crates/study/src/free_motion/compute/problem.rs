@@ -153,7 +153,8 @@ impl<'a> FreeMotionProblem<'a> {
         chart.map_or(&self.machine, |c| &c.machine)
     }
 
-    pub(crate) fn initial_state(&self) -> OdeState {
+    /// The initial state of its machine.
+    pub fn initial_state(&self) -> OdeState {
         let (q, q_dot) = (
             &self.spec.initial_coordinates,
             &self.spec.initial_velocities,
