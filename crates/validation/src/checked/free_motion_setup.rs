@@ -18,6 +18,8 @@ const MIN_STEPS: f64 = 100.0;
 /// A scene that is given a free motion.
 pub(crate) struct FreeMotionSetup {
     pub(crate) scene: Scene,
+    /// The longest step of its integration, s.
+    pub(crate) max_step: f64,
     actuator: usize,
     /// Its coordinate and its speed at the start.
     initial_state: [f64; 2],
@@ -63,6 +65,7 @@ impl FreeMotionSetup {
             None => [f64::NEG_INFINITY, f64::INFINITY],
         };
         let initial_state = [start[actuator], speed];
+        let duration = full_travel / speed;
         let count = start.len();
         let mut velocities = vec![0.0; count];
         velocities[actuator] = speed;
@@ -70,13 +73,14 @@ impl FreeMotionSetup {
             initial_coordinates: start,
             initial_velocities: velocities,
             laws: vec![None; count],
-            duration: MotionDuration::Seconds(full_travel / speed),
+            duration: MotionDuration::Seconds(duration),
             events: Vec::new(),
         };
         let mut free_scene = scene.clone();
         free_scene.motion = Some(motion);
         Ok(Self {
             scene: free_scene,
+            max_step: duration / MIN_STEPS,
             actuator,
             initial_state,
             full_travel,
@@ -95,14 +99,6 @@ impl FreeMotionSetup {
     /// The start as text.
     pub(crate) fn initial_state_text(&self) -> String {
         self.state_text(self.initial_state)
-    }
-
-    /// The longest step of its integration, s.
-    pub(crate) fn max_step(&self) -> Option<f64> {
-        match self.scene.motion.as_ref()?.duration {
-            MotionDuration::Seconds(duration) => Some(duration / MIN_STEPS),
-            MotionDuration::Periods(_) => None,
-        }
     }
 
     /// Ends a run after one revolution or one oscillation, and short of its own end; describes it.

@@ -206,7 +206,7 @@ pub(crate) fn check_free_motion(
 ) -> Result<CheckedRun, ValidationError> {
     let Some(run) = free_motion_run(scene)? else {
         let setup = FreeMotionSetup::new(scene, reference)?;
-        let Some(mut run) = solve_motion(&setup.scene, None, setup.max_step())? else {
+        let Some(mut run) = solve_motion(&setup.scene, None, Some(setup.max_step))? else {
             return Ok((None, Vec::new()));
         };
         setup.truncate(&mut run);

@@ -277,14 +277,13 @@ fn table_evaluator(
 
 /// The range of a motion with a margin.
 fn table_domain(range: Range, [low, high]: [f64; 2]) -> TableDomain {
-    match (range.period(), range.limits()) {
-        (Some(_), _) => TableDomain::Full,
-        (None, limits) => {
-            let margin = TABLE_MARGIN * (high - low);
-            let (min, max) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            TableDomain::Between((low - margin).max(min), (high + margin).min(max))
-        }
+    if range.period().is_some() {
+        return TableDomain::Full;
     }
+    let margin = TABLE_MARGIN * (high - low);
+    let limits = range.limits();
+    let (min, max) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    TableDomain::Between((low - margin).max(min), (high + margin).min(max))
 }
 
 fn cost(evaluator: &dyn Evaluator, run: &Run, evaluation_time: f64) -> Cost {
