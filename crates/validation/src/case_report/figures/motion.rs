@@ -14,13 +14,12 @@ const MAX_CURVES: usize = 6;
 
 /// The motion over two periods (or all of it, where it has none).
 pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure {
-    let all = &history.run.samples;
     let drawn = history.period.map(|t| DRAWN_PERIODS * t * (1.0 + 1e-9));
     let drawn = drawn.unwrap_or(f64::INFINITY);
-    let samples = (0..all.len()).filter(|&i| all[i].t - all[0].t <= drawn);
-    let samples: Vec<usize> = samples.collect();
-    let curve = |of: &dyn Fn(usize) -> f64| -> Vec<[f64; 2]> {
-        samples.iter().map(|&i| [all[i].t, of(i)]).collect()
+    let is_drawn = |row: &&Vec<f64>| row[0] - history.rows[0][0] <= drawn;
+    let curve = |column: usize| -> Vec<[f64; 2]> {
+        let rows = history.rows.iter().filter(is_drawn);
+        rows.map(|row| [row[0], row[column]]).collect()
     };
     let marks = revolution_marks(history, drawn);
     let chart = |title: String, label: String, unit: &str, series: Vec<Series>| -> Panel {
@@ -31,13 +30,13 @@ pub(crate) fn history(prepared: &PreparedScene<'_>, history: &History) -> Figure
     };
     let q = symbol(prepared.coordinate_name());
     let angle = coordinate_label(prepared);
-    let velocity = vec![Series::line("", curve(&|i| all[i].y[1]))];
+    let velocity = vec![Series::line("", curve(2))];
     let title = format!("Velocity of the {angle}");
     let mut panels = vec![chart(title, format!("d{q}/dt"), "rad/s", velocity)];
     let named = prepared.reaction_units();
     for (unit, noun) in [("N", "force"), ("N m", "moment")] {
         for (title, label, reactions) in reaction_panels(&named, unit, noun) {
-            let line = |(name, k)| Series::line(name, curve(&|i| history.rows[i][5 + k]));
+            let line = |(name, k)| Series::line(name, curve(5 + k));
             let lines = reactions.into_iter().map(line).collect();
             panels.push(chart(title, label, unit, lines));
         }
