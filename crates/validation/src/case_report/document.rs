@@ -1,13 +1,14 @@
 //! The report of a case as a document.
 
 use super::figures::Dwell;
-use super::finding_text::tolerances_block;
 use crate::cases::reference::Reference;
 use crate::checked::analysis::CaseAnalysis;
 use crate::report_parts::{figure_blocks, table};
+use dwell_findings::Finding;
 use dwell_report::{Block, Document, Figure};
 use dwell_scene::Scene;
 use dwell_study::CalibrationResult;
+use dwell_study::number_format::count;
 use dwell_study::output::provenance_line;
 use dwell_verify::{CheckedFreeMotion, ToleranceRun};
 
@@ -84,6 +85,28 @@ fn dwell_sentence(scene: &Scene, dwell: &Dwell) -> String {
         "Dwell: the angle of `{body}` varies by {variation:.3}° (of {swing:.2}° over the whole range) while the actuator \
          moves from {from:.1}° to {to:.1}°."
     )
+}
+
+/// The paragraph on the tolerances of a case.
+fn tolerances_block(findings: &[Finding]) -> Block {
+    let loose: Vec<String> = (findings.iter().filter(|f| f.is_loose()))
+        .map(|f| format!("`{}` (at most {:.0e})", f.key, f.max_tolerance()))
+        .collect();
+    let integrated = findings.iter().filter(|f| f.integrated).count();
+    let mut text = match loose.is_empty() {
+        true => "No tolerance is above 100 times the largest difference plus 50 rounding errors times the condition number.".to_owned(),
+        false => format!(
+            "Tolerances above 100 times the largest difference plus 50 rounding errors times the condition number: {}.",
+            loose.join(", ")
+        ),
+    };
+    if integrated > 0 {
+        text += &format!(
+            " That rule does not apply to {}, which are checked by convergence orders and by multiples of the integrator's tolerance.",
+            count(integrated, "integrated result")
+        );
+    }
+    Block::Text(text)
 }
 
 /// Cost and errors of every method and tolerance.

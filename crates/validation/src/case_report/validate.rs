@@ -2,14 +2,13 @@
 
 use super::document::document;
 use super::figures::{self, Dwell};
-use super::finding_text::findings_summary;
 use super::numbers::{numbers, tables};
 use super::snapshot::snapshot;
 use crate::cases::reference::Reference;
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
-use crate::report_parts::draw_figures;
-use dwell_findings::Check;
+use crate::report_parts::{describe_failure, draw_figures};
+use dwell_findings::{Check, Finding};
 use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::Scene;
 use dwell_study::output::signed_png;
@@ -71,8 +70,15 @@ pub fn validate(
     })
 }
 
+/// How many findings pass, those that fail, and the period.
 fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
-    let mut text = findings_summary(scene, &analysis.findings);
+    let findings = &analysis.findings;
+    let failed: Vec<&Finding> = findings.iter().filter(|f| !f.pass).collect();
+    let (name, passed) = (&scene.name, findings.len() - failed.len());
+    let mut text = format!("{name}: {passed} of {} findings pass\n", findings.len());
+    for f in failed {
+        text += &format!("  FAIL {} {}\n", f.key, describe_failure(f).join("\n    "));
+    }
     let Some(reduced) = &analysis.reduced else {
         return text;
     };

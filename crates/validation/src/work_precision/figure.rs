@@ -1,7 +1,8 @@
 //! The figure: cost over true error, with the Pareto front.
 
 use super::combination::{
-    CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision, digits_or_dash,
+    CombinationResult, CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
+    digits_or_dash,
 };
 use dwell_dynamics::Method;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
@@ -21,7 +22,7 @@ const MIN_LABEL_GAP_CROWDED: f64 = 3.0;
 /// The figure of a study.
 pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure {
     let tables =
-        |p: &super::CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
+        |p: &CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
     let hollow = match found.points.iter().any(tables) {
         true => {
             "; hollow: tables, without their build time; dashed: build time of the finest table"
@@ -60,12 +61,12 @@ pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure
 }
 
 fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -> Panel {
-    let at = |k: usize| -> [f64; 2] {
-        let point = &found.points[k];
+    let at = |point: &CombinationResult| -> [f64; 2] {
         [found.error_bound(point, quantity), point.cost.of(measure)]
     };
-    let front = found.pareto_front(quantity, measure);
-    let line = front.iter().map(|&k| at(k)).collect();
+    let front = found.pareto_front(quantity, measure).into_iter();
+    let front: Vec<&CombinationResult> = front.map(|k| &found.points[k]).collect();
+    let line = front.iter().map(|point| at(point)).collect();
     let mut series = vec![Series::line("", line).color(Paint::Grey)];
     series.extend(method_series(found, measure, &at));
     let reference_error = found.reference.error.of(quantity);
@@ -76,7 +77,7 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     }];
     if let Some(point) = found.quadrature() {
         marks.push(Mark::Point {
-            at: [found.error_bound(point, quantity), point.cost.of(measure)],
+            at: at(point),
             label: "quadrature".to_owned(),
         });
     }
@@ -88,13 +89,11 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
             label: "build time of the finest table".to_owned(),
         });
     }
-    let (label_gap, cost) = match measure {
-        CostMeasure::Evaluations => (MIN_LABEL_GAP, "evaluations"),
-        CostMeasure::Time | CostMeasure::TimeWithBuild => {
-            (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation")
-        }
+    let (label_gap, cost) = match measure == CostMeasure::Evaluations {
+        true => (MIN_LABEL_GAP, "evaluations"),
+        false => (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation"),
     };
-    marks.extend(named_points(found, &front, label_gap, &at));
+    marks.extend(named_points(&front, label_gap, &at));
     let coordinate = format!("largest error of the free coordinates, {}", found.unit);
     let (title, label) = match (quantity, measure) {
         (ErrorQuantity::Coordinate, CostMeasure::Evaluations) => {
@@ -118,17 +117,17 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
 fn method_series(
     found: &WorkPrecision,
     measure: CostMeasure,
-    at: &dyn Fn(usize) -> [f64; 2],
+    at: &dyn Fn(&CombinationResult) -> [f64; 2],
 ) -> Vec<Series> {
     let mut series = Vec::new();
     for (i, method) in Method::ALL.into_iter().enumerate() {
         let of = |selects: &dyn Fn(Evaluation) -> bool| -> Vec<[f64; 2]> {
-            let selected = |k: &usize| {
-                let of = found.points[*k].combination;
+            let selected = |point: &&CombinationResult| {
+                let of = point.combination;
                 let own = matches!(of.integrator, Integrator::Steps(own, _) if own == method);
                 own && selects(of.evaluation)
             };
-            (0..found.points.len()).filter(selected).map(at).collect()
+            found.points.iter().filter(selected).map(at).collect()
         };
         let paint = Paint::Palette(i);
         let exact = Series::line(method.name(), of(&|e| e == Evaluation::Exact));
@@ -157,22 +156,21 @@ fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Ax
 
 /// The names of some points of a front, well apart.
 fn named_points(
-    found: &WorkPrecision,
-    front: &[usize],
+    front: &[&CombinationResult],
     label_gap: f64,
-    at: &dyn Fn(usize) -> [f64; 2],
+    at: &dyn Fn(&CombinationResult) -> [f64; 2],
 ) -> Vec<Mark> {
     let mut last = f64::INFINITY;
     let mut marks = Vec::new();
-    for &k in front {
-        let position = at(k);
+    for point in front {
+        let position = at(point);
         if last - position[0].log10() < label_gap {
             continue;
         }
         last = position[0].log10();
         marks.push(Mark::Text {
             at: position,
-            label: found.points[k].combination.name(),
+            label: point.combination.name(),
         });
     }
     marks

@@ -81,9 +81,6 @@ fn by_actuator(value: &Value, scene: &Scene) -> Result<Vec<f64>, String> {
     actuators.iter().map(|a| number(value, &a.name)).collect()
 }
 
-/// A value with the kind of its quantity.
-type KindAndValue = (&'static str, ComparedValue);
-
 impl ReferenceStates {
     /// The largest value of a unit in all samples.
     fn scale(&self, scene: &Scene, unit: &str) -> f64 {
@@ -101,7 +98,28 @@ impl ReferenceStates {
         model: &mut ModelStates<'_>,
         published: bool,
     ) -> Result<Vec<Finding>, ValidationError> {
-        let (values, unknown) = self.compared_values(scene, model)?;
+        // Each with the kind of its quantity; and the names that the scene does not have.
+        let (mut values, mut unknown) = (Vec::new(), BTreeSet::new());
+        for (k, row) in self.samples.iter().enumerate() {
+            let state = model.evaluate_at(&row.request)?;
+            let condition_number = state.condition_number();
+            for (name, expected) in &row.values {
+                let Some(quantity) = StateQuantity::find(scene, name) else {
+                    unknown.insert(format!("`{name}`"));
+                    continue;
+                };
+                let unit = quantity.unit(scene);
+                let value = ComparedValue {
+                    location: format!("{name}, sample {}", k + 1),
+                    unit,
+                    value: quantity.value(&state),
+                    expected: *expected,
+                    scale: self.scale(scene, unit),
+                    condition_number,
+                };
+                values.push((quantity.kind(), value));
+            }
+        }
         let mut over = count(self.samples.len(), "sample");
         if let (true, Some(source)) = (published, &self.source) {
             over += &format!(" of {source}");
@@ -131,36 +149,6 @@ impl ReferenceStates {
             findings.push(compare_values(&spec, over.clone(), &values));
         }
         Ok(findings)
-    }
-
-    /// All values with their kinds, and the names that the scene does not have.
-    fn compared_values(
-        &self,
-        scene: &Scene,
-        model: &mut ModelStates<'_>,
-    ) -> Result<(Vec<KindAndValue>, BTreeSet<String>), ValidationError> {
-        let (mut values, mut unknown) = (Vec::new(), BTreeSet::new());
-        for (k, row) in self.samples.iter().enumerate() {
-            let state = model.evaluate_at(&row.request)?;
-            let condition_number = state.condition_number();
-            for (name, expected) in &row.values {
-                let Some(quantity) = StateQuantity::find(scene, name) else {
-                    unknown.insert(format!("`{name}`"));
-                    continue;
-                };
-                let unit = quantity.unit(scene);
-                let value = ComparedValue {
-                    location: format!("{name}, sample {}", k + 1),
-                    unit,
-                    value: quantity.value(&state),
-                    expected: *expected,
-                    scale: self.scale(scene, unit),
-                    condition_number,
-                };
-                values.push((quantity.kind(), value));
-            }
-        }
-        Ok((values, unknown))
     }
 }
 
