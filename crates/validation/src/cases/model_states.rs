@@ -82,20 +82,16 @@ pub(crate) struct StateValues<'m> {
     pub(crate) scene: &'m Scene,
     pub(crate) state: EvaluatedState<'m>,
     pub(crate) q_ddot: Vec<f64>,
+    /// The frames of all bodies.
+    body_poses: Vec<[f64; 3]>,
     /// By body: its angle with whole revolutions, rad.
     pub(crate) angles: &'m [f64],
 }
 
 impl StateValues<'_> {
-    /// The frames of all bodies.
-    fn body_poses(&self) -> Vec<[f64; 3]> {
-        let plan = self.state.model().plan();
-        plan.body_frames(&self.scene.mechanism, self.state.pose())
-    }
-
     /// Condition number of the dense rows.
     pub(crate) fn condition_number(&self) -> f64 {
-        condition_number(&self.scene.mechanism, &self.body_poses())
+        condition_number(&self.scene.mechanism, &self.body_poses)
     }
 }
 
@@ -137,7 +133,7 @@ impl<'a> ModelStates<'a> {
     /// As [`ModelStates::evaluate_at`].
     pub(crate) fn state(&mut self, request: &StateRequest) -> Result<ClaimedState, StudyError> {
         let values = self.evaluate_at(request)?;
-        let mut bodies = values.body_poses();
+        let mut bodies = values.body_poses;
         let (scene, state) = (values.scene, &values.state);
         let (states, result) = (state.bodies(), state.inverse_dynamics());
         for (pose, angle) in bodies.iter_mut().zip(values.angles) {
@@ -202,7 +198,7 @@ impl<'a> ModelStates<'a> {
             Some(given) => given.clone(),
             None => self.free_acceleration(request)?,
         };
-        let (scene, angles) = (self.scene, &self.angles);
+        let (scene, angles, body_poses) = (self.scene, &self.angles, self.body_poses());
         let state = self
             .reached
             .evaluate(scene, &self.model, request, &q_ddot)?;
@@ -210,6 +206,7 @@ impl<'a> ModelStates<'a> {
             scene,
             state,
             q_ddot,
+            body_poses,
             angles,
         })
     }

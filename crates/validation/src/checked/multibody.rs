@@ -231,20 +231,18 @@ impl FreeMotionRun {
         let (Some(step), Some(coordinates)) = (self.steps.last(), self.coordinates.last()) else {
             return Vec::new();
         };
-        let mut values = Vec::new();
-        for (actuator, [q, speed]) in scene.mechanism.actuators.iter().zip(coordinates) {
-            let unit = actuator.coordinate().unit();
-            values.push((actuator.name.clone(), unit.to_owned(), *q));
-            let velocity = format!("{}.velocity", actuator.name);
-            values.push((velocity, format!("{unit}/s"), *speed));
-        }
+        let actuators = scene.mechanism.actuators.iter().zip(coordinates);
+        let values = actuators.flat_map(|(actuator, [q, speed])| {
+            let (name, unit) = (&actuator.name, actuator.coordinate().unit());
+            let velocity = (format!("{name}.velocity"), format!("{unit}/s"), *speed);
+            [(name.clone(), unit.to_owned(), *q), velocity]
+        });
         let reactions = scene.mechanism.reactions();
         let named = reactions.iter().zip(&step.reactions).map(|(&r, value)| {
             let name = scene.mechanism.reaction_name(r);
             (name, r.component.unit().to_owned(), *value)
         });
-        values.extend(named);
-        values
+        values.chain(named).collect()
     }
 
     /// Compares the last step with its published values.
