@@ -91,22 +91,19 @@ impl<'s> ReferenceSolution<'s> {
         let mut size = kinetic + potential.abs();
         let mut find = exact.reactions();
         let count = self.subject.reactions.len();
-        let mut max_abs = vec![0.0_f64; count];
         for (t, y) in self.subject.times.iter().zip(self.states.clone()) {
             let [kinetic, potential] = self.energies(*t, &y)?;
             self.max_kinetic_energy = self.max_kinetic_energy.max(kinetic);
             size = size.max(kinetic + potential.abs());
             let mut reactions = vec![0.0; count];
             find(&OdeState { t: *t, y }, &mut reactions)?;
-            for (max, value) in max_abs.iter_mut().zip(&reactions) {
-                *max = max.max(value.abs());
-            }
             self.reactions.push(reactions);
         }
         let unit = |k: usize| self.subject.reactions[k].component.unit();
         let of_unit = |k: usize| {
             let same = (0..count).filter(|&other| unit(other) == unit(k));
-            same.map(|other| max_abs[other]).fold(0.0, f64::max)
+            let values = same.flat_map(|other| self.reactions.iter().map(move |row| row[other]));
+            values.fold(0.0_f64, |max, value| max.max(value.abs()))
         };
         self.scales = (0..count).map(of_unit).collect();
         self.error.energy = RESULT_ROUNDING * size / self.max_kinetic_energy;

@@ -229,11 +229,11 @@ fn unwrapped_angles(poses: &RangePoses, body: BodyId) -> Vec<f64> {
 /// The longest interval in which a body's angle stays within `band` of its whole variation.
 fn find_dwell(poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell {
     let mut angles = unwrapped_angles(poses, body);
-    let extent = |some: &[f64]| {
+    let width = |some: &[f64]| {
         let [low, high] = extent(some.iter().copied());
         high - low
     };
-    let swing = extent(&angles);
+    let swing = width(&angles);
     let mut q = poses.q.clone();
     let n = q.len();
     if full {
@@ -244,7 +244,7 @@ fn find_dwell(poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell 
     }
     let (mut best, mut from) = ((0, 0), 0);
     for to in 0..q.len() {
-        while extent(&angles[from..=to]) > band * swing {
+        while width(&angles[from..=to]) > band * swing {
             from += 1;
         }
         if to - from > best.1 - best.0 && from < n && to - from < n {
@@ -255,7 +255,7 @@ fn find_dwell(poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell 
         body,
         from: q[best.0],
         to: q[best.1],
-        variation: extent(&angles[best.0..=best.1]),
+        variation: width(&angles[best.0..=best.1]),
         swing,
     }
 }
