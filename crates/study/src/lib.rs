@@ -36,7 +36,7 @@ pub mod number_format;
 #[cfg(feature = "output")]
 pub mod output;
 mod progress;
-mod ranges;
+pub mod ranges;
 
 mod calibrate;
 mod check;

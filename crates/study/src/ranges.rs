@@ -1,7 +1,7 @@
 //! Intervals of numbers.
 
 /// The smallest and the largest of some values; [∞, −∞] if there are none.
-pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+pub fn extent(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let values = values.into_iter();
     values.fold(none, |[low, high], v| [low.min(v), high.max(v)])

@@ -1,7 +1,6 @@
 //! Why a case cannot be validated.
 
 use dwell_report::ReportError;
-use dwell_scene::SceneError;
 use dwell_study::StudyError;
 use thiserror::Error;
 
@@ -19,12 +18,6 @@ pub enum ValidationError {
         /// What is wrong with it.
         reason: String,
     },
-}
-
-impl From<SceneError> for ValidationError {
-    fn from(error: SceneError) -> Self {
-        Self::Study(error.into())
-    }
 }
 
 impl From<ReportError> for ValidationError {

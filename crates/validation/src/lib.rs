@@ -31,8 +31,7 @@ mod overview;
 mod report_parts;
 pub mod work_precision;
 
-pub use case_report::validate::validate;
-pub use case_report::validation::Validation;
+pub use case_report::validate::{Validation, validate};
 pub use cases::subject::PlanSubject;
 pub use checked::multibody::{FreeMotionRun, free_motion_run};
 pub use checked::states::{CheckedStates, check_case};

@@ -1,5 +1,6 @@
 //! Parts that the reports of cases and studies share.
 
+use dwell_findings::Finding;
 use dwell_report::{Block, Figure, Files, ReportError};
 use rayon::prelude::*;
 
@@ -42,4 +43,30 @@ pub(crate) fn figure_blocks(folder: &str, figures: &[Figure], captions: bool) ->
 /// `pass` or a bold FAIL.
 pub(crate) fn pass_or_fail(pass: bool) -> &'static str {
     if pass { "pass" } else { "**FAIL**" }
+}
+
+/// A failed finding as text: the check, where it fails, and by how much.
+pub(crate) fn describe_failure(finding: &Finding) -> [String; 3] {
+    let location = match finding.domain.is_empty() {
+        true => finding.worst_at.clone(),
+        false => format!("{}, of {}", finding.worst_at, finding.domain),
+    };
+    let difference = if finding.relative_difference.is_nan() {
+        "none could be taken".to_owned()
+    } else {
+        let unit = if finding.unit.is_empty() { "" } else { " " };
+        format!(
+            "{:.2e}{unit}{}, {:.1e} of {}; tolerance {:.1e}",
+            finding.absolute_difference,
+            finding.unit,
+            finding.relative_difference,
+            finding.scale,
+            finding.tolerance
+        )
+    };
+    [
+        format!("check {}, {}", finding.check, finding.comparison),
+        format!("at {location}"),
+        format!("difference {difference}"),
+    ]
 }

@@ -75,7 +75,7 @@ pub(crate) fn loaded_determinate_model(scene: &Scene) -> Result<Model, StudyErro
 }
 
 /// A scene whose loads include those through which its drives act.
-pub(crate) fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
+pub fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
     let loads = loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives);
     let mut loaded = scene.clone();
     loaded.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;

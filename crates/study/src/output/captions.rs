@@ -33,7 +33,7 @@ pub(crate) fn add_note(figures: &mut [Figure], note: Option<&str>) {
 }
 
 /// A figure of a scene with its caption, one panel below another.
-pub(crate) fn figure(
+pub fn figure(
     scene: &Scene,
     name: impl Into<String>,
     title: impl Into<String>,
@@ -52,7 +52,7 @@ pub(crate) fn figure(
 }
 
 /// Curves over two axes.
-pub(crate) fn chart(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Chart {
+pub fn chart(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> Chart {
     Chart {
         title: title.into(),
         x,

@@ -6,10 +6,10 @@ mod outcome;
 mod provenance;
 
 pub(crate) use captions::{
-    add_note, chart, coordinate_axis, figure, indeterminate_note, inner_range, range_caption,
+    add_note, coordinate_axis, indeterminate_note, inner_range, range_caption,
     reaction_figure_count, reduced_provenance, separating_note,
 };
-pub use captions::{caption, coordinate_label, scene_caption, symbol};
+pub use captions::{caption, chart, coordinate_label, figure, scene_caption, symbol};
 pub use mechanism_drawing::MechanismDrawing;
 pub use outcome::Outcome;
 pub(crate) use provenance::signed_gif;

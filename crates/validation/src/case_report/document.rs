@@ -1,13 +1,14 @@
 //! The report of a case as a document.
 
 use super::figures::Dwell;
-use super::finding_text::tolerances_block;
 use crate::cases::reference::Reference;
 use crate::checked::analysis::CaseAnalysis;
 use crate::report_parts::{figure_blocks, table};
+use dwell_findings::Finding;
 use dwell_report::{Block, Document, Figure};
 use dwell_scene::Scene;
 use dwell_study::CalibrationResult;
+use dwell_study::number_format::count;
 use dwell_study::output::provenance_line;
 use dwell_verify::{CheckedFreeMotion, ToleranceRun};
 
@@ -86,33 +87,46 @@ fn dwell_sentence(scene: &Scene, dwell: &Dwell) -> String {
     )
 }
 
+/// The paragraph on the tolerances of a case.
+fn tolerances_block(findings: &[Finding]) -> Block {
+    let loose: Vec<String> = (findings.iter().filter(|f| f.is_loose()))
+        .map(|f| format!("`{}` (at most {:.0e})", f.key, f.max_tolerance()))
+        .collect();
+    let integrated = findings.iter().filter(|f| f.integrated).count();
+    let mut text = match loose.is_empty() {
+        true => "No tolerance is above 100 times the largest difference plus 50 rounding errors times the condition number.".to_owned(),
+        false => format!(
+            "Tolerances above 100 times the largest difference plus 50 rounding errors times the condition number: {}.",
+            loose.join(", ")
+        ),
+    };
+    if integrated > 0 {
+        text += &format!(
+            " That rule does not apply to {}, which are checked by convergence orders and by multiples of the integrator's tolerance.",
+            count(integrated, "integrated result")
+        );
+    }
+    Block::Text(text)
+}
+
 /// Cost and errors of every method and tolerance.
 fn tolerance_runs_block(motion: &CheckedFreeMotion) -> Block {
-    let header = [
-        "Method",
-        "Tolerance",
-        "Steps",
-        "Evaluations",
-        "Jacobians",
-        "Time (ms)",
-        "Period",
-        "Energy",
-        "Reaction",
-        "Energy error / tolerance",
+    type Cell = fn(&ToleranceRun) -> String;
+    let columns: [(&str, Cell); 10] = [
+        ("Method", |r| r.method.name().to_owned()),
+        ("Tolerance", |r| format!("{:.0e}", r.tolerance)),
+        ("Steps", |r| r.statistics.steps.to_string()),
+        ("Evaluations", |r| r.statistics.evaluations.to_string()),
+        ("Jacobians", |r| r.statistics.jacobians.to_string()),
+        ("Time (ms)", |r| format!("{:.2}", r.wall_time * 1e3)),
+        ("Period", |r| format!("{:.1e}", r.period_error)),
+        ("Energy", |r| format!("{:.1e}", r.drift)),
+        ("Reaction", |r| format!("{:.1e}", r.reaction_error)),
+        ("Energy error / tolerance", |r| {
+            format!("{:.0}", r.drift / r.tolerance)
+        }),
     ];
-    let row = |r: &ToleranceRun| {
-        vec![
-            r.method.name().to_owned(),
-            format!("{:.0e}", r.tolerance),
-            r.statistics.steps.to_string(),
-            r.statistics.evaluations.to_string(),
-            r.statistics.jacobians.to_string(),
-            format!("{:.2}", r.wall_time * 1e3),
-            format!("{:.1e}", r.period_error),
-            format!("{:.1e}", r.drift),
-            format!("{:.1e}", r.reaction_error),
-            format!("{:.0}", r.drift / r.tolerance),
-        ]
-    };
-    table(&header, motion.tolerance_runs.iter().map(row))
+    let row = |r| columns.iter().map(|(_, cell)| cell(r)).collect();
+    let rows = motion.tolerance_runs.iter().map(row);
+    table(&columns.map(|(name, _)| name), rows)
 }

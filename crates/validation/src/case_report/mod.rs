@@ -2,8 +2,6 @@
 
 mod document;
 mod figures;
-pub(crate) mod finding_text;
 mod numbers;
 mod snapshot;
 pub(crate) mod validate;
-pub(crate) mod validation;

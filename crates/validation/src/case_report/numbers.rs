@@ -51,23 +51,6 @@ struct ToleranceRunRow {
     reaction_error: Number,
 }
 
-impl From<&ToleranceRun> for ToleranceRunRow {
-    fn from(r: &ToleranceRun) -> Self {
-        Self {
-            method: r.method.name(),
-            tolerance: r.tolerance.into(),
-            steps: r.statistics.steps,
-            rejected: r.statistics.rejected_steps,
-            evaluations: r.statistics.evaluations,
-            jacobians: r.statistics.jacobians,
-            seconds: r.wall_time.into(),
-            period_error: r.period_error.into(),
-            energy_drift: r.drift.into(),
-            reaction_error: r.reaction_error.into(),
-        }
-    }
-}
-
 /// The JSON text. What only the reduced model has is null or empty for other cases.
 pub(super) fn numbers(
     scene: &Scene,
@@ -76,6 +59,19 @@ pub(super) fn numbers(
     let reduced = analysis.reduced.as_ref();
     let motion = reduced.and_then(|r| r.motion.as_ref());
     let calibration = reduced.and_then(|r| r.calibration.as_ref());
+    let run = |r: &ToleranceRun| ToleranceRunRow {
+        method: r.method.name(),
+        tolerance: r.tolerance.into(),
+        steps: r.statistics.steps,
+        rejected: r.statistics.rejected_steps,
+        evaluations: r.statistics.evaluations,
+        jacobians: r.statistics.jacobians,
+        seconds: r.wall_time.into(),
+        period_error: r.period_error.into(),
+        energy_drift: r.drift.into(),
+        reaction_error: r.reaction_error.into(),
+    };
+    let runs = motion.iter().flat_map(|m| &m.tolerance_runs);
     Ok(json(&Numbers {
         title: &scene.title,
         note: &scene.note,
@@ -96,9 +92,7 @@ pub(super) fn numbers(
         }),
         convergence_slope: motion.map(|m| m.drift_slope.into()),
         findings: analysis.findings.iter().map(FindingRecord::from).collect(),
-        tolerance_series: motion.map_or_else(Vec::new, |m| {
-            m.tolerance_runs.iter().map(ToleranceRunRow::from).collect()
-        }),
+        tolerance_series: runs.map(run).collect(),
     })?)
 }
 
@@ -106,16 +100,16 @@ pub(super) fn numbers(
 pub(super) fn tables(reduced: &ReducedAnalysis<'_>) -> Vec<(&'static str, Table)> {
     let prepared = &reduced.prepared;
     let mut tables = vec![("reduced", reduced.curves.table(prepared))];
-    if let Some(history) = &reduced.history {
-        tables.push(("motion", history.table(prepared)));
-    }
+    tables.extend(
+        reduced
+            .history
+            .iter()
+            .map(|h| ("motion", h.table(prepared))),
+    );
     if let Some(motion) = &reduced.motion {
-        for (name, method) in [
-            ("work-precision-bdf", Method::Bdf),
-            ("work-precision-tsit45", Method::Tsit45),
-        ] {
-            tables.push((name, tolerance_runs_table(motion, method)));
-        }
+        let table = |method| tolerance_runs_table(motion, method);
+        tables.push(("work-precision-bdf", table(Method::Bdf)));
+        tables.push(("work-precision-tsit45", table(Method::Tsit45)));
     }
     tables
 }

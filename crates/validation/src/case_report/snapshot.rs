@@ -5,6 +5,7 @@ use crate::checked::multibody::FreeMotionRun;
 use crate::checked::states::CheckedStates;
 use dwell_kinetostatics::ReducedModel;
 use dwell_scene::Scene;
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 
 /// States whose values are in the snapshot.
@@ -29,19 +30,15 @@ pub(super) fn snapshot(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
 fn reduced_values(reduced: &ReducedAnalysis<'_>) -> String {
     let prepared = &reduced.prepared;
     let mut text = String::new();
-    let (from, to) = match prepared.model.range().limits() {
-        None => (0.0, std::f64::consts::TAU),
-        Some((from, to)) => (from, to),
-    };
+    let (from, to) = prepared.model.range().limits().unwrap_or((0.0, TAU));
     let mut at = prepared.model.model().coefficient_buffer();
     let mut workspace = prepared.model.workspace();
     for k in 0..8 {
         // Inside the range: next to its ends a machine's own rounding would show.
         let q = from + (to - from) * (f64::from(k) + 0.5) / 8.0;
-        let found = prepared.model.coefficients(q, &mut workspace, &mut at);
-        if found.is_err() {
+        let Ok(()) = prepared.model.coefficients(q, &mut workspace, &mut at) else {
             continue;
-        }
+        };
         let [q, m, half_dm] = [q, at.m, at.half_dm].map(to_seven_decimals);
         text += &format!("q = {q}  m = {m}  half_dm = {half_dm}\n");
         for ((name, _), (&a, &b)) in prepared.reaction_units().iter().zip(at.a.iter().zip(&at.b)) {

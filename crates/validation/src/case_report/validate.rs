@@ -2,14 +2,13 @@
 
 use super::document::document;
 use super::figures::{self, Dwell};
-use super::finding_text::findings_summary;
 use super::numbers::{numbers, tables};
 use super::snapshot::snapshot;
-use super::validation::Validation;
 use crate::cases::reference::Reference;
 use crate::checked::analysis::{CaseAnalysis, ReducedAnalysis, analyse};
 use crate::error::ValidationError;
-use crate::report_parts::draw_figures;
+use crate::report_parts::{describe_failure, draw_figures};
+use dwell_findings::{Check, Finding};
 use dwell_report::{Figure, Files, TableExport as _};
 use dwell_scene::Scene;
 use dwell_study::output::signed_png;
@@ -18,6 +17,17 @@ use std::path::Path;
 
 /// Steps of the progress bar for one case: three of the analysis and two of the report.
 const PROGRESS_STEPS: usize = 5;
+
+/// A validated case.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Validation {
+    /// Summary, files and findings.
+    pub outcome: Outcome,
+    /// Values to the digits that every machine reproduces, and which findings pass.
+    pub snapshot: String,
+    /// The checks without findings, and in a few words why.
+    pub not_applicable: Vec<(Check, &'static str)>,
+}
 
 /// Validates the case whose scene is `scene` and whose reference, if any, is in `folder`. The
 /// files are `NAME.md`, `NAME.json`, `NAME.txt` and the folder `NAME/` with figures and tables.
@@ -60,8 +70,15 @@ pub fn validate(
     })
 }
 
+/// How many findings pass, those that fail, and the period.
 fn summary(scene: &Scene, analysis: &CaseAnalysis<'_>) -> String {
-    let mut text = findings_summary(scene, &analysis.findings);
+    let findings = &analysis.findings;
+    let failed: Vec<&Finding> = findings.iter().filter(|f| !f.pass).collect();
+    let (name, passed) = (&scene.name, findings.len() - failed.len());
+    let mut text = format!("{name}: {passed} of {} findings pass\n", findings.len());
+    for f in failed {
+        text += &format!("  FAIL {} {}\n", f.key, describe_failure(f).join("\n    "));
+    }
     let Some(reduced) = &analysis.reduced else {
         return text;
     };
@@ -108,17 +125,12 @@ fn reduced_figures(
     let mut figures = vec![drawing, reduce::figures::reduced(prepared, &reduced.curves)];
     // The caption of the last one says which reactions are left out.
     figures.extend(reduce::figures::coefficients(prepared, &reduced.curves).0);
-    if let Some(history) = &reduced.history {
-        figures.push(figures::history(prepared, history));
-    }
-    if let Some(motion) = &reduced.motion {
-        figures.push(figures::drift(prepared, motion));
-    }
+    let (history, motion) = (reduced.history.as_ref(), reduced.motion.as_ref());
+    figures.extend(history.map(|history| figures::history(prepared, history)));
+    figures.extend(motion.map(|motion| figures::drift(prepared, motion)));
     if !reduced.error_curves.is_empty() {
         figures.push(figures::finite_differences(prepared, &reduced.error_curves));
     }
-    if let Some(motion) = &reduced.motion {
-        figures.push(figures::work_precision(prepared, motion));
-    }
+    figures.extend(motion.map(|motion| figures::work_precision(prepared, motion)));
     Ok((figures, dwell))
 }

@@ -29,14 +29,15 @@ pub(crate) struct StateRequest {
 #[derive(Debug)]
 pub(crate) struct ModelStates<'a> {
     scene: &'a Scene,
-    model: Model,
+    pub(crate) model: Model,
     reached: ReachedPose,
     /// By body: its angle, rad, whole revolutions counted from the assembly on.
     angles: Vec<f64>,
     /// The coordinates, rad or m, and the largest step of each.
     coordinates: Vec<f64>,
     coordinate_steps: Vec<f64>,
-    assembly_poses: Vec<[f64; 3]>,
+    /// The frames of all bodies as assembled.
+    pub(crate) assembly_poses: Vec<[f64; 3]>,
 }
 
 /// The pose that was reached, with the memory to evaluate states of motion there.
@@ -81,20 +82,16 @@ pub(crate) struct StateValues<'m> {
     pub(crate) scene: &'m Scene,
     pub(crate) state: EvaluatedState<'m>,
     pub(crate) q_ddot: Vec<f64>,
+    /// The frames of all bodies.
+    body_poses: Vec<[f64; 3]>,
     /// By body: its angle with whole revolutions, rad.
     pub(crate) angles: &'m [f64],
 }
 
 impl StateValues<'_> {
-    /// The frames of all bodies.
-    fn body_poses(&self) -> Vec<[f64; 3]> {
-        let plan = self.state.model().plan();
-        plan.body_frames(&self.scene.mechanism, self.state.pose())
-    }
-
     /// Condition number of the dense rows.
     pub(crate) fn condition_number(&self) -> f64 {
-        condition_number(&self.scene.mechanism, &self.body_poses())
+        condition_number(&self.scene.mechanism, &self.body_poses)
     }
 }
 
@@ -130,22 +127,13 @@ impl<'a> ModelStates<'a> {
         Ok(model_states)
     }
 
-    pub(crate) fn model(&self) -> &Model {
-        &self.model
-    }
-
-    /// The frames of all bodies as assembled.
-    pub(crate) fn assembly_poses(&self) -> &[[f64; 3]] {
-        &self.assembly_poses
-    }
-
     /// A state as it is claimed.
     ///
     /// # Errors
     /// As [`ModelStates::evaluate_at`].
     pub(crate) fn state(&mut self, request: &StateRequest) -> Result<ClaimedState, StudyError> {
         let values = self.evaluate_at(request)?;
-        let mut bodies = values.body_poses();
+        let mut bodies = values.body_poses;
         let (scene, state) = (values.scene, &values.state);
         let (states, result) = (state.bodies(), state.inverse_dynamics());
         for (pose, angle) in bodies.iter_mut().zip(values.angles) {
@@ -196,15 +184,6 @@ impl<'a> ModelStates<'a> {
         (0..n * n).map(at).collect()
     }
 
-    /// The frames of all bodies at a position.
-    ///
-    /// # Errors
-    /// As [`ModelStates::evaluate_at`].
-    pub(crate) fn body_poses_at(&mut self, q: &[f64]) -> Result<Vec<[f64; 3]>, StudyError> {
-        self.step_to(q)?;
-        Ok(self.body_poses())
-    }
-
     /// Steps to a state and evaluates it.
     ///
     /// # Errors
@@ -219,7 +198,7 @@ impl<'a> ModelStates<'a> {
             Some(given) => given.clone(),
             None => self.free_acceleration(request)?,
         };
-        let (scene, angles) = (self.scene, &self.angles);
+        let (scene, angles, body_poses) = (self.scene, &self.angles, self.body_poses());
         let state = self
             .reached
             .evaluate(scene, &self.model, request, &q_ddot)?;
@@ -227,12 +206,16 @@ impl<'a> ModelStates<'a> {
             scene,
             state,
             q_ddot,
+            body_poses,
             angles,
         })
     }
 
-    /// In equal steps, counting the whole revolutions of every body.
-    fn step_to(&mut self, to: &[f64]) -> Result<(), StudyError> {
+    /// Steps to a position in equal steps, counting the whole revolutions of every body.
+    ///
+    /// # Errors
+    /// As [`ModelStates::evaluate_at`].
+    pub(crate) fn step_to(&mut self, to: &[f64]) -> Result<(), StudyError> {
         let from = self.coordinates.clone();
         let distances = from.iter().zip(to).zip(&self.coordinate_steps);
         let counts = distances.map(|((a, b), stride)| ((b - a) / stride).abs().ceil());
@@ -261,7 +244,8 @@ impl<'a> ModelStates<'a> {
         done.map_err(|e| explain_position(self.scene, plan, &e))
     }
 
-    fn body_poses(&self) -> Vec<[f64; 3]> {
+    /// The frames of all bodies at the position that was reached.
+    pub(crate) fn body_poses(&self) -> Vec<[f64; 3]> {
         let plan = self.model.plan();
         plan.body_frames(&self.scene.mechanism, &self.reached.pose)
     }

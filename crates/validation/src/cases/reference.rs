@@ -154,8 +154,7 @@ impl Reference {
             computed_states: states,
             published_states: published,
             tolerances: Tolerances::read(&value["tolerances"])?,
-            notes: String::new(),
-            path: String::new(),
+            ..Self::default()
         })
     }
 }
@@ -257,17 +256,15 @@ fn parse(value: &Value) -> Option<f64> {
 
 /// The number of a key.
 fn number(object: &Value, key: &str) -> Result<f64, String> {
-    match &object[key] {
-        Value::Null => Err(format!("`{key}` is missing")),
-        value => parse(value).ok_or_else(|| format!("`{key}` is not a number: {value}")),
-    }
+    optional(object, key)?.ok_or_else(|| format!("`{key}` is missing"))
 }
 
 /// The number of a key that may be absent.
 fn optional(object: &Value, key: &str) -> Result<Option<f64>, String> {
-    match &object[key] {
-        Value::Null => Ok(None),
-        _ => number(object, key).map(Some),
+    let value = &object[key];
+    match parse(value) {
+        None if !value.is_null() => Err(format!("`{key}` is not a number: {value}")),
+        number => Ok(number),
     }
 }
 
@@ -279,13 +276,10 @@ fn sample(value: &Value, scene: &Scene) -> Result<PublishedSample, String> {
         (Some(radians), None) => radians,
         (None, Some(degrees)) => degrees.to_radians(),
     };
-    let mut points = Vec::new();
-    for (key, at) in fields {
-        if SAMPLE_KEYS.contains(&key.as_str()) || is_angle(key, scene) {
-            continue;
-        }
-        points.push(point(key, at, scene)?);
-    }
+    let is_point = |key: &str| !SAMPLE_KEYS.contains(&key) && !is_angle(key, scene);
+    let points = fields.iter().filter(|(key, _)| is_point(key));
+    let points = points.map(|(key, at)| point(key, at, scene));
+    let points = points.collect::<Result<_, String>>()?;
     let sample = PublishedSample {
         q,
         m: optional(value, "m1_kg_m2")?,

@@ -6,64 +6,28 @@ use dwell_geometry::{BodyId, Component, Coordinate, JointId, Vec2};
 use dwell_scene::Scene;
 use dwell_study::former_names;
 
-/// The time derivative of a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum DerivativeOrder {
-    /// None: an angle or a position.
-    Value,
-    /// The first.
-    Velocity,
-    /// The second.
-    Acceleration,
-}
+/// The kinds of quantities, as findings call them: each is compared relative to the largest of its unit.
+pub(crate) const KINDS: [&str; 5] = [
+    "positions",
+    "velocities",
+    "accelerations",
+    "reactions",
+    "actuator-forces",
+];
 
-/// A quantity of a state.
+/// A quantity of a state. An order is 0 for a position, 1 for its velocity, 2 for its acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum StateQuantity {
     /// Angle of a body, and its rates.
-    BodyAngle(BodyId, DerivativeOrder),
-    /// A coordinate along x (false) or y (true) of a point given in its body's frame, m.
-    PointCoordinate(BodyId, Vec2, DerivativeOrder, bool),
+    BodyAngle(BodyId, usize),
+    /// x, y of a point given in its body's frame (m), then their velocities, then their accelerations.
+    PointCoordinate(BodyId, Vec2, usize),
     /// A coordinate of the mechanism.
-    Coordinate(Coordinate, DerivativeOrder),
+    Coordinate(Coordinate, usize),
     /// A reaction, by its index in the mechanism.
     Reaction(usize, Component),
     /// An actuator force.
     ActuatorForce(usize),
-}
-
-/// Quantities that are compared relative to the largest of them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum QuantityKind {
-    /// Angles and positions.
-    Positions,
-    /// Their first rates.
-    Velocities,
-    /// Their second rates.
-    Accelerations,
-    /// Reactions of joints.
-    Reactions,
-    /// Actuator forces.
-    ActuatorForces,
-}
-
-impl DerivativeOrder {
-    /// One of a value and its two derivatives.
-    fn of<T>(self, [value, velocity, acceleration]: [T; 3]) -> T {
-        match self {
-            Self::Value => value,
-            Self::Velocity => velocity,
-            Self::Acceleration => acceleration,
-        }
-    }
-}
-
-fn derivative_order(name: &str) -> Option<DerivativeOrder> {
-    match name {
-        "velocity" => Some(DerivativeOrder::Velocity),
-        "acceleration" => Some(DerivativeOrder::Acceleration),
-        _ => None,
-    }
 }
 
 /// The name that a quantity has now, if `name` is one that it had before.
@@ -74,19 +38,9 @@ pub(crate) fn current_name(scene: &Scene, name: &str) -> Option<String> {
     former_names::current_columns(name).find(|name| StateQuantity::find(scene, name).is_some())
 }
 
-/// `x`, `vy`, `ax` …
-fn point_component(name: &str) -> Option<(DerivativeOrder, bool)> {
-    let (order, axis) = match name.as_bytes() {
-        [axis] => (DerivativeOrder::Value, axis),
-        [b'v', axis] => (DerivativeOrder::Velocity, axis),
-        [b'a', axis] => (DerivativeOrder::Acceleration, axis),
-        _ => return None,
-    };
-    match axis {
-        b'x' => Some((order, false)),
-        b'y' => Some((order, true)),
-        _ => None,
-    }
+/// The index of a word.
+fn position(words: &[&str], word: &str) -> Option<usize> {
+    words.iter().position(|other| *other == word)
 }
 
 impl StateQuantity {
@@ -94,10 +48,10 @@ impl StateQuantity {
     pub(crate) fn find(scene: &Scene, name: &str) -> Option<Self> {
         let coordinate = |name, order| Some(Self::Coordinate(scene.coordinate(name)?, order));
         let Some((whose, what)) = name.split_once('.') else {
-            return coordinate(name, DerivativeOrder::Value);
+            return coordinate(name, 0);
         };
         Self::of_body(scene, whose, what)
-            .or_else(|| coordinate(whose, derivative_order(what)?))
+            .or_else(|| coordinate(whose, 1 + position(&["velocity", "acceleration"], what)?))
             .or_else(|| Self::of_joint(scene, whose, what, name))
             .or_else(|| {
                 let mut actuators = scene.mechanism.actuators.iter();
@@ -110,19 +64,14 @@ impl StateQuantity {
         let mut bodies = scene.mechanism.bodies.iter();
         let body = bodies.position(|b| b.name == whose)?;
         let id = BodyId(body);
-        let order = match what {
-            "angle" => Some(DerivativeOrder::Value),
-            "angular_velocity" => Some(DerivativeOrder::Velocity),
-            "angular_acceleration" => Some(DerivativeOrder::Acceleration),
-            _ => None,
-        };
-        if let Some(order) = order {
+        let angles = ["angle", "angular_velocity", "angular_acceleration"];
+        if let Some(order) = position(&angles, what) {
             return Some(Self::BodyAngle(id, order));
         }
-        let (point, axis) = what.split_once('.')?;
+        let (point, part) = what.split_once('.')?;
         let (_, at) = scene.points[body].iter().find(|(name, _)| name == point)?;
-        let (order, is_y) = point_component(axis)?;
-        Some(Self::PointCoordinate(id, *at, order, is_y))
+        let part = position(&["x", "y", "vx", "vy", "ax", "ay"], part)?;
+        Some(Self::PointCoordinate(id, *at, part))
     }
 
     fn of_joint(scene: &Scene, whose: &str, what: &str, name: &str) -> Option<Self> {
@@ -131,7 +80,7 @@ impl StateQuantity {
             let joint = mechanism.joints.iter().position(|j| j.name == whose)?;
             let travel = Coordinate::Travel(JointId(joint));
             CoordinateFunction::find(mechanism, travel)?;
-            return Some(Self::Coordinate(travel, DerivativeOrder::Value));
+            return Some(Self::Coordinate(travel, 0));
         }
         let reactions = mechanism.reactions();
         let named = |&r| mechanism.reaction_name(r) == name;
@@ -139,19 +88,14 @@ impl StateQuantity {
         Some(Self::Reaction(found, reactions[found].component))
     }
 
-    /// The quantities that it is compared with.
-    pub(crate) fn kind(self) -> QuantityKind {
-        match self {
-            Self::BodyAngle(_, order)
-            | Self::PointCoordinate(_, _, order, _)
-            | Self::Coordinate(_, order) => order.of([
-                QuantityKind::Positions,
-                QuantityKind::Velocities,
-                QuantityKind::Accelerations,
-            ]),
-            Self::Reaction(..) => QuantityKind::Reactions,
-            Self::ActuatorForce(_) => QuantityKind::ActuatorForces,
-        }
+    /// Its kind, one of [`KINDS`].
+    pub(crate) fn kind(self) -> &'static str {
+        KINDS[match self {
+            Self::BodyAngle(_, order) | Self::Coordinate(_, order) => order,
+            Self::PointCoordinate(_, _, part) => part / 2,
+            Self::Reaction(..) => 3,
+            Self::ActuatorForce(_) => 4,
+        }]
     }
 
     /// Its unit.
@@ -159,9 +103,10 @@ impl StateQuantity {
         const ANGLES: [&str; 3] = ["rad", "rad/s", "rad/s2"];
         const LENGTHS: [&str; 3] = ["m", "m/s", "m/s2"];
         match self {
-            Self::BodyAngle(_, order) => order.of(ANGLES),
-            Self::PointCoordinate(_, _, order, _) => order.of(LENGTHS),
-            Self::Coordinate(c, order) => order.of(if c.is_angle() { ANGLES } else { LENGTHS }),
+            Self::BodyAngle(_, order) => ANGLES[order],
+            Self::PointCoordinate(_, _, part) => LENGTHS[part / 2],
+            Self::Coordinate(c, order) if c.is_angle() => ANGLES[order],
+            Self::Coordinate(_, order) => LENGTHS[order],
             Self::Reaction(_, component) => component.unit(),
             Self::ActuatorForce(k) => scene.mechanism.actuators[k].coordinate().force_unit(),
         }
@@ -172,26 +117,21 @@ impl StateQuantity {
         let states = evaluated.state.bodies();
         let result = evaluated.state.inverse_dynamics();
         match self {
-            Self::BodyAngle(body, order) => {
-                let state = states.body(body);
-                order.of([
-                    evaluated.angles[body.0],
-                    state.angular_velocity,
-                    state.angular_acceleration,
-                ])
-            }
-            Self::PointCoordinate(body, at, order, is_y) => {
+            Self::BodyAngle(body, 0) => evaluated.angles[body.0],
+            Self::BodyAngle(body, 1) => states.body(body).angular_velocity,
+            Self::BodyAngle(body, _) => states.body(body).angular_acceleration,
+            Self::PointCoordinate(body, at, part) => {
                 let point = states.point(body, at);
-                let vector = order.of([point.position, point.velocity, point.acceleration]);
-                if is_y { vector.y } else { vector.x }
+                let vector = [point.position, point.velocity, point.acceleration][part / 2];
+                [vector.x, vector.y][part % 2]
             }
             // Whole revolutions are counted by body.
-            Self::Coordinate(Coordinate::Angle([one, two]), DerivativeOrder::Value) => {
+            Self::Coordinate(Coordinate::Angle([one, two]), 0) => {
                 evaluated.angles[two.0] - evaluated.angles[one.0]
             }
             Self::Coordinate(coordinate, order) => {
                 let found = CoordinateFunction::find(&evaluated.scene.mechanism, coordinate);
-                order.of(found.map_or([f64::NAN; 3], |found| states.coordinate(found)))
+                found.map_or(f64::NAN, |found| states.coordinate(found)[order])
             }
             Self::Reaction(k, _) => result.reactions[k],
             Self::ActuatorForce(k) => result.tau[k],

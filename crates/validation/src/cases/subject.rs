@@ -1,6 +1,6 @@
 //! The exact model with every reaction, as the subject of the checks.
 
-use dwell_geometry::{Mechanism, PositionError};
+use dwell_geometry::PositionError;
 use dwell_kinetostatics::{ExactModel, ReducedModel};
 use dwell_scene::Scene;
 use dwell_study::StudyError;
@@ -10,7 +10,6 @@ use dwell_verify::{Coefficients, InverseDynamics, Subject, SubjectError};
 /// The compiled model of a scene with all reactions.
 #[derive(Debug)]
 pub struct PlanSubject {
-    mechanism: Mechanism,
     exact: ExactModel,
 }
 
@@ -21,7 +20,6 @@ impl PlanSubject {
     /// As [`reduced_model`].
     pub fn new(scene: &Scene) -> Result<Self, StudyError> {
         Ok(Self {
-            mechanism: scene.mechanism.clone(),
             exact: reduced_model(scene, &scene.mechanism.reactions())?,
         })
     }
@@ -41,10 +39,10 @@ fn subject_error(q: f64) -> impl Fn(PositionError) -> SubjectError {
 
 impl Subject for PlanSubject {
     fn poses(&self, q: f64) -> Result<Vec<[f64; 3]>, SubjectError> {
-        let plan = self.exact.model().plan();
-        let mut pose = plan.pose();
+        let model = self.exact.model();
+        let (plan, mut pose) = (model.plan(), model.plan().pose());
         plan.positions(&[q], &mut pose).map_err(subject_error(q))?;
-        Ok(plan.body_frames(&self.mechanism, &pose))
+        Ok(plan.body_frames(model.mechanism(), &pose))
     }
 
     fn coefficients(&self, q: f64) -> Result<Coefficients, SubjectError> {

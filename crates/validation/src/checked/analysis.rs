@@ -8,12 +8,13 @@ use crate::checked::period_check;
 use crate::checked::rounding_check::{self, StateRounding};
 use crate::checked::states::{self, CheckedStates};
 use crate::error::ValidationError;
+use dwell_dynamics::DynamicsError;
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::ReducedModel;
 use dwell_scene::{MotionDuration, Scene};
 use dwell_study::explain::explain_motion;
 use dwell_study::reduce::compute::ReducedCurves;
-use dwell_study::{CalibrationResult, PreparedScene, StudyError, find_value, symbolic_findings};
+use dwell_study::{CalibrationResult, PreparedScene, find_value, symbolic_findings};
 use dwell_verify::{
     Case, CheckContext, CheckedFreeMotion, CheckedPosition, ErrorCurve, FreeMotionCase, Range,
     check_free_motion, half_dm_curve, reaction_curve, spread,
@@ -60,26 +61,36 @@ pub(crate) fn analyse<'a>(
 ) -> Result<CaseAnalysis<'a>, ValidationError> {
     let prepared = is_reduced(scene).then(|| PreparedScene::new(scene));
     let prepared = prepared.transpose()?;
-    let (reduced, motion) = rayon::join(
+    let (findings, reduced) = rayon::join(
         || check_reduced_model(scene, reference).inspect(|_| done("reduced model")),
-        || match &prepared {
-            Some(prepared) => free_motion_results(prepared, reference),
-            None => Ok((None, None, None)),
+        || prepared.map(|prepared| ReducedAnalysis::new(prepared, reference)),
+    );
+    let ((reduced_findings, error_curves), mut reduced) = (findings?, reduced.transpose()?);
+    if let Some(reduced) = &mut reduced {
+        reduced.error_curves = error_curves;
+    }
+    let motion = reduced.as_ref().and_then(|reduced| reduced.motion.as_ref());
+    done("free motion");
+    // The checks of a free motion without loads include its period.
+    let (states, (multibody, period)) = rayon::join(
+        || states::check(scene, reference),
+        || {
+            rayon::join(
+                || multibody::check_free_motion(scene, reference),
+                || match motion {
+                    Some(_) => Ok(Ok(Vec::new())),
+                    None => period_check::check_case(scene, reference),
+                },
+            )
         },
     );
-    let ((reduced_findings, error_curves), (motion, calibration, history)) = (reduced?, motion?);
-    done("free motion");
-    let (states, motions) = rayon::join(
-        || states::check(scene, reference),
-        || check_motions(scene, reference, motion.is_some()),
-    );
-    let (states, ((free_motion, multibody_findings), period)) = (states?, motions?);
+    let (states, (free_motion, multibody_findings), period) = (states?, multibody?, period?);
     let rounding = rounding_check::rounding_errors(scene, &states.states)?;
     let mut findings = in_order(
-        prepared.is_some(),
+        reduced.is_some(),
         [
             reduced_findings,
-            motion.iter().flat_map(|m| m.findings.clone()).collect(),
+            motion.map_or_else(Vec::new, |m| m.findings.clone()),
             rounding_check::finding(&rounding).into_iter().collect(),
             states.findings.clone(),
             multibody_findings,
@@ -87,17 +98,6 @@ pub(crate) fn analyse<'a>(
         ],
     );
     reference.apply_tolerances(&mut findings)?;
-    let analysis = |prepared| -> Result<_, StudyError> {
-        Ok(ReducedAnalysis {
-            curves: ReducedCurves::new(&prepared)?,
-            prepared,
-            error_curves,
-            motion,
-            calibration,
-            history,
-        })
-    };
-    let reduced = prepared.map(analysis).transpose()?;
     done("states");
     Ok(CaseAnalysis {
         not_applicable: not_applicable(scene, &findings, period.err()),
@@ -107,23 +107,6 @@ pub(crate) fn analyse<'a>(
         free_motion,
         reduced,
     })
-}
-
-/// The free motion against the multibody equations, and its period: the checks of a free motion without loads hold it
-/// already.
-fn check_motions(
-    scene: &Scene,
-    reference: &Reference,
-    has_period: bool,
-) -> Result<(multibody::CheckedRun, period_check::PeriodFindings), ValidationError> {
-    let (multibody, period) = rayon::join(
-        || multibody::check_free_motion(scene, reference),
-        || match has_period {
-            true => Ok(Ok(Vec::new())),
-            false => period_check::check_case(scene, reference),
-        },
-    );
-    Ok((multibody?, period?))
 }
 
 /// The findings of the reduced model, the free motion, rounding, states, multibody equations and period in the order of
@@ -207,48 +190,48 @@ fn check_reduced_model(
     Ok((findings, curves))
 }
 
-type FreeMotionResults = (
-    Option<CheckedFreeMotion>,
-    Option<CalibrationResult>,
-    Option<History>,
-);
-
-/// The checked free motion, the fitted value and the time history, where the scene has them.
-fn free_motion_results(
-    prepared: &PreparedScene<'_>,
-    reference: &Reference,
-) -> Result<FreeMotionResults, ValidationError> {
-    let scene = prepared.scene;
-    let (Some(start), Some(motion)) = (prepared.initial_state(), &scene.motion) else {
-        return Ok((None, None, None));
-    };
-    let plan = prepared.model.model().plan();
-    let duration = two_periods(motion.duration);
-    let history = History::new(prepared, start, duration)?;
-    let check = |period: f64| {
-        let revolutions = match motion.duration {
-            MotionDuration::Periods(n) => n,
-            MotionDuration::Seconds(d) => d / period,
+impl<'a> ReducedAnalysis<'a> {
+    /// The curves, and the checked free motion, the fitted value and the time history, where the scene has them.
+    fn new(prepared: PreparedScene<'a>, reference: &Reference) -> Result<Self, ValidationError> {
+        let scene = prepared.scene;
+        let mut analysis = Self {
+            curves: ReducedCurves::new(&prepared)?,
+            prepared,
+            error_curves: Vec::new(),
+            motion: None,
+            calibration: None,
+            history: None,
         };
-        let case = FreeMotionCase {
-            initial_state: start,
-            revolutions: (revolutions.floor() as usize).clamp(1, MAX_REVOLUTIONS),
-            reactions: prepared.reaction_units(),
-            period: reference.period.map(|p| (p, reference.source.clone())),
+        let prepared = &analysis.prepared;
+        let (Some(start), Some(motion)) = (prepared.initial_state(), &scene.motion) else {
+            return Ok(analysis);
         };
-        let checked = check_free_motion(&prepared.model, &case);
-        checked.map_err(|e| explain_motion(scene, plan, &e))
-    };
-    let checked = history.period.map(check).transpose()?;
-    let calibration = scene.calibration.as_ref();
-    let calibrated = calibration.map(|c| find_value(scene, &c.path, c.period));
-    Ok((checked, calibrated.transpose()?, Some(history)))
-}
-
-/// The duration of the time history: at most two periods, or the whole motion where it is given in seconds.
-fn two_periods(length: MotionDuration) -> MotionDuration {
-    match length {
-        MotionDuration::Periods(n) => MotionDuration::Periods(n.min(2.0)),
-        duration @ MotionDuration::Seconds(_) => duration,
+        let plan = prepared.model.model().plan();
+        let explain = |e: DynamicsError| explain_motion(scene, plan, &e);
+        // At most two periods, or the whole motion where it is given in seconds.
+        let duration = match motion.duration {
+            MotionDuration::Periods(n) => MotionDuration::Periods(n.min(2.0)),
+            duration @ MotionDuration::Seconds(_) => duration,
+        };
+        let history = History::new(prepared, start, duration).map_err(explain)?;
+        let check = |period: f64| {
+            let revolutions = match motion.duration {
+                MotionDuration::Periods(n) => n,
+                MotionDuration::Seconds(d) => d / period,
+            };
+            let case = FreeMotionCase {
+                initial_state: start,
+                revolutions: (revolutions.floor() as usize).clamp(1, MAX_REVOLUTIONS),
+                reactions: prepared.reaction_units(),
+                period: reference.period.map(|p| (p, reference.source.clone())),
+            };
+            check_free_motion(&prepared.model, &case).map_err(explain)
+        };
+        analysis.motion = history.period.map(check).transpose()?;
+        let calibration = scene.calibration.as_ref();
+        let calibrated = calibration.map(|c| find_value(scene, &c.path, c.period));
+        analysis.calibration = calibrated.transpose()?;
+        analysis.history = Some(history);
+        Ok(analysis)
     }
 }

@@ -18,7 +18,11 @@ const MIN_STEPS: f64 = 100.0;
 /// A scene that is given a free motion.
 pub(crate) struct FreeMotionSetup {
     pub(crate) scene: Scene,
+    /// The longest step of its integration, s.
+    pub(crate) max_step: f64,
     actuator: usize,
+    /// Its coordinate and its speed at the start.
+    initial_state: [f64; 2],
     /// A revolution, rad, or the width of the range, m.
     full_travel: f64,
     /// Where the motion is cut: the range, or the sweep, without its margins.
@@ -60,6 +64,8 @@ impl FreeMotionSetup {
             }
             None => [f64::NEG_INFINITY, f64::INFINITY],
         };
+        let initial_state = [start[actuator], speed];
+        let duration = full_travel / speed;
         let count = start.len();
         let mut velocities = vec![0.0; count];
         velocities[actuator] = speed;
@@ -67,25 +73,32 @@ impl FreeMotionSetup {
             initial_coordinates: start,
             initial_velocities: velocities,
             laws: vec![None; count],
-            duration: MotionDuration::Seconds(full_travel / speed),
+            duration: MotionDuration::Seconds(duration),
             events: Vec::new(),
         };
         let mut free_scene = scene.clone();
         free_scene.motion = Some(motion);
         Ok(Self {
             scene: free_scene,
+            max_step: duration / MIN_STEPS,
             actuator,
+            initial_state,
             full_travel,
             allowed_range,
         })
     }
 
-    /// The longest step of its integration, s.
-    pub(crate) fn max_step(&self) -> Option<f64> {
-        match self.scene.motion.as_ref()?.duration {
-            MotionDuration::Seconds(duration) => Some(duration / MIN_STEPS),
-            MotionDuration::Periods(_) => None,
-        }
+    /// A state of the moving actuator as text.
+    fn state_text(&self, state: [f64; 2]) -> String {
+        let actuator = &self.scene.mechanism.actuators[self.actuator];
+        let (name, unit) = (&actuator.name, actuator.coordinate().unit());
+        let [q, speed] = state.map(|v| digits(v, 6));
+        format!("{name} = {q} {unit} with {speed} {unit}/s")
+    }
+
+    /// The start as text.
+    pub(crate) fn initial_state_text(&self) -> String {
+        self.state_text(self.initial_state)
     }
 
     /// Ends a run after one revolution or one oscillation, and short of its own end; describes it.
@@ -118,13 +131,8 @@ impl FreeMotionSetup {
         let (Some(first), Some(last)) = (run.coordinates.first(), run.steps.last()) else {
             return;
         };
-        let [q, speed] = first[self.actuator];
-        let actuator = &self.scene.mechanism.actuators[self.actuator];
-        let (name, unit) = (&actuator.name, actuator.coordinate().unit());
-        let ([q, speed], end) = ([q, speed].map(|v| digits(v, 6)), digits(last.t, 4));
-        run.setup = format!(
-            "set free at {name} = {q} {unit} with {speed} {unit}/s, until t = {end} s: {cause}"
-        );
+        let (start, end) = (self.state_text(first[self.actuator]), digits(last.t, 4));
+        run.setup = format!("set free at {start}, until t = {end} s: {cause}");
         if let Some(reason) = stop_reason.filter(|_| cause == "short of its end") {
             run.setup += &format!(" ({})", reason.lines().next().unwrap_or(""));
         }

@@ -1,15 +1,12 @@
 //! The free motion of a mechanism without loads, with the requested reactions by R = a q̈ + b q̇².
 
 use dwell_dynamics::{
-    DynamicsError, Event, EventKind, OdeState, Options, Orbit, ReducedCoordinate, ReducedOutputs,
+    DynamicsError, Event, EventKind, Options, Orbit, ReducedCoordinate, ReducedOutputs,
     ReducedState, Solution, solve_reduced,
 };
 use dwell_report::{Column, Table};
 use dwell_scene::MotionDuration;
-use dwell_study::PreparedScene;
-use dwell_study::SolverSettings;
-use dwell_study::StudyError;
-use dwell_study::explain::explain_motion;
+use dwell_study::{PreparedScene, SolverSettings};
 
 /// Samples of a motion's table: a thousand to a revolution, or in all where there is no whole revolution.
 const SAMPLES: f64 = 1000.0;
@@ -21,23 +18,14 @@ pub(crate) struct History {
     pub(crate) run: Solution,
     /// Time of a revolution, s, where it has one.
     pub(crate) period: Option<f64>,
-    /// By sample: q̈ (rad/s²), energy (J), then the requested reactions.
+    /// By sample: time (s), coordinate (rad), speed (rad/s), acceleration (rad/s²), energy (J), then the requested
+    /// reactions.
     pub(crate) rows: Vec<Vec<f64>>,
 }
 
 impl History {
     /// Integrates the scene's motion.
     pub(crate) fn new(
-        prepared: &PreparedScene<'_>,
-        start: ReducedState,
-        length: MotionDuration,
-    ) -> Result<Self, StudyError> {
-        let plan = prepared.model.model().plan();
-        let history = Self::integrate(prepared, start, length);
-        history.map_err(|e| explain_motion(prepared.scene, plan, &e))
-    }
-
-    fn integrate(
         prepared: &PreparedScene<'_>,
         start: ReducedState,
         length: MotionDuration,
@@ -60,7 +48,6 @@ impl History {
         let settings = SolverSettings::default();
         let sampled_time = period.map_or(duration, |period| period.min(duration));
         let options = Options {
-            rtol: settings.rtol,
             atol: settings.atol,
             sample_interval: Some((sampled_time / SAMPLES).max(duration / MAX_SAMPLES)),
             ..Options::new(settings.method, settings.rtol)
@@ -76,14 +63,14 @@ impl History {
         for state in run.samples.iter().map(ReducedState::from) {
             outputs.evaluate(state.q, state.q_dot)?;
             let energy = 0.5 * outputs.coefficients.m * (state.q_dot * state.q_dot);
-            let mut row = vec![outputs.q_ddot, energy];
+            let mut row = vec![state.t, state.q, state.q_dot, outputs.q_ddot, energy];
             row.extend(&outputs.reactions);
             rows.push(row);
         }
         Ok(Self { run, period, rows })
     }
 
-    /// The table: time, coordinate, speed, acceleration, energy, requested reactions.
+    /// The table of its rows.
     pub(crate) fn table(&self, prepared: &PreparedScene<'_>) -> Table {
         let q = prepared.coordinate_name();
         let mut columns = vec![
@@ -95,11 +82,9 @@ impl History {
         ];
         let reactions = prepared.reaction_units();
         columns.extend(reactions.into_iter().map(|(n, u)| Column::new(n, u)));
-        let row =
-            |(s, rest): (&OdeState, &Vec<f64>)| [&[s.t, s.y[0], s.y[1]], rest.as_slice()].concat();
         Table {
             columns,
-            rows: self.run.samples.iter().zip(&self.rows).map(row).collect(),
+            rows: self.rows.clone(),
         }
     }
 }

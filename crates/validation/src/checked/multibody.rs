@@ -3,18 +3,15 @@
 use crate::cases::reference::{PublishedState, Reference};
 use crate::checked::free_motion_setup::FreeMotionSetup;
 use crate::error::ValidationError;
-use dwell_dynamics::{
-    CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Orbit, loads_with_drives,
-};
+use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Method, OdeState, Options, Orbit};
 use dwell_findings::{Check, Finding};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::{InverseDynamics, Model, Workspace};
 use dwell_scene::{MotionDuration, Scene};
 use dwell_study::StudyError;
-use dwell_study::explain::{explain_machine, explain_motion};
 use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use dwell_study::models::loaded_model;
+use dwell_study::models::with_drive_loads;
 use dwell_verify::{MotionSample, MultibodyError, MultibodySystem, check_motion};
 use std::f64::consts::TAU;
 
@@ -81,37 +78,34 @@ fn solve_motion(
         ..Options::new(METHOD, TOLERANCE)
     };
     let motion_segments = free.solve(scene, duration, &options)?;
-    let output_model = loaded_model(&scene_with_drives)?;
-    let explain = |e: &DynamicsError| explain_motion(&scene_with_drives, output_model.plan(), e);
-    let run = collect_steps(scene, &free.machine, &output_model, &motion_segments);
-    let mut run = run.map_err(|e| explain(&e))?;
+    let run = collect_steps(scene, &free, &motion_segments);
+    let mut run = run.map_err(|e| free.explain(&e))?;
     let failure = motion_segments.failure.as_ref();
-    run.stop_reason = failure.map(|e| explain(e).to_string());
+    run.stop_reason = failure.map(|e| free.explain(e).to_string());
     Ok(Some(run))
-}
-
-/// The scene with the loads through which its drives act.
-pub(crate) fn with_drive_loads(scene: &Scene) -> Result<Scene, StudyError> {
-    let loads = loads_with_drives(&scene.mechanism, &scene.loads, &scene.drives);
-    let mut scene_with_drives = scene.clone();
-    scene_with_drives.loads = loads.map_err(|e| explain_machine(scene, e.into()))?;
-    Ok(scene_with_drives)
 }
 
 /// Every step, segment by segment. Within the window of a change point's fit there are no reactions.
 fn collect_steps(
     scene: &Scene,
-    machine: &Machine,
-    output_model: &Model,
+    problem: &FreeMotionProblem<'_>,
     motion_segments: &SegmentedMotion,
 ) -> Result<FreeMotionRun, DynamicsError> {
     let mut run = FreeMotionRun::default();
     for (k, (chart, solution)) in motion_segments.segments.iter().enumerate() {
         let chart = motion_segments.charts.get(*chart);
-        let (machine, output_model) = chart.map_or((machine, output_model), |chart| {
-            (&chart.machine, &chart.output_model)
-        });
-        let mut reader = StateReader::new(scene, machine, output_model);
+        let (machine, output_model) = match chart {
+            Some(chart) => (&chart.machine, &chart.output_model),
+            None => (&problem.machine, &problem.output_model),
+        };
+        let mut reader = StateReader {
+            scene,
+            machine,
+            output_model,
+            workspace: machine.workspace(),
+            output_workspace: output_model.workspace(),
+            result: output_model.result_buffer(),
+        };
         // A segment begins with the state in which the last one ended.
         for point in solution.steps.iter().skip(usize::from(k > 0)) {
             if !machine.is_in_fit_window(&point.y) {
@@ -132,18 +126,7 @@ struct StateReader<'a> {
     result: InverseDynamics<f64>,
 }
 
-impl<'a> StateReader<'a> {
-    fn new(scene: &'a Scene, machine: &'a Machine, output_model: &'a Model) -> Self {
-        Self {
-            scene,
-            machine,
-            output_model,
-            workspace: machine.workspace(),
-            output_workspace: output_model.workspace(),
-            result: output_model.result_buffer(),
-        }
-    }
-
+impl StateReader<'_> {
     /// Adds a state to the run. Angles go on from those before: no step rotates a body by half a revolution.
     fn append(&mut self, at: &OdeState, run: &mut FreeMotionRun) -> Result<(), DynamicsError> {
         let machine = self.machine;
@@ -223,7 +206,7 @@ pub(crate) fn check_free_motion(
 ) -> Result<CheckedRun, ValidationError> {
     let Some(run) = free_motion_run(scene)? else {
         let setup = FreeMotionSetup::new(scene, reference)?;
-        let Some(mut run) = solve_motion(&setup.scene, None, setup.max_step())? else {
+        let Some(mut run) = solve_motion(&setup.scene, None, Some(setup.max_step))? else {
             return Ok((None, Vec::new()));
         };
         setup.truncate(&mut run);
@@ -248,20 +231,18 @@ impl FreeMotionRun {
         let (Some(step), Some(coordinates)) = (self.steps.last(), self.coordinates.last()) else {
             return Vec::new();
         };
-        let mut values = Vec::new();
-        for (actuator, [q, speed]) in scene.mechanism.actuators.iter().zip(coordinates) {
-            let unit = actuator.coordinate().unit();
-            values.push((actuator.name.clone(), unit.to_owned(), *q));
-            let velocity = format!("{}.velocity", actuator.name);
-            values.push((velocity, format!("{unit}/s"), *speed));
-        }
+        let actuators = scene.mechanism.actuators.iter().zip(coordinates);
+        let values = actuators.flat_map(|(actuator, [q, speed])| {
+            let (name, unit) = (&actuator.name, actuator.coordinate().unit());
+            let velocity = (format!("{name}.velocity"), format!("{unit}/s"), *speed);
+            [(name.clone(), unit.to_owned(), *q), velocity]
+        });
         let reactions = scene.mechanism.reactions();
         let named = reactions.iter().zip(&step.reactions).map(|(&r, value)| {
             let name = scene.mechanism.reaction_name(r);
             (name, r.component.unit().to_owned(), *value)
         });
-        values.extend(named);
-        values
+        values.chain(named).collect()
     }
 
     /// Compares the last step with its published values.

@@ -3,13 +3,13 @@
 
 use crate::cases::reference::Reference;
 use crate::checked::free_motion_setup::FreeMotionSetup;
-use crate::checked::multibody::with_drive_loads;
 use dwell_dynamics::{DynamicsError, Method, MotionClass, Options, Orbit};
 use dwell_findings::{Check, Finding};
 use dwell_kinetostatics::{Load, Magnitude};
 use dwell_scene::{EventTrigger, FreeMotionSpec, MotionDuration, NamedEvent, Scene};
 use dwell_study::StudyError;
 use dwell_study::free_motion::compute::FreeMotionProblem;
+use dwell_study::models::with_drive_loads;
 use std::f64::consts::TAU;
 
 /// Tolerances of the integrator, from the coarsest to the finest; the finest has a tolerance of its own.
@@ -87,13 +87,11 @@ fn check_period(scene: &Scene) -> Result<PeriodFindings, StudyError> {
         events: vec![event],
         ..spec.clone()
     };
-    let mut timed = scene.clone();
-    timed.motion = Some(timed_spec.clone());
-    let problem = FreeMotionProblem::new(&timed, &loaded_scene, &timed_spec)?;
+    let problem = FreeMotionProblem::new(scene, &loaded_scene, &timed_spec)?;
     let mut errors = Vec::new();
     for tolerance in TOLERANCES {
         let options = Options::new(Method::Tsit45, tolerance);
-        let motion = problem.solve(&timed, problem.duration()?, &options)?;
+        let motion = problem.solve(scene, problem.duration()?, &options)?;
         let times: Vec<f64> = motion.occurrences().map(|(_, o)| o.state.t).collect();
         let start_time = from.map_or(Some(0.0), |k: usize| times.get(k).copied());
         let (Some(start_time), Some(end_time)) = (start_time, times.get(to)) else {

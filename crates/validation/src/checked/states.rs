@@ -85,9 +85,10 @@ pub(crate) fn check(
     let fine = motions(&model, DRAWN_POSES).next();
     let mut body_poses = Vec::with_capacity(DRAWN_POSES);
     for request in fine.into_iter().flatten() {
-        body_poses.push(model.body_poses_at(&request.q)?);
+        model.step_to(&request.q)?;
+        body_poses.push(model.body_poses());
     }
-    let start = model.assembly_poses().to_vec();
+    let start = model.assembly_poses.clone();
     let (mechanism, masses) = (&scene.mechanism, &scene.masses);
     let (sampled, sampled_matrices): (Vec<_>, Vec<_>) = energy_checked(states.len())
         .map(|k| (states[k].clone(), mass_matrices[k].clone()))
@@ -105,7 +106,7 @@ pub(crate) fn check(
         drawn_count: drawn,
         motion_text: motion,
         body_poses,
-        indeterminate: indeterminate_reactions(scene, model.model().plan()),
+        indeterminate: indeterminate_reactions(scene, model.model.plan()),
         findings,
     })
 }
@@ -139,7 +140,7 @@ fn cosine_sweep(
     reference: &Reference,
     count: usize,
 ) -> Option<Vec<StateRequest>> {
-    let plan = model.model().plan();
+    let plan = model.model.plan();
     let (actuator, given, fixed) = match &scene.sweep {
         Some(sweep) => (sweep.actuator.0, sweep.range, &sweep.fixed_coordinates),
         None if plan.actuators() == 1 => (0, None, &scene.assembly.coordinates),

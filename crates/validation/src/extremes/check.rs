@@ -4,6 +4,7 @@ use super::series::{
     MAX_ESTIMATE_RATIO, MIN_ILL_CONDITIONED, REQUIRED_CELL_FRACTION, ResultCell, SeriesResult,
 };
 use dwell_findings::{Check, Finding};
+use dwell_study::ranges::extent;
 
 /// The findings: of each row its floor and the safe side of its estimates, and of all rows how near the
 /// estimates are.
@@ -16,14 +17,6 @@ pub fn check(results: &[SeriesResult]) -> Vec<Finding> {
     findings
 }
 
-fn location(result: &SeriesResult, cell: &ResultCell) -> String {
-    let series = &result.series;
-    format!(
-        "{} = {:e} {}, {}",
-        series.parameter.0, cell.parameter, series.parameter.1, series.quantities[cell.quantity]
-    )
-}
-
 /// The cell with the most of something, and how much that is.
 fn cell_with_max(
     result: &SeriesResult,
@@ -33,18 +26,23 @@ fn cell_with_max(
     all.max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// A finding on a row, in parts of what is allowed, with where its largest value is.
-fn row_finding(result: &SeriesResult, key: &str, largest: f64, worst_at: String) -> Finding {
+/// A finding on a row, in parts of what is allowed, with the largest of them and its cell.
+fn row_finding(result: &SeriesResult, key: &str, max: Option<(f64, &ResultCell)>) -> Finding {
     let series = &result.series;
-    let values = series.values.iter().copied();
-    let from = values.clone().fold(f64::INFINITY, f64::min);
-    let to = values.fold(0.0, f64::max);
+    let [from, to] = extent(series.values.iter().copied());
     let (parameter, unit) = series.parameter;
+    let location = |(_, cell): (f64, &ResultCell)| {
+        let error = cell.result.as_ref().err().map(|error| format!(": {error}"));
+        let (value, quantity) = (cell.parameter, series.quantities[cell.quantity]);
+        let error = error.unwrap_or_default();
+        format!("{parameter} = {value:e} {unit}, {quantity}{error}")
+    };
+    let largest = max.map_or(0.0, |(largest, _)| largest);
     let key = format!("{}-{key}", series.key);
     Finding {
         comparison: format!("{}: {}", series.description, series.reference),
         domain: format!("{parameter} from {from:e} to {to:e} {unit}"),
-        worst_at,
+        worst_at: max.map(location).unwrap_or_default(),
         tolerance_reason: series.reason.to_owned(),
         ..Finding::new(&key, Check::ClosedForms, [largest; 2], 1.0)
     }
@@ -58,34 +56,22 @@ fn check_digits(result: &SeriesResult) -> Finding {
         None if cell.meets_requirement() => None,
         None => Some(f64::INFINITY),
     };
-    let (largest, worst_at) = match cell_with_max(result, excess) {
-        None => (0.0, String::new()),
-        Some((largest, cell)) => {
-            let error = cell.result.as_ref().err().map(|error| format!(": {error}"));
-            let location = location(result, cell) + &error.unwrap_or_default();
-            (largest, location)
-        }
-    };
     Finding {
         scale: format!(
             "the error that the floor allows; typed errors only where the condition is above {MIN_ILL_CONDITIONED:e}"
         ),
         pass: result.cells.iter().all(ResultCell::meets_requirement) && !result.cells.is_empty(),
-        ..row_finding(result, "digits", largest, worst_at)
+        ..row_finding(result, "digits", cell_with_max(result, excess))
     }
 }
 
 /// Whether no estimate is below the true error.
 fn check_estimates(result: &SeriesResult) -> Finding {
-    let found = cell_with_max(result, |cell| Some(1.0 / cell.estimate_ratio()?));
-    let (largest, worst_at) = match found {
-        None => (0.0, String::new()),
-        Some((largest, cell)) => (largest, location(result, cell)),
-    };
+    let largest = cell_with_max(result, |cell| Some(1.0 / cell.estimate_ratio()?));
     Finding {
         scale: "the estimated error".to_owned(),
         tolerance_reason: "an estimate below the true error would hide a wrong number".to_owned(),
-        ..row_finding(result, "error-estimate", largest, worst_at)
+        ..row_finding(result, "error-estimate", largest)
     }
 }
 

@@ -26,21 +26,14 @@ pub(crate) struct TestMechanism {
 impl TestMechanism {
     /// Bodies with their masses, after the ground.
     fn new(bodies: &[(&str, Mass)]) -> Self {
-        let name = |name: &str| Body { name: name.into() };
-        let all = std::iter::once(name("ground"));
-        let mechanism = Mechanism {
-            bodies: all.chain(bodies.iter().map(|b| name(b.0))).collect(),
-            ..Mechanism::default()
-        };
-        let ground = std::iter::once(Mass::default());
-        Self {
-            mechanism,
-            masses: ground.chain(bodies.iter().map(|b| b.1)).collect(),
-            assembly: AssemblyConfiguration {
-                initial_guess: vec![None; bodies.len() + 1],
-                ..AssemblyConfiguration::default()
-            },
+        let all = [&[("ground", Mass::default())], bodies].concat();
+        let mut test = Self::default();
+        for (name, mass) in all {
+            test.mechanism.bodies.push(Body { name: name.into() });
+            test.masses.push(mass);
+            test.assembly.initial_guess.push(None);
         }
+        test
     }
 
     fn joint(&mut self, name: &str, bodies: [usize; 2], points: [Vec2; 2], kind: JointKind) {

@@ -4,13 +4,13 @@ use super::check::check;
 use super::series::{MAX_ESTIMATE_RATIO, ResultCell, SeriesResult};
 use crate::report_parts::{draw_figures, figure_blocks, pass_or_fail, table};
 use dwell_findings::{Finding, all_pass};
-use dwell_report::TableExport as _;
 use dwell_report::{
-    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table, png,
-    reproducible_text,
+    Axis, Block, Chart, Column, Document, Figure, Files, Mark, Paint, Series, Stroke, Table,
+    TableExport as _, png, reproducible_text,
 };
-use dwell_study::Outcome;
-use dwell_study::StudyError;
+use dwell_study::output::chart;
+use dwell_study::ranges::extent;
+use dwell_study::{Outcome, StudyError};
 
 /// Most digits that a chart shows.
 const MAX_DIGITS: f64 = 17.0;
@@ -90,10 +90,8 @@ fn points(
 
 fn parameter_axis(result: &SeriesResult) -> Axis {
     let (label, unit) = result.series.parameter;
-    let values = result.series.values.iter().copied();
-    let (low, high) = (values.clone().reduce(f64::min), values.reduce(f64::max));
+    let [low, high] = extent(result.series.values.iter().copied());
     // A margin at the outermost points, the same on the left and on the right.
-    let (low, high) = (low.unwrap_or(1.0), high.unwrap_or(1.0));
     let margin = (high / low).powf(0.03);
     Axis::log(label, unit).with_range(low / margin, high * margin)
 }
@@ -128,13 +126,13 @@ fn digits_chart(result: &SeriesResult) -> Chart {
         let marked = Series::line("typed error", typed_errors).stroke(Stroke::Points);
         series.push(marked.color(Paint::Ink));
     }
-    Chart {
-        title: parameter_series.description.clone(),
-        x: parameter_axis(result),
-        y: Axis::new("digits kept", "").with_range(0.0, MAX_DIGITS),
+    let y = Axis::new("digits kept", "").with_range(0.0, MAX_DIGITS);
+    chart(
+        &parameter_series.description,
+        parameter_axis(result),
+        y,
         series,
-        ..Chart::default()
-    }
+    )
 }
 
 fn ratio_chart(result: &SeriesResult) -> Chart {
@@ -190,9 +188,7 @@ fn snapshot(results: &[SeriesResult], findings: &[Finding]) -> String {
     let mut text = "Extremes\n\n".to_owned();
     for result in results {
         let series = &result.series;
-        let min_digits = result.cells.iter().map(|c| c.requirement.min_digits);
-        let min = min_digits.clone().fold(f64::INFINITY, f64::min);
-        let max = min_digits.fold(0.0, f64::max);
+        let [min, max] = extent(result.cells.iter().map(|c| c.requirement.min_digits));
         text += &format!(
             "{}  {} values of {} quantities  floors {max:.1} to {min:.1} digits\n",
             series.key,
@@ -236,14 +232,9 @@ fn document(
 /// A row in words.
 fn summary_row(result: &SeriesResult) -> Vec<String> {
     let cells = &result.cells;
-    let span = |of: &dyn Fn(&ResultCell) -> Option<f64>| {
-        let all = || cells.iter().filter_map(of);
-        let min = all().fold(f64::INFINITY, f64::min);
-        (min, all().fold(f64::NEG_INFINITY, f64::max))
-    };
-    let (min_required, max_required) = span(&|c| Some(c.requirement.min_digits));
-    let (min_digits, _) = span(&ResultCell::digits);
-    let (low, high) = span(&ResultCell::estimate_ratio);
+    let [min_required, max_required] = extent(cells.iter().map(|c| c.requirement.min_digits));
+    let [min_digits, _] = extent(cells.iter().filter_map(ResultCell::digits));
+    let [low, high] = extent(cells.iter().filter_map(ResultCell::estimate_ratio));
     let typed_errors = cells.iter().filter(|c| c.result.is_err()).count();
     vec![
         result.series.description.clone(),

@@ -1,9 +1,10 @@
 //! Motions of the grid, each run twice to estimate its error.
 
 use super::mechanisms::TestMechanism;
+use super::series::{CellResult, cell};
 use dwell_dynamics::{
-    CoordinateMode, DynamicsError, Machine, OdeState, Options, ReducedState, Solution, solve,
-    solve_reduced,
+    CoordinateMode, DynamicsError, Machine, OdeState, Options, Orbit, ReducedState, Solution,
+    solve, solve_reduced,
 };
 use dwell_kinetostatics::{ExactModel, Load, ReducedModel as _};
 use dwell_numerics::{DoubleDouble, Scalar};
@@ -14,8 +15,8 @@ const COMPARED_TIMES: usize = 64;
 
 /// The states of a motion at the same times in a run and in its second.
 pub(super) struct RunPair {
-    pub(super) first: Vec<Vec<f64>>,
-    pub(super) second: Vec<Vec<f64>>,
+    first: Vec<Vec<f64>>,
+    second: Vec<Vec<f64>>,
 }
 
 impl RunPair {
@@ -28,7 +29,7 @@ impl RunPair {
     }
 
     /// Runs with some options, and with those that estimate the error.
-    fn of<E>(
+    pub(super) fn of<E>(
         options: &Options,
         run: impl Fn(&Options) -> Result<Vec<Vec<f64>>, E>,
     ) -> Result<Self, E> {
@@ -40,7 +41,7 @@ impl RunPair {
 }
 
 /// The options with samples at the compared times of a motion of some duration, s.
-fn sampled(options: &Options, duration: f64) -> Options {
+pub(super) fn sampled(options: &Options, duration: f64) -> Options {
     Options {
         sample_interval: Some(duration / COMPARED_TIMES as f64),
         ..*options
@@ -119,4 +120,14 @@ pub(super) fn loaded_motion(
     RunPair::of(&sampled(options, end), |options| {
         solve(machine, machine.model(), &start, end, options, &[]).and_then(compared_states)
     })
+}
+
+/// The period by quadrature with its estimated error; `orbit` is the orbit at a multiple of the initial state.
+pub(super) fn quadrature(
+    orbit: impl Fn(f64) -> Result<Orbit, DynamicsError>,
+    reference: DoubleDouble,
+) -> CellResult {
+    let exact = orbit(1.0).map_err(|e| e.to_string())?;
+    let error = estimate::of_period(&exact, orbit).map_err(|e| e.to_string())?;
+    cell((exact.period, error), reference)
 }

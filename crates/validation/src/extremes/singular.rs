@@ -2,8 +2,8 @@
 
 use super::closed_forms::{arc_cosine, dd, elliptic_k, exponential};
 use super::mechanisms::{SliderCrank, TestMechanism, mass, rotor};
-use super::run_pair::{loaded_motion, machine};
-use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
+use super::run_pair::{RunPair, loaded_motion, machine, quadrature, sampled};
+use super::series::{ParameterSeries, Requirement, RunResult, decades, scaled_cell};
 use dwell_dynamics::{
     Atlas, Machine, MachineDescription, Method, OdeState, Options, Orbit, ReducedState,
 };
@@ -55,9 +55,7 @@ fn near_separatrix(sign: f64) -> ParameterSeries {
             let (t, q, q_dot) = (0.0, 0.0, q_dot * stretch);
             Orbit::loaded(&machine, ReducedState { t, q, q_dot })
         };
-        let exact = orbit(1.0)?;
-        let error = estimate::of_period(&exact, orbit)?;
-        Ok(vec![cell((exact.period, error), period)])
+        Ok(vec![quadrature(orbit, period)])
     };
     let (key, what) = match sign < 0.0 {
         true => (
@@ -155,22 +153,18 @@ fn from_dead_point(distance: f64) -> RunResult {
     slider_crank.assembly = [travel, angle.value()];
     let test = slider_crank.build(true);
     let end = 2.0;
-    let run = |options: &Options| travel_history(&test, [travel, speed], end, options);
-    let options = Options {
-        sample_interval: Some(end / 64.0),
-        ..Options::new(Method::Bdf, DEAD_POINT_TOLERANCE)
-    };
-    let first = run(&options)?;
-    let second = run(&estimate::comparison_options(&options))?;
+    let options = sampled(&Options::new(Method::Bdf, DEAD_POINT_TOLERANCE), end);
+    let runs = RunPair::of(&options, |options| {
+        travel_history(&test, [travel, speed], end, options)
+    })?;
     let (sin, cos) = (angle + crank_velocity * dd(end)).sin_cos();
     let reference = crank * cos + rod_projection(sin);
-    let got = first.last().copied().unwrap_or(f64::NAN);
     // The crank's speed is as well known as the root of its inertia, over 2 s.
     let exact = test.exact_model(&[])?;
     let (at, error) = estimate::coefficients_with_errors(exact.model(), travel)?;
     let rounding = 2.0 * end * error.m / at.m + 4.0 * f64::EPSILON;
-    let error = estimate::of_motion(&first, &second, rounding);
-    Ok(vec![scaled_cell((got, error), reference, 1.0)])
+    let end_travel = runs.final_value(|y| y[0], rounding);
+    Ok(vec![scaled_cell(end_travel, reference, 1.0)])
 }
 
 /// The travel of the slider at the samples of a motion from a state.
@@ -179,7 +173,7 @@ fn travel_history(
     state: [f64; 2],
     end: f64,
     options: &Options,
-) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+) -> Result<Vec<Vec<f64>>, Box<dyn std::error::Error>> {
     let mut atlas = Atlas::new(MachineDescription {
         mechanism: &test.mechanism,
         masses: &test.masses,
@@ -194,7 +188,8 @@ fn travel_history(
         return Err(error.into());
     }
     let history = atlas.coordinate_history(&motion, atlas.actuator_coordinate())?;
-    Ok(history.samples.iter().flatten().map(|s| s[0]).collect())
+    let samples = history.samples.iter().flatten();
+    Ok(samples.map(|s| vec![s[0]]).collect())
 }
 
 fn dead_point() -> ParameterSeries {

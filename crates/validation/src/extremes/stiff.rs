@@ -2,15 +2,12 @@
 
 use super::closed_forms::{dd, elliptic_e, exponential};
 use super::mechanisms::{mass, rotor, scotch_yoke, slider};
-use super::run_pair::{free_motion, kinetic_energy, loaded_motion, machine};
-use super::series::{
-    CellResult, ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell,
-};
-use dwell_dynamics::{DynamicsError, Method, Options, Orbit, ReducedState};
+use super::run_pair::{free_motion, kinetic_energy, loaded_motion, machine, quadrature};
+use super::series::{ParameterSeries, Requirement, RunResult, cell, decades, scaled_cell};
+use dwell_dynamics::{Method, Options, Orbit, ReducedState};
 use dwell_geometry::{BodyId, Vec2, vec2};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use dwell_numerics::{DoubleDouble, Scalar};
-use dwell_study::estimate;
 use std::f64::consts::TAU;
 
 /// Errors of these motions in tolerances: a few hundred steps, four tolerances each.
@@ -44,16 +41,6 @@ fn spring(stiffness: f64) -> Load {
         free_length: 2.0,
     };
     load(kind, stiffness)
-}
-
-/// The period by quadrature with its estimated error; `orbit` is the orbit at a multiple of the initial state.
-fn quadrature(
-    orbit: impl Fn(f64) -> Result<Orbit, DynamicsError>,
-    reference: DoubleDouble,
-) -> CellResult {
-    let exact = orbit(1.0).map_err(|e| e.to_string())?;
-    let error = estimate::of_period(&exact, orbit).map_err(|e| e.to_string())?;
-    cell((exact.period, error), reference)
 }
 
 fn stiffness() -> ParameterSeries {

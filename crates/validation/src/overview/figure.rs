@@ -3,6 +3,7 @@
 use crate::overview::{CaseResult, CheckCell, check_cells};
 use dwell_findings::Check;
 use dwell_report::{Axis, Cell, Figure, Grid, Group, Panel, Row};
+use std::collections::BTreeMap;
 
 /// Digits that the colours cover: from those of an integrated motion to the last place.
 const COLOR_RANGE: [f64; 2] = [6.0, 16.0];
@@ -10,7 +11,7 @@ const COLOR_RANGE: [f64; 2] = [6.0, 16.0];
 /// Digits of agreement, case by check.
 pub(crate) fn overview(results: &[CaseResult<'_>]) -> Figure {
     // By check and reason: the cases.
-    let mut not_applicable: Vec<((Check, &str), Vec<&str>)> = Vec::new();
+    let mut not_applicable: BTreeMap<(Check, &str), Vec<&str>> = BTreeMap::new();
     let mut rows = Vec::new();
     for (name, result) in results {
         let Ok((scene, validation)) = result else {
@@ -23,19 +24,13 @@ pub(crate) fn overview(results: &[CaseResult<'_>]) -> Figure {
             CheckCell::Digits(digits) => Some(Cell::new(digits, format!("{digits:.1}"))),
             CheckCell::Failed(_) => Some(Cell::text_only("FAIL").failed()),
             CheckCell::NotApplicable(why) => {
-                match not_applicable
-                    .iter_mut()
-                    .find(|(of, _)| *of == (check, why))
-                {
-                    Some((_, cases)) => cases.push(&scene.name),
-                    None => not_applicable.push(((check, why), vec![&scene.name])),
-                }
+                let cases = not_applicable.entry((check, why)).or_default();
+                cases.push(&scene.name);
                 None
             }
         });
         rows.push(Row::new(&scene.name, cells.collect()));
     }
-    not_applicable.sort_by_key(|(of, _)| *of);
     let mut caption =
         "Agreeing digits of the worst finding of each check; double precision has 15.7. Checks 5, 6 and part of 4 are limited by the integrator's tolerance."
             .to_owned();

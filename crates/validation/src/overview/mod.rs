@@ -2,9 +2,8 @@
 
 mod figure;
 
-use crate::case_report::finding_text::describe_failure;
-use crate::case_report::validation::Validation;
-use crate::report_parts::{pass_or_fail, table};
+use crate::case_report::validate::Validation;
+use crate::report_parts::{describe_failure, pass_or_fail, table};
 use dwell_findings::{Check, Finding, all_pass};
 use dwell_report::{Block, Document, Files, png};
 use dwell_scene::Scene;

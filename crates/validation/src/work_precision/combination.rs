@@ -94,7 +94,7 @@ impl Combination {
 }
 
 /// True errors: the largest over the compared times.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Errors {
     /// Of the free coordinates, rad or m.
     pub coordinate: f64,
@@ -236,6 +236,14 @@ impl WorkPrecision {
         point.errors.of(quantity) < self.reference.error.of(quantity)
     }
 
+    /// An error of a point as text: below the error of the reference as an upper bound.
+    pub(super) fn describe_error(&self, of: &CombinationResult, quantity: ErrorQuantity) -> String {
+        match self.is_below_reference(of, quantity) {
+            true => format!("< {}", digits(self.reference.error.of(quantity), 2)),
+            false => digits_or_dash(of.errors.of(quantity), 2),
+        }
+    }
+
     /// The Pareto front of the integrators, as indices of `points`, from the cheapest to the most precise: no other
     /// one is at once as cheap and as precise. Quadrature is left out, since no integrator is competitive with it: see
     /// [`WorkPrecision::quadrature`]. Counted evaluations compare integrators alone, so the front over them is that of the
@@ -313,12 +321,6 @@ impl Effort {
         }
     }
 
-    /// The finest tolerance.
-    pub(super) fn finest_tolerance(&self) -> Option<f64> {
-        let finest = self.tolerance_exponents.last();
-        finest.map(|&power| 10_f64.powi(power))
-    }
-
     /// That of a part of the reports.
     pub fn brief() -> Self {
         Self {
@@ -336,14 +338,5 @@ pub(super) fn digits_or_dash(value: f64, count: usize) -> String {
         "–".to_owned()
     } else {
         digits(value, count)
-    }
-}
-
-/// An error as text: below the error of the reference as an upper bound.
-pub(super) fn describe_error(error: f64, reference_error: f64) -> String {
-    if error < reference_error {
-        format!("< {}", digits(reference_error, 2))
-    } else {
-        digits_or_dash(error, 2)
     }
 }

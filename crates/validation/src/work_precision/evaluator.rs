@@ -1,14 +1,14 @@
 //! Evaluators of the equation of motion and of the reactions.
 
 use super::combination::Evaluation;
+use super::subject::Subject;
 use dwell_dynamics::{
     DynamicsError, Machine, MachineOde, MachineWorkspace, OdeState, OdeSystem, Orbit, ReducedOde,
     ReducedOutputs, ReducedState, TabulatedMachine,
 };
 use dwell_geometry::{PositionError, Range};
 use dwell_kinetostatics::{
-    Coefficients, ExactModel, ExactWorkspace, Inertia, Model, ReducedModel, TabulatedModel,
-    Workspace,
+    Coefficients, ExactModel, ExactWorkspace, Inertia, Model, ReducedModel, Workspace,
 };
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -33,14 +33,10 @@ pub trait Evaluator {
     fn jacobian_weight(&self) -> usize;
 
     /// The time of building it, s.
-    fn build_time(&self) -> f64 {
-        0.0
-    }
+    fn build_time(&self) -> f64;
 
     /// The motion by quadrature with its number of evaluations; none where it does not follow from its energy.
-    fn orbit(&self, _start: ReducedState) -> Option<(Orbit, usize)> {
-        None
-    }
+    fn orbit(&self, start: ReducedState) -> Option<(Orbit, usize)>;
 }
 
 /// A reduced model of one freedom without loads.
@@ -52,17 +48,6 @@ pub struct ModelEvaluator<R: ReducedModel> {
     pub evaluation: Evaluation,
     /// The time of building it, s.
     pub build_time: f64,
-}
-
-impl<R: ReducedModel> ModelEvaluator<R> {
-    /// A model that is not built for the study.
-    pub fn new(model: R, evaluation: Evaluation) -> Self {
-        Self {
-            model,
-            evaluation,
-            build_time: 0.0,
-        }
-    }
 }
 
 impl<R: ReducedModel> Evaluator for ModelEvaluator<R> {
@@ -207,109 +192,56 @@ impl ReducedModel for SinglePrecisionModel {
     }
 }
 
-/// A machine: any number of freedoms, loads, drives.
-pub(super) struct MachineEvaluator<'m> {
-    pub(super) machine: &'m Machine,
-    /// The same with the reactions that are compared, its first ones.
-    pub(super) output_machine: &'m Machine,
-    pub(super) initial_state: &'m OdeState,
+/// A machine: any number of freedoms, loads, drives; itself, in single precision or on a table.
+pub(super) struct MachineEvaluator<'s> {
+    pub(super) subject: &'s Subject,
+    pub(super) evaluation: Evaluation,
+    /// Its table. This holds no reactions: they are those of the machine at the table's states.
+    pub(super) table: Option<TabulatedMachine>,
+    /// The time of building it, s.
+    pub(super) build_time: f64,
 }
 
 impl Evaluator for MachineEvaluator<'_> {
     fn evaluation(&self) -> Evaluation {
-        Evaluation::Exact
+        self.evaluation
     }
 
     fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError> {
-        let ode = MachineOde::new(self.machine, self.initial_state.t, &self.initial_state.y)?;
-        Ok(Box::new(ode))
-    }
-
-    fn reactions(&self) -> ReactionFn<'_> {
-        let mut workspace = self.output_machine.workspace::<f64>();
-        Box::new(move |point, out| {
-            let machine = self.output_machine;
-            let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
-            let reactions = &state.inverse_dynamics().reactions;
-            out.copy_from_slice(&reactions[..out.len()]);
-            Ok(())
-        })
-    }
-
-    fn jacobian_weight(&self) -> usize {
-        2 * self.machine.work_offset()
-    }
-
-    fn orbit(&self, start: ReducedState) -> Option<(Orbit, usize)> {
-        let orbit = Orbit::loaded(self.machine, start).ok()?;
-        let points = orbit.points;
-        Some((orbit, points))
-    }
-}
-
-/// The same machine on a table. Reactions are those of the machine at the table's states: its table holds none.
-pub(super) struct TableEvaluator<'m> {
-    pub(super) table: TabulatedMachine,
-    /// The time of building it, s.
-    pub(super) build_time: f64,
-    pub(super) accuracy: f64,
-    pub(super) exact: MachineEvaluator<'m>,
-}
-
-impl Evaluator for TableEvaluator<'_> {
-    fn evaluation(&self) -> Evaluation {
-        let [cells, ..] = self.table.cells();
-        Evaluation::Table {
-            accuracy: self.accuracy,
-            cells,
-            bytes: self.table.bytes(),
+        let machine = &self.subject.machine;
+        let OdeState { t, y } = &self.subject.initial_state;
+        if let Some(table) = &self.table {
+            return Ok(Box::new(table.ode(*t, y)?));
         }
-    }
-
-    fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError> {
-        let OdeState { t, y } = self.exact.initial_state;
-        Ok(Box::new(self.table.ode(*t, y)?))
-    }
-
-    fn reactions(&self) -> ReactionFn<'_> {
-        self.exact.reactions()
-    }
-
-    fn jacobian_weight(&self) -> usize {
-        self.exact.jacobian_weight()
-    }
-
-    fn build_time(&self) -> f64 {
-        self.build_time
-    }
-}
-
-/// The same machine in single precision.
-pub(super) struct SinglePrecisionEvaluator<'m>(pub(super) MachineEvaluator<'m>);
-
-impl Evaluator for SinglePrecisionEvaluator<'_> {
-    fn evaluation(&self) -> Evaluation {
-        Evaluation::SinglePrecision
-    }
-
-    fn system(&self) -> Result<Box<dyn OdeSystem + '_>, DynamicsError> {
-        let machine = self.0.machine;
+        let exact = MachineOde::new(machine, *t, y)?;
+        if self.evaluation != Evaluation::SinglePrecision {
+            return Ok(Box::new(exact));
+        }
         Ok(Box::new(SinglePrecisionOde {
             machine,
             workspace: machine.workspace(),
             y: vec![0.0; machine.state_count()],
             out: vec![0.0; machine.state_count()],
-            exact: MachineOde::new(machine, self.0.initial_state.t, &self.0.initial_state.y)?,
+            exact,
         }))
     }
 
     fn reactions(&self) -> ReactionFn<'_> {
-        let output_machine = self.0.output_machine;
-        let mut workspace = output_machine.workspace::<f32>();
-        let mut y = vec![0.0; output_machine.state_count()];
+        let machine = &self.subject.output_machine;
+        if self.evaluation != Evaluation::SinglePrecision {
+            let mut workspace = machine.workspace::<f64>();
+            return Box::new(move |point, out| {
+                let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
+                let reactions = &state.inverse_dynamics().reactions;
+                out.copy_from_slice(&reactions[..out.len()]);
+                Ok(())
+            });
+        }
+        let mut workspace = machine.workspace::<f32>();
+        let mut y = vec![0.0; machine.state_count()];
         Box::new(move |point, out| {
             to_f32(&point.y, &mut y);
-            let state = output_machine.evaluate(point.t, &y, &mut workspace)?;
+            let state = machine.evaluate(point.t, &y, &mut workspace)?;
             for (out, &value) in out.iter_mut().zip(&state.inverse_dynamics().reactions) {
                 *out = f64::from(value);
             }
@@ -318,7 +250,20 @@ impl Evaluator for SinglePrecisionEvaluator<'_> {
     }
 
     fn jacobian_weight(&self) -> usize {
-        self.0.jacobian_weight()
+        2 * self.subject.machine.work_offset()
+    }
+
+    fn build_time(&self) -> f64 {
+        self.build_time
+    }
+
+    fn orbit(&self, start: ReducedState) -> Option<(Orbit, usize)> {
+        if self.evaluation != Evaluation::Exact {
+            return None;
+        }
+        let orbit = Orbit::loaded(&self.subject.machine, start).ok()?;
+        let points = orbit.points;
+        Some((orbit, points))
     }
 }
 
@@ -358,15 +303,5 @@ impl OdeSystem for SinglePrecisionOde<'_> {
 fn to_f32(y: &[f64], single: &mut [f32]) {
     for (single, &value) in single.iter_mut().zip(y) {
         *single = value as f32;
-    }
-}
-
-/// The evaluation by a table.
-pub(super) fn table_evaluation(table: &TabulatedModel, accuracy: f64) -> Evaluation {
-    let ([cells, ..], [bytes, _]) = (table.cells(), table.bytes());
-    Evaluation::Table {
-        accuracy,
-        cells,
-        bytes,
     }
 }

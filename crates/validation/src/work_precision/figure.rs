@@ -1,13 +1,15 @@
 //! The figure: cost over true error, with the Pareto front.
 
 use super::combination::{
-    CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision, digits_or_dash,
+    CombinationResult, CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
+    digits_or_dash,
 };
 use dwell_dynamics::Method;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Panel, Series, Stroke};
 use dwell_scene::Scene;
 use dwell_study::number_format::{count, digits};
-use dwell_study::output::scene_caption;
+use dwell_study::output::{chart, figure as scene_figure};
+use dwell_study::ranges::extent;
 
 /// Margin at the outermost errors, as a factor.
 const AXIS_MARGIN: f64 = 4.0;
@@ -20,7 +22,7 @@ const MIN_LABEL_GAP_CROWDED: f64 = 3.0;
 /// The figure of a study.
 pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure {
     let tables =
-        |p: &super::CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
+        |p: &CombinationResult| matches!(p.combination.evaluation, Evaluation::Table { .. });
     let hollow = match found.points.iter().any(tables) {
         true => {
             "; hollow: tables, without their build time; dashed: build time of the finest table"
@@ -28,45 +30,43 @@ pub(super) fn figure(scene: &Scene, found: &WorkPrecision, name: &str) -> Figure
         false => "",
     };
     let reference_error = found.reference.error;
+    let text = format!(
+        "Each mark is one combination over t = 0 to {} s. Full marks: the mechanism itself, one tolerance after \
+         the other; where time is measured, crosses: single precision{hollow}. Grey line: the Pareto front, \
+         with names. Reference: {}; shaded: below its error ({}, {} and {} of the three errors). An evaluation \
+         is one of the equation of motion; a Jacobian counts as its dual numbers. Time is in units of one \
+         exact evaluation in the same process, the least of {}.",
+        digits(found.duration, 5),
+        found.reference.method,
+        digits(reference_error.coordinate, 1),
+        digits(reference_error.energy, 1),
+        digits_or_dash(reference_error.reaction, 1),
+        count(found.repetitions, "run"),
+    );
+    let panels = [
+        (ErrorQuantity::Coordinate, CostMeasure::Evaluations),
+        (ErrorQuantity::Coordinate, CostMeasure::Time),
+        (ErrorQuantity::Energy, CostMeasure::Evaluations),
+        (ErrorQuantity::Reaction, CostMeasure::Evaluations),
+    ];
+    let panels = panels.map(|(quantity, measure)| panel(found, quantity, measure));
+    let (title, provenance) = (
+        "Work–precision diagram",
+        "all combinations of evaluation, integrator and tolerance",
+    );
     Figure {
-        name: name.to_owned(),
-        title: "Work–precision diagram".to_owned(),
-        caption: scene_caption(
-            scene,
-            &format!(
-                "Each mark is one combination over t = 0 to {} s. Full marks: the mechanism itself, one tolerance after \
-                 the other; where time is measured, crosses: single precision{hollow}. Grey line: the Pareto front, \
-                 with names. Reference: {}; shaded: below its error ({}, {} and {} of the three errors). An evaluation \
-                 is one of the equation of motion; a Jacobian counts as its dual numbers. Time is in units of one \
-                 exact evaluation in the same process, the least of {}.",
-                digits(found.duration, 5),
-                found.reference.method,
-                digits(reference_error.coordinate, 1),
-                digits(reference_error.energy, 1),
-                digits_or_dash(reference_error.reaction, 1),
-                count(found.repetitions, "run"),
-            ),
-        ),
         columns: 2,
-        panels: [
-            (ErrorQuantity::Coordinate, CostMeasure::Evaluations),
-            (ErrorQuantity::Coordinate, CostMeasure::Time),
-            (ErrorQuantity::Energy, CostMeasure::Evaluations),
-            (ErrorQuantity::Reaction, CostMeasure::Evaluations),
-        ]
-        .map(|(quantity, measure)| panel(found, quantity, measure))
-        .into(),
-        provenance: "all combinations of evaluation, integrator and tolerance".to_owned(),
+        ..scene_figure(scene, name, title, &text, panels.into(), provenance)
     }
 }
 
 fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -> Panel {
-    let at = |k: usize| -> [f64; 2] {
-        let point = &found.points[k];
+    let at = |point: &CombinationResult| -> [f64; 2] {
         [found.error_bound(point, quantity), point.cost.of(measure)]
     };
-    let front = found.pareto_front(quantity, measure);
-    let line = front.iter().map(|&k| at(k)).collect();
+    let front = found.pareto_front(quantity, measure).into_iter();
+    let front: Vec<&CombinationResult> = front.map(|k| &found.points[k]).collect();
+    let line = front.iter().map(|point| at(point)).collect();
     let mut series = vec![Series::line("", line).color(Paint::Grey)];
     series.extend(method_series(found, measure, &at));
     let reference_error = found.reference.error.of(quantity);
@@ -77,7 +77,7 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
     }];
     if let Some(point) = found.quadrature() {
         marks.push(Mark::Point {
-            at: [found.error_bound(point, quantity), point.cost.of(measure)],
+            at: at(point),
             label: "quadrature".to_owned(),
         });
     }
@@ -89,13 +89,11 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
             label: "build time of the finest table".to_owned(),
         });
     }
-    let (label_gap, cost) = match measure {
-        CostMeasure::Evaluations => (MIN_LABEL_GAP, "evaluations"),
-        CostMeasure::Time | CostMeasure::TimeWithBuild => {
-            (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation")
-        }
+    let (label_gap, cost) = match measure == CostMeasure::Evaluations {
+        true => (MIN_LABEL_GAP, "evaluations"),
+        false => (MIN_LABEL_GAP_CROWDED, "time / one exact evaluation"),
     };
-    marks.extend(named_points(found, &front, label_gap, &at));
+    marks.extend(named_points(&front, label_gap, &at));
     let coordinate = format!("largest error of the free coordinates, {}", found.unit);
     let (title, label) = match (quantity, measure) {
         (ErrorQuantity::Coordinate, CostMeasure::Evaluations) => {
@@ -108,32 +106,28 @@ fn panel(found: &WorkPrecision, quantity: ErrorQuantity, measure: CostMeasure) -
             "largest error of a reaction / largest of its unit",
         ),
     };
-    Chart {
-        title: title.to_owned(),
-        x: error_axis(found, quantity, label),
-        y: Axis::log(cost, ""),
-        series,
+    let (x, y) = (error_axis(found, quantity, label), Axis::log(cost, ""));
+    Panel::from(Chart {
         marks,
-        ..Chart::default()
-    }
-    .into()
+        ..chart(title, x, y, series)
+    })
 }
 
 /// The runs of every method: those of the mechanism itself and, in time, on tables and in single precision.
 fn method_series(
     found: &WorkPrecision,
     measure: CostMeasure,
-    at: &dyn Fn(usize) -> [f64; 2],
+    at: &dyn Fn(&CombinationResult) -> [f64; 2],
 ) -> Vec<Series> {
     let mut series = Vec::new();
     for (i, method) in Method::ALL.into_iter().enumerate() {
         let of = |selects: &dyn Fn(Evaluation) -> bool| -> Vec<[f64; 2]> {
-            let selected = |k: &usize| {
-                let of = found.points[*k].combination;
+            let selected = |point: &&CombinationResult| {
+                let of = point.combination;
                 let own = matches!(of.integrator, Integrator::Steps(own, _) if own == method);
                 own && selects(of.evaluation)
             };
-            (0..found.points.len()).filter(selected).map(at).collect()
+            found.points.iter().filter(selected).map(at).collect()
         };
         let paint = Paint::Palette(i);
         let exact = Series::line(method.name(), of(&|e| e == Evaluation::Exact));
@@ -151,10 +145,9 @@ fn method_series(
 
 /// The axis of the errors, from below the floor to the largest that is one.
 fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Axis {
-    let all = || found.points.iter().map(|p| found.error_bound(p, quantity));
-    let finite = || all().filter(|e| e.is_finite() && *e > 0.0);
-    let max = finite().fold(0.0, f64::max).min(MAX_ERROR);
-    let min = finite().fold(f64::INFINITY, f64::min);
+    let all = found.points.iter().map(|p| found.error_bound(p, quantity));
+    let [min, max] = extent(all.filter(|e| e.is_finite() && *e > 0.0));
+    let max = max.min(MAX_ERROR);
     match min < max {
         true => Axis::log(label, "").with_range(min / AXIS_MARGIN, max * AXIS_MARGIN),
         false => Axis::log(label, ""),
@@ -163,22 +156,21 @@ fn error_axis(found: &WorkPrecision, quantity: ErrorQuantity, label: &str) -> Ax
 
 /// The names of some points of a front, well apart.
 fn named_points(
-    found: &WorkPrecision,
-    front: &[usize],
+    front: &[&CombinationResult],
     label_gap: f64,
-    at: &dyn Fn(usize) -> [f64; 2],
+    at: &dyn Fn(&CombinationResult) -> [f64; 2],
 ) -> Vec<Mark> {
     let mut last = f64::INFINITY;
     let mut marks = Vec::new();
-    for &k in front {
-        let position = at(k);
+    for point in front {
+        let position = at(point);
         if last - position[0].log10() < label_gap {
             continue;
         }
         last = position[0].log10();
         marks.push(Mark::Text {
             at: position,
-            label: found.points[k].combination.name(),
+            label: point.combination.name(),
         });
     }
     marks

@@ -25,10 +25,7 @@ use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::output::signed_png;
 use dwell_study::{Outcome, Progress, Step};
-use evaluator::{
-    MachineEvaluator, SinglePrecisionEvaluator, SinglePrecisionModel, TableEvaluator,
-    table_evaluation,
-};
+use evaluator::{MachineEvaluator, SinglePrecisionModel};
 use reference_solution::ReferenceSolution;
 use run::{Run, ToleranceSeries};
 use std::time::Instant;
@@ -122,8 +119,8 @@ pub fn measure_with(
     }
     let timed = || done("times");
     let unit_times = time_runs(&subject, &reference, exact, &mut trials, effort, &timed);
-    let unit_times = unit_times.map_err(|e| subject.explain(&e))?;
-    let points = results(&mut reference, trials, unit_times.evaluation, &mut omitted);
+    let [evaluation_time, jacobian_time] = unit_times.map_err(|e| subject.explain(&e))?;
+    let points = results(&mut reference, trials, evaluation_time, &mut omitted);
     Ok(WorkPrecision {
         points,
         omitted,
@@ -135,8 +132,8 @@ pub fn measure_with(
         duration: subject.end(),
         unit: subject.unit(),
         repetitions: effort.repetitions.max(1),
-        evaluation_time: unit_times.evaluation,
-        jacobian_cost: unit_times.jacobian / unit_times.evaluation,
+        evaluation_time,
+        jacobian_cost: jacobian_time / evaluation_time,
     })
 }
 
@@ -203,68 +200,37 @@ fn evaluators<'s>(
     omitted: &mut Vec<String>,
 ) -> Vec<Box<dyn Evaluator + 's>> {
     let mut all: Vec<Box<dyn Evaluator + 's>> = match &subject.reduced {
-        Some(exact) => reduced_evaluators(exact, subject, effort, omitted),
-        None => machine_evaluators(subject, effort, omitted),
-    };
-    if let Some(exact) = &subject.reduced {
-        all.extend(extra(exact));
-    }
-    all
-}
-
-/// The reduced model itself, in single precision, and tables of it.
-fn reduced_evaluators<'s>(
-    exact: &ExactModel,
-    subject: &Subject,
-    effort: &Effort,
-    omitted: &mut Vec<String>,
-) -> Vec<Box<dyn Evaluator + 's>> {
-    let single = SinglePrecisionModel::new(exact);
-    let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
-        Box::new(ModelEvaluator::new(exact.clone(), Evaluation::Exact)),
-        Box::new(ModelEvaluator::new(single, Evaluation::SinglePrecision)),
-    ];
-    let domain = table_domain(exact.range(), subject.coordinate_range);
-    for &accuracy in &effort.table_accuracies {
-        let started = Instant::now();
-        match TabulatedModel::new(exact, accuracy, domain) {
-            Ok(model) => all.push(Box::new(ModelEvaluator {
-                build_time: started.elapsed().as_secs_f64(),
-                evaluation: table_evaluation(&model, accuracy),
-                model,
-            })),
-            Err(error) => omitted.push(format!("table {accuracy:.0e}: {error}")),
+        Some(exact) => vec![
+            Box::new(ModelEvaluator {
+                model: exact.clone(),
+                evaluation: Evaluation::Exact,
+                build_time: 0.0,
+            }),
+            Box::new(ModelEvaluator {
+                model: SinglePrecisionModel::new(exact),
+                evaluation: Evaluation::SinglePrecision,
+                build_time: 0.0,
+            }),
+        ],
+        None => {
+            let machine = |evaluation| MachineEvaluator {
+                subject,
+                evaluation,
+                table: None,
+                build_time: 0.0,
+            };
+            let [exact, single] = [Evaluation::Exact, Evaluation::SinglePrecision].map(machine);
+            vec![Box::new(exact), Box::new(single)]
         }
-    }
-    all
-}
-
-/// The machine itself, in single precision, and on tables.
-fn machine_evaluators<'s>(
-    subject: &'s Subject,
-    effort: &Effort,
-    omitted: &mut Vec<String>,
-) -> Vec<Box<dyn Evaluator + 's>> {
-    let machine = || MachineEvaluator {
-        machine: &subject.machine,
-        output_machine: &subject.output_machine,
-        initial_state: &subject.initial_state,
     };
-    let mut all: Vec<Box<dyn Evaluator + 's>> = vec![
-        Box::new(machine()),
-        Box::new(SinglePrecisionEvaluator(machine())),
-    ];
-    let range = subject.machine.model().plan().range();
+    let range = match &subject.reduced {
+        Some(exact) => exact.range(),
+        None => subject.machine.model().plan().range(),
+    };
     let domain = table_domain(range, subject.coordinate_range);
     for &accuracy in &effort.table_accuracies {
-        let started = Instant::now();
-        match TabulatedMachine::new(&subject.machine, accuracy, domain) {
-            Ok(table) => all.push(Box::new(TableEvaluator {
-                build_time: started.elapsed().as_secs_f64(),
-                table,
-                accuracy,
-                exact: machine(),
-            })),
+        match table_evaluator(subject, accuracy, domain) {
+            Ok(table) => all.push(table),
             Err(error @ TabulationError::Table(_)) => {
                 omitted.push(format!("table {accuracy:.0e}: {error}"));
             }
@@ -274,19 +240,50 @@ fn machine_evaluators<'s>(
             }
         }
     }
+    if let Some(exact) = &subject.reduced {
+        all.extend(extra(exact));
+    }
     all
+}
+
+/// The reduced model, or else the machine, on a table.
+fn table_evaluator(
+    subject: &Subject,
+    accuracy: f64,
+    domain: TableDomain,
+) -> Result<Box<dyn Evaluator + '_>, TabulationError> {
+    let started = Instant::now();
+    let evaluation = |cells, bytes| Evaluation::Table {
+        accuracy,
+        cells,
+        bytes,
+    };
+    if let Some(exact) = &subject.reduced {
+        let model = TabulatedModel::new(exact, accuracy, domain)?;
+        return Ok(Box::new(ModelEvaluator {
+            build_time: started.elapsed().as_secs_f64(),
+            evaluation: evaluation(model.cells()[0], model.bytes()[0]),
+            model,
+        }));
+    }
+    let table = TabulatedMachine::new(&subject.machine, accuracy, domain)?;
+    Ok(Box::new(MachineEvaluator {
+        subject,
+        build_time: started.elapsed().as_secs_f64(),
+        evaluation: evaluation(table.cells()[0], table.bytes()),
+        table: Some(table),
+    }))
 }
 
 /// The range of a motion with a margin.
 fn table_domain(range: Range, [low, high]: [f64; 2]) -> TableDomain {
-    match (range.period(), range.limits()) {
-        (Some(_), _) => TableDomain::Full,
-        (None, limits) => {
-            let margin = TABLE_MARGIN * (high - low);
-            let (min, max) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
-            TableDomain::Between((low - margin).max(min), (high + margin).min(max))
-        }
+    if range.period().is_some() {
+        return TableDomain::Full;
     }
+    let margin = TABLE_MARGIN * (high - low);
+    let limits = range.limits();
+    let (min, max) = limits.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+    TableDomain::Between((low - margin).max(min), (high + margin).min(max))
 }
 
 fn cost(evaluator: &dyn Evaluator, run: &Run, evaluation_time: f64) -> Cost {
@@ -303,16 +300,11 @@ fn cost(evaluator: &dyn Evaluator, run: &Run, evaluation_time: f64) -> Cost {
     }
 }
 
-/// The time of one evaluation and of one Jacobian, s.
-struct UnitTimes {
-    evaluation: f64,
-    jacobian: f64,
-}
-
 /// A combination with its evaluator and the best of its runs.
 type Trial<'e> = (&'e dyn Evaluator, Combination, Run);
 
-/// Runs everything again, one after the other, with the unit between them, and keeps the least times.
+/// Runs everything again, one after the other, with the unit between them, and keeps the least times. Returns the unit:
+/// the time of one evaluation and of one Jacobian, s.
 fn time_runs(
     subject: &Subject,
     reference: &ReferenceSolution<'_>,
@@ -320,16 +312,14 @@ fn time_runs(
     trials: &mut [Trial<'_>],
     effort: &Effort,
     done: &dyn Fn(),
-) -> Result<UnitTimes, DynamicsError> {
-    let mut unit_times = UnitTimes {
-        evaluation: f64::INFINITY,
-        jacobian: f64::INFINITY,
-    };
-    unit_times.update(subject, reference, exact)?;
+) -> Result<[f64; 2], DynamicsError> {
+    let mut unit_times = [f64::INFINITY; 2];
+    let mut update = || update_unit_times(&mut unit_times, subject, reference, exact);
+    update()?;
     for _ in 1..effort.repetitions {
         for (k, (evaluator, combination, best_run)) in trials.iter_mut().enumerate() {
             if k % 16 == 0 {
-                unit_times.update(subject, reference, exact)?;
+                update()?;
             }
             if best_run.statistics.evaluations > MAX_REPEATED_EVALUATIONS {
                 continue;
@@ -345,39 +335,36 @@ fn time_runs(
         }
         done();
     }
-    unit_times.update(subject, reference, exact)?;
+    update()?;
     done();
     Ok(unit_times)
 }
 
-impl UnitTimes {
-    /// Evaluates at every state of the reference: none depends on another, but each is at another position.
-    fn update(
-        &mut self,
-        subject: &Subject,
-        reference: &ReferenceSolution<'_>,
-        exact: &dyn Evaluator,
-    ) -> Result<(), DynamicsError> {
-        let mut system = exact.system()?;
-        let n = system.size();
-        let (mut out, mut matrix) = (vec![0.0; n], vec![0.0; n * n]);
-        let states = || reference.states.iter().zip(&subject.times);
-        let since =
-            |started: Instant| started.elapsed().as_secs_f64() / states().len().max(1) as f64;
-        for _ in 0..TIMING_PASSES {
-            let started = Instant::now();
-            for (y, &t) in states() {
-                system.rhs(t, y, &mut out)?;
-            }
-            self.evaluation = since(started).max(f64::MIN_POSITIVE).min(self.evaluation);
-            let started = Instant::now();
-            for (y, &t) in states() {
-                system.jacobian(t, y, &mut matrix)?;
-            }
-            self.jacobian = self.jacobian.min(since(started));
+/// Evaluates at every state of the reference: none depends on another, but each is at another position.
+fn update_unit_times(
+    [evaluation, jacobian]: &mut [f64; 2],
+    subject: &Subject,
+    reference: &ReferenceSolution<'_>,
+    exact: &dyn Evaluator,
+) -> Result<(), DynamicsError> {
+    let mut system = exact.system()?;
+    let n = system.size();
+    let (mut out, mut matrix) = (vec![0.0; n], vec![0.0; n * n]);
+    let states = || reference.states.iter().zip(&subject.times);
+    let since = |started: Instant| started.elapsed().as_secs_f64() / states().len().max(1) as f64;
+    for _ in 0..TIMING_PASSES {
+        let started = Instant::now();
+        for (y, &t) in states() {
+            system.rhs(t, y, &mut out)?;
         }
-        Ok(())
+        *evaluation = since(started).max(f64::MIN_POSITIVE).min(*evaluation);
+        let started = Instant::now();
+        for (y, &t) in states() {
+            system.jacobian(t, y, &mut matrix)?;
+        }
+        *jacobian = jacobian.min(since(started));
     }
+    Ok(())
 }
 
 /// Why there is no reference: no two methods reach the end.

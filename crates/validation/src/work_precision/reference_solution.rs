@@ -68,11 +68,7 @@ impl<'s> ReferenceSolution<'s> {
             scales: Vec::new(),
             max_kinetic_energy: 0.0,
             initial_energy: 0.0,
-            error: Errors {
-                coordinate: 0.0,
-                energy: 0.0,
-                reaction: 0.0,
-            },
+            error: Errors::default(),
         };
         reference.evaluate_reference(exact)?;
         for other in &found.comparisons {
@@ -95,26 +91,19 @@ impl<'s> ReferenceSolution<'s> {
         let mut size = kinetic + potential.abs();
         let mut find = exact.reactions();
         let count = self.subject.reactions.len();
-        let mut max_abs = vec![0.0_f64; count];
-        for k in 0..self.states.len() {
-            let t = self.subject.times[k];
-            let y = std::mem::take(&mut self.states[k]);
-            let [kinetic, potential] = self.energies(t, &y)?;
+        for (t, y) in self.subject.times.iter().zip(self.states.clone()) {
+            let [kinetic, potential] = self.energies(*t, &y)?;
             self.max_kinetic_energy = self.max_kinetic_energy.max(kinetic);
             size = size.max(kinetic + potential.abs());
             let mut reactions = vec![0.0; count];
-            let point = OdeState { t, y };
-            find(&point, &mut reactions)?;
-            self.states[k] = point.y;
-            for (max, value) in max_abs.iter_mut().zip(&reactions) {
-                *max = max.max(value.abs());
-            }
+            find(&OdeState { t: *t, y }, &mut reactions)?;
             self.reactions.push(reactions);
         }
-        let unit = |k: usize| self.subject.reaction_unit(k);
+        let unit = |k: usize| self.subject.reactions[k].component.unit();
         let of_unit = |k: usize| {
             let same = (0..count).filter(|&other| unit(other) == unit(k));
-            same.map(|other| max_abs[other]).fold(0.0, f64::max)
+            let values = same.flat_map(|other| self.reactions.iter().map(move |row| row[other]));
+            values.fold(0.0_f64, |max, value| max.max(value.abs()))
         };
         self.scales = (0..count).map(of_unit).collect();
         self.error.energy = RESULT_ROUNDING * size / self.max_kinetic_energy;
@@ -213,6 +202,7 @@ fn from_integrators(
     all_series: &[ToleranceSeries],
     effort: &Effort,
 ) -> Result<Candidate, DynamicsError> {
+    let finest = effort.tolerance_exponents.last().map(|&k| 10_f64.powi(k));
     let mut found: Vec<(f64, String, Vec<Vec<f64>>)> = Vec::new();
     for series in all_series {
         let [.., (_, before), (fine, last)] = series.runs.as_slice() else {
@@ -222,8 +212,7 @@ fn from_integrators(
         let max_steps = STEP_FACTOR * effort.max_steps;
         let at = (series.method, finer_tolerance);
         // A series that the number of steps stopped before the last tolerance is not the best.
-        let complete =
-            effort.finest_tolerance() == Some(*fine) && series.predicted_steps() < max_steps as f64;
+        let complete = finest == Some(*fine) && series.predicted_steps() < max_steps as f64;
         let finer = (complete && finer_tolerance < 0.5 * fine)
             .then(|| solve(exact, subject, at, max_steps).ok());
         // A change over two decades is a change over one, and more.

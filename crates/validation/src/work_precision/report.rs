@@ -2,12 +2,11 @@
 
 use super::combination::{
     CombinationResult, CostMeasure, ErrorQuantity, Evaluation, Integrator, WorkPrecision,
-    describe_error, digits_or_dash,
+    digits_or_dash,
 };
 use crate::report_parts;
 use dwell_dynamics::Method;
-use dwell_report::TableExport as _;
-use dwell_report::{Block, Column, Document, Table};
+use dwell_report::{Block, Column, Document, Table, TableExport as _};
 use dwell_scene::Scene;
 use dwell_study::StudyError;
 use dwell_study::number_format::{count, digits};
@@ -121,8 +120,7 @@ fn cells(found: &WorkPrecision, result: &CombinationResult) -> Vec<String> {
         digits(result.cost.time, 3),
         digits(result.cost.of(CostMeasure::TimeWithBuild), 3),
     ];
-    let floor = found.reference.error;
-    cells.extend(ErrorQuantity::ALL.map(|q| describe_error(result.errors.of(q), floor.of(q))));
+    cells.extend(ErrorQuantity::ALL.map(|q| found.describe_error(result, q)));
     cells
 }
 
@@ -242,18 +240,14 @@ fn intro(scene: &Scene, found: &WorkPrecision) -> String {
 }
 
 fn quadrature(found: &WorkPrecision) -> String {
-    let error = |point: &CombinationResult, quantity| {
-        let floor = found.reference.error.of(quantity);
-        describe_error(point.errors.of(quantity), floor)
-    };
     match found.quadrature() {
         Some(point) => format!(
             "The motion is determined by its energy: quadrature computes all of it with {} evaluations, in the time of {}, with errors of {}, {} and {}. No time-stepping method is competitive, so the Pareto fronts show integrators only.",
             point.cost.weighted_evaluations,
             digits(point.cost.time, 3),
-            error(point, ErrorQuantity::Coordinate),
-            error(point, ErrorQuantity::Energy),
-            error(point, ErrorQuantity::Reaction),
+            found.describe_error(point, ErrorQuantity::Coordinate),
+            found.describe_error(point, ErrorQuantity::Energy),
+            found.describe_error(point, ErrorQuantity::Reaction),
         ),
         None => "Quadrature does not apply: the motion is not conservative, not periodic, or has several degrees of freedom."
             .to_owned(),

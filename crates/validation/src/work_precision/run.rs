@@ -117,17 +117,14 @@ impl ToleranceSeries {
             if tolerance < MIN_TOLERANCE_RATIO * evaluation.relative_error() {
                 break;
             }
-            let max_steps = match exact {
-                None => effort.max_steps,
-                Some(exact) => match exact.run_at(tolerance) {
-                    // The reason is that of the mechanism itself.
-                    None => continue,
-                    Some(run) => NON_SMOOTH_STEP_FACTOR * run.statistics.steps + EXTRA_STEPS,
-                },
-            };
-            let non_smooth_text = match exact {
-                None => "",
-                Some(_) => ", far more than of the mechanism itself: it is not smooth there",
+            let (max_steps, non_smooth_text) = match exact.map(|exact| exact.run_at(tolerance)) {
+                None => (effort.max_steps, ""),
+                // The reason is that of the mechanism itself.
+                Some(None) => continue,
+                Some(Some(run)) => (
+                    NON_SMOOTH_STEP_FACTOR * run.statistics.steps + EXTRA_STEPS,
+                    ", far more than of the mechanism itself: it is not smooth there",
+                ),
             };
             let too_many_steps =
                 || format!("{name} and finer: more than {max_steps} steps{non_smooth_text}");

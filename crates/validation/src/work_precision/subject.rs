@@ -3,16 +3,16 @@
 
 use crate::cases::reference::Reference;
 use crate::checked::free_motion_setup::FreeMotionSetup;
-use crate::checked::multibody::with_drive_loads;
 use dwell_dynamics::{DynamicsError, Machine, Method, OdeState, Options, Orbit, ReducedState};
 use dwell_geometry::Reaction;
 use dwell_kinetostatics::ExactModel;
-use dwell_scene::{FreeMotionSpec, Scene, SceneLocation};
+use dwell_scene::{Scene, SceneLocation};
 use dwell_study::StudyError;
 use dwell_study::explain::explain_motion;
 use dwell_study::free_motion::compute::{FreeMotionProblem, SegmentedMotion};
-use dwell_study::models::build_machine;
+use dwell_study::models::{build_machine, with_drive_loads};
 use dwell_study::number_format::digits;
+use dwell_study::ranges::extent;
 use std::f64::consts::TAU;
 
 /// Periods of a periodic motion, and revolutions or oscillations of another, at most.
@@ -61,7 +61,8 @@ impl Subject {
             return Err(no_free_coordinate(&scene));
         };
         let scene_with_drives = with_drive_loads(&scene)?;
-        let machine = build_machine(&scene, &motion, &[])?;
+        let problem = FreeMotionProblem::new(&scene, &scene_with_drives, &motion)?;
+        let machine = &problem.machine;
         if machine.free().is_empty() {
             return Err(no_free_coordinate(&scene));
         }
@@ -70,20 +71,24 @@ impl Subject {
         let determinate = all.filter(|&(k, _)| plan.is_determinate(k));
         let reactions: Vec<Reaction> = determinate.map(|(_, reaction)| reaction).collect();
         let output_machine = build_machine(&scene, &motion, &reactions)?;
-        let (q, q_dot) = (&motion.initial_coordinates, &motion.initial_velocities);
-        let initial_state = OdeState {
-            t: 0.0,
-            y: machine.initial_state(q, q_dot),
-        };
-        let orbit = orbit(&machine, &motion);
-        let scenes = [&scene, &scene_with_drives];
-        let (end, coordinate_range) = bound_duration(scenes, &motion, orbit.as_ref(), &mut notes)?;
+        let initial_state = problem.initial_state();
+        // Without loads the reduced model is the whole equation of motion.
+        let unloaded = scene.loads.is_empty() && scene.drives.is_empty();
+        let reduced = (unloaded && machine.state_count() == 2)
+            .then(|| ExactModel::new(output_machine.model().clone()));
+        // A machine with more than one degree of freedom has none.
+        let is_one = machine.state_count() == 2 && motion.laws.len() == 1;
+        let orbit = is_one.then(|| Orbit::loaded(machine, problem.initial_reduced_state()));
+        let orbit = orbit.and_then(Result::ok);
+        let (end, coordinate_range) = bound_duration(&scene, &problem, orbit.as_ref(), &mut notes)?;
+        // The last time is the end, to the last bit.
+        let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
         let subject = Self {
-            reduced: reduced(&scene, &machine, &output_machine),
-            times: times(end),
+            reduced: reduced.flatten(),
+            times: before.chain([end]).collect(),
+            machine: problem.machine,
             scene,
             scene_with_drives,
-            machine,
             output_machine,
             reactions,
             initial_state,
@@ -118,11 +123,6 @@ impl Subject {
         }
     }
 
-    /// Unit of each reaction.
-    pub(super) fn reaction_unit(&self, k: usize) -> &'static str {
-        self.reactions[k].component.unit()
-    }
-
     pub(super) fn explain(&self, error: &DynamicsError) -> StudyError {
         explain_motion(&self.scene_with_drives, self.machine.model().plan(), error)
     }
@@ -142,12 +142,6 @@ impl Subject {
     }
 }
 
-/// The times at which states are compared. The last is the end, to the last bit.
-fn times(end: f64) -> Vec<f64> {
-    let before = (1..COMPARED_TIMES).map(|k| end * k as f64 / COMPARED_TIMES as f64);
-    before.chain([end]).collect()
-}
-
 /// The scene with a motion: its own, or a free motion from the assembly.
 fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, StudyError> {
     if scene.motion.is_some() {
@@ -156,24 +150,10 @@ fn with_free_motion(scene: &Scene, notes: &mut Vec<String>) -> Result<Scene, Stu
     if scene.mechanism.actuators.is_empty() {
         return Err(no_free_coordinate(scene));
     }
-    let free_scene = FreeMotionSetup::new(scene, &Reference::default())?.scene;
-    let mut texts = Vec::new();
-    if let Some(motion) = &free_scene.motion {
-        let starts = motion.initial_coordinates.iter();
-        let starts = starts.zip(&motion.initial_velocities);
-        let actuators = scene.mechanism.actuators.iter().zip(starts);
-        for (actuator, (start, speed)) in actuators.filter(|(_, (_, speed))| **speed != 0.0) {
-            let unit = actuator.coordinate().unit();
-            let [start, speed] = [start, speed].map(|&v| digits(v, 6));
-            let name = &actuator.name;
-            texts.push(format!("{name} = {start} {unit} with {speed} {unit}/s"));
-        }
-    }
-    let starts = texts.join(", ");
-    notes.push(format!(
-        "without [motion], a free motion starts at {starts}"
-    ));
-    Ok(free_scene)
+    let setup = FreeMotionSetup::new(scene, &Reference::default())?;
+    let start = setup.initial_state_text();
+    notes.push(format!("without [motion], a free motion starts at {start}"));
+    Ok(setup.scene)
 }
 
 /// The error of a scene that cannot move.
@@ -186,31 +166,13 @@ fn no_free_coordinate(scene: &Scene) -> StudyError {
     error.into()
 }
 
-/// The motion by its energy. A machine with more than one degree of freedom has none.
-fn orbit(machine: &Machine, motion: &FreeMotionSpec) -> Option<Orbit> {
-    if machine.state_count() != 2 || motion.laws.len() != 1 {
-        return None;
-    }
-    let [q, q_dot] = [motion.initial_coordinates[0], motion.initial_velocities[0]];
-    Orbit::loaded(machine, ReducedState { t: 0.0, q, q_dot }).ok()
-}
-
-/// The reduced model with the reactions that are compared, where it is the whole equation of motion.
-fn reduced(scene: &Scene, machine: &Machine, output_machine: &Machine) -> Option<ExactModel> {
-    let unloaded = scene.loads.is_empty() && scene.drives.is_empty();
-    let one = unloaded && machine.state_count() == 2 && machine.model().plan().actuators() == 1;
-    one.then(|| ExactModel::new(output_machine.model().clone()))
-        .flatten()
-}
-
 /// The duration of the motion, and the range of its first free coordinate.
 fn bound_duration(
-    [scene, scene_with_drives]: [&Scene; 2],
-    motion: &FreeMotionSpec,
+    scene: &Scene,
+    free: &FreeMotionProblem<'_>,
     orbit: Option<&Orbit>,
     notes: &mut Vec<String>,
 ) -> Result<(f64, [f64; 2]), StudyError> {
-    let free = FreeMotionProblem::new(scene, scene_with_drives, motion)?;
     let requested = free.duration()?;
     let mut end = requested;
     if let Some(orbit) = orbit.filter(|orbit| requested > MAX_PERIODS * orbit.period) {
@@ -230,8 +192,7 @@ fn bound_duration(
     let steps = first.map_or(&[][..], |(_, solution)| solution.steps.as_slice());
     let reached = steps.last().map_or(0.0, |last| last.t);
     if let Some(error) = motion_segments.failure.as_ref().filter(|_| reached == 0.0) {
-        let plan = free.machine.model().plan();
-        return Err(explain_motion(scene_with_drives, plan, error));
+        return Err(free.explain(error));
     }
     let (shortened, reason) = match orbit {
         Some(_) => (end, ""),
@@ -245,9 +206,8 @@ fn bound_duration(
         end = shorten_before_end(&motion_segments, reached, requested, notes);
     }
     let coordinate = |p: &OdeState| p.y.first().copied().unwrap_or(0.0);
-    let coordinates = || steps.iter().filter(|p| p.t <= end).map(coordinate);
-    let low = coordinates().fold(f64::INFINITY, f64::min);
-    Ok((end, [low, coordinates().fold(f64::NEG_INFINITY, f64::max)]))
+    let coordinates = steps.iter().filter(|p| p.t <= end).map(coordinate);
+    Ok((end, extent(coordinates)))
 }
 
 /// How much of a motion is integrated, and why.

@@ -26,7 +26,7 @@ pub struct FreeMotionProblem<'a> {
     pub(crate) loaded_scene: &'a Scene,
     pub(crate) spec: &'a FreeMotionSpec,
     /// The model with all loads and reactions, for outputs.
-    pub(crate) output_model: Model,
+    pub output_model: Model,
     /// A line for each requested column that is called by a former name.
     pub(crate) notes: String,
     /// The equations of motion.
@@ -55,7 +55,8 @@ impl<'a> FreeMotionProblem<'a> {
         })
     }
 
-    pub(crate) fn explain(&self, error: &DynamicsError) -> StudyError {
+    /// An error of its motion in the names of the scene.
+    pub fn explain(&self, error: &DynamicsError) -> StudyError {
         explain_motion(self.loaded_scene, self.output_model.plan(), error)
     }
 
@@ -152,7 +153,8 @@ impl<'a> FreeMotionProblem<'a> {
         chart.map_or(&self.machine, |c| &c.machine)
     }
 
-    pub(crate) fn initial_state(&self) -> OdeState {
+    /// The initial state of its machine.
+    pub fn initial_state(&self) -> OdeState {
         let (q, q_dot) = (
             &self.spec.initial_coordinates,
             &self.spec.initial_velocities,

@@ -7,7 +7,8 @@ use dwell_scene::{PathPoint, Scene};
 use dwell_study::bodies::{BodyPose, point_position};
 use dwell_study::explain::explain_position;
 use dwell_study::number_format::count;
-use dwell_study::output::{MechanismDrawing, caption, coordinate_label};
+use dwell_study::output::{MechanismDrawing, chart, coordinate_label, figure};
+use dwell_study::ranges::extent;
 use dwell_study::{PreparedScene, StudyError};
 use std::f64::consts::TAU;
 
@@ -99,14 +100,8 @@ pub(crate) fn mechanism(
         );
     }
     let positions = count(poses.q.len(), "position");
-    let figure = Figure {
-        name: "mechanism".to_owned(),
-        title: scene.title.clone(),
-        caption: caption(prepared, &text),
-        columns: 1,
-        panels,
-        provenance: format!("the mechanism at {positions}"),
-    };
+    let provenance = format!("the mechanism at {positions}");
+    let figure = figure(scene, "mechanism", &scene.title, &text, panels, provenance);
     Ok((figure, dwell))
 }
 
@@ -211,13 +206,12 @@ fn body_angle_panel(prepared: &PreparedScene<'_>, poses: &RangePoses, dwell: &Dw
         ],
         false => vec![band(from, to, label)],
     };
+    let x = Axis::degrees(coordinate_label(prepared));
+    let y = Axis::new(format!("angle of {name}"), "°");
+    let line = vec![Series::line("", points.collect())];
     Panel::from(Chart {
-        title: format!("Angle of {name}"),
-        x: Axis::degrees(coordinate_label(prepared)),
-        y: Axis::new(format!("angle of {name}"), "°"),
-        series: vec![Series::line("", points.collect())],
         marks,
-        ..Chart::default()
+        ..chart(format!("Angle of {name}"), x, y, line)
     })
 }
 
@@ -235,11 +229,11 @@ fn unwrapped_angles(poses: &RangePoses, body: BodyId) -> Vec<f64> {
 /// The longest interval in which a body's angle stays within `band` of its whole variation.
 fn find_dwell(poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell {
     let mut angles = unwrapped_angles(poses, body);
-    let extent = |some: &[f64]| {
-        let low = some.iter().copied().fold(f64::MAX, f64::min);
-        some.iter().copied().fold(f64::MIN, f64::max) - low
+    let width = |some: &[f64]| {
+        let [low, high] = extent(some.iter().copied());
+        high - low
     };
-    let swing = extent(&angles);
+    let swing = width(&angles);
     let mut q = poses.q.clone();
     let n = q.len();
     if full {
@@ -250,7 +244,7 @@ fn find_dwell(poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell 
     }
     let (mut best, mut from) = ((0, 0), 0);
     for to in 0..q.len() {
-        while extent(&angles[from..=to]) > band * swing {
+        while width(&angles[from..=to]) > band * swing {
             from += 1;
         }
         if to - from > best.1 - best.0 && from < n && to - from < n {
@@ -261,7 +255,7 @@ fn find_dwell(poses: &RangePoses, body: BodyId, band: f64, full: bool) -> Dwell 
         body,
         from: q[best.0],
         to: q[best.1],
-        variation: extent(&angles[best.0..=best.1]),
+        variation: width(&angles[best.0..=best.1]),
         swing,
     }
 }

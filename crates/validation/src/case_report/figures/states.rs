@@ -3,11 +3,11 @@
 use super::mechanism::{RangePoses, drawing, paths};
 use crate::checked::states::CheckedStates;
 use dwell_geometry::{Vec2, vec2};
-use dwell_report::{Axis, Chart, Figure, Panel, Series};
+use dwell_report::{Axis, Figure, Series};
 use dwell_scene::Scene;
 use dwell_study::bodies::BodyPose;
 use dwell_study::number_format::count;
-use dwell_study::output::{MechanismDrawing, scene_caption, symbol};
+use dwell_study::output::{MechanismDrawing, chart, figure, symbol};
 
 /// Number of positions in which the mechanism is drawn.
 const DRAWN_POSITIONS: usize = 5;
@@ -31,14 +31,15 @@ pub(crate) fn states_drawing(scene: &Scene, checked: &CheckedStates) -> Figure {
     }
     let motion = checked.motion_text;
     let text = format!("Drawn in full at the beginning of {motion}, lighter further on.");
-    Figure {
-        name: "mechanism".to_owned(),
-        title: scene.title.clone(),
-        caption: scene_caption(scene, &text),
-        columns: 1,
-        panels: vec![drawing(shapes)],
-        provenance: format!("the mechanism at {}", count(checked.drawn_count, "state")),
-    }
+    let panels = vec![drawing(shapes)];
+    figure(
+        scene,
+        "mechanism",
+        &scene.title,
+        &text,
+        panels,
+        provenance(checked),
+    )
 }
 
 /// Positions that differ as much as they can, the first before all, in the order of the motion: at equal time intervals
@@ -72,24 +73,25 @@ pub(crate) fn actuator_forces(scene: &Scene, checked: &CheckedStates) -> Figure 
         let unit = actuator.coordinate().force_unit();
         let what = if unit == "N" { "force" } else { "moment" };
         let points = drawn.iter().map(|state| [state.t, state.tau[k]]);
-        Panel::from(Chart {
-            title: format!("Actuator {what} of {}", symbol(&actuator.name)),
-            x: Axis::new("time", "s"),
-            y: Axis::new(what, unit),
-            series: vec![Series::line("", points.collect())],
-            ..Chart::default()
-        })
+        let title = format!("Actuator {what} of {}", symbol(&actuator.name));
+        let line = vec![Series::line("", points.collect())];
+        chart(title, Axis::new("time", "s"), Axis::new(what, unit), line).into()
     };
     let actuators = scene.mechanism.actuators.iter().enumerate();
     let text = format!("Along {}, under the loads.", checked.motion_text);
-    Figure {
-        name: "actuator-forces".to_owned(),
-        title: "Actuator forces".to_owned(),
-        caption: scene_caption(scene, &text),
-        columns: 1,
-        panels: actuators.map(panel).collect(),
-        provenance: format!("the mechanism at {}", count(checked.drawn_count, "state")),
-    }
+    let panels = actuators.map(panel).collect();
+    figure(
+        scene,
+        "actuator-forces",
+        "Actuator forces",
+        &text,
+        panels,
+        provenance(checked),
+    )
+}
+
+fn provenance(checked: &CheckedStates) -> String {
+    format!("the mechanism at {}", count(checked.drawn_count, "state"))
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! The cost of accuracy: energy drift in time, and error against work.
 
 use dwell_dynamics::Method;
-use dwell_report::{Axis, Chart, Figure, Paint, Panel, Series, Stroke};
+use dwell_report::{Axis, Figure, Paint, Panel, Series, Stroke};
 use dwell_study::PreparedScene;
-use dwell_study::output::caption;
+use dwell_study::output::{chart, figure};
+use dwell_study::ranges::extent;
 use dwell_verify::{CheckedFreeMotion, ToleranceRun};
 
 /// Tolerances whose drift is drawn, as powers of ten.
@@ -25,33 +26,24 @@ pub(crate) fn drift(prepared: &PreparedScene<'_>, motion: &CheckedFreeMotion) ->
             .filter_map(at)
             .map(|r| Series::line(format!("tolerance {:.0e}", r.tolerance), envelope(r)))
             .collect();
-        Panel::from(Chart {
-            title: method.name().to_owned(),
-            x: Axis::new("time", "s"),
-            y: Axis::log("largest |E / E₀ − 1| so far", ""),
-            series,
-            ..Chart::default()
-        })
+        let y = Axis::log("largest |E / E₀ − 1| so far", "");
+        chart(method.name(), Axis::new("time", "s"), y, series).into()
     };
-    Figure {
-        name: "energy-drift".to_owned(),
-        title: "Energy drift".to_owned(),
-        caption: caption(
-            prepared,
-            "The energy of the free motion is constant; what is drawn is the error of the integrators at their steps, the \
-             largest so far. It is far above the tolerance, which bounds the error of one step.",
-        ),
-        columns: 1,
-        panels: vec![panel(Method::Bdf), panel(Method::Tsit45)],
-        provenance: tolerances_text(motion),
-    }
+    figure(
+        prepared.scene,
+        "energy-drift",
+        "Energy drift",
+        "The energy of the free motion is constant; what is drawn is the error of the integrators at their steps, the \
+         largest so far. It is far above the tolerance, which bounds the error of one step.",
+        vec![panel(Method::Bdf), panel(Method::Tsit45)],
+        tolerances_text(motion),
+    )
 }
 
 /// The integrators and tolerances that are compared.
 fn tolerances_text(motion: &CheckedFreeMotion) -> String {
     let tolerances = motion.tolerance_runs.iter().map(|r| r.tolerance);
-    let max = tolerances.clone().fold(0.0, f64::max);
-    let min = tolerances.fold(f64::INFINITY, f64::min);
+    let [min, max] = extent(tolerances);
     let [bdf, other] = [Method::Bdf, Method::Tsit45].map(Method::name);
     format!("reduced model, {bdf} and {other}, tolerances {max:.0e} to {min:.0e}")
 }
@@ -80,50 +72,41 @@ pub(crate) fn work_precision(prepared: &PreparedScene<'_>, motion: &CheckedFreeM
         let runs = runs.filter(|r| r.method == method).map(|r| [x(r), y(r)]);
         Series::line(method.name(), runs.collect()).stroke(Stroke::LineAndPoints)
     };
-    let chart = |title: &str, x: (Axis, Value), y: (&str, Value)| {
-        let mut series = vec![of(Method::Bdf, x.1, y.1), of(Method::Tsit45, x.1, y.1)];
-        if x.0.label == "tolerance" {
+    let panel = |title: &str, (axis, x): &(Axis, Value), (label, y): (&str, Value)| -> Panel {
+        let mut series = vec![of(Method::Bdf, *x, y), of(Method::Tsit45, *x, y)];
+        if axis.label == "tolerance" {
             let diagonal = vec![[1e-13, 1e-13], [1e-4, 1e-4]];
             let equal = Series::line("error = tolerance", diagonal).stroke(Stroke::Dashed);
             series.push(equal.color(Paint::Grey));
         }
-        Panel::from(Chart {
-            title: title.to_owned(),
-            x: x.0,
-            y: Axis::log(y.0, ""),
-            series,
-            ..Chart::default()
-        })
+        chart(title, axis.clone(), Axis::log(label, ""), series).into()
     };
-    let evaluations = || {
-        let count: Value = |r| (r.statistics.evaluations + r.statistics.jacobians) as f64;
-        (Axis::log("evaluations of the equation", ""), count)
-    };
-    let tolerance = || (Axis::log("tolerance", ""), (|r| r.tolerance) as Value);
-    let milliseconds: Value = |r| r.wall_time * 1e3;
-    let time = (Axis::log("wall time", "ms"), milliseconds);
+    let count: Value = |r| (r.statistics.evaluations + r.statistics.jacobians) as f64;
+    let evaluations = (Axis::log("evaluations of the equation", ""), count);
+    let tolerance: (Axis, Value) = (Axis::log("tolerance", ""), |r| r.tolerance);
+    let time: (Axis, Value) = (Axis::log("wall time", "ms"), |r| r.wall_time * 1e3);
     let drift: (&str, Value) = ("largest |E / E₀ − 1|", |r| r.drift);
     let period: (&str, Value) = ("relative error of the period", |r| r.period_error);
     let reaction: (&str, Value) = ("largest relative error", |r| r.reaction_error);
     let of_reaction = ("largest relative error of a reaction", reaction.1);
+    let text = "Each point is one tolerance from 1e-4 to 1e-13, relative and absolute alike, over all revolutions of the motion. \
+         Period: the first revolution against the quadrature. Energy: its largest drift. Reaction: the largest error \
+         at the steps against the exact state at the same time, relative to the largest reaction. Wall times are minima of three runs on this machine, while other threads were running.";
+    let panels = vec![
+        panel("Energy drift", &evaluations, drift),
+        panel("Period", &evaluations, period),
+        panel("Reactions", &evaluations, reaction),
+        panel("Time", &time, drift),
+        panel("Error over tolerance", &tolerance, drift),
+        panel("Error over tolerance", &tolerance, of_reaction),
+    ];
+    let (name, title, provenance) = (
+        "work-precision",
+        "Cost against error",
+        tolerances_text(motion),
+    );
     Figure {
-        name: "work-precision".to_owned(),
-        title: "Cost against error".to_owned(),
-        caption: caption(
-            prepared,
-            "Each point is one tolerance from 1e-4 to 1e-13, relative and absolute alike, over all revolutions of the motion. \
-             Period: the first revolution against the quadrature. Energy: its largest drift. Reaction: the largest error \
-             at the steps against the exact state at the same time, relative to the largest reaction. Wall times are minima of three runs on this machine, while other threads were running.",
-        ),
         columns: 2,
-        panels: vec![
-            chart("Energy drift", evaluations(), drift),
-            chart("Period", evaluations(), period),
-            chart("Reactions", evaluations(), reaction),
-            chart("Time", time, drift),
-            chart("Error over tolerance", tolerance(), drift),
-            chart("Error over tolerance", tolerance(), of_reaction),
-        ],
-        provenance: tolerances_text(motion),
+        ..figure(prepared.scene, name, title, text, panels, provenance)
     }
 }

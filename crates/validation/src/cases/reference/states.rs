@@ -2,7 +2,7 @@
 
 use super::{Reference, check_keys, list, named_values, number, object, read_each};
 use crate::cases::model_states::{ModelStates, StateRequest};
-use crate::cases::state_quantity::{QuantityKind, StateQuantity};
+use crate::cases::state_quantity::{KINDS, StateQuantity};
 use crate::error::ValidationError;
 use dwell_findings::{Check, Finding};
 use dwell_scene::Scene;
@@ -81,18 +81,6 @@ fn by_actuator(value: &Value, scene: &Scene) -> Result<Vec<f64>, String> {
     actuators.iter().map(|a| number(value, &a.name)).collect()
 }
 
-/// The quantities of each finding, with the end of its key.
-const KINDS: [(QuantityKind, &str); 5] = [
-    (QuantityKind::Positions, "positions"),
-    (QuantityKind::Velocities, "velocities"),
-    (QuantityKind::Accelerations, "accelerations"),
-    (QuantityKind::Reactions, "reactions"),
-    (QuantityKind::ActuatorForces, "actuator-forces"),
-];
-
-/// A value with the kind of its quantity, by which its scale is found.
-type KindAndValue = (QuantityKind, ComparedValue);
-
 impl ReferenceStates {
     /// The largest value of a unit in all samples.
     fn scale(&self, scene: &Scene, unit: &str) -> f64 {
@@ -110,44 +98,7 @@ impl ReferenceStates {
         model: &mut ModelStates<'_>,
         published: bool,
     ) -> Result<Vec<Finding>, ValidationError> {
-        let (values, unknown) = self.compared_values(scene, model)?;
-        let mut over = count(self.samples.len(), "sample");
-        if let (true, Some(source)) = (published, &self.source) {
-            over += &format!(" of {source}");
-        }
-        let (prefix, source) = match published {
-            true => ("published", "the published ones"),
-            false => ("reference", "those computed elsewhere"),
-        };
-        let mut findings = Vec::new();
-        if !unknown.is_empty() {
-            findings.push(unknown_names(&unknown, &over, prefix));
-        }
-        for (kind, key) in KINDS {
-            let of_kind = values.iter().filter(|(of, _)| *of == kind);
-            let values: Vec<_> = of_kind.map(|(_, value)| value.clone()).collect();
-            if values.is_empty() {
-                continue;
-            }
-            let spec = FindingSpec {
-                key: &format!("{prefix}-{key}"),
-                check: Check::ReferenceValues,
-                comparison: &format!("{} with {source}", key.replace('-', " ")),
-                scale: "the largest value of the same unit",
-                tolerance: self.tolerance,
-                tolerance_reason: &self.reason,
-            };
-            findings.push(compare_values(&spec, over.clone(), &values));
-        }
-        Ok(findings)
-    }
-
-    /// All values with their kinds, and the names that the scene does not have.
-    fn compared_values(
-        &self,
-        scene: &Scene,
-        model: &mut ModelStates<'_>,
-    ) -> Result<(Vec<KindAndValue>, BTreeSet<String>), ValidationError> {
+        // Each with the kind of its quantity; and the names that the scene does not have.
         let (mut values, mut unknown) = (Vec::new(), BTreeSet::new());
         for (k, row) in self.samples.iter().enumerate() {
             let state = model.evaluate_at(&row.request)?;
@@ -169,7 +120,35 @@ impl ReferenceStates {
                 values.push((quantity.kind(), value));
             }
         }
-        Ok((values, unknown))
+        let mut over = count(self.samples.len(), "sample");
+        if let (true, Some(source)) = (published, &self.source) {
+            over += &format!(" of {source}");
+        }
+        let (prefix, source) = match published {
+            true => ("published", "the published ones"),
+            false => ("reference", "those computed elsewhere"),
+        };
+        let mut findings = Vec::new();
+        if !unknown.is_empty() {
+            findings.push(unknown_names(&unknown, &over, prefix));
+        }
+        for kind in KINDS {
+            let of_kind = values.iter().filter(|(of, _)| *of == kind);
+            let values: Vec<_> = of_kind.map(|(_, value)| value.clone()).collect();
+            if values.is_empty() {
+                continue;
+            }
+            let spec = FindingSpec {
+                key: &format!("{prefix}-{kind}"),
+                check: Check::ReferenceValues,
+                comparison: &format!("{} with {source}", kind.replace('-', " ")),
+                scale: "the largest value of the same unit",
+                tolerance: self.tolerance,
+                tolerance_reason: &self.reason,
+            };
+            findings.push(compare_values(&spec, over.clone(), &values));
+        }
+        Ok(findings)
     }
 }
 

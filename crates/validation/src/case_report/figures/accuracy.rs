@@ -1,0 +1,154 @@
+//! How accurate a case's results are: digits of agreement, the effect of rounding, errors of finite differences.
+
+use crate::checked::rounding_check::StateRounding;
+use crate::checked::states::CheckedStates;
+use dwell_findings::{Check, Finding};
+use dwell_report::{Axis, Cell, Chart, Figure, Grid, Group, Mark, Row, Series, Stroke};
+use dwell_scene::Scene;
+use dwell_study::PreparedScene;
+use dwell_study::number_format::count;
+use dwell_study::output::{chart, figure};
+use dwell_verify::ErrorCurve;
+
+/// Digits of a number: exact agreement has no more.
+const MAX_DIGITS: f64 = 16.0;
+
+/// Difference, tolerance and their ratio of every finding, by check.
+pub(crate) fn digits(scene: &Scene, findings: &[Finding]) -> Figure {
+    let of_check = |check| findings.iter().filter(move |f| f.check == check);
+    let group = |check: Check| Group {
+        heading: check.to_string(),
+        rows: of_check(check).map(row).collect(),
+    };
+    let groups = Check::ALL.map(group).into_iter();
+    let groups = groups.filter(|group| !group.rows.is_empty()).collect();
+    let columns = [
+        "relative difference",
+        "tolerance",
+        "tolerance over difference",
+    ];
+    let count = count(findings.len(), "finding");
+    let grid = Grid {
+        columns: columns.map(str::to_owned).into(),
+        groups,
+        values: Axis::new("digits that agree", "").with_range(0.0, MAX_DIGITS),
+        ..Grid::default()
+    };
+    let text =
+        "The largest relative difference of every finding and its tolerance, grouped by check.";
+    let provenance = format!("{count}, each with its own check and tolerance");
+    figure(
+        scene,
+        "digits",
+        "Digits of agreement",
+        text,
+        vec![grid.into()],
+        provenance,
+    )
+}
+
+fn row(finding: &Finding) -> Row {
+    let part = |value: f64| {
+        let text = match value {
+            0.0 => "0".to_owned(),
+            value => format!("{value:.1e}").replace('-', "−"),
+        };
+        // Zero has all digits; what is not a number has no colour.
+        Cell {
+            value: (!value.is_nan()).then(|| (-value.log10()).min(MAX_DIGITS)),
+            ..Cell::text_only(text)
+        }
+    };
+    let between = match finding.tolerance / finding.relative_difference {
+        factor if !factor.is_finite() => None,
+        factor if factor < 100.0 => Some(Cell::text_only(format!("{factor:.1}"))),
+        factor if factor < 1e5 => Some(Cell::text_only(format!("{factor:.0}"))),
+        factor => Some(Cell::text_only(format!("{factor:.0e}"))),
+    };
+    let mut difference = part(finding.relative_difference);
+    difference.failed = !finding.pass;
+    let tolerance = Some(part(finding.tolerance));
+    let cells = vec![Some(difference), tolerance, between];
+    Row::new(finding.key.clone(), cells)
+}
+
+/// A smaller error is drawn at this value.
+const MIN_DRAWN_ERROR: f64 = 1e-18;
+
+/// The errors of `f64` and `f32` along the motion that was checked.
+pub(crate) fn rounding(
+    scene: &Scene,
+    checked: &CheckedStates,
+    rounding: &[StateRounding],
+) -> Figure {
+    let drawn = &rounding[..checked.drawn_count.min(rounding.len())];
+    let points = |of: &dyn Fn(&StateRounding) -> Option<f64>| -> Vec<[f64; 2]> {
+        let at = |s: &StateRounding| of(s).map(|error| [s.t, error.max(MIN_DRAWN_ERROR)]);
+        drawn.iter().filter_map(at).collect()
+    };
+    let precision_mark = |at: f64, label: &str| Mark::Horizontal {
+        at,
+        label: label.to_owned(),
+    };
+    let chart = Chart {
+        x: Axis::new("time", "s"),
+        y: Axis::log("relative error", "").with_range(MIN_DRAWN_ERROR, 1.0),
+        series: vec![
+            Series::line("f32", points(&|s| s.f32_error)).stroke(Stroke::LineAndPoints),
+            Series::line("f64", points(&|s| Some(s.f64_error))).stroke(Stroke::LineAndPoints),
+        ],
+        marks: vec![
+            precision_mark(f64::from(f32::EPSILON), "last place of f32"),
+            precision_mark(f64::EPSILON, "last place of f64"),
+        ],
+        ..Chart::default()
+    };
+    let text = format!(
+        "The largest error of an actuator force or a reaction in each state along {}, as a part of the largest of its unit: \
+         the same evaluation in f32 and in f64, compared with numbers of 32 digits.",
+        checked.motion_text
+    );
+    let states = count(drawn.len(), "state");
+    let provenance = format!("exact evaluation in f32, f64 and 32 digits at {states}");
+    figure(
+        scene,
+        "rounding",
+        "Effect of rounding",
+        &text,
+        vec![chart.into()],
+        provenance,
+    )
+}
+
+/// Error against step, one panel a quantity.
+pub(crate) fn finite_differences(prepared: &PreparedScene<'_>, curves: &[ErrorCurve]) -> Figure {
+    let panel = |curve: &ErrorCurve| {
+        let points = |errors: &[(f64, f64)]| errors.iter().map(|&(h, e)| [h, e]).collect();
+        let line =
+            |name: &str, errors| Series::line(name, points(errors)).stroke(Stroke::LineAndPoints);
+        let x = Axis::log("step h", "rad");
+        let y = Axis::log("relative difference", "").with_range(1e-17, 1e1);
+        let lines = vec![
+            line("central difference", &curve.second_order),
+            line("extrapolated once", &curve.fourth_order),
+            line("extrapolated twice", &curve.sixth_order),
+        ];
+        let title = format!("{} at {:.3} rad", curve.quantity, curve.q);
+        let mut chart = chart(title, x, y, lines);
+        chart.marks.push(Mark::Horizontal {
+            at: f64::EPSILON,
+            label: "one rounding".to_owned(),
+        });
+        chart.into()
+    };
+    figure(
+        prepared.scene,
+        "differences",
+        "Unit runs against differences of the kinetic energy",
+        "Differences of the unit-run coefficients from finite differences, over the step. The V is the error of the \
+         differences: truncation on the right, rounding on the left. ½m′ is differenced from E(q); b with the joint \
+         really released, ∂m₁₂/∂q₁ − ½ ∂m₁/∂q₂.",
+        curves.iter().map(panel).collect(),
+        "reduced model by unit runs, and differences of the kinetic energy",
+    )
+}
