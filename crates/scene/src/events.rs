@@ -3,10 +3,11 @@
 use crate::coordinates::ParsedCoordinates;
 use crate::diagnostics::Span;
 use crate::joints::Joints;
-use crate::kind::kind;
+use crate::kind::{kind, reject_unread_kind};
 use crate::names::check;
 use crate::requests::{components, joint_and_component};
 use crate::scene::{EventTrigger, NamedEvent};
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
 use crate::value::{NumberRule, SignRule};
@@ -20,13 +21,14 @@ pub(crate) struct EventReader<'r> {
 }
 
 impl EventReader<'_> {
-    /// Every event of `[motion.events]`, each with where it is named.
-    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<(NamedEvent, Span)> {
-        let one = |entry: &Entry<'_>| {
+    /// Every event of `[motion.events]`.
+    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<NamedEvent> {
+        let one = |(k, entry): (usize, &Entry<'_>)| {
             check("an event", entry);
-            Some((self.event(entry)?, entry.key.clone()))
+            entry.log().place(SceneLocation::Event(k), &entry.key);
+            self.event(entry)
         };
-        fields.entries.iter().filter_map(one).collect()
+        fields.entries.iter().enumerate().filter_map(one).collect()
     }
 
     fn event(&self, entry: &Entry<'_>) -> Option<NamedEvent> {
@@ -38,7 +40,8 @@ impl EventReader<'_> {
             "reaches" => reaches(coordinate(), &fields),
             "reverses" => coordinate().map(EventTrigger::Reversal),
             "reaction" => self.reaction(kind_entry, &fields),
-            _ => revolution(coordinate()?, kind_entry, &fields),
+            "revolution" => revolution(coordinate()?, kind_entry, &fields),
+            _ => reject_unread_kind(kind_entry),
         };
         let name = entry.name.to_owned();
         Some(NamedEvent {
@@ -78,11 +81,11 @@ impl EventReader<'_> {
             return Some(*reaction);
         }
         let names = list(all.iter().map(|(_, name)| name.as_str())).unwrap_or_default();
+        let message = format!("{} names {} reactions", fields.what, all.len());
+        let help = format!("name one of {names}");
         fields
-            .error(format!("{} names {} reactions", fields.what, all.len()))
-            .label(at, "which of them?")
-            .help(format!("name one of {names}"))
-            .reject()
+            .log()
+            .reject(message, &[(at, "which of them?")], help)
     }
 }
 
@@ -106,9 +109,5 @@ fn revolution(
     }
     let message = format!("{} counts revolutions of a length", fields.what);
     let help = "only an angle makes revolutions; a length `reaches` a value or `reverses`";
-    entry
-        .value
-        .wrong(message, "not an angle")
-        .help(help)
-        .reject()
+    entry.value.reject(message, "not an angle", help)
 }

@@ -3,7 +3,7 @@
 use crate::diagnostics::Span;
 use crate::joints::{Joints, kind_name};
 use crate::keys::table;
-use crate::loads::ParsedLoad;
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};
 use crate::value::{NumberRule, SignRule};
@@ -15,9 +15,8 @@ use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude};
 /// large enough that the equation of motion is not stiff for an explicit method.
 const DEFAULT_REGULARIZATION_SPEED: [f64; 2] = [0.01, 0.001];
 
-/// The friction of every joint of the section: loads, in the order of the file.
-pub(crate) fn friction(fields: &TableReader<'_>, joints: &Joints<'_>) -> Vec<ParsedLoad> {
-    let mut loads = Vec::new();
+/// Appends the friction of every joint of the section, in the order of the file.
+pub(crate) fn add_friction(fields: &TableReader<'_>, joints: &Joints<'_>, loads: &mut Vec<Load>) {
     let mut assigned: Vec<(usize, Span)> = Vec::new();
     for entry in &fields.entries {
         let Some(range) = joints.find(entry.name, &entry.key) else {
@@ -25,59 +24,62 @@ pub(crate) fn friction(fields: &TableReader<'_>, joints: &Joints<'_>) -> Vec<Par
         };
         if let Some((k, other)) = assigned.iter().find(|(k, _)| range.contains(k)) {
             let name = shorten(&joints.list[*k].name);
-            entry
-                .error(format!("joint `{name}` has two friction tables"))
-                .label(other, "here")
-                .label(&entry.key, "and here again")
-                .help("keep one of them: the name of a pin of several bodies stands for all its joints")
-                .report();
+            let message = format!("joint `{name}` has two friction tables");
+            let labels = [(other, "here"), (&entry.key, "and here again")];
+            let help =
+                "keep one of them: the name of a pin of several bodies stands for all its joints";
+            entry.log().report(message, &labels, help);
             continue;
         }
         assigned.extend(range.clone().map(|k| (k, entry.key.clone())));
         // The joints of a pin have the same friction: an error is reported once, for the first.
         let first = joints.list[range.start].joint.as_ref();
-        let Some(parsed) = first.and_then(|first| ParsedFriction::read(entry, first.kind)) else {
+        let Some(parsed) =
+            first.and_then(|joint| ParsedFriction::read(entry, JointId(range.start), joint.kind))
+        else {
             continue;
         };
         for k in range {
             if let Some(joint) = &joints.list[k].joint {
-                loads.extend(parsed.loads(entry, JointId(k), joint, joints));
+                for (load, at) in parsed.loads(JointId(k), joint, joints) {
+                    let log = entry.log();
+                    log.place(SceneLocation::Load(loads.len()), &entry.key);
+                    log.place(SceneLocation::Magnitude(loads.len()), at);
+                    loads.push(load);
+                }
             }
         }
     }
-    loads
 }
 
 /// The friction of a joint, each part with its place in the file.
 struct ParsedFriction {
-    dry: Option<DryFriction>,
+    /// Its joint is the first of a pin's.
+    dry: Option<(Friction, Span)>,
     viscous: Option<(f64, Span)>,
 }
 
-struct DryFriction {
-    coefficient: f64,
-    contact: FrictionContact,
-    /// rad/s or m/s.
-    regularization_speed: f64,
-    span: Span,
-}
-
 impl ParsedFriction {
-    fn read(entry: &Entry<'_>, kind: JointKind) -> Option<Self> {
+    fn read(entry: &Entry<'_>, joint: JointId, kind: JointKind) -> Option<Self> {
         let name = shorten(entry.name);
         let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
         let is_revolute = match kind {
             JointKind::Revolute => true,
             JointKind::Prismatic { .. } | JointKind::Slot { .. } => false,
-            _ => {
-                let diagnostic = entry.error(format!("joint `{name}` cannot have friction"));
+            JointKind::Weld { .. }
+            | JointKind::Gear { .. }
+            | JointKind::Rack { .. }
+            | JointKind::Rolling { .. }
+            | JointKind::Distance { .. }
+            | JointKind::Coupling(_) => {
+                let message = format!("joint `{name}` cannot have friction");
                 let label = format!("its kind is {}", kind_name(kind));
                 let help = "revolute joints, prismatic joints and slots can have friction";
-                return diagnostic.label(&entry.key, label).help(help).reject();
+                return entry.reject(message, &label, help);
             }
         };
         let before = fields.log().count();
-        check_friction_keys(&fields, kind);
+        check_friction_keys(&fields, kind, is_revolute);
         let number = |key: &str, unit: &Unit, sign: SignRule| {
             let entry = fields.get(key)?;
             let rule = NumberRule::new(unit, sign);
@@ -111,22 +113,25 @@ impl ParsedFriction {
             let length = guide.map_or(0.0, |s| s.0);
             (FrictionContact::Guide { length }, default_of_prismatic)
         };
-        let dry = coefficient.map(|(coefficient, span)| DryFriction {
-            coefficient,
-            contact,
-            regularization_speed: speed.map_or(default, |f| f.0),
-            span,
+        let dry = coefficient.map(|(coefficient, span)| {
+            let friction = Friction {
+                joint,
+                coefficient,
+                contact,
+                regularization_speed: speed.map_or(default, |f| f.0),
+            };
+            (friction, span)
         });
         Some(Self { dry, viscous })
     }
 
+    /// The loads of one of the joints, each with the place of its magnitude.
     fn loads(
         &self,
-        entry: &Entry<'_>,
         id: JointId,
         joint: &Joint,
         joints: &Joints<'_>,
-    ) -> Vec<ParsedLoad> {
+    ) -> impl Iterator<Item = (Load, &Span)> {
         let bodies = joint.bodies;
         let [force, damper] = match joints.guide(id) {
             Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
@@ -135,51 +140,42 @@ impl ParsedFriction {
                 LoadKind::RotationalDamper { bodies },
             ],
         };
-        let dry = self.dry.as_ref().map(|dry| {
+        let load = |suffix: &str, kind, magnitude| Load {
+            name: format!("{}.{suffix}", joint.name),
+            kind,
+            magnitude,
+        };
+        let dry = self.dry.as_ref().map(|(friction, at)| {
             let friction = Friction {
                 joint: id,
-                coefficient: dry.coefficient,
-                contact: dry.contact,
-                regularization_speed: dry.regularization_speed,
+                ..*friction
             };
-            ("friction", force, Magnitude::Friction(friction), &dry.span)
+            let magnitude = Magnitude::Friction(friction);
+            (load("friction", force, magnitude), at)
         });
-        let viscous = self.viscous.as_ref();
-        let viscous =
-            viscous.map(|(constant, at)| ("viscous", damper, Magnitude::Constant(*constant), at));
-        let both = dry.into_iter().chain(viscous);
-        let parsed = |(suffix, kind, magnitude, at): (&str, _, _, &Span)| ParsedLoad {
-            key: entry.key.clone(),
-            magnitude: Some(at.clone()),
-            load: Some(Load {
-                name: format!("{}.{suffix}", joint.name),
-                kind,
-                magnitude,
-            }),
-        };
-        both.map(parsed).collect()
+        let viscous = self.viscous.as_ref().map(|(constant, at)| {
+            let magnitude = Magnitude::Constant(*constant);
+            (load("viscous", damper, magnitude), at)
+        });
+        dry.into_iter().chain(viscous)
     }
 }
 
 /// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.
-fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind) {
-    let table = match kind {
-        JointKind::Revolute => table("revolute-friction"),
-        _ => table("prismatic-friction"),
+fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, is_revolute: bool) {
+    let table = match is_revolute {
+        true => table("revolute-friction"),
+        false => table("prismatic-friction"),
     };
     let is_slot = matches!(kind, JointKind::Slot { .. });
     let dry = fields.get("coefficient");
     // What seems to be missing may be a key that is misspelt.
     let misspelt = fields.unknown_entries(table).next().is_some();
     if dry.is_none() && fields.get("viscous").is_none() && !misspelt {
-        return fields
-            .error(format!(
-                "{} has neither `coefficient` nor `viscous`",
-                fields.what
-            ))
-            .label(&fields.span, "no friction is given")
-            .help("add a `coefficient` of dry friction, or `viscous`")
-            .report();
+        let message = format!("{} has neither `coefficient` nor `viscous`", fields.what);
+        let labels = [(&fields.span, "no friction is given")];
+        let help = "add a `coefficient` of dry friction, or `viscous`";
+        return fields.log().report(message, &labels, help);
     }
     for entry in &fields.entries {
         let (name, what) = (entry.written(), &fields.what);
@@ -202,10 +198,6 @@ fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind) {
             }
         };
         let label = format!("its kind is {}", kind_name(kind));
-        fields
-            .error(message)
-            .label(&entry.key, label)
-            .help(help)
-            .report();
+        entry.reject::<()>(message, &label, help);
     }
 }

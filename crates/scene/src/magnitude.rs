@@ -18,7 +18,7 @@ pub(crate) struct Magnitudes {
     /// The signals an expression can name, and their names.
     signals: Vec<(String, Option<Signal>)>,
     /// Former names of signals, which are still read, and their current names.
-    former_names: Vec<(String, String)>,
+    former_names: Vec<[String; 2]>,
 }
 
 impl Magnitudes {
@@ -29,10 +29,8 @@ impl Magnitudes {
             let velocity = m.coordinate.map(Signal::Velocity);
             signals.push((format!("{}.velocity", m.name), velocity));
         }
-        let former_names = named.list.iter().map(|m| {
-            let [former, current] = ["speed", "velocity"].map(|s| format!("{}.{s}", m.name));
-            (former, current)
-        });
+        let both = |name: &str| ["speed", "velocity"].map(|s| format!("{name}.{s}"));
+        let former_names = named.list.iter().map(|m| both(m.name));
         Self {
             signals,
             former_names: former_names.collect(),
@@ -63,7 +61,7 @@ impl Magnitudes {
     fn expression(&self, value: Value<'_>, what: &str) -> Option<Magnitude> {
         let text = value.string(what)?;
         let names: Vec<_> = self.signals.iter().map(|(name, _)| name.as_str()).collect();
-        let former = self.former_names.iter().map(|(former, _)| former.as_str());
+        let former = self.former_names.iter().map(|[former, _]| former.as_str());
         let with_former: Vec<_> = names.iter().copied().chain(former).collect();
         let parsed = match Expression::parse(text, &with_former) {
             Ok(parsed) => parsed,
@@ -80,8 +78,8 @@ impl Magnitudes {
 
     /// The signal of that name, which `value` uses; nothing if its coordinate was wrong, which has been reported.
     fn signal(&self, name: &str, value: Value<'_>) -> Option<Signal> {
-        let renamed = self.former_names.iter().find(|(former, _)| former == name);
-        let name = renamed.map_or(name, |(former, current)| {
+        let renamed = self.former_names.iter().find(|[former, _]| former == name);
+        let name = renamed.map_or(name, |[former, current]| {
             value.log().warn_renamed(former, current, value.span());
             current
         });
@@ -107,8 +105,7 @@ impl Magnitudes {
         let name = format!("the table of {what}");
         let rows = table.rows([unit, rule.unit], &name)?;
         if rule.sign == SignRule::NotNegative && rows.iter().any(|[_, y]| *y < 0.0) {
-            let diagnostic = table.wrong(format!("{name} goes below zero"), "negative");
-            return diagnostic.help(rule.why).reject();
+            return table.reject(format!("{name} goes below zero"), "negative", rule.why);
         }
         let law = spline(table, &name, &rows)?;
         Some(Magnitude::Law(signal, Law::Spline(law)))
@@ -117,7 +114,7 @@ impl Magnitudes {
     fn of(&self, value: Value<'_>, what: &str) -> Option<Signal> {
         let name = value.string(format_args!("`of` in {what}"))?;
         let mut known = self.signals.iter().map(|(n, _)| n);
-        let mut former = self.former_names.iter().map(|(n, _)| n);
+        let mut former = self.former_names.iter().map(|[n, _]| n);
         if known.any(|n| n == name) || former.any(|n| n == name) {
             return self.signal(name, value);
         }
@@ -125,6 +122,6 @@ impl Magnitudes {
         let help = value.log().choices(name, "signals", names);
         let message = format!("`{}` cannot be the variable of a table", shorten(name));
         let label = "neither the time nor a coordinate or its velocity";
-        value.wrong(message, label).help(help).reject()
+        value.reject(message, label, help)
     }
 }

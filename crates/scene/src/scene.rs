@@ -1,7 +1,7 @@
 //! The scene as plain data.
 
 use crate::error::SceneWarning;
-use crate::number_paths::{BodyNumber, SectionNumber};
+use crate::number_paths::SceneNumber;
 use crate::spans::SceneSpans;
 use crate::units::Units;
 use dwell_geometry::{
@@ -55,9 +55,9 @@ pub struct Scene {
     pub warnings: Vec<SceneWarning>,
     pub(crate) units: Units,
     pub(crate) spans: SceneSpans,
-    pub(crate) body_numbers: Vec<BodyNumber>,
+    pub(crate) body_numbers: Vec<SceneNumber>,
     /// Those outside the bodies.
-    pub(crate) section_numbers: Vec<SectionNumber>,
+    pub(crate) section_numbers: Vec<SceneNumber>,
 }
 
 /// Where and how the mechanism is put together at the start; it picks the branch.
@@ -83,7 +83,7 @@ impl Assembly {
 }
 
 /// What the scene asks for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Requests {
     /// Reactions: those named, in that order and each once, or else all of the mechanism's.
     pub reactions: Vec<Reaction>,

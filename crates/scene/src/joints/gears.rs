@@ -26,10 +26,8 @@ pub(super) fn gear(fields: &TableReader<'_>) -> Option<JointKind> {
     if internal && radii[0] == radii[1] {
         let message = format!("the ring and the gear of {what} have equal radii");
         let help = "the ring's radius is the larger one; two equal gears are external";
-        let diagnostic = given
-            .value
-            .wrong(message, "the gear does not fit into the ring");
-        return diagnostic.help(help).reject();
+        let label = "the gear does not fit into the ring";
+        return given.value.reject(message, label, help);
     }
     Some(JointKind::Gear { radii, internal })
 }
@@ -45,11 +43,7 @@ pub(super) fn pressure_angle(fields: &TableReader<'_>) -> Option<(f64, Span)> {
     let message = format!("{what} is not between 0° and 45°");
     let help = "standard teeth have 20°; leave it out for teeth without a separating force";
     let unit = &fields.units().angle.name;
-    entry
-        .value
-        .wrong(message, &format!("in {unit}"))
-        .help(help)
-        .reject()
+    entry.value.reject(message, &format!("in {unit}"), help)
 }
 
 /// The axis and the radius of a pinion or wheel that rolls along a line.

@@ -20,21 +20,16 @@ pub(super) fn prismatic(fields: &TableReader<'_>) -> Option<JointKind> {
             [a?, b?]
         }
         (Some(a), Some(b)) => {
-            fields.reject_both(
-                a,
-                b,
-                ["the same axis in both bodies", "one axis for each body"],
-            );
+            let labels = ["the same axis in both bodies", "one axis for each body"];
+            fields.reject_both(a, b, labels);
             return None;
         }
         (None, None) => {
             let help =
                 "add `axis = [1, 0]`, in the frames of both bodies, or `axes` with one for each";
-            let diagnostic = fields.error(format!("{what} has no axis"));
-            return diagnostic
-                .label(&fields.key, "`axis` is missing")
-                .help(help)
-                .reject();
+            let labels = [(&fields.key, "`axis` is missing")];
+            let message = format!("{what} has no axis");
+            return fields.log().reject(message, &labels, help);
         }
     };
     Some(JointKind::Prismatic { axes })
