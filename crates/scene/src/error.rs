@@ -70,7 +70,7 @@ impl SceneWarning {
 
 impl SceneError {
     /// An error without a place: there is no text.
-    pub(crate) fn without_labels(message: String, help: Option<String>) -> Self {
+    pub fn without_labels(message: String, help: Option<String>) -> Self {
         Self {
             message,
             help,
