@@ -143,16 +143,18 @@ impl<'a> Bodies<'a> {
         found
     }
 
-    /// Reports two places that name the same body where two bodies are needed. `message` is given the body's name.
-    pub(crate) fn reject_same_body<T>(
+    /// The two bodies, or an error if they are the same. `message` is given the body's name.
+    pub(crate) fn require_different(
         &self,
-        body: BodyId,
+        [a, b]: [(BodyId, &Span); 2],
         message: impl Fn(&str) -> String,
-        labels: [(&Span, &str); 2],
         help: &str,
-    ) -> Option<T> {
-        let message = message(self.list[body.0].name);
-        self.log.reject(message, &labels, help)
+    ) -> Option<[BodyId; 2]> {
+        if a.0 != b.0 {
+            return Some([a.0, b.0]);
+        }
+        let labels = [(a.1, "this body"), (b.1, "and the same again")];
+        (self.log).reject(message(self.list[a.0.0].name), &labels, help)
     }
 }
 

@@ -281,14 +281,10 @@ fn angle(
     verb: &str,
     bodies: &Bodies<'_>,
 ) -> Option<[BodyId; 2]> {
-    let [(a, at_a), (b, at_b)] = bodies.find_two(entry.value, fields.name_of(entry))?;
-    if a != b {
-        return Some([a, b]);
-    }
+    let [a, b] = &bodies.find_two(entry.value, fields.name_of(entry))?;
     let message = |name: &str| format!("{} {verb} body `{name}` against itself", fields.what);
-    let labels = [(&at_a, "this body"), (&at_b, "and the same again")];
     let help = "an angle is between two different bodies";
-    bodies.reject_same_body(a, message, labels, help)
+    bodies.require_different([(a.0, &a.1), (b.0, &b.1)], message, help)
 }
 
 /// Two points of different bodies, of which `fields` drives or measures the distance.
@@ -302,11 +298,10 @@ fn length(
     if a.0 != b.0 {
         return Some(([a.0, b.0], [bodies.at(&a), bodies.at(&b)]));
     }
-    let message = |name: &str| format!("{} {verb} a length within body `{name}`", fields.what);
-    let labels = [
-        (&a.2, "a point of this body"),
-        (&b.2, "and another of the same"),
-    ];
+    let name = bodies.list[a.0.0].name;
+    let message = format!("{} {verb} a length within body `{name}`", fields.what);
+    let first = (&a.2, "a point of this body");
+    let labels = [first, (&b.2, "and another of the same")];
     let help = "a length that can change is between two different bodies";
-    bodies.reject_same_body(a.0, message, labels, help)
+    fields.log().reject(message, &labels, help)
 }

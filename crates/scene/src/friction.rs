@@ -8,7 +8,7 @@ use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};
 use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
-use dwell_geometry::{Joint, JointId, JointKind};
+use dwell_geometry::{JointId, JointKind};
 use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude};
 
 /// Regularization speed where the scene gives none, rad/s and m/s: small compared with the speeds of a machine, yet
@@ -34,131 +34,118 @@ pub(crate) fn add_friction(fields: &TableReader<'_>, joints: &Joints<'_>, loads:
         assigned.extend(range.clone().map(|k| (k, entry.key.clone())));
         // The joints of a pin have the same friction: an error is reported once, for the first.
         let first = joints.list[range.start].joint.as_ref();
-        let Some(parsed) =
-            first.and_then(|joint| ParsedFriction::read(entry, JointId(range.start), joint.kind))
+        let Some((fields, friction, viscous)) =
+            first.and_then(|joint| read_friction(entry, JointId(range.start), joint.kind))
         else {
             continue;
         };
         for k in range {
-            if let Some(joint) = &joints.list[k].joint {
-                for (load, at) in parsed.loads(JointId(k), joint, joints) {
-                    let log = entry.log();
-                    log.place(SceneLocation::Load(loads.len()), &entry.key);
-                    log.place(SceneLocation::Magnitude(loads.len()), at);
-                    loads.push(load);
-                }
+            let Some(joint) = &joints.list[k].joint else {
+                continue;
+            };
+            let (joint_id, bodies) = (JointId(k), joint.bodies);
+            let [force, damper] = match joints.guide(joint_id) {
+                Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
+                None => [
+                    LoadKind::Torque { bodies },
+                    LoadKind::RotationalDamper { bodies },
+                ],
+            };
+            let dry = friction.map(|friction| Friction {
+                joint: joint_id,
+                ..friction
+            });
+            for (key, suffix, kind, magnitude) in [
+                (
+                    "coefficient",
+                    "friction",
+                    force,
+                    dry.map(Magnitude::Friction),
+                ),
+                (
+                    "viscous",
+                    "viscous",
+                    damper,
+                    viscous.map(Magnitude::Constant),
+                ),
+            ] {
+                let Some(magnitude) = magnitude else { continue };
+                fields
+                    .log()
+                    .place(SceneLocation::Load(loads.len()), &entry.key);
+                fields.place(key, SceneLocation::Magnitude(loads.len()));
+                loads.push(Load {
+                    name: format!("{}.{suffix}", joint.name),
+                    kind,
+                    magnitude,
+                });
             }
         }
     }
 }
 
-/// The friction of a joint, each part with its place in the file.
-struct ParsedFriction {
-    /// Its joint is the first of a pin's.
-    dry: Option<(Friction, Span)>,
-    viscous: Option<(f64, Span)>,
-}
-
-impl ParsedFriction {
-    fn read(entry: &Entry<'_>, joint: JointId, kind: JointKind) -> Option<Self> {
-        let name = shorten(entry.name);
-        let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
-        let is_revolute = match kind {
-            JointKind::Revolute => true,
-            JointKind::Prismatic { .. } | JointKind::Slot { .. } => false,
-            JointKind::Weld { .. }
-            | JointKind::Gear { .. }
-            | JointKind::Rack { .. }
-            | JointKind::Rolling { .. }
-            | JointKind::Distance { .. }
-            | JointKind::Coupling(_) => {
-                let message = format!("joint `{name}` cannot have friction");
-                let label = format!("its kind is {}", kind_name(kind));
-                let help = "revolute joints, prismatic joints and slots can have friction";
-                return entry.reject(message, &label, help);
-            }
-        };
-        let before = fields.log().count();
-        check_friction_keys(&fields, kind, is_revolute);
-        let number = |key: &str, unit: &Unit, sign: SignRule| {
-            let entry = fields.get(key)?;
-            let rule = NumberRule::new(unit, sign);
-            let si = entry
-                .value
-                .quantity_with_sign(&rule, fields.name_of(entry))?;
-            Some((si, entry.value.span()))
-        };
-        let units = fields.units();
-        let coefficient = number("coefficient", &SI, SignRule::NotNegative);
-        let radius = number("radius", &units.length, SignRule::Positive);
-        let guide = number("guide-length", &units.length, SignRule::NotNegative);
-        let speed_unit = units.coordinate_unit(is_revolute);
-        let speed = number("regularization-speed", speed_unit, SignRule::Positive);
-        let viscous = number("viscous", &SI, SignRule::NotNegative);
-        // A guide in its place is one slip, not two.
-        let has_guide = fields.get("guide-length").is_some();
-        if is_revolute && fields.get("coefficient").is_some() && !has_guide {
-            let unit = &units.length.name;
-            let help = format!("add `radius`, the radius of the pin, in {unit}");
-            fields.require("radius", &help);
+/// The friction of a joint: its table, and what that gives of dry and of viscous friction.
+fn read_friction<'a>(
+    entry: &Entry<'a>,
+    joint: JointId,
+    kind: JointKind,
+) -> Option<(TableReader<'a>, Option<Friction>, Option<f64>)> {
+    let name = shorten(entry.name);
+    let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
+    let is_revolute = match kind {
+        JointKind::Revolute => true,
+        JointKind::Prismatic { .. } | JointKind::Slot { .. } => false,
+        JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Rack { .. }
+        | JointKind::Rolling { .. }
+        | JointKind::Distance { .. }
+        | JointKind::Coupling(_) => {
+            let message = format!("joint `{name}` cannot have friction");
+            let label = format!("its kind is {}", kind_name(kind));
+            let help = "revolute joints, prismatic joints and slots can have friction";
+            return entry.reject(message, &label, help);
         }
-        if fields.log().count() != before {
-            return None;
-        }
-        let [default_of_revolute, default_of_prismatic] = DEFAULT_REGULARIZATION_SPEED;
-        let (contact, default) = if is_revolute {
-            let radius = radius.map_or(0.0, |s| s.0);
-            (FrictionContact::Pin { radius }, default_of_revolute)
-        } else {
-            let length = guide.map_or(0.0, |s| s.0);
-            (FrictionContact::Guide { length }, default_of_prismatic)
-        };
-        let dry = coefficient.map(|(coefficient, span)| {
-            let friction = Friction {
-                joint,
-                coefficient,
-                contact,
-                regularization_speed: speed.map_or(default, |f| f.0),
-            };
-            (friction, span)
-        });
-        Some(Self { dry, viscous })
+    };
+    let before = fields.log().count();
+    check_friction_keys(&fields, kind, is_revolute);
+    let number = |key: &str, unit: &Unit, sign: SignRule| {
+        let entry = fields.get(key)?;
+        let rule = NumberRule::new(unit, sign);
+        entry.value.quantity_with_sign(&rule, fields.name_of(entry))
+    };
+    let units = fields.units();
+    let coefficient = number("coefficient", &SI, SignRule::NotNegative);
+    let radius = number("radius", &units.length, SignRule::Positive);
+    let guide = number("guide-length", &units.length, SignRule::NotNegative);
+    let speed_unit = units.coordinate_unit(is_revolute);
+    let speed = number("regularization-speed", speed_unit, SignRule::Positive);
+    let viscous = number("viscous", &SI, SignRule::NotNegative);
+    // A guide in its place is one slip, not two.
+    let has_guide = fields.get("guide-length").is_some();
+    if is_revolute && fields.get("coefficient").is_some() && !has_guide {
+        let unit = &units.length.name;
+        let help = format!("add `radius`, the radius of the pin, in {unit}");
+        fields.require("radius", &help);
     }
-
-    /// The loads of one of the joints, each with the place of its magnitude.
-    fn loads(
-        &self,
-        id: JointId,
-        joint: &Joint,
-        joints: &Joints<'_>,
-    ) -> impl Iterator<Item = (Load, &Span)> {
-        let bodies = joint.bodies;
-        let [force, damper] = match joints.guide(id) {
-            Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
-            None => [
-                LoadKind::Torque { bodies },
-                LoadKind::RotationalDamper { bodies },
-            ],
-        };
-        let load = |suffix: &str, kind, magnitude| Load {
-            name: format!("{}.{suffix}", joint.name),
-            kind,
-            magnitude,
-        };
-        let dry = self.dry.as_ref().map(|(friction, at)| {
-            let friction = Friction {
-                joint: id,
-                ..*friction
-            };
-            let magnitude = Magnitude::Friction(friction);
-            (load("friction", force, magnitude), at)
-        });
-        let viscous = self.viscous.as_ref().map(|(constant, at)| {
-            let magnitude = Magnitude::Constant(*constant);
-            (load("viscous", damper, magnitude), at)
-        });
-        dry.into_iter().chain(viscous)
+    if fields.log().count() != before {
+        return None;
     }
+    let [default_of_revolute, default_of_prismatic] = DEFAULT_REGULARIZATION_SPEED;
+    let (contact, default) = if is_revolute {
+        let radius = radius.unwrap_or(0.0);
+        (FrictionContact::Pin { radius }, default_of_revolute)
+    } else {
+        let length = guide.unwrap_or(0.0);
+        (FrictionContact::Guide { length }, default_of_prismatic)
+    };
+    let friction = coefficient.map(|coefficient| Friction {
+        joint,
+        coefficient,
+        contact,
+        regularization_speed: speed.unwrap_or(default),
+    });
+    Some((fields, friction, viscous))
 }
 
 /// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.

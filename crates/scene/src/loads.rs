@@ -186,27 +186,23 @@ impl LoadReader<'_> {
         let what = fields.name_of(entry);
         let [a, b] = self.bodies.find_two_points(entry.value, TWO_POINTS, what)?;
         let points = [self.bodies.at(&a), self.bodies.at(&b)];
-        let bodies = self.require_different_bodies([(a.0, a.2), (b.0, b.2)], fields)?;
+        let bodies = self.require_different_bodies([(a.0, &a.2), (b.0, &b.2)], fields)?;
         Some((bodies, points))
     }
 
     fn two_bodies(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<[BodyId; 2]> {
-        let both = self.bodies.find_two(entry.value, fields.name_of(entry))?;
-        self.require_different_bodies(both, fields)
+        let [a, b] = &self.bodies.find_two(entry.value, fields.name_of(entry))?;
+        self.require_different_bodies([(a.0, &a.1), (b.0, &b.1)], fields)
     }
 
     fn require_different_bodies(
         &self,
-        [(a, at_a), (b, at_b)]: [(BodyId, Span); 2],
+        both: [(BodyId, &Span); 2],
         fields: &TableReader<'_>,
     ) -> Option<[BodyId; 2]> {
-        if a != b {
-            return Some([a, b]);
-        }
         let message = |name: &str| format!("{} acts between body `{name}` and itself", fields.what);
-        let labels = [(&at_a, "this body"), (&at_b, "and the same again")];
         let help = "a load within one rigid body has no effect";
-        self.bodies.reject_same_body(a, message, labels, help)
+        self.bodies.require_different(both, message, help)
     }
 }
 

@@ -13,28 +13,38 @@ use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Expression, Law};
 use toml::de::DeValue;
 
-/// Reads magnitudes.
-pub(crate) struct Magnitudes {
-    /// The signals an expression can name, and their names.
-    signals: Vec<(String, Option<Signal>)>,
-    /// Former names of signals, which are still read, and their current names.
-    former_names: Vec<[String; 2]>,
+/// Reads magnitudes, with the signals that an expression can name.
+pub(crate) struct Magnitudes(Vec<NamedSignal>);
+
+struct NamedSignal {
+    name: String,
+    /// Its former name, which is still read.
+    former: Option<String>,
+    /// None if its coordinate was wrong, which has been reported.
+    signal: Option<Signal>,
 }
 
 impl Magnitudes {
     pub(crate) fn new(named: &ParsedCoordinates<'_>) -> Self {
-        let mut signals = vec![("t".to_owned(), Some(Signal::Time))];
-        for m in &named.list {
-            signals.push((m.name.to_owned(), m.coordinate.map(Signal::Value)));
-            let velocity = m.coordinate.map(Signal::Velocity);
-            signals.push((format!("{}.velocity", m.name), velocity));
+        let signal = |name: String, former, signal| NamedSignal {
+            name,
+            former,
+            signal,
+        };
+        let mut signals = vec![signal("t".to_owned(), None, Some(Signal::Time))];
+        for c in &named.list {
+            let [former, velocity] = ["speed", "velocity"].map(|s| format!("{}.{s}", c.name));
+            let value = c.coordinate.map(Signal::Value);
+            signals.push(signal(c.name.to_owned(), None, value));
+            let rate = c.coordinate.map(Signal::Velocity);
+            signals.push(signal(velocity, Some(former), rate));
         }
-        let both = |name: &str| ["speed", "velocity"].map(|s| format!("{name}.{s}"));
-        let former_names = named.list.iter().map(|m| both(m.name));
-        Self {
-            signals,
-            former_names: former_names.collect(),
-        }
+        Self(signals)
+    }
+
+    /// Their current names.
+    fn names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.0.iter().map(|s| s.name.as_str())
     }
 
     /// The magnitude that an entry of `fields` is: a number, an expression, or a table.
@@ -60,9 +70,9 @@ impl Magnitudes {
 
     fn expression(&self, value: Value<'_>, what: &str) -> Option<Magnitude> {
         let text = value.string(what)?;
-        let names: Vec<_> = self.signals.iter().map(|(name, _)| name.as_str()).collect();
-        let former = self.former_names.iter().map(|[former, _]| former.as_str());
-        let with_former: Vec<_> = names.iter().copied().chain(former).collect();
+        let names: Vec<_> = self.names().collect();
+        let former = self.0.iter().filter_map(|s| s.former.as_deref());
+        let with_former: Vec<_> = self.names().chain(former).collect();
         let parsed = match Expression::parse(text, &with_former) {
             Ok(parsed) => parsed,
             // The message lists the current names only.
@@ -71,19 +81,20 @@ impl Magnitudes {
         .retain_used();
         let used = parsed.variables().iter();
         // Collected before any is missed: every former name is to be reported.
-        let signals: Vec<_> = used.map(|name| self.signal(name, value)).collect();
+        let signals: Vec<_> = used.map(|name| self.signal(name, value)?).collect();
         let signals = signals.into_iter().collect::<Option<Vec<_>>>()?;
         Some(Magnitude::Expression(parsed, signals))
     }
 
-    /// The signal of that name, which `value` uses; nothing if its coordinate was wrong, which has been reported.
-    fn signal(&self, name: &str, value: Value<'_>) -> Option<Signal> {
-        let renamed = self.former_names.iter().find(|[former, _]| former == name);
-        let name = renamed.map_or(name, |[former, current]| {
-            value.log().warn_renamed(former, current, value.span());
-            current
-        });
-        self.signals.iter().find(|(n, _)| n == name)?.1
+    /// The signal of that name, which `value` uses, if there is one.
+    fn signal(&self, name: &str, value: Value<'_>) -> Option<Option<Signal>> {
+        let is_former = |s: &NamedSignal| s.former.as_deref() == Some(name);
+        let mut signals = self.0.iter();
+        let found = signals.find(|s| s.name == name || is_former(s))?;
+        if is_former(found) {
+            value.log().warn_renamed(name, &found.name, value.span());
+        }
+        Some(found.signal)
     }
 
     fn table(&self, entry: &Entry<'_>, what: &str, rule: &NumberRule<'_>) -> Option<Magnitude> {
@@ -113,13 +124,10 @@ impl Magnitudes {
 
     fn of(&self, value: Value<'_>, what: &str) -> Option<Signal> {
         let name = value.string(format_args!("`of` in {what}"))?;
-        let mut known = self.signals.iter().map(|(n, _)| n);
-        let mut former = self.former_names.iter().map(|[n, _]| n);
-        if known.any(|n| n == name) || former.any(|n| n == name) {
-            return self.signal(name, value);
+        if let Some(signal) = self.signal(name, value) {
+            return signal;
         }
-        let names = self.signals.iter().map(|(n, _)| n.as_str());
-        let help = value.log().choices(name, "signals", names);
+        let help = value.log().choices(name, "signals", self.names());
         let message = format!("`{}` cannot be the variable of a table", shorten(name));
         let label = "neither the time nor a coordinate or its velocity";
         value.reject(message, label, help)

@@ -94,11 +94,8 @@ impl<'a> ParsedMotion<'a> {
 
     /// At least one actuator has to be free, and exactly one where the duration is in periods.
     fn count_free(&self, fields: &TableReader<'_>, actuators: &[ParsedActuator<'_>]) {
-        let free = actuators.iter().zip(&self.prescribed);
-        let free: Vec<_> = free
-            .filter(|(_, l)| l.is_none())
-            .map(|(a, _)| a.name)
-            .collect();
+        let free = (0..actuators.len()).filter(|&k| self.prescribed[k].is_none());
+        let free: Vec<_> = free.map(|k| actuators[k].name).collect();
         let names = list(free.iter().copied());
         if let (None, Some(laws)) = (&names, fields.get("prescribed")) {
             let message = "[motion] prescribes every actuator: none is free";
@@ -161,17 +158,13 @@ fn report_missing_velocities(
     actuators: &[ParsedActuator<'_>],
     initial_velocities: &[Option<f64>],
 ) {
-    let missing = actuators.iter().zip(initial_velocities);
-    let missing: Vec<_> = missing
-        .filter(|(_, s)| s.is_none())
-        .map(|(a, _)| a)
-        .collect();
+    let missing = (0..actuators.len()).filter(|&k| initial_velocities[k].is_none());
+    let missing: Vec<_> = missing.map(|k| &actuators[k]).collect();
     let Some(names) = list(missing.iter().map(|a| a.name)) else {
         return;
     };
-    let at = fields
-        .get("initial-velocity")
-        .map_or(&fields.span, |e| &e.key);
+    let given = fields.get("initial-velocity");
+    let at = given.map_or(&fields.span, |e| &e.key);
     let (first, unit) = (missing[0].name, &missing[0].unit(fields.units()).name);
     let help = format!(
         "in {unit}/s: `initial-velocity = {{ {first} = 1.0 }}`; without loads and drives the mechanism would not move"
@@ -233,10 +226,9 @@ impl PerActuator<'_, '_> {
         if let [] | [_] = free.as_slice() {
             return free.first().copied();
         }
-        let each = free
-            .iter()
-            .map(|&k| format!("{} = 0.0", self.actuators[k].name));
-        let example = shorten(&each.collect::<Vec<_>>().join(", "));
+        let each = free.iter().map(|&k| self.actuators[k].name);
+        let each: Vec<_> = each.map(|name| format!("{name} = 0.0")).collect();
+        let example = shorten(&each.join(", "));
         let kind = match free.len() == all {
             true => "actuators",
             false => "free actuators",

@@ -175,10 +175,10 @@ impl<'a> Value<'a> {
 
     /// A point, m.
     pub(crate) fn point(self, what: &str) -> Option<Vec2> {
-        let (unit, [x, y]) = (&self.units().length, self.pair(POINT, what)?);
-        let x = x.quantity(unit, format_args!("x of {what}"));
-        let y = y.quantity(unit, format_args!("y of {what}"));
-        Some(vec2(x?, y?))
+        let unit = &self.units().length;
+        let coordinate = |value: Self, what: String| value.quantity(unit, what);
+        let [x, y] = self.pair_of(POINT, what, ["x", "y"], coordinate)?;
+        Some(vec2(x, y))
     }
 
     /// An angle in rad.
@@ -264,10 +264,8 @@ impl<'a> Value<'a> {
 
     /// A direction: only the ratio of its components counts, so it has no unit.
     pub(crate) fn unit_vector(self, what: impl Display) -> Option<Vec2> {
-        let [x, y] = self.pair(POINT, &what)?;
-        let x = x.number(format_args!("x of {what}"));
-        let y = y.number(format_args!("y of {what}"));
-        let (x, y) = (x?, y?);
+        let component = |value: Self, what: String| value.number(what);
+        let [x, y] = self.pair_of(POINT, &what, ["x", "y"], component)?;
         let largest = x.abs().max(y.abs());
         if largest == 0.0 {
             let message = format!("{what} has no length");
@@ -314,6 +312,21 @@ impl<'a> Value<'a> {
             n => format!("{n} values"),
         };
         self.unexpected(expected, &found, what, "")
+    }
+
+    /// The two values of an array, read by `one`, which is told how a message calls each. Both are read before either fails, so
+    /// that both are reported.
+    pub(crate) fn pair_of<T>(
+        self,
+        expected: &str,
+        what: impl Display,
+        names: [&str; 2],
+        one: impl Fn(Self, String) -> Option<T>,
+    ) -> Option<[T; 2]> {
+        let [a, b] = self.pair(expected, &what)?;
+        let [first, second] = names.map(|name| format!("{name} of {what}"));
+        let (a, b) = (one(a, first), one(b, second));
+        Some([a?, b?])
     }
 
     /// Two strings.

@@ -3,7 +3,7 @@
 use super::pairs::axis;
 use crate::diagnostics::Span;
 use crate::table_reader::TableReader;
-use crate::value::{NumberRule, SignRule};
+use crate::value::{NumberRule, SignRule, Value};
 use dwell_geometry::{JointKind, Vec2};
 use dwell_kinetostatics::PressureAngle;
 
@@ -17,12 +17,11 @@ pub(super) fn gear(fields: &TableReader<'_>) -> Option<JointKind> {
     let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
     let rule =
         rule.because("a pitch radius is above zero; a ring gear is one with `internal = true`");
-    let [a, b] = given
-        .value
-        .pair("two radii [r1, r2]", format_args!("the radii of {what}"))?;
-    let a = a.quantity_with_sign(&rule, format_args!("the first of the radii of {what}"));
-    let b = b.quantity_with_sign(&rule, format_args!("the second of the radii of {what}"));
-    let (radii, internal) = ([a?, b?], internal?);
+    let names = ["the first", "the second"];
+    let radius = |value: Value<'_>, name: String| value.quantity_with_sign(&rule, name);
+    let all = format!("the radii of {what}");
+    let radii = (given.value).pair_of("two radii [r1, r2]", all, names, radius);
+    let (radii, internal) = (radii?, internal?);
     if internal && radii[0] == radii[1] {
         let message = format!("the ring and the gear of {what} have equal radii");
         let help = "the ring's radius is the larger one; two equal gears are external";

@@ -11,7 +11,7 @@ use crate::names::check;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
-use dwell_geometry::{Coupling, Joint, JointId, JointKind};
+use dwell_geometry::{BodyId, Coupling, Joint, JointId, JointKind};
 use dwell_kinetostatics::Guide;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -308,12 +308,8 @@ fn require_different_bodies(
     b: &NamedPoint,
     fields: &TableReader<'_>,
     bodies: &Bodies<'_>,
-) -> Option<()> {
-    if a.0 != b.0 {
-        return Some(());
-    }
+) -> Option<[BodyId; 2]> {
     let message = |name: &str| format!("{} joins body `{name}` to itself", fields.what);
-    let labels = [(&a.2, "this body"), (&b.2, "and the same again")];
     let help = "a joint holds two different bodies together";
-    bodies.reject_same_body(a.0, message, labels, help)
+    bodies.require_different([(a.0, &a.2), (b.0, &b.2)], message, help)
 }

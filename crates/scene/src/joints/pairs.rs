@@ -1,7 +1,7 @@
 //! Prismatic joints, welds and distances, and the axis of a joint.
 
 use crate::table_reader::TableReader;
-use crate::value::{NumberRule, SignRule};
+use crate::value::{NumberRule, SignRule, Value};
 use dwell_geometry::{JointKind, Vec2};
 
 pub(super) fn prismatic(fields: &TableReader<'_>) -> Option<JointKind> {
@@ -12,12 +12,10 @@ pub(super) fn prismatic(fields: &TableReader<'_>) -> Option<JointKind> {
             [axis, axis]
         }
         (None, Some(axes)) => {
-            let what = format!("the axes of {what}");
             let expected = "one axis for each body [[x, y], [x, y]]";
-            let [a, b] = axes.value.pair(expected, &what)?;
-            let a = a.unit_vector(format_args!("the first of {what}"));
-            let b = b.unit_vector(format_args!("the second of {what}"));
-            [a?, b?]
+            let names = ["the first", "the second"];
+            let (what, axis) = (format!("the axes of {what}"), Value::unit_vector);
+            axes.value.pair_of(expected, what, names, axis)?
         }
         (Some(a), Some(b)) => {
             let labels = ["the same axis in both bodies", "one axis for each body"];
