@@ -34,53 +34,57 @@ pub(crate) fn add_friction(fields: &TableReader<'_>, joints: &Joints<'_>, loads:
         assigned.extend(range.clone().map(|k| (k, entry.key.clone())));
         // The joints of a pin have the same friction: an error is reported once, for the first.
         let first = joints.list[range.start].joint.as_ref();
-        let Some((fields, friction, viscous)) =
-            first.and_then(|joint| read_friction(entry, JointId(range.start), joint.kind))
-        else {
-            continue;
-        };
-        for k in range {
-            let Some(joint) = &joints.list[k].joint else {
-                continue;
-            };
-            let (joint_id, bodies) = (JointId(k), joint.bodies);
-            let [force, damper] = match joints.guide(joint_id) {
-                Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
-                None => [
-                    LoadKind::Torque { bodies },
-                    LoadKind::RotationalDamper { bodies },
-                ],
-            };
-            let dry = friction.map(|friction| Friction {
-                joint: joint_id,
-                ..friction
-            });
-            for (key, suffix, kind, magnitude) in [
-                (
-                    "coefficient",
-                    "friction",
-                    force,
-                    dry.map(Magnitude::Friction),
-                ),
-                (
-                    "viscous",
-                    "viscous",
-                    damper,
-                    viscous.map(Magnitude::Constant),
-                ),
-            ] {
-                let Some(magnitude) = magnitude else { continue };
-                fields
-                    .log()
-                    .place(SceneLocation::Load(loads.len()), &entry.key);
-                fields.place(key, SceneLocation::Magnitude(loads.len()));
-                loads.push(Load {
-                    name: format!("{}.{suffix}", joint.name),
-                    kind,
-                    magnitude,
-                });
+        let id = JointId(range.start);
+        let parsed = first.and_then(|joint| read_friction(entry, id, joint.kind));
+        if let Some((fields, friction, viscous)) = parsed {
+            for k in range {
+                add_loads(JointId(k), &fields, friction, viscous, joints, loads);
             }
         }
+    }
+}
+
+/// Appends the friction of one joint, described by `fields`.
+fn add_loads(
+    id: JointId,
+    fields: &TableReader<'_>,
+    friction: Option<Friction>,
+    viscous: Option<f64>,
+    joints: &Joints<'_>,
+    loads: &mut Vec<Load>,
+) {
+    let Some(joint) = &joints.list[id.0].joint else {
+        return;
+    };
+    let bodies = joint.bodies;
+    let [force, damper] = match joints.guide(id) {
+        Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
+        None => [
+            LoadKind::Torque { bodies },
+            LoadKind::RotationalDamper { bodies },
+        ],
+    };
+    let friction = friction.map(|friction| Friction {
+        joint: id,
+        ..friction
+    });
+    let friction = friction.map(Magnitude::Friction);
+    let viscous = viscous.map(Magnitude::Constant);
+    for (key, suffix, kind, magnitude) in [
+        ("coefficient", "friction", force, friction),
+        ("viscous", "viscous", damper, viscous),
+    ] {
+        let Some(magnitude) = magnitude else { continue };
+        fields
+            .log()
+            .place(SceneLocation::Load(loads.len()), &fields.key);
+        fields.place(key, SceneLocation::Magnitude(loads.len()));
+        let name = format!("{}.{suffix}", joint.name);
+        loads.push(Load {
+            name,
+            kind,
+            magnitude,
+        });
     }
 }
 
@@ -92,21 +96,7 @@ fn read_friction<'a>(
 ) -> Option<(TableReader<'a>, Option<Friction>, Option<f64>)> {
     let name = shorten(entry.name);
     let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
-    let is_revolute = match kind {
-        JointKind::Revolute => true,
-        JointKind::Prismatic { .. } | JointKind::Slot { .. } => false,
-        JointKind::Weld { .. }
-        | JointKind::Gear { .. }
-        | JointKind::Rack { .. }
-        | JointKind::Rolling { .. }
-        | JointKind::Distance { .. }
-        | JointKind::Coupling(_) => {
-            let message = format!("joint `{name}` cannot have friction");
-            let label = format!("its kind is {}", kind_name(kind));
-            let help = "revolute joints, prismatic joints and slots can have friction";
-            return entry.reject(message, &label, help);
-        }
-    };
+    let is_revolute = has_pin(entry, kind)?;
     let before = fields.log().count();
     check_friction_keys(&fields, kind, is_revolute);
     let number = |key: &str, unit: &Unit, sign: SignRule| {
@@ -146,6 +136,25 @@ fn read_friction<'a>(
         regularization_speed: speed.unwrap_or(default),
     });
     Some((fields, friction, viscous))
+}
+
+/// Whether the friction of a joint is that of a pin, not of a guide; an error for a joint that cannot have friction.
+fn has_pin(entry: &Entry<'_>, kind: JointKind) -> Option<bool> {
+    match kind {
+        JointKind::Revolute => Some(true),
+        JointKind::Prismatic { .. } | JointKind::Slot { .. } => Some(false),
+        JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Rack { .. }
+        | JointKind::Rolling { .. }
+        | JointKind::Distance { .. }
+        | JointKind::Coupling(_) => {
+            let message = format!("joint `{}` cannot have friction", shorten(entry.name));
+            let label = format!("its kind is {}", kind_name(kind));
+            let help = "revolute joints, prismatic joints and slots can have friction";
+            entry.reject(message, &label, help)
+        }
+    }
 }
 
 /// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.

@@ -13,38 +13,27 @@ use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Expression, Law};
 use toml::de::DeValue;
 
-/// Reads magnitudes, with the signals that an expression can name.
-pub(crate) struct Magnitudes(Vec<NamedSignal>);
-
-struct NamedSignal {
-    name: String,
-    /// Its former name, which is still read.
-    former: Option<String>,
-    /// None if its coordinate was wrong, which has been reported.
-    signal: Option<Signal>,
+/// Reads magnitudes.
+pub(crate) struct Magnitudes {
+    /// The signals an expression can name: name, former name that is still read, and signal; none if its coordinate was wrong.
+    signals: Vec<(String, Option<String>, Option<Signal>)>,
 }
 
 impl Magnitudes {
     pub(crate) fn new(named: &ParsedCoordinates<'_>) -> Self {
-        let signal = |name: String, former, signal| NamedSignal {
-            name,
-            former,
-            signal,
-        };
-        let mut signals = vec![signal("t".to_owned(), None, Some(Signal::Time))];
+        let mut signals = vec![("t".to_owned(), None, Some(Signal::Time))];
         for c in &named.list {
+            signals.push((c.name.to_owned(), None, c.coordinate.map(Signal::Value)));
             let [former, velocity] = ["speed", "velocity"].map(|s| format!("{}.{s}", c.name));
-            let value = c.coordinate.map(Signal::Value);
-            signals.push(signal(c.name.to_owned(), None, value));
-            let rate = c.coordinate.map(Signal::Velocity);
-            signals.push(signal(velocity, Some(former), rate));
+            let signal = c.coordinate.map(Signal::Velocity);
+            signals.push((velocity, Some(former), signal));
         }
-        Self(signals)
+        Self { signals }
     }
 
-    /// Their current names.
+    /// Current names of the signals.
     fn names(&self) -> impl Iterator<Item = &str> + Clone {
-        self.0.iter().map(|s| s.name.as_str())
+        self.signals.iter().map(|(name, ..)| name.as_str())
     }
 
     /// The magnitude that an entry of `fields` is: a number, an expression, or a table.
@@ -71,7 +60,7 @@ impl Magnitudes {
     fn expression(&self, value: Value<'_>, what: &str) -> Option<Magnitude> {
         let text = value.string(what)?;
         let names: Vec<_> = self.names().collect();
-        let former = self.0.iter().filter_map(|s| s.former.as_deref());
+        let former = self.signals.iter().filter_map(|(_, f, _)| f.as_deref());
         let with_former: Vec<_> = self.names().chain(former).collect();
         let parsed = match Expression::parse(text, &with_former) {
             Ok(parsed) => parsed,
@@ -88,13 +77,13 @@ impl Magnitudes {
 
     /// The signal of that name, which `value` uses, if there is one.
     fn signal(&self, name: &str, value: Value<'_>) -> Option<Option<Signal>> {
-        let is_former = |s: &NamedSignal| s.former.as_deref() == Some(name);
-        let mut signals = self.0.iter();
-        let found = signals.find(|s| s.name == name || is_former(s))?;
-        if is_former(found) {
-            value.log().warn_renamed(name, &found.name, value.span());
+        let named = |former: &Option<String>| former.as_deref() == Some(name);
+        let mut signals = self.signals.iter();
+        let (current, former, signal) = signals.find(|(n, f, _)| n == name || named(f))?;
+        if named(former) {
+            value.log().warn_renamed(name, current, value.span());
         }
-        Some(found.signal)
+        Some(*signal)
     }
 
     fn table(&self, entry: &Entry<'_>, what: &str, rule: &NumberRule<'_>) -> Option<Magnitude> {

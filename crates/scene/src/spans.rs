@@ -1,8 +1,8 @@
 //! Places of a scene, by the ids the crates above work with, and where they are in the text.
 
-use crate::diagnostics::Span;
 use dwell_geometry::{ActuatorId, BodyId, JointId};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Something a message can point at. What the file does not write down points at the nearest
 /// thing around it that it does: a missing mass at its body, a missing section at the beginning.
@@ -84,7 +84,7 @@ pub enum SceneLocation {
 }
 
 /// Where the things of a scene are written.
-pub(crate) type SceneSpans = HashMap<SceneLocation, Span>;
+pub(crate) type SceneSpans = HashMap<SceneLocation, Range<usize>>;
 
 impl SceneLocation {
     /// What stands around a place that is not written down.
