@@ -87,10 +87,8 @@ impl DrawingLayout {
     /// Draws one of the drawings.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, drawing: &Drawing, cell: &Rect) {
         let frame = &self.frame;
-        let (x, y) = (
-            axes::horizontal_ticks(&frame.x, frame.plot.width()),
-            axes::vertical_ticks(&frame.y, frame.plot.height()),
-        );
+        let x = axes::horizontal_ticks(&frame.x, frame.plot.width());
+        let y = axes::vertical_ticks(&frame.y, frame.plot.height());
         axes::grid_lines(canvas, frame, &x, &y);
         for shape in &drawing.shapes {
             shape_drawing::draw(canvas, frame, shape);

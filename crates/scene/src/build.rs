@@ -4,15 +4,14 @@ use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
 use crate::coordinates::{ParsedCoordinate, ParsedCoordinates, actuators};
 use crate::diagnostics::{Diagnostics, Span};
-use crate::drives::{DriveReader, reject_drives_of_prescribed};
+use crate::drives::reject_drives_of_prescribed;
 use crate::error::{SceneError, Source};
-use crate::events::EventReader;
 use crate::former_keys::rename_former_keys;
 use crate::friction::add_friction;
 use crate::joints::Joints;
 use crate::keys::table;
-use crate::loads::{LoadReader, add_separating_forces};
-use crate::magnitude::Magnitudes;
+use crate::loads::add_separating_forces;
+use crate::magnitude::{Magnitudes, Names};
 use crate::motion::{ParsedMotion, calibration};
 use crate::number_paths::{body_numbers, section_numbers};
 use crate::prescribed::{coordinate_sweep, prescribed_motion};
@@ -98,6 +97,12 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
     if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
         report_unjoined_bodies(&bodies, &joints);
     }
+    let names = Names {
+        bodies: &bodies,
+        joints: &joints,
+        coordinates: &named,
+        magnitudes: Magnitudes::new(&named),
+    };
     let assembly_section = section("assembly");
     let assembly = ParsedAssembly::read(assembly_section.as_ref(), &bodies, &joints, &actuators);
     let motion_section = section("motion");
@@ -111,33 +116,18 @@ fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene
         motion.read_laws(&actuators, &start);
         let events = f.get("events");
         let events = events.and_then(|e| TableReader::open(e, "events of [motion]"));
-        let reader = EventReader {
-            named_coordinates: &named,
-            joints: &joints,
-        };
-        motion.events = events.map_or_else(Vec::new, |f| reader.read(&f));
+        motion.events = events.map_or_else(Vec::new, |f| names.events(&f));
     }
     let prescribed = section("prescribed");
     let prescribed = prescribed.and_then(|f| prescribed_motion(&f, &actuators, &start));
     let sweep = section("coordinate-sweep");
     let sweep = sweep.and_then(|f| coordinate_sweep(&f, &actuators, &start));
-    let magnitudes = &Magnitudes::new(&named);
-    let reader = LoadReader {
-        bodies: &bodies,
-        joints: &joints,
-        magnitudes,
-    };
-    let mut loads = section("loads").map_or_else(Vec::new, |f| reader.read(&f));
+    let mut loads = section("loads").map_or_else(Vec::new, |f| names.loads(&f));
     if let Some(f) = section("friction") {
         add_friction(&f, &joints, &mut loads);
     }
     add_separating_forces(&joints, &mut loads);
-    let reader = DriveReader {
-        named_coordinates: &named,
-        magnitudes,
-        loads: loads.len(),
-    };
-    let drives = section("drives").map_or_else(Vec::new, |f| reader.read(&f));
+    let drives = section("drives").map_or_else(Vec::new, |f| names.drives(&f, loads.len()));
     if let Some(motion) = &motion {
         reject_drives_of_prescribed(&drives, motion, &actuators);
     }

@@ -1,10 +1,10 @@
 //! The drives of a free motion.
 
-use crate::coordinates::{ParsedActuator, ParsedCoordinates, is_same};
+use crate::coordinates::{ParsedActuator, is_same};
 use crate::diagnostics::Span;
 use crate::keys;
 use crate::kind::{kind, reject_unread_kind};
-use crate::magnitude::Magnitudes;
+use crate::magnitude::{Magnitudes, Names};
 use crate::motion::ParsedMotion;
 use crate::names::check;
 use crate::spans::SceneLocation;
@@ -15,23 +15,16 @@ use crate::wording::{list, shorten};
 use dwell_geometry::{Actuator, Coordinate};
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude, Motor, SpeedController};
 
-/// Reads the drives.
-pub(crate) struct DriveReader<'r> {
-    pub(crate) named_coordinates: &'r ParsedCoordinates<'r>,
-    pub(crate) magnitudes: &'r Magnitudes,
-    /// How many loads there are: the drives follow them, as in a model that has them as its last loads.
-    pub(crate) loads: usize,
-}
-
-impl DriveReader<'_> {
-    /// Every drive of the section that was read well, with where its coordinate is named.
-    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<(Drive, Span)> {
+impl Names<'_> {
+    /// Every drive of the section that was read well, with where its coordinate is named. The drives follow the `loads`, as in a
+    /// model that has them as its last loads.
+    pub(crate) fn drives(&self, fields: &TableReader<'_>, loads: usize) -> Vec<(Drive, Span)> {
         let one = |(k, entry): (usize, &Entry<'_>)| {
             check("a drive", entry);
             entry.log().place(SceneLocation::Drive(k), &entry.key);
-            let location = SceneLocation::Load(self.loads + k);
+            let location = SceneLocation::Load(loads + k);
             entry.log().place(location, &entry.key);
-            self.drive(entry, SceneLocation::Magnitude(self.loads + k))
+            self.drive(entry, SceneLocation::Magnitude(loads + k))
         };
         fields.entries.iter().enumerate().filter_map(one).collect()
     }
@@ -39,12 +32,12 @@ impl DriveReader<'_> {
     fn drive(&self, entry: &Entry<'_>, magnitude: SceneLocation) -> Option<(Drive, Span)> {
         let fields = &TableReader::open(entry, format!("drive `{}`", shorten(entry.name)))?;
         let (kind, kind_entry) = kind(fields, "drive")?;
-        let coordinate = self.named_coordinates.named_by(kind_entry, fields);
+        let coordinate = self.coordinates.named_by(kind_entry, fields);
         for key in ["speed", "stall-torque", "voltage", "magnitude"] {
             fields.place(key, magnitude);
         }
         let table = DriveTable {
-            magnitudes: self.magnitudes,
+            magnitudes: &self.magnitudes,
             fields,
             // Units of what could not be read do not matter: there is an error already.
             is_angle: coordinate.is_none_or(Coordinate::is_angle),

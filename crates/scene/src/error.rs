@@ -114,11 +114,9 @@ impl SceneError {
             return Self::without_labels(format!("{message} ({position})"), help);
         }
         Self {
-            message,
-            help,
             labels,
             text: Some(Arc::clone(source)),
-            related: Vec::new(),
+            ..Self::without_labels(message, help)
         }
     }
 

@@ -1,9 +1,8 @@
 //! The events of a free motion.
 
-use crate::coordinates::ParsedCoordinates;
 use crate::diagnostics::Span;
-use crate::joints::Joints;
 use crate::kind::{kind, reject_unread_kind};
+use crate::magnitude::Names;
 use crate::names::check;
 use crate::requests::{components, joint_and_component};
 use crate::scene::{EventTrigger, NamedEvent};
@@ -14,15 +13,9 @@ use crate::value::{NumberRule, SignRule};
 use crate::wording::{list, shorten};
 use dwell_geometry::{Coordinate, JointId, Reaction};
 
-/// Reads the events.
-pub(crate) struct EventReader<'r> {
-    pub(crate) named_coordinates: &'r ParsedCoordinates<'r>,
-    pub(crate) joints: &'r Joints<'r>,
-}
-
-impl EventReader<'_> {
+impl Names<'_> {
     /// Every event of `[motion.events]`.
-    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<NamedEvent> {
+    pub(crate) fn events(&self, fields: &TableReader<'_>) -> Vec<NamedEvent> {
         let one = |(k, entry): (usize, &Entry<'_>)| {
             check("an event", entry);
             entry.log().place(SceneLocation::Event(k), &entry.key);
@@ -35,11 +28,11 @@ impl EventReader<'_> {
         let fields = TableReader::open(entry, format!("event `{}`", shorten(entry.name)))?;
         let (kind, kind_entry) = kind(&fields, "event")?;
         let terminal = fields.boolean("stop");
-        let coordinate = || self.named_coordinates.named_by(kind_entry, &fields);
+        let coordinate = || self.coordinates.named_by(kind_entry, &fields);
         let trigger = match kind {
             "reaches" => reaches(coordinate(), &fields),
             "reverses" => coordinate().map(EventTrigger::Reversal),
-            "reaction" => self.reaction(kind_entry, &fields),
+            "reaction" => self.reaction_event(kind_entry, &fields),
             "revolution" => revolution(coordinate()?, kind_entry, &fields),
             _ => reject_unread_kind(kind_entry),
         };
@@ -51,7 +44,7 @@ impl EventReader<'_> {
         })
     }
 
-    fn reaction(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<EventTrigger> {
+    fn reaction_event(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<EventTrigger> {
         let text = entry.value.string(fields.name_of(entry));
         let rule = NumberRule::new(&SI, SignRule::Any);
         let value = fields.number_or(0.0, "value", &rule);

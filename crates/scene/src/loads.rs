@@ -1,10 +1,10 @@
 //! The loads on the mechanism: where they act, and their magnitudes.
 
-use crate::bodies::{Bodies, TWO_POINTS};
+use crate::bodies::TWO_POINTS;
 use crate::diagnostics::Span;
 use crate::joints::Joints;
 use crate::kind::{kind, reject_unread_kind};
-use crate::magnitude::Magnitudes;
+use crate::magnitude::Names;
 use crate::names::check;
 use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
@@ -15,16 +15,9 @@ use dwell_geometry::{BodyId, JointId, Vec2, vec2};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use toml::de::DeValue;
 
-/// Reads the loads.
-pub(crate) struct LoadReader<'r> {
-    pub(crate) bodies: &'r Bodies<'r>,
-    pub(crate) joints: &'r Joints<'r>,
-    pub(crate) magnitudes: &'r Magnitudes,
-}
-
-impl LoadReader<'_> {
+impl Names<'_> {
     /// Every load of the section that was read well.
-    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<Load> {
+    pub(crate) fn loads(&self, fields: &TableReader<'_>) -> Vec<Load> {
         let mut gravity: Option<Span> = None;
         let one = |(k, entry): (usize, &Entry<'_>)| {
             check("a load", entry);

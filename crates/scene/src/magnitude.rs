@@ -1,7 +1,9 @@
 //! Magnitudes of loads and drives: a number, an expression, or a table.
 
+use crate::bodies::Bodies;
 use crate::coordinates::ParsedCoordinates;
 use crate::expression::expression;
+use crate::joints::Joints;
 use crate::keys;
 use crate::law::spline;
 use crate::table_reader::{Entry, TableReader};
@@ -12,6 +14,14 @@ use dwell_geometry::Coordinate;
 use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Expression, Law};
 use toml::de::DeValue;
+
+/// What the loads, the drives and the events of a scene can name.
+pub(crate) struct Names<'r> {
+    pub(crate) bodies: &'r Bodies<'r>,
+    pub(crate) joints: &'r Joints<'r>,
+    pub(crate) coordinates: &'r ParsedCoordinates<'r>,
+    pub(crate) magnitudes: Magnitudes,
+}
 
 /// Reads magnitudes.
 pub(crate) struct Magnitudes {
