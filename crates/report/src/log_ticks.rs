@@ -46,11 +46,13 @@ pub(crate) fn log(low: f64, high: f64, max_count: usize) -> Ticks {
 fn short_log(low: f64, high: f64, max_count: usize) -> Ticks {
     let from = low.log10().floor() as i32;
     let to = high.log10().floor() as i32;
-    let shown = low * (1.0 - ROUNDING_TOLERANCE)..=high * (1.0 + ROUNDING_TOLERANCE);
+    let interval = low * (1.0 - ROUNDING_TOLERANCE)..=high * (1.0 + ROUNDING_TOLERANCE);
     let value = |(n, e): &(f64, i32)| n * 10f64.powi(*e);
     let all = |digits: &[i32]| -> Vec<(f64, i32)> {
         let pairs = (from..=to).flat_map(|e| digits.iter().map(move |&n| (f64::from(n), e)));
-        pairs.filter(|pair| shown.contains(&value(pair))).collect()
+        pairs
+            .filter(|pair| interval.contains(&value(pair)))
+            .collect()
     };
     let nines = all(&[1, 2, 3, 4, 5, 6, 7, 8, 9]);
     for digits in [
