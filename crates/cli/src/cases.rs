@@ -28,10 +28,11 @@ pub(crate) fn find(names: &[String], folder: &Path) -> Result<Vec<PathBuf>, Repo
     let mut found: Vec<PathBuf> = Vec::new();
     for name in names {
         let case = find_one(name, folder, all.as_deref().unwrap_or(&[]))?;
-        let canonical = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let canonical = |path: &PathBuf| path.canonicalize().unwrap_or_else(|_| path.clone());
         if !found
             .iter()
-            .any(|other| canonical(other) == canonical(&case))
+            .map(canonical)
+            .any(|other| other == canonical(&case))
         {
             found.push(case);
         }
@@ -52,10 +53,8 @@ fn find_one(name: &str, folder: &Path, all: &[PathBuf]) -> Result<PathBuf, Repor
     if let Some(case) = candidates.into_iter().find(|p| p.join(SCENE).is_file()) {
         return Ok(case);
     }
-    let known = all
-        .iter()
-        .filter_map(|p| Some(p.file_name()?.to_string_lossy()));
-    let known: Vec<_> = known.collect();
+    let names = all.iter().filter_map(|p| p.file_name());
+    let known: Vec<_> = names.map(|name| name.to_string_lossy()).collect();
     let help = if given.is_file() {
         format!("`{name}` is a file: a case is a folder with a {SCENE}")
     } else if given.is_dir() {
@@ -69,13 +68,9 @@ fn find_one(name: &str, folder: &Path, all: &[PathBuf]) -> Result<PathBuf, Repor
 }
 
 fn list(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
-    let mut cases = Vec::new();
-    for entry in std::fs::read_dir(folder)? {
-        let path = entry?.path();
-        if path.join(SCENE).is_file() {
-            cases.push(path);
-        }
-    }
+    let paths = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path()));
+    let mut cases = paths.collect::<std::io::Result<Vec<PathBuf>>>()?;
+    cases.retain(|path| path.join(SCENE).is_file());
     cases.sort();
     Ok(cases)
 }

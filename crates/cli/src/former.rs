@@ -37,11 +37,10 @@ pub(crate) fn with_current_names(
     for argument in arguments.iter_mut().skip(at + 1).take_while(|a| *a != "--") {
         let given = argument.to_string_lossy().into_owned();
         for (_, former, current) in &options {
-            match given.strip_prefix(former) {
-                Some(rest) if rest.is_empty() || rest.starts_with('=') => {
-                    replace(argument, former, current, rest);
-                }
-                _ => {}
+            if let Some(rest) = given.strip_prefix(former)
+                && (rest.is_empty() || rest.starts_with('='))
+            {
+                replace(argument, former, current, rest);
             }
         }
     }

@@ -53,24 +53,18 @@ fn run(options: Options) -> Result<bool, Report> {
             out.display()
         ));
     }
-    let (
-        Done {
-            outcome,
-            early_stop,
-        },
-        failures,
-    ) = match &command {
+    let (outcome, early_stop, failures) = match &command {
         Command::Validate {
             cases,
             folder,
             slow,
         } => {
             let (outcome, failures) = validate::validate(cases, folder, *slow)?;
-            (outcome.into(), failures)
+            (outcome, None, failures)
         }
         study => {
-            let done = run_study(study, &out);
-            (done.map_err(|e| Report::new(as_scene_error(e)))?, None)
+            let done = run_study(study, &out).map_err(|e| Report::new(as_scene_error(e)))?;
+            (done.outcome, done.early_stop, None)
         }
     };
     print(&outcome.summary)?;
@@ -86,40 +80,10 @@ fn run(options: Options) -> Result<bool, Report> {
     }
 }
 
-/// A study's outcome, and why its motion or trajectory ended early, if it did.
-struct Done {
-    outcome: Outcome,
-    early_stop: Option<StudyError>,
-}
-
-impl From<Outcome> for Done {
-    fn from(outcome: Outcome) -> Self {
-        let early_stop = None;
-        Self {
-            outcome,
-            early_stop,
-        }
-    }
-}
-
-impl From<TrajectoryOutcome> for Done {
-    fn from(
-        TrajectoryOutcome {
-            outcome,
-            early_stop,
-        }: TrajectoryOutcome,
-    ) -> Self {
-        Self {
-            outcome,
-            early_stop,
-        }
-    }
-}
-
 /// Runs a study of one scene: one arm for each command, so longer than a screen.
-fn run_study(command: &Command, out: &Path) -> Result<Done, StudyError> {
-    Ok(match command {
-        Command::Check { scene } => dwell_study::check(&read(scene)?)?.into(),
+fn run_study(command: &Command, out: &Path) -> Result<TrajectoryOutcome, StudyError> {
+    let outcome = match command {
+        Command::Check { scene } => dwell_study::check(&read(scene)?)?,
         Command::Reduce {
             scene,
             table_accuracy,
@@ -132,7 +96,7 @@ fn run_study(command: &Command, out: &Path) -> Result<Done, StudyError> {
                 interval: from.zip(*to),
                 required: table_accuracy.is_some(),
             });
-            dwell_study::reduce(&read(scene)?, tabulation)?.into()
+            dwell_study::reduce(&read(scene)?, tabulation)?
         }
         Command::Simulate {
             scene,
@@ -151,13 +115,12 @@ fn run_study(command: &Command, out: &Path) -> Result<Done, StudyError> {
                 sample_interval: *sample_interval,
             };
             let scene = read(scene)?;
-            with_progress(|progress| match *accuracy {
+            return with_progress(|progress| match *accuracy {
                 Some(accuracy) => {
                     dwell_study::simulate_to_accuracy(&scene, accuracy, *sample_interval, progress)
                 }
                 None => dwell_study::simulate(&scene, &settings, progress),
-            })?
-            .into()
+            });
         }
         Command::Cycle {
             scene,
@@ -171,24 +134,24 @@ fn run_study(command: &Command, out: &Path) -> Result<Done, StudyError> {
                 atol: *rtol,
                 ..SolverSettings::default()
             };
-            dwell_study::cycle(&read(scene)?, &settings, *fluctuation)?.into()
+            dwell_study::cycle(&read(scene)?, &settings, *fluctuation)?
         }
         Command::WorkPrecision { scene } => {
             let scene = read(scene)?;
-            with_progress(|progress| dwell_validation::work_precision(&scene, progress))?.into()
+            with_progress(|progress| dwell_validation::work_precision(&scene, progress))?
         }
-        Command::Equilibria { scene } => dwell_study::equilibria(&read(scene)?)?.into(),
-        Command::Linearise { scene, about } => {
-            dwell_study::linearise(&read(scene)?, *about)?.into()
-        }
+        Command::Equilibria { scene } => dwell_study::equilibria(&read(scene)?)?,
+        Command::Linearise { scene, about } => dwell_study::linearise(&read(scene)?, *about)?,
         Command::Symbolic {
             scene,
             format,
             reaction,
-        } => dwell_study::symbolic(&read(scene)?, *format, reaction.as_deref())?.into(),
-        Command::Kinematics(arguments) => run_trajectory(arguments, Analysis::Kinematics)?,
-        Command::Statics(arguments) => run_trajectory(arguments, Analysis::Statics)?,
-        Command::Kinetostatics(arguments) => run_trajectory(arguments, Analysis::Kinetostatics)?,
+        } => dwell_study::symbolic(&read(scene)?, *format, reaction.as_deref())?,
+        Command::Kinematics(arguments) => return run_trajectory(arguments, Analysis::Kinematics),
+        Command::Statics(arguments) => return run_trajectory(arguments, Analysis::Statics),
+        Command::Kinetostatics(arguments) => {
+            return run_trajectory(arguments, Analysis::Kinetostatics);
+        }
         Command::Calibrate {
             scene,
             parameter,
@@ -198,7 +161,7 @@ fn run_study(command: &Command, out: &Path) -> Result<Done, StudyError> {
             if let Some(path) = parameter {
                 note_former_path(&scene, path);
             }
-            dwell_study::calibrate(&scene, parameter.as_deref(), *period)?.into()
+            dwell_study::calibrate(&scene, parameter.as_deref(), *period)?
         }
         Command::Sweep {
             scene,
@@ -223,21 +186,26 @@ fn run_study(command: &Command, out: &Path) -> Result<Done, StudyError> {
                 export: *export,
                 folder: out,
             };
-            with_progress(|progress| dwell_study::sweep(&scene, &sweep, progress))?.into()
+            with_progress(|progress| dwell_study::sweep(&scene, &sweep, progress))?
         }
         // They are no studies of a scene.
-        Command::Validate { .. } | Command::Schema => Outcome::default().into(),
+        Command::Validate { .. } | Command::Schema => Outcome::default(),
+    };
+    let early_stop = None;
+    Ok(TrajectoryOutcome {
+        outcome,
+        early_stop,
     })
 }
 
 /// Analyses a scene along its trajectory.
-fn run_trajectory(arguments: &TrajectoryArgs, analysis: Analysis) -> Result<Done, StudyError> {
+fn run_trajectory(
+    arguments: &TrajectoryArgs,
+    analysis: Analysis,
+) -> Result<TrajectoryOutcome, StudyError> {
     let scene = read(&arguments.scene)?;
     let points = arguments.points.map(|n| n as usize);
-    let analyse = |progress: Progress<'_>| {
-        dwell_study::analyse_trajectory(&scene, analysis, points, progress)
-    };
-    Ok(with_progress(analyse)?.into())
+    with_progress(|progress| dwell_study::analyse_trajectory(&scene, analysis, points, progress))
 }
 
 /// Writes the files, and prints the paths of the first.
@@ -307,29 +275,15 @@ fn print_note(text: &str) {
 fn validation_error(error: ValidationError) -> SceneError {
     match error {
         ValidationError::Study(error) => as_scene_error(error),
-        other => error_without_location(other.to_string()),
+        other => SceneError::without_labels(other.to_string(), None),
     }
 }
 
 fn as_scene_error(error: StudyError) -> SceneError {
     match error {
         StudyError::Scene(scene) => *scene,
-        StudyError::Sweep(sweep) => SceneError {
-            help: sweep.help(),
-            ..error_without_location(sweep.to_string())
-        },
-        other => error_without_location(other.to_string()),
-    }
-}
-
-/// An error that refers to no part of a scene.
-fn error_without_location(message: String) -> SceneError {
-    SceneError {
-        message,
-        help: None,
-        labels: Vec::new(),
-        text: None,
-        related: Vec::new(),
+        StudyError::Sweep(sweep) => SceneError::without_labels(sweep.to_string(), sweep.help()),
+        other => SceneError::without_labels(other.to_string(), None),
     }
 }
 

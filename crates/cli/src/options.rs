@@ -283,10 +283,8 @@ fn parse_number(text: &str) -> Result<f64, String> {
 
 /// A number that satisfies a condition, or else a message.
 fn parse_checked(text: &str, is_valid: impl Fn(f64) -> bool, message: &str) -> Result<f64, String> {
-    let value = parse_number(text)?;
-    is_valid(value)
-        .then_some(value)
-        .ok_or_else(|| message.to_owned())
+    let value = Some(parse_number(text)?).filter(|value| is_valid(*value));
+    value.ok_or_else(|| message.to_owned())
 }
 
 fn parse_count(text: &str) -> Result<u64, String> {
@@ -300,11 +298,8 @@ fn parse_finite(text: &str) -> Result<f64, String> {
 
 /// A coefficient of fluctuation: above 2 the machine would reverse.
 fn parse_fluctuation(text: &str) -> Result<f64, String> {
-    parse_checked(
-        text,
-        |v| v > 0.0 && v < 2.0,
-        "expected a number between 0 and 2",
-    )
+    let message = "expected a number between 0 and 2";
+    parse_checked(text, |v| v > 0.0 && v < 2.0, message)
 }
 
 /// A tolerance of an integrator: below 1e-14 none can meet it in double precision, and above 1e-3 the energy of a

@@ -1,10 +1,7 @@
 //! `dwell validate`: every case; a case that cannot be validated does not stop the others.
 
 use crate::options::DEFAULT_CASE_FOLDER;
-use crate::{
-    as_scene_error, cases, error_without_location, print_warnings, progress_bar, validation_error,
-};
-use dwell_report::Files;
+use crate::{as_scene_error, cases, print_warnings, progress_bar, validation_error};
 use dwell_scene::{Scene, SceneError};
 use dwell_study::{Outcome, Step};
 use dwell_validation::{Validation, extremes, index, work_precision};
@@ -20,10 +17,8 @@ pub(crate) fn validate(
     slow: bool,
 ) -> Result<(Outcome, Option<Report>), Report> {
     let cases = cases::find(names, folder)?;
-    let scenes = cases
-        .iter()
-        .map(|case| Scene::read(case.join("scene.toml")));
-    let scenes: Vec<_> = scenes.collect();
+    let read = |case: &PathBuf| Scene::read(case.join("scene.toml"));
+    let scenes: Vec<_> = cases.iter().map(read).collect();
     reject_duplicate_names(&cases, &scenes)?;
     scenes.iter().flatten().for_each(print_warnings);
     let bar = progress_bar();
@@ -85,20 +80,16 @@ fn collect_reports(
     results: Vec<Result<Validation, SceneError>>,
 ) -> (Outcome, Option<Report>) {
     let mut all = Outcome::default();
-    let names: Vec<String> = cases
-        .iter()
-        .map(|case| case.display().to_string())
-        .collect();
+    let names: Vec<String> = cases.iter().map(|c| c.display().to_string()).collect();
     let results_of = scenes.iter().zip(&results).map(|of_case| match of_case {
         (Ok(scene), Ok(done)) => Ok((scene, done)),
         (Err(error), _) | (_, Err(error)) => Err(error.message.clone()),
     });
     let case_results: Vec<_> = names.iter().map(String::as_str).zip(results_of).collect();
     let mut failures = Vec::new();
-    let mut files = Files::new();
     if cases.len() > 1 && results.iter().any(Result::is_ok) {
         match index(&case_results) {
-            Ok(overview) => files.extend("", overview),
+            Ok(overview) => all.files.extend("", overview),
             Err(error) => failures.push(as_scene_error(error)),
         }
     }
@@ -107,12 +98,11 @@ fn collect_reports(
             Ok(one) => {
                 all.summary += &one.outcome.summary;
                 all.findings.extend(one.outcome.findings);
-                files.extend("", one.outcome.files);
+                all.files.extend("", one.outcome.files);
             }
             Err(error) => failures.push(error),
         }
     }
-    all.files = files;
     (all, combined_error(failures))
 }
 
@@ -123,7 +113,7 @@ fn combined_error(mut errors: Vec<SceneError>) -> Option<Report> {
         1 => Some(Report::new(errors.remove(0))),
         n => Some(Report::new(SceneError {
             related: errors,
-            ..error_without_location(format!("{n} cases cannot be validated"))
+            ..SceneError::without_labels(format!("{n} cases cannot be validated"), None)
         })),
     }
 }

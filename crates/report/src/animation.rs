@@ -170,17 +170,19 @@ fn encoded(pictures: &Pictures, palette: &Palette, delay: u16) -> Result<Vec<u8>
         for run in picture.chunk_by(|a, b| a == b) {
             indices.resize(indices.len() + run.len(), palette.index_of(run[0]));
         }
-        let patch = Patch::of(previous.as_deref(), &indices, usize::from(width), unchanged);
+        let new_part = match &previous {
+            Some(before) => changes(before, &indices, usize::from(width), unchanged),
+            None => Frame {
+                width,
+                height,
+                buffer: Cow::Borrowed(&indices),
+                ..Frame::default()
+            },
+        };
         encoder.write_frame(&Frame {
             delay,
             dispose: DisposalMethod::Keep,
-            transparent: previous.is_some().then_some(unchanged),
-            left: patch.left as u16,
-            top: patch.top as u16,
-            width: patch.width as u16,
-            height: (patch.indices.len() / patch.width) as u16,
-            buffer: Cow::Owned(patch.indices),
-            ..Frame::default()
+            ..new_part
         })?;
         previous = Some(indices);
     }
@@ -188,45 +190,26 @@ fn encoded(pictures: &Pictures, palette: &Palette, delay: u16) -> Result<Vec<u8>
 }
 
 /// The part of a frame that is new, in which old pixels stay.
-struct Patch {
-    left: usize,
-    top: usize,
-    width: usize,
-    indices: Vec<u8>,
-}
-
-impl Patch {
-    fn of(before: Option<&[u8]>, now: &[u8], width: usize, unchanged: u8) -> Self {
-        let Some(before) = before else {
-            return Self {
-                left: 0,
-                top: 0,
-                width,
-                indices: now.to_vec(),
-            };
-        };
-        // Columns and rows of the new pixels; a frame without any is still shown for its time, as one pixel.
-        let new = || (0..now.len()).filter(|&i| now[i] != before[i]);
-        let (left, right) =
-            new().fold((width, 0), |(l, r), i| (l.min(i % width), r.max(i % width)));
-        let (left, right) = if left > right { (0, 0) } else { (left, right) };
-        let top = new().next().unwrap_or(0) / width;
-        let bottom = new().next_back().unwrap_or(0) / width;
-        let row = |y: usize| {
-            (y * width + left..=y * width + right).map(|i| {
-                if now[i] == before[i] {
-                    unchanged
-                } else {
-                    now[i]
-                }
-            })
-        };
-        Self {
-            left,
-            top,
-            width: right - left + 1,
-            indices: (top..=bottom).flat_map(row).collect(),
-        }
+fn changes(before: &[u8], now: &[u8], width: usize, unchanged: u8) -> Frame<'static> {
+    // Columns and rows of the new pixels; a frame without any is still shown for its time, as one pixel.
+    let new = || (0..now.len()).filter(|&i| now[i] != before[i]);
+    let (left, right) = new().fold((width, 0), |(l, r), i| (l.min(i % width), r.max(i % width)));
+    let (left, right) = if left > right { (0, 0) } else { (left, right) };
+    let top = new().next().unwrap_or(0) / width;
+    let bottom = new().next_back().unwrap_or(0) / width;
+    let index = |i: usize| match now[i] == before[i] {
+        true => unchanged,
+        false => now[i],
+    };
+    let row = |y: usize| (y * width + left..=y * width + right).map(index);
+    Frame {
+        transparent: Some(unchanged),
+        left: left as u16,
+        top: top as u16,
+        width: (right - left + 1) as u16,
+        height: (bottom - top + 1) as u16,
+        buffer: (top..=bottom).flat_map(row).collect(),
+        ..Frame::default()
     }
 }
 

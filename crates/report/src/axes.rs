@@ -3,7 +3,7 @@
 use crate::axis::{Axis, Scale};
 use crate::axis_range::AxisRange;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
-use crate::fonts::width;
+use crate::fonts::{widest, width};
 use crate::linear_ticks::Ticks;
 use crate::rect::Rect;
 use crate::theme::{
@@ -31,21 +31,15 @@ pub(crate) struct PlotFrame {
 impl PlotFrame {
     /// Pixel of a value on the horizontal axis; none if the scale cannot show it.
     pub(crate) fn x_to_px(&self, x: f64) -> Option<f64> {
-        self.x
-            .fraction(x)
-            .map(|u| self.plot.x0 + u * self.plot.width())
+        let fraction = self.x.fraction(x)?;
+        Some(self.plot.x0 + fraction * self.plot.width())
     }
 
     /// Pixel of a value on the left or right axis; none if the scale cannot show it.
     pub(crate) fn y_to_px(&self, y: f64, right: bool) -> Option<f64> {
-        let range = if right {
-            self.y2.as_ref().unwrap_or(&self.y)
-        } else {
-            &self.y
-        };
-        range
-            .fraction(y)
-            .map(|v| self.plot.y1 - v * self.plot.height())
+        let range = self.y2.as_ref().filter(|_| right).unwrap_or(&self.y);
+        let fraction = range.fraction(y)?;
+        Some(self.plot.y1 - fraction * self.plot.height())
     }
 
     /// Pixel of a point; none if a scale cannot show it.
@@ -59,10 +53,8 @@ pub(crate) fn horizontal_ticks(range: &AxisRange, length: f64) -> Ticks {
     let max_count = if range.scale == Scale::Log { 13 } else { 9 };
     fit(range, max_count, |ticks| {
         let ends = |(v, label): (&f64, &String)| {
-            let (at, half) = (
-                range.fraction(*v).unwrap_or(0.0) * length,
-                0.5 * width(label, TICK_SIZE, false),
-            );
+            let at = range.fraction(*v).unwrap_or(0.0) * length;
+            let half = 0.5 * width(label, TICK_SIZE, false);
             (at - half, at + half)
         };
         let extents: Vec<(f64, f64)> = ticks.major.iter().zip(&ticks.labels).map(ends).collect();
@@ -104,11 +96,7 @@ pub(crate) fn side_room(axis: &Axis, ticks: &Ticks, height: f64) -> f64 {
 
 /// Room the ticks of a vertical axis need beside the plot.
 fn ticks_room(ticks: &Ticks) -> f64 {
-    let wide = ticks
-        .labels
-        .iter()
-        .map(|label| width(label, TICK_SIZE, false));
-    TICK_LENGTH + TICK_GAP + wide.fold(0.0, f64::max)
+    TICK_LENGTH + TICK_GAP + widest(&ticks.labels, TICK_SIZE, false)
 }
 
 /// Room the horizontal axis needs below the plot; without words only that for its ticks, and for half a label of the
@@ -117,10 +105,8 @@ pub(crate) fn bottom_room(axis: Option<&Axis>, ticks: &Ticks, cell: &Rect) -> f6
     let Some(axis) = axis else {
         return TICK_LENGTH.max(0.6 * TICK_SIZE);
     };
-    TICK_LENGTH
-        + TICK_GAP
-        + TICK_SIZE
-        + label_room(&wrapped_text::horizontal_label(axis, ticks, cell))
+    let label = wrapped_text::horizontal_label(axis, ticks, cell);
+    TICK_LENGTH + TICK_GAP + TICK_SIZE + label_room(&label)
 }
 
 fn label_room(wrapped: &WrappedText) -> f64 {
@@ -151,20 +137,11 @@ pub(crate) fn grid_lines(canvas: &mut Canvas<'_>, frame: &PlotFrame, x: &Ticks, 
     let Rect { x0, y0, x1, y1 } = frame.plot;
     for (minor, color) in [(true, MINOR_GRID), (false, GRID)] {
         let line = LineStyle::solid(color, GRID_WIDTH);
-        let values = |ticks: &Ticks| {
-            if minor {
-                ticks.minor.clone()
-            } else {
-                ticks.major.clone()
-            }
-        };
-        for at in values(x).into_iter().filter_map(|v| frame.x_to_px(v)) {
+        let [x, y] = [x, y].map(|ticks| if minor { &ticks.minor } else { &ticks.major });
+        for at in x.iter().filter_map(|v| frame.x_to_px(*v)) {
             canvas.line(&[[at, y0], [at, y1]], line);
         }
-        for at in values(y)
-            .into_iter()
-            .filter_map(|v| frame.y_to_px(v, false))
-        {
+        for at in y.iter().filter_map(|v| frame.y_to_px(*v, false)) {
             canvas.line(&[[x0, at], [x1, at]], line);
         }
     }
@@ -181,19 +158,7 @@ pub(crate) fn horizontal_axis(
     let plot = &frame.plot;
     let spine = LineStyle::solid(INK, SPINE_WIDTH);
     canvas.line(&[[plot.x0, plot.y1], [plot.x1, plot.y1]], spine);
-    let baseline = plot.y1 + TICK_LENGTH + TICK_GAP + 0.76 * TICK_SIZE;
-    for (value, label) in ticks.major.iter().zip(&ticks.labels) {
-        if let Some(x) = frame.x_to_px(*value) {
-            canvas.line(&[[x, plot.y1], [x, plot.y1 + TICK_LENGTH]], spine);
-            if axis.is_some() {
-                canvas.text(
-                    label,
-                    [x, baseline],
-                    TextStyle::new(TICK_SIZE, INK, Align::Middle),
-                );
-            }
-        }
-    }
+    ticks_below(canvas, plot, &frame.x, ticks, axis.is_some());
     let Some(axis) = axis else { return };
     let top = plot.y1 + TICK_LENGTH + TICK_GAP + TICK_SIZE + LABEL_GAP;
     let wrapped = wrapped_text::horizontal_label(axis, ticks, cell);
@@ -203,6 +168,28 @@ pub(crate) fn horizontal_axis(
         let half = 0.5 * width(line, wrapped.size, false);
         let middle = plot.centre()[0].min(cell.x1 - half).max(cell.x0 + half);
         canvas.text(line, [middle, top + baseline], style);
+    }
+}
+
+/// Draws ticks below a plot or a bar, with their labels or without.
+pub(crate) fn ticks_below(
+    canvas: &mut Canvas<'_>,
+    plot: &Rect,
+    range: &AxisRange,
+    ticks: &Ticks,
+    labelled: bool,
+) {
+    let baseline = plot.y1 + TICK_LENGTH + TICK_GAP + 0.76 * TICK_SIZE;
+    for (value, label) in ticks.major.iter().zip(&ticks.labels) {
+        let Some(x) = range.fraction(*value).map(|u| plot.x0 + u * plot.width()) else {
+            continue;
+        };
+        let tick = [[x, plot.y1], [x, plot.y1 + TICK_LENGTH]];
+        canvas.line(&tick, LineStyle::solid(INK, SPINE_WIDTH));
+        if labelled {
+            let style = TextStyle::new(TICK_SIZE, INK, Align::Middle);
+            canvas.text(label, [x, baseline], style);
+        }
     }
 }
 
@@ -226,31 +213,24 @@ pub(crate) fn vertical_axis(
         if let Some(y) = frame.y_to_px(*value, style.right) {
             canvas.line(&[[at, y], [at + out * TICK_LENGTH, y]], spine);
             let position = [at + out * (TICK_LENGTH + TICK_GAP), y];
-            canvas.text_centred(
-                label,
-                position,
-                TextStyle::new(TICK_SIZE, style.color, align),
-            );
+            let text_style = TextStyle::new(TICK_SIZE, style.color, align);
+            canvas.text_centred(label, position, text_style);
         }
     }
     // The words keep to the heights of the plot, as it was before it gave way to a legend: what is above and below them is a
     // title, the words of the horizontal axis, or the next chart of a stack.
     let (top, bottom) = style.heights;
-    let strip = if style.right {
-        cell.x1 - plot.x1
-    } else {
-        plot.x0 - cell.x0
+    let strip = match style.right {
+        true => cell.x1 - plot.x1,
+        false => plot.x0 - cell.x0,
     };
-    let wrapped = wrapped_text::fitted_label(axis, style.ticks, bottom - top).shrunk_to_fit(
-        bottom - top,
-        strip - ticks_room(style.ticks) - 0.5 * LABEL_GAP,
-        false,
-    );
+    let room = strip - ticks_room(style.ticks) - 0.5 * LABEL_GAP;
+    let wrapped = wrapped_text::fitted_label(axis, style.ticks, bottom - top);
+    let wrapped = wrapped.shrunk_to_fit(bottom - top, room, false);
     // Lines that read upwards follow each other to the right.
-    let left = if style.right {
-        cell.x1 - wrapped.height()
-    } else {
-        cell.x0
+    let left = match style.right {
+        true => cell.x1 - wrapped.height(),
+        false => cell.x0,
     };
     for (line, baseline) in wrapped.baselines() {
         let text_style = TextStyle::new(wrapped.size, style.color, Align::Middle);

@@ -21,6 +21,10 @@ pub(crate) fn drawable(scale: Scale, value: f64) -> bool {
 }
 
 impl AxisRange {
+    pub(crate) fn new(scale: Scale, min: f64, max: f64) -> Self {
+        Self { scale, min, max }
+    }
+
     /// What the axis shows: its own range if that is usable, or else the extent of the drawable values with `margin` (a
     /// share of the extent) on either side.
     pub(crate) fn of(axis: &Axis, values: impl IntoIterator<Item = f64>, margin: f64) -> Self {
@@ -28,35 +32,22 @@ impl AxisRange {
         if let Some([a, b]) = axis.range {
             let (low, high) = (a.min(b), a.max(b));
             if drawable(scale, low) && drawable(scale, high) && low < high {
-                return Self {
-                    scale,
-                    min: low.max(-MAX_VALUE),
-                    max: high.min(MAX_VALUE),
-                };
+                return Self::new(scale, low.max(-MAX_VALUE), high.min(MAX_VALUE));
             }
         }
         let mut extent: Option<(f64, f64)> = None;
         for v in values.into_iter().filter(|&v| drawable(scale, v)) {
             // Below the normal numbers a quotient has no digits left.
-            let min_value = if scale == Scale::Log {
-                f64::MIN_POSITIVE
-            } else {
-                -MAX_VALUE
+            let min_value = match scale {
+                Scale::Log => f64::MIN_POSITIVE,
+                Scale::Linear | Scale::Degrees => -MAX_VALUE,
             };
             let v = v.clamp(min_value, MAX_VALUE);
             extent = Some(extent.map_or((v, v), |(low, high)| (low.min(v), high.max(v))));
         }
         match (extent, scale) {
-            (None, Scale::Log) => Self {
-                scale,
-                min: 1.0,
-                max: 10.0,
-            },
-            (None, _) => Self {
-                scale,
-                min: 0.0,
-                max: 1.0,
-            },
+            (None, Scale::Log) => Self::new(scale, 1.0, 10.0),
+            (None, _) => Self::new(scale, 0.0, 1.0),
             (Some((low, high)), Scale::Log) => Self::widened_log(low, high, margin),
             (Some((low, high)), _) => Self::widened(scale, low, high, margin),
         }
@@ -70,34 +61,22 @@ impl AxisRange {
         };
         // By exponents: the quotient of the ends may overflow.
         let pad = margin * (high.log10() - low.log10());
-        let widened = (
-            10f64.powf(low.log10() - pad),
-            10f64.powf(high.log10() + pad),
-        );
-        Self {
-            scale: Scale::Log,
-            min: widened.0.max(f64::MIN_POSITIVE),
-            max: widened.1.min(MAX_VALUE),
-        }
+        let min = 10f64.powf(low.log10() - pad).max(f64::MIN_POSITIVE);
+        let max = 10f64.powf(high.log10() + pad).min(MAX_VALUE);
+        Self::new(Scale::Log, min, max)
     }
 
     fn widened(scale: Scale, low: f64, high: f64, margin: f64) -> Self {
         let size = low.abs().max(high.abs());
-        if high - low > MIN_RELATIVE_SPREAD * size {
-            let pad = margin * (high - low);
-            return Self {
-                scale,
-                min: low - pad,
-                max: high + pad,
-            };
-        }
-        // A constant stands in the middle of an axis that shows its size.
-        let pad = if size > 1e-290 { 0.1 * size } else { 1.0 };
-        Self {
-            scale,
-            min: low - pad,
-            max: high + pad,
-        }
+        let pad = if high - low > MIN_RELATIVE_SPREAD * size {
+            margin * (high - low)
+        } else if size > 1e-290 {
+            // A constant stands in the middle of an axis that shows its size.
+            0.1 * size
+        } else {
+            1.0
+        };
+        Self::new(scale, low - pad, high + pad)
     }
 
     /// Position of a value: 0 at the low end, 1 at the high end; none if the scale cannot show it.

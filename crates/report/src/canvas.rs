@@ -114,17 +114,10 @@ impl<'a> Canvas<'a> {
             return;
         }
         if line.dashed {
-            for dash in crate::curve::dashes(points, 4.0 * line.width + 2.0, 2.6 * line.width + 2.0)
-            {
-                self.line(
-                    &dash,
-                    LineStyle {
-                        dashed: false,
-                        ..line
-                    },
-                );
-            }
-            return;
+            let (dash, gap) = (4.0 * line.width + 2.0, 2.6 * line.width + 2.0);
+            let solid = LineStyle::solid(line.color, line.width);
+            let dashes = crate::curve::dashes(points, dash, gap);
+            return dashes.iter().for_each(|dash| self.line(dash, solid));
         }
         let path = points.iter().copied().map(point_to_units);
         let style = shape_style(line.color, line.width, 1.0);
@@ -154,20 +147,14 @@ impl<'a> Canvas<'a> {
     /// A filled disc.
     pub(crate) fn disc(&mut self, centre: [f64; 2], radius: f64, color: Rgb) {
         let radius = (radius * UNITS_PER_PIXEL).round().max(0.0) as u32;
-        let style = shape_style(color, 1.0, 1.0);
-        let _ = self
-            .backend
-            .draw_circle(point_to_units(centre), radius, &style, true);
+        let (centre, style) = (point_to_units(centre), shape_style(color, 1.0, 1.0));
+        let _ = self.backend.draw_circle(centre, radius, &style, true);
     }
 
     /// Text with its baseline at `y`.
     pub(crate) fn text(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
-        self.put(
-            text,
-            [x, y - TOP_SHIFT * style.size],
-            style,
-            FontTransform::None,
-        );
+        let at = [x, y - TOP_SHIFT * style.size];
+        self.put(text, at, style, FontTransform::None);
     }
 
     /// Text whose digits are centred on `y`.
@@ -177,20 +164,14 @@ impl<'a> Canvas<'a> {
 
     /// The same with a white rim, which keeps it legible on lines.
     pub(crate) fn text_with_halo(&mut self, text: &str, [x, y]: [f64; 2], style: TextStyle) {
-        for [dx, dy] in [
-            [-HALO_WIDTH, -HALO_WIDTH],
-            [HALO_WIDTH, -HALO_WIDTH],
-            [-HALO_WIDTH, HALO_WIDTH],
-            [HALO_WIDTH, HALO_WIDTH],
-        ] {
-            self.text_centred(
-                text,
-                [x + dx, y + dy],
-                TextStyle {
-                    color: WHITE,
-                    ..style
-                },
-            );
+        let rim = TextStyle {
+            color: WHITE,
+            ..style
+        };
+        for dy in [-HALO_WIDTH, HALO_WIDTH] {
+            for dx in [-HALO_WIDTH, HALO_WIDTH] {
+                self.text_centred(text, [x + dx, y + dy], rim);
+            }
         }
         self.text_centred(text, [x, y], style);
     }
@@ -212,18 +193,16 @@ impl<'a> Canvas<'a> {
             Align::Middle => HPos::Center,
             Align::End => HPos::Right,
         };
-        let weight = if style.bold {
-            FontStyle::Bold
-        } else {
-            FontStyle::Normal
+        let weight = match style.bold {
+            true => FontStyle::Bold,
+            false => FontStyle::Normal,
         };
         let [r, g, b] = style.color;
         let size = style.size * SIZE_PER_EM * UNITS_PER_PIXEL;
         let font = FontDesc::new(FontFamily::Name(FAMILY), size, weight).transform(rotation);
         let mut text_style = font.color(&RGBColor(r, g, b));
         text_style.pos = Pos::new(h_pos, VPos::Top);
-        let _ = self
-            .backend
-            .draw_text(&text, &text_style, point_to_units(at));
+        let at = point_to_units(at);
+        let _ = self.backend.draw_text(&text, &text_style, at);
     }
 }

@@ -2,7 +2,6 @@
 
 use crate::axes::{self, PlotFrame, VerticalAxisStyle};
 use crate::axis::Axis;
-use crate::axis_range::AxisRange;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
 use crate::curve::{clipped, clipped_area};
 use crate::end_labels::{self, EndLabel};
@@ -35,9 +34,7 @@ fn has_markers_only(series: &Series) -> bool {
 pub(crate) struct PreparedChart<'a> {
     chart: &'a Chart,
     styles: Vec<SeriesStyle>,
-    x: AxisRange,
-    y: AxisRange,
-    y2: Option<AxisRange>,
+    extent: Extent,
     /// The horizontal axis in words; a chart in a stack leaves them to the lowest.
     x_axis: Option<&'a Axis>,
 }
@@ -75,31 +72,30 @@ impl<'a> PreparedChart<'a> {
         charts.iter().enumerate().map(prepared).collect()
     }
 
-    fn with(chart: &'a Chart, Extent { x, y, y2 }: Extent, x_axis: Option<&'a Axis>) -> Self {
+    fn with(chart: &'a Chart, extent: Extent, x_axis: Option<&'a Axis>) -> Self {
         let looks = chart.series.iter().enumerate();
         Self {
             chart,
             styles: looks.map(|(i, series)| series_style(series, i)).collect(),
-            x,
-            y,
-            y2,
+            extent,
             x_axis,
         }
+    }
+
+    /// The series with their styles.
+    fn series(&self) -> impl Iterator<Item = (&'a Series, &SeriesStyle)> {
+        self.chart.series.iter().zip(&self.styles)
     }
 
     /// Whether a value is within the horizontal range.
     #[cfg(test)]
     pub(crate) fn covers(&self, x: f64) -> bool {
-        (self.x.min..=self.x.max).contains(&x)
+        (self.extent.x.min..=self.extent.x.max).contains(&x)
     }
 
     fn frame(&self, plot: Rect) -> PlotFrame {
-        PlotFrame {
-            plot,
-            x: self.x,
-            y: self.y,
-            y2: self.y2,
-        }
+        let Extent { x, y, y2 } = self.extent;
+        PlotFrame { plot, x, y, y2 }
     }
 
     /// Strips the labels need in a cell of this size.
@@ -107,7 +103,7 @@ impl<'a> PreparedChart<'a> {
         let chart = self.chart;
         // A first guess at the sides: ticks depend on the plot, and the plot on their labels.
         let sides = 0.13 * cell.width();
-        let x_ticks = axes::horizontal_ticks(&self.x, cell.width() - sides);
+        let x_ticks = axes::horizontal_ticks(&self.extent.x, cell.width() - sides);
         let mut insets = Insets {
             left: sides,
             top: axes::top_room(&chart.title, cell),
@@ -117,13 +113,12 @@ impl<'a> PreparedChart<'a> {
         let height = cell.inset(insets).height();
         let side =
             |axis, range| axes::side_room(axis, &axes::vertical_ticks(range, height), height);
-        insets.left = side(&chart.y, &self.y);
-        if let (Some(axis), Some(range)) = (&chart.y2, &self.y2) {
+        insets.left = side(&chart.y, &self.extent.y);
+        if let (Some(axis), Some(range)) = (&chart.y2, &self.extent.y2) {
             insets.right = side(axis, range);
         }
-        if let Some(end_labels) =
-            end_labels::at_ends(chart, &self.styles, &self.frame(cell.inset(insets)))
-        {
+        let frame = self.frame(cell.inset(insets));
+        if let Some(end_labels) = end_labels::at_ends(chart, &self.styles, &frame) {
             insets.right = insets.right.max(end_labels::room(&end_labels));
         }
         insets
@@ -138,8 +133,8 @@ impl<'a> PreparedChart<'a> {
             legend,
             occupied,
         } = self.layout(cell, insets);
-        let x_ticks = axes::horizontal_ticks(&self.x, frame.plot.width());
-        let y_ticks = axes::vertical_ticks(&self.y, frame.plot.height());
+        let x_ticks = axes::horizontal_ticks(&frame.x, frame.plot.width());
+        let y_ticks = axes::vertical_ticks(&frame.y, frame.plot.height());
         marks::bands(canvas, &frame, &chart.marks);
         axes::grid_lines(canvas, &frame, &x_ticks, &y_ticks);
         marks::lines(canvas, &frame, &chart.marks);
@@ -147,11 +142,11 @@ impl<'a> PreparedChart<'a> {
         axes::horizontal_axis(canvas, &frame, cell, self.x_axis, &x_ticks);
         let Rect { y0, y1, .. } = cell.inset(insets);
         self.vertical_axes(canvas, &frame, cell, (y0, y1), &y_ticks);
-        for (series, style) in chart.series.iter().zip(&self.styles) {
-            self.area(canvas, &frame, series, style);
+        for (series, style) in self.series() {
+            draw_area(canvas, &frame, series, style);
         }
-        for (series, style) in chart.series.iter().zip(&self.styles) {
-            self.series(canvas, &frame, series, style);
+        for (series, style) in self.series() {
+            draw_series(canvas, &frame, series, style);
         }
         marks::rings(canvas, &frame, &chart.marks);
         axes::title(canvas, &chart.title, &frame.plot, cell);
@@ -180,14 +175,12 @@ impl<'a> PreparedChart<'a> {
         ticks: &Ticks,
     ) {
         let chart = self.chart;
-        let second = chart.y2.as_ref().zip(self.y2.as_ref());
+        let second = chart.y2.as_ref().zip(frame.y2.as_ref());
         // With two axes, the colour shows which curve belongs to which.
+        let color = |right| self.axis_color(right).filter(|_| second.is_some());
         let side = |ticks, right| VerticalAxisStyle {
             ticks,
-            color: self
-                .axis_color(right)
-                .filter(|_| second.is_some())
-                .unwrap_or(INK),
+            color: color(right).unwrap_or(INK),
             right,
             heights,
         };
@@ -201,13 +194,8 @@ impl<'a> PreparedChart<'a> {
 
     /// The one colour of all the series on a side.
     fn axis_color(&self, right: bool) -> Option<Rgb> {
-        let mut colors = self
-            .chart
-            .series
-            .iter()
-            .zip(&self.styles)
-            .filter(|(s, _)| s.right_axis == right)
-            .map(|(_, l)| l.line.color);
+        let of_side = self.series().filter(|(s, _)| s.right_axis == right);
+        let mut colors = of_side.map(|(_, style)| style.line.color);
         let first = colors.next()?;
         colors.all(|color| color == first).then_some(first)
     }
@@ -218,92 +206,25 @@ impl<'a> PreparedChart<'a> {
         let end_labels = end_labels::at_ends(self.chart, &self.styles, &frame)
             .filter(|end_labels| end_labels::room(end_labels) <= insets.right + 0.5);
         let entries = self.entries(&frame);
-        if end_labels.is_some() || entries.is_empty() {
-            return Layout {
-                frame,
-                end_labels,
-                legend: None,
-                occupied,
-            };
+        let mut legend = None;
+        if end_labels.is_none() && !entries.is_empty() {
+            legend = legend::place_inside(&entries, &frame.plot, &occupied);
+            if legend.is_none() {
+                // No free area among the data: the legend goes above the plot, which becomes smaller.
+                legend = Some(legend::place_above(&entries, &mut frame.plot));
+                occupied = self.occupied(&frame);
+            }
         }
-        if let Some(legend) = legend::place_inside(&entries, &frame.plot, &occupied) {
-            return Layout {
-                frame,
-                end_labels,
-                legend: Some(legend),
-                occupied,
-            };
-        }
-        // No free area among the data: the legend goes above the plot, which becomes smaller.
-        let legend = legend::place_above(&entries, &mut frame.plot);
-        occupied = self.occupied(&frame);
         Layout {
             frame,
             end_labels,
-            legend: Some(legend),
+            legend,
             occupied,
         }
     }
 
-    fn polylines(&self, frame: &PlotFrame, series: &Series) -> Vec<Vec<[f64; 2]>> {
-        // Half a line beyond the frame, so that a curve along the edge keeps its width.
-        let room = frame.plot.grown(0.5 * CURVE_WIDTH);
-        clipped(
-            series
-                .points
-                .iter()
-                .map(|p| frame.point_to_px(*p, series.right_axis)),
-            &room,
-        )
-    }
-
-    fn visible_points(&self, frame: &PlotFrame, series: &Series) -> Vec<[f64; 2]> {
-        let to_px = |p: &[f64; 2]| {
-            frame
-                .point_to_px(*p, series.right_axis)
-                .filter(|p| frame.plot.grown(1.0).contains(*p))
-        };
-        series.points.iter().filter_map(to_px).collect()
-    }
-
-    /// Fills the area between a series and zero, and draws the line of zero.
-    fn area(
-        &self,
-        canvas: &mut Canvas<'_>,
-        frame: &PlotFrame,
-        series: &Series,
-        style: &SeriesStyle,
-    ) {
-        let zero = frame.y_to_px(0.0, series.right_axis);
-        let Some(zero) = zero.filter(|_| series.stroke == Stroke::Filled) else {
-            return;
-        };
-        let places: Vec<Option<[f64; 2]>> = series
-            .points
-            .iter()
-            .map(|p| frame.point_to_px(*p, series.right_axis))
-            .collect();
-        for run in places.split(Option::is_none) {
-            let mut area: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
-            let (Some(first), Some(last)) = (area.first(), area.last()) else {
-                continue;
-            };
-            let base = [[last[0], zero], [first[0], zero]];
-            area.extend(base);
-            let area = clipped_area(&area, &frame.plot);
-            if area.len() > 2 {
-                canvas.polygon(&area, style.line.color, FILL_OPACITY);
-            }
-            for line in clipped(base.map(Some), &frame.plot) {
-                canvas.line(&line, LineStyle::solid(INK, SPINE_WIDTH));
-            }
-        }
-    }
-
     fn has_data(&self, frame: &PlotFrame) -> bool {
-        self.chart.series.iter().any(|s| {
-            !self.visible_points(frame, s).is_empty() || !self.polylines(frame, s).is_empty()
-        })
+        self.chart.series.iter().any(|s| is_visible(frame, s))
     }
 
     /// What the data and the reference lines cover.
@@ -311,13 +232,10 @@ impl<'a> PreparedChart<'a> {
         let mut occupied = Occupancy::new(frame.plot);
         for series in &self.chart.series {
             if !has_markers_only(series) {
-                self.polylines(frame, series)
-                    .iter()
-                    .for_each(|run| occupied.line(run));
+                let runs = polylines(frame, series);
+                runs.iter().for_each(|run| occupied.line(run));
             }
-            self.visible_points(frame, series)
-                .into_iter()
-                .for_each(|p| occupied.point(p));
+            visible_points(frame, series).for_each(|p| occupied.point(p));
         }
         marks::mark_occupied(frame, &self.chart.marks, &mut occupied);
         if !self.has_data(frame) {
@@ -327,62 +245,93 @@ impl<'a> PreparedChart<'a> {
     }
 
     fn entries(&self, frame: &PlotFrame) -> Vec<LegendEntry> {
-        let ambiguous = self.y2.is_some()
+        let ambiguous = frame.y2.is_some()
             && (self.axis_color(false).is_none() || self.axis_color(true).is_none());
-        let named = self
-            .chart
-            .series
-            .iter()
-            .zip(&self.styles)
-            .filter(|(s, _)| !s.name.trim().is_empty());
+        let named = self.series().filter(|(s, _)| !s.name.trim().is_empty());
         let entry = |(series, style): (&Series, &SeriesStyle)| {
             let mut name = series.name.trim().to_owned();
             if ambiguous {
                 name.push_str(if series.right_axis { " →" } else { " ←" });
             }
-            if self.visible_points(frame, series).is_empty()
-                && self.polylines(frame, series).is_empty()
-            {
+            if !is_visible(frame, series) {
                 name.push_str(" (no points)");
             }
-            let line = (!has_markers_only(series)).then_some(style.line);
-            let marker = has_markers(series.stroke).then_some((style.marker, style.line.color));
-            LegendEntry {
-                name,
-                handle: LegendHandle {
-                    line,
-                    marker,
-                    patch: (series.stroke == Stroke::Filled)
-                        .then(|| lightened(style.line.color, 1.0 - FILL_OPACITY)),
-                },
-            }
+            let color = style.line.color;
+            let patch = lightened(color, 1.0 - FILL_OPACITY);
+            let handle = LegendHandle {
+                line: (!has_markers_only(series)).then_some(style.line),
+                marker: has_markers(series.stroke).then_some((style.marker, color)),
+                patch: (series.stroke == Stroke::Filled).then_some(patch),
+            };
+            LegendEntry { name, handle }
         };
         named.map(entry).collect()
     }
+}
 
-    fn series(
-        &self,
-        canvas: &mut Canvas<'_>,
-        frame: &PlotFrame,
-        series: &Series,
-        style: &SeriesStyle,
-    ) {
-        if !has_markers_only(series) {
-            for run in self.polylines(frame, series) {
-                canvas.line(&run, style.line);
-            }
-        }
-        let step = match series.stroke {
-            Stroke::Points | Stroke::Hollow | Stroke::Crosses => 2.0,
-            Stroke::LineAndPoints => MARKER_STEP,
-            Stroke::Solid | Stroke::Dashed | Stroke::Filled => return,
+/// The points of a series in pixels; none where a scale cannot show one.
+fn points_in_px(frame: &PlotFrame, series: &Series) -> impl Iterator<Item = Option<[f64; 2]>> {
+    let points = series.points.iter();
+    points.map(|p| frame.point_to_px(*p, series.right_axis))
+}
+
+fn polylines(frame: &PlotFrame, series: &Series) -> Vec<Vec<[f64; 2]>> {
+    // Half a line beyond the frame, so that a curve along the edge keeps its width.
+    let room = frame.plot.grown(0.5 * CURVE_WIDTH);
+    clipped(points_in_px(frame, series), &room)
+}
+
+fn visible_points(frame: &PlotFrame, series: &Series) -> impl Iterator<Item = [f64; 2]> {
+    let room = frame.plot.grown(1.0);
+    let points = points_in_px(frame, series).flatten();
+    points.filter(move |p| room.contains(*p))
+}
+
+/// Whether anything of a series is in the plot.
+fn is_visible(frame: &PlotFrame, series: &Series) -> bool {
+    visible_points(frame, series).next().is_some() || !polylines(frame, series).is_empty()
+}
+
+/// Fills the area between a series and zero, and draws the line of zero.
+fn draw_area(canvas: &mut Canvas<'_>, frame: &PlotFrame, series: &Series, style: &SeriesStyle) {
+    let zero = frame.y_to_px(0.0, series.right_axis);
+    let Some(zero) = zero.filter(|_| series.stroke == Stroke::Filled) else {
+        return;
+    };
+    let places: Vec<_> = points_in_px(frame, series).collect();
+    for run in places.split(Option::is_none) {
+        let mut area: Vec<[f64; 2]> = run.iter().flatten().copied().collect();
+        let (Some(first), Some(last)) = (area.first(), area.last()) else {
+            continue;
         };
-        let mut last: Option<[f64; 2]> = None;
-        for p in self.visible_points(frame, series) {
-            if last.is_none_or(|l| (p[0] - l[0]).hypot(p[1] - l[1]) >= step) {
-                marks::draw_marker(canvas, style.marker, p, style.line.color);
-                last = Some(p);
-            }
+        let base = [[last[0], zero], [first[0], zero]];
+        area.extend(base);
+        let area = clipped_area(&area, &frame.plot);
+        if area.len() > 2 {
+            canvas.polygon(&area, style.line.color, FILL_OPACITY);
+        }
+        for line in clipped(base.map(Some), &frame.plot) {
+            canvas.line(&line, LineStyle::solid(INK, SPINE_WIDTH));
+        }
+    }
+}
+
+fn draw_series(canvas: &mut Canvas<'_>, frame: &PlotFrame, series: &Series, style: &SeriesStyle) {
+    if !has_markers_only(series) {
+        for run in polylines(frame, series) {
+            canvas.line(&run, style.line);
+        }
+    }
+    let step = match series.stroke {
+        Stroke::Points | Stroke::Hollow | Stroke::Crosses => 2.0,
+        Stroke::LineAndPoints => MARKER_STEP,
+        Stroke::Solid | Stroke::Dashed | Stroke::Filled => return,
+    };
+    let mut last: Option<[f64; 2]> = None;
+    for p in visible_points(frame, series) {
+        if last.is_none_or(|l| (p[0] - l[0]).hypot(p[1] - l[1]) >= step) {
+            marks::draw_marker(canvas, style.marker, p, style.line.color);
+            last = Some(p);
         }
     }
 }

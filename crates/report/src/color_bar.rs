@@ -1,6 +1,6 @@
 //! What the colours of a grid mean: a bar with ticks, and the two marks a cell may have.
 
-use crate::axes::horizontal_ticks;
+use crate::axes::{horizontal_ticks, ticks_below};
 use crate::axis::Axis;
 use crate::axis_range::AxisRange;
 use crate::canvas::{Align, Canvas, LineStyle, TextStyle};
@@ -9,7 +9,7 @@ use crate::colormap;
 use crate::fonts::width;
 use crate::linear_ticks::Ticks;
 use crate::rect::Rect;
-use crate::theme::{EDGE, INK, SPINE_WIDTH, TICK_LENGTH, TICK_SIZE, WHITE};
+use crate::theme::{EDGE, INK, TICK_LENGTH, TICK_SIZE, WHITE};
 use crate::wrapped_text::{self, WrappedText};
 
 /// Height of the bar, its share of the width, and how many steps of colour it is drawn in.
@@ -114,10 +114,8 @@ impl ColorScale {
     }
 
     fn draw(&self, canvas: &mut Canvas<'_>, [x, y]: [f64; 2]) {
-        for (line, baseline) in self.label.baselines() {
-            let style = TextStyle::new(self.label.size, INK, Align::Start);
-            canvas.text(line, [x, y + baseline], style);
-        }
+        let style = TextStyle::new(self.label.size, INK, Align::Start);
+        self.label.draw(canvas, [x, y], style);
         let bar = Rect::sized(x, y + self.label.height() + GAP, self.width, BAR_HEIGHT);
         canvas.rect(&bar, WHITE);
         for i in 0..STEPS {
@@ -130,19 +128,6 @@ impl ColorScale {
             canvas.rect(&part, colormap::color(f64::from(i) / f64::from(STEPS - 1)));
         }
         canvas.rect_outline(&bar, LineStyle::solid(INK, 1.2));
-        for (value, label) in self.ticks.major.iter().zip(&self.ticks.labels) {
-            let Some(fraction) = self.range.fraction(*value) else {
-                continue;
-            };
-            let at = bar.x0 + fraction * bar.width();
-            let tick = [[at, bar.y1], [at, bar.y1 + TICK_LENGTH]];
-            canvas.line(&tick, LineStyle::solid(INK, SPINE_WIDTH));
-            let baseline = bar.y1 + TICK_LENGTH + GAP + 0.76 * TICK_SIZE;
-            canvas.text(
-                label,
-                [at, baseline],
-                TextStyle::new(TICK_SIZE, INK, Align::Middle),
-            );
-        }
+        ticks_below(canvas, &bar, &self.range, &self.ticks, true);
     }
 }

@@ -109,17 +109,9 @@ fn thinned(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
             kept.extend_from_slice(group);
             continue;
         }
-        let by_height = |a: &(usize, &[f64; 2]), b: &(usize, &[f64; 2])| a.1[1].total_cmp(&b.1[1]);
-        let lowest = group
-            .iter()
-            .enumerate()
-            .min_by(by_height)
-            .map_or(0, |(i, _)| i);
-        let highest = group
-            .iter()
-            .enumerate()
-            .max_by(by_height)
-            .map_or(0, |(i, _)| i);
+        let by_height = |a: &usize, b: &usize| group[*a][1].total_cmp(&group[*b][1]);
+        let lowest = (0..group.len()).min_by(by_height).unwrap_or(0);
+        let highest = (0..group.len()).max_by(by_height).unwrap_or(0);
         let mut places = [0, lowest.min(highest), lowest.max(highest), group.len() - 1].to_vec();
         places.dedup();
         kept.extend(places.into_iter().map(|i| group[i]));

@@ -87,10 +87,8 @@ impl DrawingLayout {
     /// Draws one of the drawings.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, drawing: &Drawing, cell: &Rect) {
         let frame = &self.frame;
-        let (x, y) = (
-            axes::horizontal_ticks(&frame.x, frame.plot.width()),
-            axes::vertical_ticks(&frame.y, frame.plot.height()),
-        );
+        let x = axes::horizontal_ticks(&frame.x, frame.plot.width());
+        let y = axes::vertical_ticks(&frame.y, frame.plot.height());
         axes::grid_lines(canvas, frame, &x, &y);
         for shape in &drawing.shapes {
             shape_drawing::draw(canvas, frame, shape);
@@ -140,20 +138,12 @@ fn bounds(drawings: &[Drawing]) -> [[f64; 2]; 2] {
     };
     let side = |axis: fn(&Drawing) -> &Axis, i: usize| {
         let given = drawings.iter().filter_map(|d| axis(d).range).flatten();
-        let linear = Axis {
-            scale: Scale::Linear,
-            range: None,
-            ..Axis::default()
-        };
-        let all = points()
-            .map(|p| p[i])
-            .chain(given)
-            .filter(|v| v.abs() < 1e150);
-        (all.clone().count() > 0).then(|| AxisRange::of(&linear, all, 0.0))
+        let all = points().map(|p| p[i]).chain(given);
+        let all = all.filter(|v| v.abs() < 1e150);
+        let AxisRange { min, max, .. } = AxisRange::of(&Axis::default(), all, 0.0);
+        [min, max]
     };
-    let (x, y) = (side(|d| &d.x, 0), side(|d| &d.y, 1));
-    let ends = |range: Option<AxisRange>| range.map_or([0.0, 1.0], |s| [s.min, s.max]);
-    [ends(x), ends(y)]
+    [side(|d| &d.x, 0), side(|d| &d.y, 1)]
 }
 
 /// The frame in which the shapes keep their proportions and fill the plot.
@@ -164,11 +154,7 @@ fn fitted([[x0, x1], [y0, y1]]: [[f64; 2]; 2], plot: Rect) -> PlotFrame {
         ((x1 - x0) / (plot.width() - 2.0 * pad)).max((y1 - y0) / (plot.height() - 2.0 * pad));
     let range = |low: f64, high: f64, pixels: f64| {
         let (middle, half) = (0.5 * (low + high), 0.5 * pixels * unit);
-        AxisRange {
-            scale: Scale::Linear,
-            min: middle - half,
-            max: middle + half,
-        }
+        AxisRange::new(Scale::Linear, middle - half, middle + half)
     };
     PlotFrame {
         plot,
@@ -181,25 +167,14 @@ fn fitted([[x0, x1], [y0, y1]]: [[f64; 2]; 2], plot: Rect) -> PlotFrame {
 fn entries(drawings: &[Drawing]) -> Vec<LegendEntry> {
     let mut entries: Vec<LegendEntry> = Vec::new();
     for shape in drawings.iter().flat_map(|d| &d.shapes) {
-        let (Shape::Polyline {
-            pen,
-            name: Some(name),
-            ..
-        }
-        | Shape::Disc {
-            pen,
-            name: Some(name),
-            ..
-        }
-        | Shape::Arrow {
-            pen,
-            name: Some(name),
-            ..
-        }) = shape
+        let (Shape::Polyline { pen, name, .. }
+        | Shape::Disc { pen, name, .. }
+        | Shape::Arrow { pen, name, .. }) = shape
         else {
             continue;
         };
-        if name.trim().is_empty() || entries.iter().any(|entry| entry.name == *name) {
+        let name = name.as_deref().unwrap_or_default();
+        if name.trim().is_empty() || entries.iter().any(|entry| entry.name == name) {
             continue;
         }
         let color = lightened(rgb(pen.color), pen.lightness);
@@ -208,30 +183,18 @@ fn entries(drawings: &[Drawing]) -> Vec<LegendEntry> {
             width: pen.width.clamp(1.0, 12.0),
             dashed: pen.dashed,
         };
-        let handle = match shape {
-            Shape::Disc { .. } => LegendHandle {
-                line: None,
-                marker: Some((Marker::filled(0), color)),
-                patch: None,
-            },
-            Shape::Polyline {
-                fill: Some(opacity),
-                ..
-            } => LegendHandle {
-                line: Some(line),
-                marker: None,
-                patch: Some(lightened(color, 1.0 - opacity)),
-            },
-            _ => LegendHandle {
-                line: Some(line),
-                marker: None,
-                patch: None,
-            },
+        let is_disc = matches!(shape, Shape::Disc { .. });
+        let fill = match shape {
+            Shape::Polyline { fill, .. } => *fill,
+            _ => None,
         };
-        entries.push(LegendEntry {
-            name: name.clone(),
-            handle,
-        });
+        let handle = LegendHandle {
+            line: (!is_disc).then_some(line),
+            marker: is_disc.then_some((Marker::filled(0), color)),
+            patch: fill.map(|opacity| lightened(color, 1.0 - opacity)),
+        };
+        let name = name.to_owned();
+        entries.push(LegendEntry { name, handle });
     }
     entries
 }

@@ -83,14 +83,9 @@ fn spread(labels: &mut [EndLabel], plot: &Rect) -> bool {
             label.y = label.y.clamp(plot.y0, plot.y1);
         }
     }
-    let separate = labels
-        .windows(2)
-        .all(|pair| pair[1].y - pair[0].y > 0.98 * MIN_SPACING);
-    separate
-        && labels
-            .iter()
-            .zip(desired)
-            .all(|(label, y)| (label.y - y).abs() <= MAX_SHIFT)
+    let (mut pairs, mut moved) = (labels.windows(2), labels.iter().zip(desired));
+    pairs.all(|pair| pair[1].y - pair[0].y > 0.98 * MIN_SPACING)
+        && moved.all(|(label, y)| (label.y - y).abs() <= MAX_SHIFT)
 }
 
 /// Room the names need to the right of the plot.
@@ -104,10 +99,7 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, labels: &[EndLabel], plot: &Rect) {
     for label in labels {
         let x = plot.x1 + GAP;
         canvas.line(&[[x, label.y], [x + SAMPLE, label.y]], label.line);
-        canvas.text_centred(
-            &label.name,
-            [x + SAMPLE + GAP, label.y],
-            TextStyle::new(TICK_SIZE, INK, Align::Start),
-        );
+        let style = TextStyle::new(TICK_SIZE, INK, Align::Start);
+        canvas.text_centred(&label.name, [x + SAMPLE + GAP, label.y], style);
     }
 }

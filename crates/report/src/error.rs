@@ -1,6 +1,5 @@
 //! What can go wrong while a report is made.
 
-use dwell_findings::Table;
 use std::path::PathBuf;
 
 /// Why a figure, a table or a file could not be made.
@@ -84,15 +83,15 @@ pub enum ReportError {
     },
 }
 
-/// Whether every row is as long as the header.
-pub(crate) fn check_rows(table: &Table) -> Result<(), ReportError> {
-    let expected = table.columns.len();
-    let wrong = table.rows.iter().position(|row| row.len() != expected);
-    wrong.map_or(Ok(()), |row| {
-        Err(ReportError::Row {
+/// Whether every row has the expected number of values.
+pub(crate) fn check_rows(rows: &[Vec<f64>], expected: usize) -> Result<(), ReportError> {
+    let mut lengths = rows.iter().map(Vec::len).enumerate();
+    match lengths.find(|(_, length)| *length != expected) {
+        None => Ok(()),
+        Some((row, found)) => Err(ReportError::Row {
             row,
-            found: table.rows[row].len(),
+            found,
             expected,
-        })
-    })
+        }),
+    }
 }

@@ -20,10 +20,8 @@ pub(crate) struct Extent {
 impl Extent {
     /// The axes' own ranges, or the extent of the data and of the reference lines and points.
     pub(crate) fn of(chart: &Chart) -> Self {
-        Self::with_horizontal(
-            Self::horizontal(&chart.x, std::slice::from_ref(chart)),
-            chart,
-        )
+        let x = Self::horizontal(&chart.x, std::slice::from_ref(chart));
+        Self::with_horizontal(x, chart)
     }
 
     /// What a horizontal axis must show to be that of all these charts.
@@ -38,16 +36,12 @@ impl Extent {
             .filter(|p| p[1].is_finite())
             .map(|p| p[0]);
         // A revolution is shown as exactly one.
-        let margin = if lines_only || axis.scale == Scale::Degrees {
-            0.0
-        } else {
-            MARKER_MARGIN
+        let margin = match lines_only || axis.scale == Scale::Degrees {
+            true => 0.0,
+            false => MARKER_MARGIN,
         };
-        AxisRange::of(
-            axis,
-            abscissae.chain(positions.filter_map(|p| p[0])),
-            margin,
-        )
+        let all = abscissae.chain(positions.filter_map(|p| p[0]));
+        AxisRange::of(axis, all, margin)
     }
 
     /// The spans of a chart whose horizontal one is given.

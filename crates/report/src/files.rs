@@ -5,7 +5,7 @@ use crate::table::TableExport as _;
 use crate::table::{Table, TableFormat};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Files by their path relative to a folder that is chosen when they are written.
@@ -118,20 +118,13 @@ impl Staged {
         let temporary = target.with_file_name(hidden);
         // Recorded before it exists, so that a file of which only a part could be written is removed too.
         self.files.push((temporary.clone(), target.to_owned()));
-        let write = || {
-            let mut file = fs::File::create(&temporary)?;
-            file.write_all(bytes)?;
-            file.flush()
-        };
-        write().map_err(file_error(target))
+        fs::write(&temporary, bytes).map_err(file_error(target))
     }
 
     /// Makes a folder and those above it, remembering which are new.
     fn create_folder(&mut self, folder: &Path) -> Result<(), ReportError> {
-        let missing: Vec<&Path> = folder
-            .ancestors()
-            .take_while(|f| !f.as_os_str().is_empty() && !f.exists())
-            .collect();
+        let is_missing = |f: &&Path| !f.as_os_str().is_empty() && !f.exists();
+        let missing: Vec<&Path> = folder.ancestors().take_while(is_missing).collect();
         for folder in missing.into_iter().rev() {
             match fs::create_dir(folder) {
                 Ok(()) => self.folders.push(folder.to_owned()),

@@ -41,20 +41,19 @@ impl Header {
         // Names that read upwards have no room for line breaks.
         let columns: Vec<String> = columns.iter().map(|name| one_line(name)).collect();
         let room = column - PAD;
-        let horizontal: Vec<Vec<String>> = columns
+        let broken = |room: f64| -> Vec<Vec<String>> {
+            let names = columns.iter();
+            let lines = names.map(|name| wrapped_anywhere(name, TEXT_SIZE, false, room));
+            lines.collect()
+        };
+        let horizontal = broken(room);
+        let lines = horizontal.iter().map(Vec::len).max().unwrap_or(0);
+        let mut words = columns
             .iter()
-            .map(|name| wrapped_anywhere(name, TEXT_SIZE, false, room))
-            .collect();
-        let fits = columns.iter().zip(&horizontal).all(|(name, lines)| {
-            lines.len() <= MAX_LINES
-                && name
-                    .split_ascii_whitespace()
-                    .all(|word| width(word, TEXT_SIZE, false) <= room)
-        });
-        if fits {
-            let max_lines = horizontal.iter().map(Vec::len).max().unwrap_or(0);
+            .flat_map(|name| name.split_ascii_whitespace());
+        if lines <= MAX_LINES && words.all(|word| width(word, TEXT_SIZE, false) <= room) {
             return Self {
-                height: max_lines as f64 * LEADING * TEXT_SIZE + 2.0 * PAD,
+                height: lines as f64 * LEADING * TEXT_SIZE + 2.0 * PAD,
                 names: horizontal,
                 rotated: false,
             };
@@ -63,10 +62,7 @@ impl Header {
         let max_lines = ((column / (LEADING * TEXT_SIZE)) as usize).max(1);
         let mut room = MIN_ROTATED_HEIGHT;
         let names = loop {
-            let names: Vec<Vec<String>> = columns
-                .iter()
-                .map(|name| wrapped_anywhere(name, TEXT_SIZE, false, room))
-                .collect();
+            let names = broken(room);
             if names.iter().all(|lines| lines.len() <= max_lines) {
                 break names;
             }
@@ -92,17 +88,12 @@ impl Header {
             let middle = left + (i as f64 + 0.5) * column;
             let high = LEADING * TEXT_SIZE * lines.len() as f64;
             if !self.rotated {
-                let y = if below {
-                    top + PAD
-                } else {
-                    top + self.height - PAD - high
+                let y = match below {
+                    true => top + PAD,
+                    false => top + self.height - PAD - high,
                 };
-                draw_lines(
-                    canvas,
-                    lines,
-                    [middle, y],
-                    TextStyle::new(TEXT_SIZE, INK, Align::Middle),
-                );
+                let style = TextStyle::new(TEXT_SIZE, INK, Align::Middle);
+                draw_lines(canvas, lines, [middle, y], style);
                 continue;
             }
             let (y, align) = if below {

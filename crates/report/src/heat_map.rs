@@ -98,10 +98,8 @@ impl<'a> HeatMap<'a> {
     }
 
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, area: &Rect) {
-        for (line, baseline) in self.title.baselines() {
-            let style = TextStyle::new(self.title.size, INK, Align::Start).bold();
-            canvas.text(line, [area.x0, area.y0 + baseline], style);
-        }
+        let style = TextStyle::new(self.title.size, INK, Align::Start).bold();
+        self.title.draw(canvas, [area.x0, area.y0], style);
         let mut y = area.y0 + self.height_above_header();
         let bar = Rect::sized(area.x0, y - self.bar.height(), area.width(), 0.0);
         self.bar.draw(canvas, &bar);
@@ -152,21 +150,14 @@ impl<'a> HeatMap<'a> {
         if cell.failed {
             failed_border(canvas, area);
         }
-        let lines = wrapped_anywhere(
-            &cell.text,
-            self.text_size,
-            cell.failed,
-            self.column_width - 2.0 * PAD,
-        );
+        let (size, room) = (self.text_size, self.column_width - 2.0 * PAD);
+        let lines = wrapped_anywhere(&cell.text, size, cell.failed, room);
         let [x, middle] = area.centre();
-        let top = middle - 0.5 * LEADING * self.text_size * lines.len() as f64;
+        let top = middle - 0.5 * LEADING * size * lines.len() as f64;
+        let color = colormap::text_color_on(background);
         let style = TextStyle {
             bold: cell.failed,
-            ..TextStyle::new(
-                self.text_size,
-                colormap::text_color_on(background),
-                Align::Middle,
-            )
+            ..TextStyle::new(size, color, Align::Middle)
         };
         draw_lines(canvas, &lines, [x, top], style);
     }

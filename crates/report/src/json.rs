@@ -2,6 +2,7 @@
 
 use crate::error::ReportError;
 use dwell_findings::Finding;
+use serde::ser::SerializeStruct as _;
 use serde::{Serialize, Serializer};
 
 /// The value as indented JSON with a line end. Its numbers must be of type [`Number`]: JSON has no NaN and no
@@ -36,42 +37,34 @@ impl Serialize for Number {
 }
 
 /// A finding as it stands in JSON documents: its fields are their keys.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FindingRecord<'a> {
-    key: &'a str,
-    check: String,
-    comparison: &'a str,
-    domain: &'a str,
-    absolute_difference: Number,
-    unit: &'a str,
-    relative_difference: Number,
-    scale: &'a str,
-    worst_at: &'a str,
-    tolerance: Number,
-    tolerance_reason: &'a str,
-    condition_number: Number,
-    integrated: bool,
-    pass: bool,
-}
+#[derive(Debug, Clone, PartialEq)]
+pub struct FindingRecord<'a>(&'a Finding);
 
 impl<'a> From<&'a Finding> for FindingRecord<'a> {
     fn from(finding: &'a Finding) -> Self {
-        Self {
-            key: &finding.key,
-            check: finding.check.to_string(),
-            comparison: &finding.comparison,
-            domain: &finding.domain,
-            absolute_difference: finding.absolute_difference.into(),
-            unit: &finding.unit,
-            relative_difference: finding.relative_difference.into(),
-            scale: &finding.scale,
-            worst_at: &finding.worst_at,
-            tolerance: finding.tolerance.into(),
-            tolerance_reason: &finding.tolerance_reason,
-            condition_number: finding.condition_number.into(),
-            integrated: finding.integrated,
-            pass: finding.pass,
-        }
+        Self(finding)
+    }
+}
+
+impl Serialize for FindingRecord<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let f = self.0;
+        let mut record = serializer.serialize_struct("Finding", 14)?;
+        record.serialize_field("key", &f.key)?;
+        record.serialize_field("check", &f.check.to_string())?;
+        record.serialize_field("comparison", &f.comparison)?;
+        record.serialize_field("domain", &f.domain)?;
+        record.serialize_field("absolute_difference", &Number(f.absolute_difference))?;
+        record.serialize_field("unit", &f.unit)?;
+        record.serialize_field("relative_difference", &Number(f.relative_difference))?;
+        record.serialize_field("scale", &f.scale)?;
+        record.serialize_field("worst_at", &f.worst_at)?;
+        record.serialize_field("tolerance", &Number(f.tolerance))?;
+        record.serialize_field("tolerance_reason", &f.tolerance_reason)?;
+        record.serialize_field("condition_number", &Number(f.condition_number))?;
+        record.serialize_field("integrated", &f.integrated)?;
+        record.serialize_field("pass", &f.pass)?;
+        record.end()
     }
 }
 

@@ -73,14 +73,9 @@ impl Legend {
     }
 
     pub(crate) fn width(&self) -> f64 {
-        let columns = self.widths.len() as f64;
-        2.0 * PAD
-            + self
-                .widths
-                .iter()
-                .map(|w| w + HANDLE_WIDTH + GAP)
-                .sum::<f64>()
-            + (columns - 1.0).max(0.0) * COLUMN_GAP
+        let gaps = (self.widths.len() as f64 - 1.0).max(0.0) * COLUMN_GAP;
+        let columns = self.widths.iter().map(|w| w + HANDLE_WIDTH + GAP);
+        2.0 * PAD + columns.sum::<f64>() + gaps
     }
 
     pub(crate) fn height(&self) -> f64 {
@@ -111,11 +106,8 @@ impl Legend {
                 if let Some((shape, color)) = shape {
                     draw_marker(canvas, shape, [x + 0.5 * HANDLE_WIDTH, y], color);
                 }
-                canvas.text_centred(
-                    &entry.name,
-                    [x + HANDLE_WIDTH + GAP, y],
-                    TextStyle::new(self.size, INK, Align::Start),
-                );
+                let style = TextStyle::new(self.size, INK, Align::Start);
+                canvas.text_centred(&entry.name, [x + HANDLE_WIDTH + GAP, y], style);
                 y += ROW_HEIGHT;
             }
             x += HANDLE_WIDTH + GAP + width + COLUMN_GAP;
@@ -138,10 +130,9 @@ impl PlacedLegend {
 
     /// Height that it takes from the plot.
     pub(crate) fn height_above(&self) -> f64 {
-        if self.is_inside {
-            0.0
-        } else {
-            self.legend.height()
+        match self.is_inside {
+            true => 0.0,
+            false => self.legend.height(),
         }
     }
 }
@@ -160,11 +151,10 @@ pub(crate) fn place_inside(
     for columns in column_counts {
         let legend = Legend::new(entries, columns, f64::INFINITY);
         if let Some(area) = free_area(legend.width(), legend.height(), plot, occupied) {
-            let is_inside = true;
             return Some(PlacedLegend {
                 legend,
                 area,
-                is_inside,
+                is_inside: true,
             });
         }
     }
@@ -172,31 +162,21 @@ pub(crate) fn place_inside(
 }
 
 fn free_area(width: f64, height: f64, plot: &Rect, occupied: &Occupancy) -> Option<Rect> {
-    let (rx, ry) = (
-        plot.width() - width - 2.0 * CLEARANCE,
-        plot.height() - height - 2.0 * CLEARANCE,
-    );
+    let rx = plot.width() - width - 2.0 * CLEARANCE;
+    let ry = plot.height() - height - 2.0 * CLEARANCE;
     // Wider than this it would cut the plot in two even where it hides nothing.
     if rx < 0.25 * plot.width() || ry < 0.2 * plot.height() {
         return None;
     }
-    let at = |u: f64, v: f64| {
-        Rect::sized(
-            plot.x0 + CLEARANCE + u * rx,
-            plot.y0 + CLEARANCE + v * ry,
-            width,
-            height,
-        )
+    let at = |(u, v): (f64, f64)| {
+        let (x, y) = (plot.x0 + CLEARANCE + u * rx, plot.y0 + CLEARANCE + v * ry);
+        Rect::sized(x, y, width, height)
     };
     let corners = [(1.0, 0.0), (0.0, 0.0), (1.0, 1.0), (0.0, 1.0)];
     let steps = || (0..=12).map(|i| f64::from(i) / 12.0);
     let edges = steps().flat_map(|t| [(t, 0.0), (1.0, t), (0.0, t), (t, 1.0)]);
     let middle = steps().flat_map(|u| steps().map(move |v| (u, v)));
-    let mut areas = corners
-        .into_iter()
-        .chain(edges)
-        .chain(middle)
-        .map(|(u, v)| at(u, v));
+    let mut areas = corners.into_iter().chain(edges).chain(middle).map(at);
     areas.find(|area| occupied.count(&area.grown(CLEARANCE)) == 0)
 }
 
@@ -207,12 +187,8 @@ pub(crate) fn place_above(entries: &[LegendEntry], plot: &mut Rect) -> PlacedLeg
     let columns = (1..=entries.len()).rev().find(fits).unwrap_or(1);
     let legend = Legend::new(entries, columns, room);
     // Samples begin at the frame, as the title does.
-    let area = Rect::sized(
-        plot.x0 - PAD,
-        plot.y0 - 6.0,
-        legend.width(),
-        legend.height(),
-    );
+    let (width, height) = (legend.width(), legend.height());
+    let area = Rect::sized(plot.x0 - PAD, plot.y0 - 6.0, width, height);
     plot.y0 = (plot.y0 + legend.height()).min(plot.y1 - 60.0);
     PlacedLegend {
         legend,

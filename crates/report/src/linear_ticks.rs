@@ -111,9 +111,6 @@ fn offset_text(base: f64, e: i32) -> String {
     }
     let digits = usize::try_from(exponent(base)).unwrap_or(0);
     let mantissa = fixed(base / 10f64.powi(exponent(base)), digits);
-    format!(
-        "{}·{}",
-        mantissa.trim_end_matches('0').trim_end_matches('.'),
-        power_of_ten(size)
-    )
+    let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
+    format!("{mantissa}·{}", power_of_ten(size))
 }

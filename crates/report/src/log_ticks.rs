@@ -18,12 +18,9 @@ pub(crate) fn log(low: f64, high: f64, max_count: usize) -> Ticks {
     let chosen = || decades.iter().copied().filter(|e| e % step == 0);
     // A few small powers read better written out.
     let written_out = chosen().all(|e| (-2..=3).contains(&e));
-    let label = |e: i32| {
-        if written_out {
-            decimal(1.0, e)
-        } else {
-            power_of_ten(e)
-        }
+    let label = |e: i32| match written_out {
+        true => decimal(1.0, e),
+        false => power_of_ten(e),
     };
     let minor = if step == 1 && decades.len() <= 5 {
         let from = bottom.floor() as i32;
@@ -49,13 +46,12 @@ pub(crate) fn log(low: f64, high: f64, max_count: usize) -> Ticks {
 fn short_log(low: f64, high: f64, max_count: usize) -> Ticks {
     let from = low.log10().floor() as i32;
     let to = high.log10().floor() as i32;
+    let interval = low * (1.0 - ROUNDING_TOLERANCE)..=high * (1.0 + ROUNDING_TOLERANCE);
+    let value = |(n, e): &(f64, i32)| n * 10f64.powi(*e);
     let all = |digits: &[i32]| -> Vec<(f64, i32)> {
         let pairs = (from..=to).flat_map(|e| digits.iter().map(move |&n| (f64::from(n), e)));
         pairs
-            .filter(|(n, e)| {
-                (low * (1.0 - ROUNDING_TOLERANCE)..=high * (1.0 + ROUNDING_TOLERANCE))
-                    .contains(&(n * 10f64.powi(*e)))
-            })
+            .filter(|pair| interval.contains(&value(pair)))
             .collect()
     };
     let nines = all(&[1, 2, 3, 4, 5, 6, 7, 8, 9]);
@@ -69,15 +65,11 @@ fn short_log(low: f64, high: f64, max_count: usize) -> Ticks {
         let chosen = all(digits);
         if (3..=max_count.max(3)).contains(&chosen.len()) || digits.len() == 1 && chosen.len() == 2
         {
-            let value = |(n, e): &(f64, i32)| n * 10f64.powi(*e);
+            let minor = nines.iter().filter(|p| !chosen.contains(p));
             return Ticks {
                 major: chosen.iter().map(value).collect(),
                 labels: chosen.iter().map(|&(n, e)| decimal(n, e)).collect(),
-                minor: nines
-                    .iter()
-                    .filter(|p| !chosen.contains(p))
-                    .map(value)
-                    .collect(),
+                minor: minor.map(value).collect(),
                 ..Ticks::default()
             };
         }

@@ -63,17 +63,12 @@ impl Document {
 pub fn reproducible_text(findings: &[Finding]) -> String {
     let mut text = String::new();
     for f in findings {
-        let (check, comparison, tolerance) = (
-            &f.check,
-            one_line(&f.comparison),
-            scientific(f.tolerance, 3),
-        );
+        let (result, key, check) = (pass_or_fail(f), one_line(&f.key), &f.check);
+        let (comparison, tolerance) = (one_line(&f.comparison), scientific(f.tolerance, 3));
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{}  {}  [{check}]  {comparison}  <= {tolerance}",
-            pass_or_fail(f),
-            one_line(&f.key)
+            "{result}  {key}  [{check}]  {comparison}  <= {tolerance}"
         );
     }
     text
@@ -96,17 +91,13 @@ fn findings_table(findings: &[Finding]) -> String {
         "Worst at",
     ];
     let row = |f: &Finding| {
-        let with_text = |number: String, text: &str, separator: &str| {
-            if text.trim().is_empty() {
-                number
-            } else {
-                format!("{number}{separator}{}", text.trim())
-            }
+        let with_text = |number: String, text: &str, separator: &str| match text.trim() {
+            "" => number,
+            text => format!("{number}{separator}{text}"),
         };
-        let result = if f.pass {
-            pass_or_fail(f).to_owned()
-        } else {
-            format!("**{}**", pass_or_fail(f))
+        let result = match f.pass {
+            true => pass_or_fail(f).to_owned(),
+            false => format!("**{}**", pass_or_fail(f)),
         };
         vec![
             result,
@@ -120,23 +111,20 @@ fn findings_table(findings: &[Finding]) -> String {
             f.worst_at.clone(),
         ]
     };
-    table(
-        &HEADER.map(str::to_owned),
-        &findings.iter().map(row).collect::<Vec<_>>(),
-    )
+    let rows: Vec<_> = findings.iter().map(row).collect();
+    table(&HEADER.map(str::to_owned), &rows)
 }
 
 fn table(header: &[String], rows: &[Vec<String>]) -> String {
-    let written = |cells: &mut dyn Iterator<Item = String>| {
-        format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
+    let empty = String::new();
+    let line = |row: &[String]| {
+        let filled = row.iter().chain(std::iter::repeat(&empty));
+        let cells: Vec<_> = filled.take(header.len()).map(|c| cell(c)).collect();
+        format!("| {} |\n", cells.join(" | "))
     };
-    let mut text = written(&mut header.iter().map(|c| cell(c)));
-    text.push_str(&written(&mut header.iter().map(|_| "---".to_owned())));
-    for row in rows {
-        text.push_str(&written(
-            &mut (0..header.len()).map(|i| row.get(i).map(|c| cell(c)).unwrap_or_default()),
-        ));
-    }
+    let rule = vec!["---".to_owned(); header.len()];
+    let mut text = line(header) + &line(&rule);
+    text.extend(rows.iter().map(|row| line(row)));
     text
 }
 
@@ -144,16 +132,13 @@ fn image(file: &str, alt: &str, caption: &str) -> String {
     let alt = one_line(alt).replace('[', "\\[").replace(']', "\\]");
     // In angle brackets a path may hold blanks and brackets.
     let file = one_line(file).replace('<', "%3C").replace('>', "%3E");
-    let target = if file.contains([' ', '(', ')']) {
-        format!("<{file}>")
-    } else {
-        file
+    let target = match file.contains([' ', '(', ')']) {
+        true => format!("<{file}>"),
+        false => file,
     };
-    let caption = one_line(caption);
-    if caption.is_empty() {
-        format!("![{alt}]({target})\n")
-    } else {
-        format!("![{alt}]({target})\n\n*{caption}*\n")
+    match one_line(caption).as_str() {
+        "" => format!("![{alt}]({target})\n"),
+        caption => format!("![{alt}]({target})\n\n*{caption}*\n"),
     }
 }
 

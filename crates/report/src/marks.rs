@@ -52,22 +52,15 @@ fn filled_marker(canvas: &mut Canvas<'_>, shape: usize, [x, y]: [f64; 2], r: f64
     match shape % 4 {
         0 => canvas.disc([x, y], r, color),
         1 => canvas.rect(&Rect::around([x, y], r).grown(-0.1 * r), color),
-        2 => canvas.polygon(
-            &[
-                [x, y - 1.25 * r],
-                [x + 1.15 * r, y + 0.8 * r],
-                [x - 1.15 * r, y + 0.8 * r],
-            ],
-            color,
-            1.0,
-        ),
+        2 => {
+            let (half, base) = (1.15 * r, y + 0.8 * r);
+            let triangle = [[x, y - 1.25 * r], [x + half, base], [x - half, base]];
+            canvas.polygon(&triangle, color, 1.0);
+        }
         _ => {
             let d = 1.3 * r;
-            canvas.polygon(
-                &[[x, y - d], [x + d, y], [x, y + d], [x - d, y]],
-                color,
-                1.0,
-            );
+            let diamond = [[x, y - d], [x + d, y], [x, y + d], [x - d, y]];
+            canvas.polygon(&diamond, color, 1.0);
         }
     }
 }
@@ -119,9 +112,8 @@ fn ring(frame: &PlotFrame, mark: &Mark) -> Option<[f64; 2]> {
     let Mark::Point { at, .. } = mark else {
         return None;
     };
-    frame
-        .point_to_px(*at, false)
-        .filter(|p| frame.plot.contains(*p))
+    let at = frame.point_to_px(*at, false);
+    at.filter(|p| frame.plot.contains(*p))
 }
 
 /// Draws the ringed points, which lie over the curves.

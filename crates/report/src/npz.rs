@@ -4,6 +4,7 @@ use crate::error::{ReportError, check_rows};
 use dwell_findings::Table;
 use std::collections::BTreeSet;
 use std::io::{Cursor, Write as _};
+use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
@@ -34,54 +35,52 @@ pub enum Array {
 ///
 /// [`ReportError::Row`] if a row of a matrix has not its number of columns; [`ReportError::Npz`] if the archive refuses.
 pub fn npz(arrays: &[(&str, Array)]) -> Result<Vec<u8>, ReportError> {
-    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-    for (name, array) in arrays {
-        let bytes = match array {
+    let bytes = |array: &Array| -> Result<_, ReportError> {
+        Ok(match array {
             Array::Strings(list) => string_array(list),
             Array::Matrix { columns, rows } => {
-                if let Some(row) = rows.iter().position(|row| row.len() != *columns) {
-                    return Err(ReportError::Row {
-                        row,
-                        found: rows[row].len(),
-                        expected: *columns,
-                    });
-                }
-                let mut array = header("<f8", &format!("({}, {columns})", rows.len()));
-                let values = rows.iter().flatten();
-                values.for_each(|v| array.extend(v.to_le_bytes()));
-                array
+                check_rows(rows, *columns)?;
+                let shape = format!("({}, {columns})", rows.len());
+                number_array(&shape, rows.iter().flatten())
             }
-        };
-        store_array(&mut archive, &file_name(name), &bytes)?;
-    }
-    Ok(archive.finish()?.into_inner())
+        })
+    };
+    archive(
+        arrays
+            .iter()
+            .map(|(name, array)| Ok((file_name(name), bytes(array)?))),
+    )
 }
 
-fn store_array(
-    archive: &mut ZipWriter<Cursor<Vec<u8>>>,
-    key: &str,
-    array: &[u8],
-) -> Result<(), ReportError> {
-    archive.start_file(format!("{key}.npy"), options())?;
-    archive
-        .write_all(array)
-        .map_err(zip::result::ZipError::Io)?;
-    Ok(())
+/// Arrays under their keys.
+fn archive(
+    arrays: impl Iterator<Item = Result<(String, Vec<u8>), ReportError>>,
+) -> Result<Vec<u8>, ReportError> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    for array in arrays {
+        let (key, bytes) = array?;
+        archive.start_file(format!("{key}.npy"), options())?;
+        archive.write_all(&bytes).map_err(ZipError::Io)?;
+    }
+    Ok(archive.finish()?.into_inner())
 }
 
 /// See [`TableExport::npz`](crate::TableExport::npz).
 pub(crate) fn table_npz(table: &Table) -> Result<Vec<u8>, ReportError> {
-    check_rows(table)?;
+    check_rows(&table.rows, table.columns.len())?;
     let keys = array_keys(table);
     let units: Vec<&str> = table.columns.iter().map(|c| c.unit.as_str()).collect();
-    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-    let mut add = |key: &str, array: Vec<u8>| store_array(&mut archive, key, &array);
-    for (column, key) in keys.iter().enumerate() {
-        add(key, number_array(table.rows.iter().map(|row| row[column])))?;
-    }
-    add(COLUMNS, string_array(&keys))?;
-    add(UNITS, string_array(&units))?;
-    Ok(archive.finish()?.into_inner())
+    let described = [
+        (COLUMNS.to_owned(), string_array(&keys)),
+        (UNITS.to_owned(), string_array(&units)),
+    ];
+    let shape = format!("({},)", table.rows.len());
+    let column = |i: usize| number_array(&shape, table.rows.iter().map(|row| &row[i]));
+    let columns = keys
+        .into_iter()
+        .enumerate()
+        .map(|(i, key)| (key, column(i)));
+    archive(columns.chain(described).map(Ok))
 }
 
 /// The columns' names as keys: file names, and each but once.
@@ -103,18 +102,10 @@ fn array_keys(table: &Table) -> Vec<String> {
 
 /// The name with `_` for what a file name cannot hold.
 fn file_name(name: &str) -> String {
-    let safe = |c: char| {
-        if c.is_control() || r#"/\:*?"<>|"#.contains(c) {
-            '_'
-        } else {
-            c
-        }
-    };
-    let name: String = name.chars().map(safe).collect();
-    if name.is_empty() {
-        "_".to_owned()
-    } else {
-        name
+    let refused = |c: char| c.is_control() || r#"/\:*?"<>|"#.contains(c);
+    match name {
+        "" => "_".to_owned(),
+        name => name.replace(refused, "_"),
     }
 }
 
@@ -127,9 +118,8 @@ fn options() -> SimpleFileOptions {
         .unix_permissions(0o644)
 }
 
-fn number_array(values: impl ExactSizeIterator<Item = f64>) -> Vec<u8> {
-    let mut array = header("<f8", &format!("({},)", values.len()));
-    array.reserve_exact(8 * values.len());
+fn number_array<'v>(shape: &str, values: impl Iterator<Item = &'v f64>) -> Vec<u8> {
+    let mut array = header("<f8", shape);
     values.for_each(|v| array.extend(v.to_le_bytes()));
     array
 }
@@ -153,14 +143,11 @@ fn string_array(words: &[impl AsRef<str>]) -> Vec<u8> {
 ///
 /// Source: NumPy Enhancement Proposal 1, "A simple file format for NumPy arrays", format version 1.0.
 fn header(dtype: &str, shape: &str) -> Vec<u8> {
-    let mut text = format!("{{'descr': '{dtype}', 'fortran_order': False, 'shape': {shape}, }}");
-    let before = b"\x93NUMPY\x01\x00".len() + 2;
-    let whole = (before + text.len() + 1).next_multiple_of(ALIGNMENT);
-    while before + text.len() + 1 < whole {
-        text.push(' ');
-    }
-    text.push('\n');
+    let text = format!("{{'descr': '{dtype}', 'fortran_order': False, 'shape': {shape}, }}");
     let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    let before = header.len() + 2;
+    let whole = (before + text.len() + 1).next_multiple_of(ALIGNMENT);
+    let text = format!("{text:width$}\n", width = whole - before - 1);
     // At most two numbers of twenty digits stand in it.
     header.extend((text.len() as u16).to_le_bytes());
     header.extend(text.as_bytes());

@@ -2,24 +2,10 @@
 
 /// `10` to a power, with a raised exponent: `10⁻¹²`.
 pub(crate) fn power_of_ten(exponent: i32) -> String {
-    format!("10{}", superscript(exponent))
-}
-
-fn superscript(exponent: i32) -> String {
-    let digit = |c: char| match c {
-        '-' => '⁻',
-        '0' => '⁰',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        _ => '⁹',
-    };
-    exponent.to_string().chars().map(digit).collect()
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| c.to_digit(10).map_or('⁻', |digit| RAISED[digit as usize]);
+    let exponent: String = exponent.to_string().chars().map(raised).collect();
+    format!("10{exponent}")
 }
 
 /// With a fixed number of decimals and a true minus sign; never `−0`.
@@ -38,22 +24,13 @@ pub(crate) fn scientific(value: f64, digits: usize) -> String {
         return "0".to_owned();
     }
     if !value.is_finite() {
-        return if value.is_nan() {
-            "NaN"
-        } else if value > 0.0 {
-            "inf"
-        } else {
-            "-inf"
-        }
-        .to_owned();
+        return format!("{value}");
     }
     let text = format!("{value:.*e}", digits.saturating_sub(1));
     match text.split_once('e') {
         Some((mantissa, exponent)) if mantissa.contains('.') => {
-            format!(
-                "{}e{exponent}",
-                mantissa.trim_end_matches('0').trim_end_matches('.')
-            )
+            let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
+            format!("{mantissa}e{exponent}")
         }
         _ => text,
     }

@@ -1,6 +1,7 @@
 //! Where in a plot something has been drawn already, so that words can go elsewhere.
 
 use crate::rect::Rect;
+use std::ops::Range;
 
 /// Side of a cell in pixels.
 const CELL: f64 = 5.0;
@@ -51,22 +52,15 @@ impl Occupancy {
 
     /// A block, such as a text, has been drawn.
     pub(crate) fn block(&mut self, block: &Rect) {
-        for row in self.row_range(block) {
-            let start = row * self.columns;
-            let range = self.column_range(block);
-            self.occupied[start + range.start..start + range.end].fill(true);
+        for row in self.rows_of(block) {
+            self.occupied[row].fill(true);
         }
     }
 
     /// How many taken cells lie in the block.
     pub(crate) fn count(&self, block: &Rect) -> usize {
-        let columns = self.column_range(block);
-        let cells = |row: usize| {
-            &self.occupied[row * self.columns + columns.start..row * self.columns + columns.end]
-        };
-        self.row_range(block)
-            .map(|row| cells(row).iter().filter(|&&occupied| occupied).count())
-            .sum()
+        let cells = self.rows_of(block).flat_map(|row| &self.occupied[row]);
+        cells.filter(|&&occupied| occupied).count()
     }
 
     fn cell(&self, [x, y]: [f64; 2]) -> (usize, usize) {
@@ -76,18 +70,18 @@ impl Occupancy {
         (column.min(self.columns - 1), row.min(self.rows - 1))
     }
 
-    fn column_range(&self, block: &Rect) -> std::ops::Range<usize> {
-        if block.x1 < self.area.x0 || block.x0 > self.area.x1 {
-            return 0..0;
-        }
-        self.cell([block.x0, block.y0]).0..self.cell([block.x1, block.y1]).0 + 1
-    }
-
-    fn row_range(&self, block: &Rect) -> std::ops::Range<usize> {
-        if block.y1 < self.area.y0 || block.y0 > self.area.y1 {
-            return 0..0;
-        }
-        self.cell([block.x0, block.y0]).1..self.cell([block.x1, block.y1]).1 + 1
+    /// The cells of a block, row by row; none where it is outside.
+    fn rows_of(&self, block: &Rect) -> impl Iterator<Item = Range<usize>> + use<> {
+        let (first, last) = (
+            self.cell([block.x0, block.y0]),
+            self.cell([block.x1, block.y1]),
+        );
+        let rows = match self.area.intersects(block) {
+            true => first.1..last.1 + 1,
+            false => 0..0,
+        };
+        let columns = self.columns;
+        rows.map(move |row| row * columns + first.0..row * columns + last.0 + 1)
     }
 }
 

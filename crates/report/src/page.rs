@@ -49,6 +49,18 @@ impl PreparedPanel<'_> {
         }
     }
 
+    /// Height of the cell that suits it at this width, alone in its row or with as many panels as there are columns, or stretched.
+    fn height(&self, width: f64, lone: bool, stretched: bool) -> f64 {
+        match self {
+            Self::Chart(_) if stretched => STRETCHED_HEIGHT * width,
+            Self::Chart(_) if lone => LONE_HEIGHT * width,
+            Self::Chart(_) => chart::HEIGHT * width,
+            Self::Drawing(drawing) => drawing::height(from_ref(drawing), width).min(1000.0),
+            Self::Stack(stack) => stack.height(width),
+            Self::Grid(heat_map) => heat_map.height(),
+        }
+    }
+
     fn draw(&self, canvas: &mut Canvas<'_>, cell: &Rect, insets: Insets) {
         match self {
             Self::Chart(chart) => chart.draw(canvas, cell, insets),
@@ -109,18 +121,18 @@ impl<'a> Page<'a> {
             let count = chunk.len() as f64;
             let width = (inner - COLUMN_GAP * (count - 1.0)) / count;
             let stretched = chunk.len() < columns;
-            let height = chunk
+            let chunk: Vec<_> = chunk.iter().map(|panel| prepared(panel, width)).collect();
+            let heights = chunk
                 .iter()
-                .map(|panel| preferred_height(panel, width, columns == 1, stretched))
-                .fold(0.0, f64::max);
-            for (column, panel) in chunk.iter().enumerate() {
+                .map(|p| p.height(width, columns == 1, stretched));
+            let height = heights.fold(0.0, f64::max);
+            for (column, panel) in chunk.into_iter().enumerate() {
                 let x = MARGIN + column as f64 * (width + COLUMN_GAP);
-                let cell = Rect::sized(x, y, width, height);
                 panels.push(PlacedPanel {
-                    panel: prepared(panel, width),
+                    panel,
                     row,
                     column: (!stretched).then_some(column),
-                    cell,
+                    cell: Rect::sized(x, y, width, height),
                 });
             }
             y += height + ROW_GAP;
@@ -155,11 +167,8 @@ impl<'a> Page<'a> {
         canvas.rect(&Rect::sized(0.0, 0.0, self.width, self.height), WHITE);
         let mut baseline = MARGIN + 0.8 * TITLE_SIZE;
         for line in &self.title {
-            canvas.text(
-                line,
-                [MARGIN, baseline],
-                TextStyle::new(TITLE_SIZE, INK, Align::Start).bold(),
-            );
+            let style = TextStyle::new(TITLE_SIZE, INK, Align::Start).bold();
+            canvas.text(line, [MARGIN, baseline], style);
             baseline += TITLE_LEADING * TITLE_SIZE;
         }
         for (placed, insets) in self.panels.iter().zip(self.aligned()) {
@@ -173,25 +182,16 @@ impl<'a> Page<'a> {
 
     /// Insets such that plots of a column line up at the sides, and those of a row above and below.
     fn aligned(&self) -> Vec<Insets> {
-        let insets: Vec<Insets> = self
-            .panels
-            .iter()
-            .map(|p| p.panel.insets(&p.cell))
-            .collect();
+        let insets = |p: &PlacedPanel<'_>| p.panel.insets(&p.cell);
+        let panels: Vec<_> = self.panels.iter().map(|p| (p, insets(p))).collect();
         let max_insets = |keep: &dyn Fn(&PlacedPanel<'_>) -> bool| {
-            let of_group = self
-                .panels
-                .iter()
-                .zip(&insets)
-                .filter(|(p, _)| keep(p))
-                .map(|(_, i)| *i);
+            let of_group = panels.iter().filter(|(p, _)| keep(p)).map(|(_, i)| *i);
             of_group.fold(Insets::default(), Insets::max)
         };
-        let of = |p: &PlacedPanel<'_>, insets: &Insets| {
-            let of_column = if p.column.is_some() {
-                max_insets(&|other| other.column == p.column)
-            } else {
-                *insets
+        let of = |(p, insets): &(&PlacedPanel<'_>, Insets)| {
+            let of_column = match p.column {
+                Some(_) => max_insets(&|other| other.column == p.column),
+                None => *insets,
             };
             let row = max_insets(&|other| other.row == p.row);
             Insets {
@@ -200,21 +200,6 @@ impl<'a> Page<'a> {
                 ..row
             }
         };
-        self.panels
-            .iter()
-            .zip(&insets)
-            .map(|(p, insets)| of(p, insets))
-            .collect()
-    }
-}
-
-fn preferred_height(panel: &Panel, width: f64, lone: bool, stretched: bool) -> f64 {
-    match panel {
-        Panel::Chart(_) if stretched => STRETCHED_HEIGHT * width,
-        Panel::Chart(_) if lone => LONE_HEIGHT * width,
-        Panel::Chart(_) => chart::HEIGHT * width,
-        Panel::Drawing(drawing) => drawing::height(from_ref(drawing), width).min(1000.0),
-        Panel::Stack(charts) => Stack::new(charts).height(width),
-        Panel::Grid(grid) => HeatMap::new(grid, width).height(),
+        panels.iter().map(of).collect()
     }
 }

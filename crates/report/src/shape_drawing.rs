@@ -43,7 +43,7 @@ pub(crate) fn mark_occupied(frame: &PlotFrame, shape: &Shape, occupied: &mut Occ
                 // A thick bar covers more than its middle line.
                 let half = 0.5 * pen.width;
                 run.iter()
-                    .for_each(|p| occupied.block(&Rect::sized(p[0], p[1], 0.0, 0.0).grown(half)));
+                    .for_each(|p| occupied.block(&Rect::around(*p, half)));
             }
         }
         Shape::GroundLine { from, to } | Shape::Arrow { from, to, .. } => {
@@ -52,8 +52,8 @@ pub(crate) fn mark_occupied(frame: &PlotFrame, shape: &Shape, occupied: &mut Occ
             }
         }
         Shape::Disc { at, radius_px, .. } => {
-            if let Some([x, y]) = place(at) {
-                occupied.block(&Rect::sized(x, y, 0.0, 0.0).grown(*radius_px));
+            if let Some(at) = place(at) {
+                occupied.block(&Rect::around(at, *radius_px));
             }
         }
         Shape::GroundPin { at } => {
@@ -146,10 +146,9 @@ pub(crate) fn draw(canvas: &mut Canvas<'_>, frame: &PlotFrame, shape: &Shape) {
 }
 
 fn line(pen: &Pen) -> LineStyle {
-    let width = if pen.width.is_finite() {
-        pen.width.clamp(0.5, 400.0)
-    } else {
-        1.0
+    let width = match pen.width.is_finite() {
+        true => pen.width.clamp(0.5, 400.0),
+        false => 1.0,
     };
     LineStyle {
         color: lightened(rgb(pen.color), pen.lightness),
@@ -160,13 +159,8 @@ fn line(pen: &Pen) -> LineStyle {
 
 fn outline(frame: &PlotFrame, points: &[[f64; 2]], closed: bool) -> Vec<Vec<[f64; 2]>> {
     let back = points.first().filter(|_| closed);
-    clipped(
-        points
-            .iter()
-            .chain(back)
-            .map(|p| frame.point_to_px(*p, false)),
-        &frame.plot,
-    )
+    let all = points.iter().chain(back);
+    clipped(all.map(|p| frame.point_to_px(*p, false)), &frame.plot)
 }
 
 fn fill_area(
@@ -176,11 +170,8 @@ fn fill_area(
     color: Rgb,
     opacity: f64,
 ) {
-    let inside: Vec<[f64; 2]> = points
-        .iter()
-        .filter_map(|p| frame.point_to_px(*p, false))
-        .collect();
-    let area = crate::curve::clipped_area(&inside, &frame.plot);
+    let inside = points.iter().filter_map(|p| frame.point_to_px(*p, false));
+    let area = crate::curve::clipped_area(&inside.collect::<Vec<_>>(), &frame.plot);
     if area.len() < 3 || !opacity.is_finite() || opacity <= 0.0 {
         return;
     }
@@ -191,17 +182,10 @@ fn ground_pin(canvas: &mut Canvas<'_>, [x, y]: [f64; 2]) {
     let [half, height] = SUPPORT;
     let triangle = [[x, y], [x + half, y + height], [x - half, y + height]];
     canvas.polygon(&triangle, WHITE, 1.0);
-    canvas.line(
-        &[triangle[0], triangle[1], triangle[2], triangle[0]],
-        LineStyle::solid(INK, SPINE_WIDTH),
-    );
-    ground_line(
-        canvas,
-        &[
-            [x - BASE_HALF_LENGTH, y + height],
-            [x + BASE_HALF_LENGTH, y + height],
-        ],
-    );
+    let [a, b, c] = triangle;
+    canvas.line(&[a, b, c, a], LineStyle::solid(INK, SPINE_WIDTH));
+    let base = [x - BASE_HALF_LENGTH, x + BASE_HALF_LENGTH].map(|x| [x, y + height]);
+    ground_line(canvas, &base);
     canvas.disc([x, y], PIN_RADIUS + 1.3, INK);
     canvas.disc([x, y], PIN_RADIUS - 1.6, WHITE);
 }
@@ -240,10 +224,8 @@ fn arrow(canvas: &mut Canvas<'_>, from: [f64; 2], to: [f64; 2], pen: &Pen) {
     let half = head * HEAD[1] / HEAD[0];
     let [tx, ty] = [(to[0] - from[0]) / length, (to[1] - from[1]) / length];
     let neck = [to[0] - head * tx, to[1] - head * ty];
-    canvas.line(
-        &[from, [neck[0] + 0.2 * head * tx, neck[1] + 0.2 * head * ty]],
-        line,
-    );
+    let end = [neck[0] + 0.2 * head * tx, neck[1] + 0.2 * head * ty];
+    canvas.line(&[from, end], line);
     let barbs = [
         [neck[0] - half * ty, neck[1] + half * tx],
         [neck[0] + half * ty, neck[1] - half * tx],

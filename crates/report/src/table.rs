@@ -56,14 +56,11 @@ pub trait TableExport {
 
 impl TableExport for Table {
     fn csv(&self) -> Result<String, ReportError> {
-        check_rows(self)?;
+        check_rows(&self.rows, self.columns.len())?;
         let mut writer = csv::Writer::from_writer(Vec::new());
-        let header = |c: &Column| {
-            if c.unit.is_empty() {
-                c.name.clone()
-            } else {
-                format!("{} [{}]", c.name, c.unit)
-            }
+        let header = |c: &Column| match c.unit.as_str() {
+            "" => c.name.clone(),
+            unit => format!("{} [{unit}]", c.name),
         };
         writer.write_record(self.columns.iter().map(header))?;
         // One field for all: a string for each would be most of the time of a large table.

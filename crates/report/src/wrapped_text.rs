@@ -1,6 +1,7 @@
 //! The words around a plot: panel title and axis labels, on as many lines as they need.
 
 use crate::axis::Axis;
+use crate::canvas::{Canvas, TextStyle};
 use crate::fonts::{widest, width, wrapped};
 use crate::linear_ticks::Ticks;
 use crate::number::power_of_ten;
@@ -27,22 +28,16 @@ impl WrappedText {
     fn new(text: &str, size: f64, bold: bool, room: f64) -> Self {
         let needed = width(text, size, bold);
         if text.is_empty() {
-            return Self {
-                lines: Vec::new(),
-                size,
-            };
+            let lines = Vec::new();
+            return Self { lines, size };
         }
         if needed * MIN_SHRINK <= room {
-            return Self {
-                lines: vec![text.to_owned()],
-                size: size * (room / needed).min(1.0),
-            };
+            let (lines, size) = (vec![text.to_owned()], size * (room / needed).min(1.0));
+            return Self { lines, size };
         }
-        Self {
-            lines: wrapped(text, MIN_SHRINK * size, bold, room),
-            size: MIN_SHRINK * size,
-        }
-        .shrunk_to_fit(room, f64::INFINITY, bold)
+        let size = MIN_SHRINK * size;
+        let lines = wrapped(text, size, bold, room);
+        Self { lines, size }.shrunk_to_fit(room, f64::INFINITY, bold)
     }
 
     /// The same lines, set smaller if they are longer or together higher than there is room. Ticks may turn out wider than
@@ -64,6 +59,13 @@ impl WrappedText {
         LEADING * self.size * self.lines.len() as f64
     }
 
+    /// Draws the lines below a place.
+    pub(crate) fn draw(&self, canvas: &mut Canvas<'_>, [x, y]: [f64; 2], style: TextStyle) {
+        for (line, baseline) in self.baselines() {
+            canvas.text(line, [x, y + baseline], style);
+        }
+    }
+
     /// The lines with their baselines, counted from the top of the first.
     pub(crate) fn baselines(&self) -> impl Iterator<Item = (&str, f64)> {
         let baseline = |i: usize| (LEADING * i as f64 + 0.5 * (LEADING - 1.0) + 0.8) * self.size;
@@ -81,12 +83,7 @@ pub(crate) fn title(text: &str, cell: &Rect) -> WrappedText {
 
 /// The label of a horizontal axis.
 pub(crate) fn horizontal_label(axis: &Axis, ticks: &Ticks, cell: &Rect) -> WrappedText {
-    WrappedText::new(
-        &label(axis, ticks),
-        LABEL_SIZE,
-        false,
-        cell.width() - MARGINS,
-    )
+    fitted_label(axis, ticks, cell.width() - MARGINS)
 }
 
 /// The label of a vertical axis, which is as long as its plot at the most, or of a colour bar.

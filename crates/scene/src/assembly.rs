@@ -4,17 +4,18 @@ use crate::bodies::Bodies;
 use crate::coordinates::ParsedActuator;
 use crate::diagnostics::{Diagnostics, Span};
 use crate::joints::{Joints, kind_name};
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
-use dwell_geometry::BranchHint;
+use dwell_geometry::{ActuatorId, BodyId, BranchHint};
 
 /// `[assembly]` as read: the coordinate of each actuator, rad or m, the angle of each body, rad, and the travel or
 /// direction of each joint, m or rad.
 #[derive(Debug)]
 pub(crate) struct ParsedAssembly {
-    pub(crate) coordinates: Vec<Option<(f64, Span)>>,
-    pub(crate) initial_guess: Vec<Option<(f64, Span)>>,
-    pub(crate) branch_hints: Vec<Option<(f64, Span)>>,
+    pub(crate) coordinates: Vec<Option<f64>>,
+    pub(crate) initial_guess: Vec<Option<f64>>,
+    pub(crate) branch_hints: Vec<Option<f64>>,
     /// The actuators it names, with a valid value or not.
     mentioned: Vec<usize>,
 }
@@ -35,23 +36,22 @@ impl ParsedAssembly {
         for entry in fields.iter().flat_map(|f| &f.entries) {
             let name = entry.name;
             let what = format!("`{}` in [assembly]", shorten(name));
-            let with_span = |si: Option<f64>| si.map(|si| (si, entry.span()));
+            let place = |location| entry.log().place(location, &entry.span());
             if let Some(k) = actuators.iter().position(|a| a.name == name) {
                 parsed.mentioned.push(k);
-                let coordinate = actuators[k].coordinate_value(entry.value, what);
-                parsed.coordinates[k] = with_span(coordinate);
+                parsed.coordinates[k] = actuators[k].coordinate_value(entry.value, what);
+                place(SceneLocation::AssemblyCoordinate(ActuatorId(k)));
             } else if let Some(k) = bodies.position(name) {
                 let angle = entry.value.angle(what);
-                parsed.initial_guess[k] = with_span(angle);
+                parsed.initial_guess[k] = angle;
+                place(SceneLocation::InitialGuess(BodyId(k)));
                 if bodies.ground == Some(k) && angle.is_some_and(|si| si != 0.0) {
                     let message = format!("the ground `{}` cannot be rotated", shorten(name));
-                    let diagnostic = entry.value.wrong(message, "its angle is 0");
-                    diagnostic
-                        .help("leave it out: its frame is the frame of the plane")
-                        .report();
+                    let help = "leave it out: its frame is the frame of the plane";
+                    entry.value.reject::<()>(message, "its angle is 0", help);
                 }
             } else if let Some(k) = joints.list.iter().position(|j| j.name == name) {
-                parsed.branch_hints[k] = with_span(branch_hint(entry, &what, joints, k));
+                parsed.branch_hints[k] = branch_hint(entry, &what, joints, k);
             } else {
                 let bodies = bodies.list.iter().map(|b| b.name);
                 let names = actuators.iter().map(|a| a.name).chain(bodies);
@@ -60,11 +60,7 @@ impl ParsedAssembly {
                     .log()
                     .choices(name, "actuators, bodies and slides", names);
                 let message = format!("{what} is neither an actuator nor a body nor a joint");
-                entry
-                    .error(message)
-                    .label(&entry.key, "unknown name")
-                    .help(help)
-                    .report();
+                entry.reject::<()>(message, "unknown name", help);
             }
         }
         parsed
@@ -74,30 +70,25 @@ impl ParsedAssembly {
     /// points are at 0 from each other by default: reports which distances are missing, in the section or else at the actuator.
     pub(crate) fn coordinates_or(
         &self,
-        initial: &[Option<(f64, Span)>],
+        initial: &[Option<f64>],
         actuators: &[ParsedActuator<'_>],
         section: Option<&Span>,
         log: &Diagnostics,
     ) -> Vec<f64> {
         let mut coordinates = Vec::with_capacity(actuators.len());
         for (k, a) in actuators.iter().enumerate() {
-            let coordinate = given_value(&self.coordinates, k).or(given_value(initial, k));
+            let coordinate = self.coordinates[k].or(initial.get(k).copied().flatten());
             if a.is_distance() && coordinate.is_none() && !self.mentioned.contains(&k) {
                 let name = shorten(a.name);
-                log.error(format!("the length of `{name}` at the start is not given"))
-                    .label(section.unwrap_or(&a.key), "no length at assembly")
-                    .help(format!("add it to [assembly], such as `{name} = 0.5`"))
-                    .report();
+                let message = format!("the length of `{name}` at the start is not given");
+                let labels = [(section.unwrap_or(&a.key), "no length at assembly")];
+                let help = format!("add it to [assembly], such as `{name} = 0.5`");
+                log.report(message, &labels, help);
             }
             coordinates.push(coordinate.unwrap_or(0.0));
         }
         coordinates
     }
-}
-
-/// What is given of the k-th actuator.
-pub(crate) fn given_value(values: &[Option<(f64, Span)>], k: usize) -> Option<f64> {
-    values.get(k)?.as_ref().map(|s| s.0)
 }
 
 /// The joints that take an initial guess.
@@ -119,12 +110,10 @@ fn branch_hint(entry: &Entry<'_>, what: &str, joints: &Joints<'_>, k: usize) -> 
     let help = entry
         .log()
         .choices("", "joints that can", hintable_joints(joints));
-    let name = shorten(entry.name);
-    entry
-        .error(format!("joint `{name}` takes no initial guess"))
-        .label(&entry.key, format!("its kind is {}", kind_name(kind)))
-        .help(format!(
-            "a prismatic joint or a slot takes an initial travel, a distance a direction; {help}"
-        ))
-        .reject()
+    let message = format!("joint `{}` takes no initial guess", shorten(entry.name));
+    let label = format!("its kind is {}", kind_name(kind));
+    let help = format!(
+        "a prismatic joint or a slot takes an initial travel, a distance a direction; {help}"
+    );
+    entry.reject(message, &label, help)
 }

@@ -3,12 +3,12 @@
 use crate::diagnostics::{Diagnostics, Span};
 use crate::keys::table;
 use crate::names::check;
-use crate::number_paths::{BodyField, BodyNumber, no_number};
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::Unit;
-use crate::value::{POINT, Value};
+use crate::value::Value;
 use crate::wording::shorten;
-use dwell_geometry::{BodyId, Vec2, vec2};
+use dwell_geometry::{BodyId, Vec2};
 use dwell_kinetostatics::Mass;
 use std::collections::HashMap;
 use std::fmt::Display;
@@ -20,22 +20,12 @@ use toml::de::DeValue;
 pub(crate) struct ParsedBody<'a> {
     pub(crate) name: &'a str,
     pub(crate) key: Span,
-    pub(crate) points: Vec<ParsedPoint<'a>>,
+    /// In m.
+    pub(crate) points: Vec<(&'a str, Vec2)>,
     by_name: HashMap<&'a str, usize>,
     /// Its points were read: a name that is not among them does not exist.
     points_known: bool,
     pub(crate) mass: Mass,
-    pub(crate) mass_at: Option<Span>,
-    pub(crate) inertia_at: Option<Span>,
-    pub(crate) center_at: Option<Span>,
-}
-
-/// A point of a body, in m.
-#[derive(Debug)]
-pub(crate) struct ParsedPoint<'a> {
-    pub(crate) name: &'a str,
-    pub(crate) at: Vec2,
-    pub(crate) span: Span,
 }
 
 /// A point that a text names: its body, its index there, and where it is named.
@@ -50,8 +40,6 @@ pub(crate) struct Bodies<'a> {
     pub(crate) list: Vec<ParsedBody<'a>>,
     by_name: HashMap<&'a str, usize>,
     pub(crate) ground: Option<usize>,
-    /// The numbers a calibration or a study may change.
-    pub(crate) numbers: Vec<BodyNumber>,
     log: &'a Diagnostics,
 }
 
@@ -63,23 +51,18 @@ impl<'a> Bodies<'a> {
             list: Vec::new(),
             by_name: HashMap::new(),
             ground: ground(fields, &tables),
-            numbers: Vec::new(),
             log: fields.log(),
         };
         for (k, (entry, table)) in fields.entries.iter().zip(&tables).enumerate() {
             check("a body", entry);
             bodies.by_name.insert(entry.name, k);
             let is_ground = bodies.ground == Some(k);
-            let numbers = &mut bodies.numbers;
-            let mut reader = BodyReader {
-                id: k,
-                is_ground,
-                numbers,
-            };
-            bodies.list.push(reader.body(entry, table.as_ref()));
+            let body = read_body(entry, table.as_ref(), BodyId(k), is_ground);
+            bodies.list.push(body);
         }
-        let with_inertia = bodies.list.iter().find_map(|b| b.inertia_at.as_ref());
-        if let Some(at) = with_inertia {
+        let mut inertias = tables.iter().flatten().filter_map(|t| t.get("inertia"));
+        if let Some(entry) = inertias.next() {
+            let at = &entry.value.span();
             fields.units().require_inertia_unit(at, fields.log());
         }
         bodies
@@ -102,10 +85,8 @@ impl<'a> Bodies<'a> {
             self.log
                 .choices(name, "bodies", self.list.iter().map(|b| b.name))
         };
-        let diagnostic = self
-            .log
-            .error(format!("there is no body `{}`", shorten(name)));
-        diagnostic.label(at, "unknown body").help(help).reject()
+        let message = format!("there is no body `{}`", shorten(name));
+        self.log.reject(message, &[(at, "unknown body")], help)
     }
 
     /// The two bodies that a value names, each with where.
@@ -125,12 +106,10 @@ impl<'a> Bodies<'a> {
         let Some((body, point)) = text.split_once('.') else {
             let named = self.by_name.get(text).map(|&k| &self.list[k]);
             let example = named.and_then(|body| body.points.first());
-            let (body, point) = example.map_or(("body", "point"), |p| (text, p.name));
+            let (body, point) = example.map_or(("body", "point"), |(point, _)| (text, *point));
             let message = format!("`{}` does not name a point of a body", shorten(text));
-            let diagnostic = self.log.error(message).label(at, "expected `body.point`");
-            return diagnostic
-                .help(format!("write it as `{body}.{point}`"))
-                .reject();
+            let help = format!("write it as `{body}.{point}`");
+            return (self.log).reject(message, &[(at, "expected `body.point`")], help);
         };
         let id = self.find(body, at)?;
         Some((id, self.point_of(id, point, at)?))
@@ -151,7 +130,7 @@ impl<'a> Bodies<'a> {
 
     /// Where a point is in its body's frame, m.
     pub(crate) fn at(&self, point: &NamedPoint) -> Vec2 {
-        self.list[point.0.0].points[point.1].at
+        self.list[point.0.0].points[point.1].1
     }
 
     /// Index of the point of that name of a body.
@@ -164,38 +143,18 @@ impl<'a> Bodies<'a> {
         found
     }
 
-    /// Reports a `path` without a number, which the text names at `at`.
-    pub(crate) fn check_number(&self, path: &str, at: &Span) {
-        let path_of = |n: &BodyNumber| {
-            let body = &self.list[n.body.0];
-            n.path(body.name, |k| body.points[k].name)
-        };
-        let all: Vec<_> = self.numbers.iter().map(path_of).collect();
-        if !all.iter().any(|p| p == path) {
-            let (message, help) = no_number(path, &all);
-            self.log
-                .error(message)
-                .label(at, "unknown number")
-                .help(help)
-                .report();
-        }
-    }
-
-    /// Reports two places that name the same body where two bodies are needed. `message` is given the body's name.
-    pub(crate) fn reject_same_body<T>(
+    /// The two bodies, or an error if they are the same. `message` is given the body's name.
+    pub(crate) fn require_different(
         &self,
-        body: BodyId,
+        [a, b]: [(BodyId, &Span); 2],
         message: impl Fn(&str) -> String,
-        labels: [(&Span, &str); 2],
         help: &str,
-    ) -> Option<T> {
-        let diagnostic = self.log.error(message(self.list[body.0].name));
-        let [(a, first), (b, second)] = labels;
-        diagnostic
-            .label(a, first)
-            .label(b, second)
-            .help(help)
-            .reject()
+    ) -> Option<[BodyId; 2]> {
+        if a.0 != b.0 {
+            return Some([a.0, b.0]);
+        }
+        let labels = [(a.1, "this body"), (b.1, "and the same again")];
+        (self.log).reject(message(self.list[a.0.0].name), &labels, help)
     }
 }
 
@@ -209,10 +168,10 @@ impl ParsedBody<'_> {
         log: &Diagnostics,
     ) {
         let body = shorten(self.name);
-        let names = self.points.iter().map(|p| p.name);
+        let names = self.points.iter().map(|(name, _)| *name);
         let help = log.choices(name, &format!("points of `{body}`"), names);
         let message = format!("body `{body}` has no point `{}`", shorten(point));
-        log.error(message).label(at, label).help(help).report();
+        log.report(message, &[(at, label)], help);
     }
 }
 
@@ -238,177 +197,124 @@ fn ground(fields: &TableReader<'_>, tables: &[Option<TableReader<'_>>]) -> Optio
     }
     fixed.extend(named);
     if fixed.is_empty() {
-        fields
-            .error("no body is fixed")
-            .label(&fields.span, "one of these has to be the ground")
-            .help("name the fixed body `ground`, or write `fixed = true` in it")
-            .report();
+        let labels = [(&fields.span, "one of these has to be the ground")];
+        let help = "name the fixed body `ground`, or write `fixed = true` in it";
+        fields.log().report("no body is fixed", &labels, help);
     }
     if fixed.len() > 1 {
+        let message = format!("{} bodies are fixed", fixed.len());
+        let labels = fixed.iter().take(4).map(|(_, at, label)| (at, *label));
         let help = "a mechanism has one ground: put all its points into one body, \
                     or write `fixed = false` in a body that moves";
-        let mut diagnostic = fields
-            .error(format!("{} bodies are fixed", fixed.len()))
-            .help(help);
-        for (_, span, label) in fixed.iter().take(4) {
-            diagnostic = diagnostic.label(span, *label);
-        }
-        diagnostic.report();
+        fields
+            .log()
+            .report(message, &labels.collect::<Vec<_>>(), help);
     }
     fixed.first().map(|(k, ..)| *k)
 }
 
-struct BodyReader<'r> {
-    id: usize,
+fn read_body<'a>(
+    entry: &Entry<'a>,
+    fields: Option<&TableReader<'a>>,
+    id: BodyId,
     is_ground: bool,
-    numbers: &'r mut Vec<BodyNumber>,
+) -> ParsedBody<'a> {
+    let mut body = ParsedBody {
+        name: entry.name,
+        key: entry.key.clone(),
+        points: Vec::new(),
+        by_name: HashMap::new(),
+        points_known: false,
+        mass: Mass::default(),
+    };
+    entry.log().place(SceneLocation::Body(id), &entry.key);
+    let Some(fields) = fields else { return body };
+    fields.reject_unknown_keys(table("body"));
+    body.read_points(id, fields);
+    fields.place("mass", SceneLocation::Mass(id));
+    fields.place("inertia", SceneLocation::Inertia(id));
+    fields.place("center", SceneLocation::Center(id));
+    let mass = body.read_mass(fields, is_ground);
+    // The ground never moves: what it weighs has no effect, and must not appear in any balance.
+    if !is_ground {
+        body.mass = mass;
+    }
+    body
 }
 
-impl BodyReader<'_> {
-    fn body<'a>(&mut self, entry: &Entry<'a>, fields: Option<&TableReader<'a>>) -> ParsedBody<'a> {
-        let mut body = ParsedBody {
-            name: entry.name,
-            key: entry.key.clone(),
-            points: Vec::new(),
-            by_name: HashMap::new(),
-            points_known: false,
-            mass: Mass::default(),
-            mass_at: None,
-            inertia_at: None,
-            center_at: None,
-        };
-        let Some(fields) = fields else { return body };
-        fields.reject_unknown_keys(table("body"));
-        self.points(&mut body, fields);
-        self.inertia(&mut body, fields);
-        body
-    }
-
-    fn points<'a>(&mut self, body: &mut ParsedBody<'a>, fields: &TableReader<'a>) {
-        let name = shorten(body.name);
+impl<'a> ParsedBody<'a> {
+    fn read_points(&mut self, id: BodyId, fields: &TableReader<'a>) {
+        let name = shorten(self.name);
         let entry = fields.get("points");
         let points = entry.map(|e| TableReader::open(e, format!("the points of `{name}`")));
         let Some(points) = points.map_or(Some(Vec::new()), |p| Some(p?.entries)) else {
             return;
         };
         if points.is_empty() {
-            let at = entry.map_or(&body.key, |e| &e.key);
-            let diagnostic = fields.error(format!("body `{name}` has no points"));
+            let at = entry.map_or(&self.key, |e| &e.key);
+            let message = format!("body `{name}` has no points");
             let help = "a body is joined at its points: `points = { A = [0, 0] }`";
-            return diagnostic.label(at, "no points").help(help).report();
+            return fields.log().report(message, &[(at, "no points")], help);
         }
-        body.points_known = true;
+        self.points_known = true;
         for (k, point) in points.iter().enumerate() {
             check("a point", point);
             let what = format!("point `{}` of `{name}`", shorten(point.name));
-            let at = self.vector(point.value, &what, |axis| BodyField::Point(k, axis));
-            body.by_name.insert(point.name, k);
-            body.points.push(ParsedPoint {
-                name: point.name,
-                at: at.unwrap_or(Vec2::ZERO),
-                span: point.key.clone(),
-            });
+            let at = point.value.point(&what).unwrap_or(Vec2::ZERO);
+            self.by_name.insert(point.name, k);
+            self.points.push((point.name, at));
+            point.log().place(SceneLocation::Point(id, k), &point.key);
         }
     }
 
-    fn inertia<'a>(&mut self, body: &mut ParsedBody<'a>, fields: &TableReader<'a>) {
+    fn read_mass(&self, fields: &TableReader<'a>, is_ground: bool) -> Mass {
         let units = fields.units();
-        let mass = self.mass_or_inertia(fields, "mass", BodyField::Mass, &units.mass);
-        let inertia = self.mass_or_inertia(fields, "inertia", BodyField::Inertia, &units.inertia);
-        let [mass_at, inertia_at, center_at] =
-            ["mass", "inertia", "center"].map(|key| fields.get(key).map(|e| e.value.span()));
-        body.mass_at = mass_at;
-        body.inertia_at = inertia_at;
-        body.center_at = center_at;
-        let center = fields
-            .get("center")
-            .and_then(|entry| self.center(body, entry.value));
-        if self.is_ground {
-            // It never moves: what it weighs has no effect, and must not appear in any balance.
-            return;
-        }
-        if let (Some(mass), Some(span), None) = (mass, &body.mass_at, &body.center_at)
-            && mass > 0.0
+        let mass = mass_or_inertia(fields, "mass", &units.mass);
+        let inertia = mass_or_inertia(fields, "inertia", &units.inertia);
+        let given = fields.get("center");
+        let center = given.and_then(|entry| self.read_center(entry.value));
+        if let (false, Some(entry), None) = (is_ground, fields.get("mass"), given)
+            && mass.is_some_and(|mass| mass > 0.0)
         {
-            let name = shorten(body.name);
-            fields
-                .error(format!("body `{name}` has a mass but no centre of mass"))
-                .label(span, "no centre of mass")
-                .help("add `center`: the name of one of its points, or [x, y]")
-                .report();
+            let message = format!(
+                "body `{}` has a mass but no centre of mass",
+                shorten(self.name)
+            );
+            let labels = [(&entry.value.span(), "no centre of mass")];
+            let help = "add `center`: the name of one of its points, or [x, y]";
+            fields.log().report(message, &labels, help);
         }
-        body.mass = Mass {
+        Mass {
             mass: mass.unwrap_or(0.0),
             center: center.unwrap_or(Vec2::ZERO),
             inertia: inertia.unwrap_or(0.0),
-        };
-    }
-
-    /// A mass or an inertia, in SI: not negative.
-    fn mass_or_inertia(
-        &mut self,
-        fields: &TableReader<'_>,
-        key: &str,
-        field: BodyField,
-        unit: &Unit,
-    ) -> Option<f64> {
-        let value = fields.get(key)?.value;
-        let what = format!("{key} of {}", fields.what);
-        let (written, si) = value.written_and_si(unit, &what)?;
-        if written < 0.0 {
-            let message = format!("the {what} is negative");
-            return value.wrong(message, "expected 0 or more").reject();
         }
-        self.record(field, written, value.span());
-        Some(si)
     }
 
-    fn center(&mut self, body: &ParsedBody<'_>, value: Value<'_>) -> Option<Vec2> {
+    fn read_center(&self, value: Value<'_>) -> Option<Vec2> {
         let DeValue::String(text) = value.get() else {
-            let what = format!("the center of `{}`", shorten(body.name));
-            return self.vector(value, &what, BodyField::Center);
+            return value.point(&format!("the center of `{}`", shorten(self.name)));
         };
-        let point = body.by_name.get(text.as_ref());
-        if point.is_none() && body.points_known {
+        let point = self.by_name.get(text.as_ref());
+        if point.is_none() && self.points_known {
             // `crank.A` is understood, but written as everywhere else it would be one more rule.
-            let without_body = text
-                .strip_prefix(body.name)
-                .and_then(|t| t.strip_prefix('.'));
-            let name = without_body.unwrap_or(text);
+            let without_body = text.strip_prefix(self.name);
+            let without_body = without_body.and_then(|t| t.strip_prefix('.'));
             let at = (&value.span(), "unknown point of this body");
-            body.report_unknown_point(text, name, at, value.log());
+            self.report_unknown_point(text, without_body.unwrap_or(text), at, value.log());
         }
-        point.map(|&k| body.points[k].at)
+        point.map(|&k| self.points[k].1)
     }
+}
 
-    fn vector(
-        &mut self,
-        value: Value<'_>,
-        what: &str,
-        field: impl Fn(usize) -> BodyField,
-    ) -> Option<Vec2> {
-        let values = value.pair(POINT, what)?;
-        let mut component = |axis: usize| {
-            let value = values[axis];
-            let what = format_args!("{} of {what}", ["x", "y"][axis]);
-            let (written, si) = value.written_and_si(&value.units().length, what)?;
-            self.record(field(axis), written, value.span());
-            Some(si)
-        };
-        let (x, y) = (component(0), component(1));
-        Some(vec2(x?, y?))
+/// A mass or an inertia, in SI: not negative.
+fn mass_or_inertia(fields: &TableReader<'_>, key: &str, unit: &Unit) -> Option<f64> {
+    let value = fields.get(key)?.value;
+    let what = format!("{key} of {}", fields.what);
+    let si = value.quantity(unit, &what)?;
+    if si < 0.0 {
+        let message = format!("the {what} is negative");
+        return value.reject(message, "expected 0 or more", "");
     }
-
-    fn record(&mut self, field: BodyField, value: f64, span: Span) {
-        let has_effect = !self.is_ground || matches!(field, BodyField::Point(..));
-        if has_effect {
-            let body = BodyId(self.id);
-            self.numbers.push(BodyNumber {
-                body,
-                field,
-                value,
-                span,
-            });
-        }
-    }
+    Some(si)
 }

@@ -1,34 +1,32 @@
 //! The sections of the file, read in an order in which each finds what it refers to.
 
-mod into_scene;
-
 use crate::assembly::ParsedAssembly;
 use crate::bodies::Bodies;
-use crate::coordinates::{ParsedActuator, ParsedCoordinates, actuators};
+use crate::coordinates::{ParsedCoordinate, ParsedCoordinates, actuators};
 use crate::diagnostics::{Diagnostics, Span};
-use crate::drives::{DriveReader, ParsedDrive, reject_drives_of_prescribed};
+use crate::drives::reject_drives_of_prescribed;
 use crate::error::{SceneError, Source};
-use crate::events::EventReader;
 use crate::former_keys::rename_former_keys;
-use crate::friction::friction;
+use crate::friction::add_friction;
 use crate::joints::Joints;
 use crate::keys::table;
-use crate::loads::{LoadReader, ParsedLoad, separating_forces};
-use crate::magnitude::Magnitudes;
+use crate::loads::add_separating_forces;
+use crate::magnitude::{Magnitudes, Names};
 use crate::motion::{ParsedMotion, calibration};
-use crate::prescribed::{ParsedPrescribedMotion, ParsedSweep};
-use crate::requests::ParsedRequests;
-use crate::scene::{Calibration, Scene};
-use crate::section_numbers::section_numbers;
+use crate::number_paths::{body_numbers, section_numbers};
+use crate::prescribed::{coordinate_sweep, prescribed_motion};
+use crate::requests::requests;
+use crate::scene::{Assembly, NamedCoordinate, Scene};
+use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::units::Units;
 use crate::value::Context;
 use crate::wording::shorten;
+use dwell_geometry::{Body, Mechanism, Vec2};
 use toml::de::DeValue;
 
 impl Scene {
     pub(crate) fn build(name: String, source: &Source) -> Result<Self, SceneError> {
-        let text = source.inner();
         let mut root = crate::read::syntax(source)?;
         let log = &Diagnostics::new(source);
         rename_former_keys(root.get_mut(), table("scene"), log);
@@ -38,41 +36,14 @@ impl Scene {
         };
         let si = Units::default();
         let units = Units::read(fields(&si).get("units"));
-        let fields = fields(&units);
-        let parsed = ParsedScene::read(text, &fields);
+        let scene = read(name, source, &fields(&units));
         if let Some(error) = log.to_error() {
             return Err(error);
         }
         // Parts are missing only where something was found wrong.
         let incomplete = || SceneError::without_labels("the scene is incomplete".to_owned(), None);
-        let mut scene = parsed
-            .ok_or_else(incomplete)?
-            .into_scene(name, Source::clone(source));
-        scene.warnings = log.warnings();
-        scene.section_numbers = section_numbers(text, root.get_ref());
-        Ok(scene)
+        scene.ok_or_else(incomplete)
     }
-}
-
-/// The sections of a file as read.
-struct ParsedScene<'f, 'a> {
-    fields: &'f TableReader<'a>,
-    title: Option<&'a str>,
-    note: Option<&'a str>,
-    bodies: Bodies<'a>,
-    joints: Joints<'a>,
-    actuators: Vec<ParsedActuator<'a>>,
-    named_coordinates: ParsedCoordinates<'a>,
-    assembly: ParsedAssembly,
-    /// Coordinate of each actuator at assembly, SI.
-    assembly_coordinates: Vec<f64>,
-    prescribed: Option<ParsedPrescribedMotion>,
-    sweep: Option<ParsedSweep>,
-    loads: Vec<ParsedLoad>,
-    drives: Vec<ParsedDrive>,
-    requests: ParsedRequests,
-    motion: Option<ParsedMotion<'a>>,
-    calibration: Option<(Calibration, Span)>,
 }
 
 /// Longest title, in characters: it heads a page and a picture.
@@ -81,116 +52,152 @@ const MAX_TITLE_LENGTH: usize = 200;
 /// What some editors put before the first character of a file.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
-impl<'f, 'a> ParsedScene<'f, 'a> {
-    // Long: one section after another, in an order in which each finds the names it refers to.
-    fn read(text: &str, fields: &'f TableReader<'a>) -> Option<Self> {
-        if fields.entries.is_empty() {
-            let blank = |c: char| c.is_whitespace() || c == BYTE_ORDER_MARK;
-            let message = match text.trim_matches(blank).is_empty() {
-                true => "the scene is empty",
-                false => "the scene has nothing but comments",
-            };
-            let diagnostic = fields.error(message).label(&(0..0), "no bodies, no joints");
-            return diagnostic
-                .help("a scene has at least [bodies] and [joints]")
-                .reject();
-        }
-        fields.reject_unknown_keys(table("scene"));
-        let section = |key| section(fields, key);
-        let log = fields.log();
-        let (title, note) = (title(fields), text_of(fields, "note"));
-        // Without bodies every other name would be unknown: one message is enough.
-        let bodies = needed_section(fields, "bodies")?;
-        let count = log.count();
-        let bodies = Bodies::read(&bodies);
-        let all_bodies_read = log.count() == count;
-        let mut joints = Joints::new(log);
-        if let Some(f) = needed_section(fields, "joints") {
-            joints = joints.read(&f, &bodies);
-        }
-        let actuators =
-            section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
-        let coordinates = section("coordinates");
-        let named_coordinates =
-            ParsedCoordinates::read(&actuators, coordinates.as_ref(), &bodies, &joints);
-        joints.read_couplings(&named_coordinates);
-        // A joint that could not be read may be the one that holds a body.
-        if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
-            report_unjoined_bodies(&bodies, &joints);
-        }
-        let assembly_section = section("assembly");
-        let assembly =
-            ParsedAssembly::read(assembly_section.as_ref(), &bodies, &joints, &actuators);
-        let motion_section = section("motion");
-        let can_start_at_rest = is_filled(fields, "loads") || is_filled(fields, "drives");
-        let mut motion = motion_section
-            .as_ref()
-            .map(|f| ParsedMotion::read(f, &actuators, can_start_at_rest));
-        let initial = motion.as_ref().map_or(&[][..], |m| &m.initial_coordinates);
-        let at = assembly_section.as_ref().map(|f| &f.span);
-        let assembly_coordinates = assembly.coordinates_or(initial, &actuators, at, log);
-        if let (Some(motion), Some(f)) = (&mut motion, &motion_section) {
-            motion.read_laws(&actuators, &assembly_coordinates);
-            let events = f
-                .get("events")
-                .and_then(|e| TableReader::open(e, "events of [motion]"));
-            let (joints, named_coordinates) = (&joints, &named_coordinates);
-            let reader = EventReader {
-                named_coordinates,
-                joints,
-            };
-            motion.events = events.map_or_else(Vec::new, |f| reader.read(&f));
-        }
-        let prescribed = section("prescribed")
-            .map(|f| ParsedPrescribedMotion::read(&f, &actuators, &assembly_coordinates));
-        let sweep = section("coordinate-sweep")
-            .map(|f| ParsedSweep::read(&f, &actuators, &assembly_coordinates));
-        let magnitudes = &Magnitudes::new(&named_coordinates);
-        let reader = LoadReader {
-            bodies: &bodies,
-            joints: &joints,
-            magnitudes,
+/// The scene; none if anything was found wrong.
+//
+// Long: one section after another, in an order in which each finds the names it refers to.
+fn read(name: String, source: &Source, fields: &TableReader<'_>) -> Option<Scene> {
+    let log = fields.log();
+    if fields.entries.is_empty() {
+        let blank = |c: char| c.is_whitespace() || c == BYTE_ORDER_MARK;
+        let message = match source.inner().trim_matches(blank).is_empty() {
+            true => "the scene is empty",
+            false => "the scene has nothing but comments",
         };
-        let mut loads = section("loads").map_or_else(Vec::new, |f| reader.read(&f));
-        loads.extend(section("friction").map_or_else(Vec::new, |f| friction(&f, &joints)));
-        loads.extend(separating_forces(&joints));
-        let reader = DriveReader {
-            named_coordinates: &named_coordinates,
-            magnitudes,
-        };
-        let drives = section("drives").map_or_else(Vec::new, |f| reader.read(&f));
-        if let Some(motion) = &motion {
-            reject_drives_of_prescribed(&drives, motion, &actuators);
-        }
-        let requests = section("requests").map(|f| ParsedRequests::read(&f, &bodies, &joints));
-        let calibration = section("calibration").and_then(|f| {
-            if fields.get("motion").is_none() {
-                f.error("a calibration needs a motion")
-                    .label(&f.span, "no free motion has a period")
-                    .help("add [motion], to whose period the number is fitted")
-                    .report();
-            }
-            calibration(&f, all_bodies_read.then_some(&bodies))
-        });
-        Some(Self {
-            fields,
-            title,
-            note,
-            bodies,
-            joints,
-            actuators,
-            named_coordinates,
-            assembly,
-            assembly_coordinates,
-            prescribed,
-            sweep,
-            loads,
-            drives,
-            requests: requests.unwrap_or_default(),
-            motion,
-            calibration,
-        })
+        let help = "a scene has at least [bodies] and [joints]";
+        return log.reject(message, &[(&(0..0), "no bodies, no joints")], help);
     }
+    fields.reject_unknown_keys(table("scene"));
+    for (key, location) in [
+        ("units", SceneLocation::Units),
+        ("assembly", SceneLocation::Assembly),
+        ("prescribed", SceneLocation::Prescribed),
+        ("coordinate-sweep", SceneLocation::CoordinateSweep),
+        ("requests", SceneLocation::Requests),
+        ("motion", SceneLocation::Motion),
+    ] {
+        fields.place(key, location);
+    }
+    let section = |key| section(fields, key);
+    let (title, note) = (title(fields), text_of(fields, "note"));
+    // Without bodies every other name would be unknown: one message is enough.
+    let bodies_section = needed_section(fields, "bodies")?;
+    let count = log.count();
+    let bodies = Bodies::read(&bodies_section);
+    let body_numbers = body_numbers(&bodies, &bodies_section);
+    let known_numbers = (log.count() == count).then_some(body_numbers.as_slice());
+    let mut joints = Joints::new(log);
+    if let Some(f) = needed_section(fields, "joints") {
+        joints = joints.read(&f, &bodies);
+    }
+    let actuators = section("actuators").map_or_else(Vec::new, |f| actuators(&f, &bodies, &joints));
+    let named_section = section("coordinates");
+    let named = ParsedCoordinates::read(&actuators, named_section.as_ref(), &bodies, &joints);
+    joints.read_couplings(&named);
+    // A joint that could not be read may be the one that holds a body.
+    if !joints.list.is_empty() && joints.list.iter().all(|j| j.joint.is_some()) {
+        report_unjoined_bodies(&bodies, &joints);
+    }
+    let names = Names {
+        bodies: &bodies,
+        joints: &joints,
+        coordinates: &named,
+        magnitudes: Magnitudes::new(&named),
+    };
+    let assembly_section = section("assembly");
+    let assembly = ParsedAssembly::read(assembly_section.as_ref(), &bodies, &joints, &actuators);
+    let motion_section = section("motion");
+    let can_start_at_rest = is_filled(fields, "loads") || is_filled(fields, "drives");
+    let motion = motion_section.as_ref();
+    let mut motion = motion.map(|f| ParsedMotion::read(f, &actuators, can_start_at_rest));
+    let initial = motion.as_ref().map_or(&[][..], |m| &m.initial_coordinates);
+    let at = assembly_section.as_ref().map(|f| &f.span);
+    let start = assembly.coordinates_or(initial, &actuators, at, log);
+    if let (Some(motion), Some(f)) = (&mut motion, &motion_section) {
+        motion.read_laws(&actuators, &start);
+        let events = f.get("events");
+        let events = events.and_then(|e| TableReader::open(e, "events of [motion]"));
+        motion.events = events.map_or_else(Vec::new, |f| names.events(&f));
+    }
+    let prescribed = section("prescribed");
+    let prescribed = prescribed.and_then(|f| prescribed_motion(&f, &actuators, &start));
+    let sweep = section("coordinate-sweep");
+    let sweep = sweep.and_then(|f| coordinate_sweep(&f, &actuators, &start));
+    let mut loads = section("loads").map_or_else(Vec::new, |f| names.loads(&f));
+    if let Some(f) = section("friction") {
+        add_friction(&f, &joints, &mut loads);
+    }
+    add_separating_forces(&joints, &mut loads);
+    let drives = section("drives").map_or_else(Vec::new, |f| names.drives(&f, loads.len()));
+    if let Some(motion) = &motion {
+        reject_drives_of_prescribed(&drives, motion, &actuators);
+    }
+    let requests_section = section("requests");
+    let requested = requests_section.as_ref();
+    let requested = requested.map(|f| requests(f, &bodies, &joints));
+    let calibration = section("calibration").and_then(|f| {
+        if fields.get("motion").is_none() {
+            let labels = [(&f.span, "no free motion has a period")];
+            let help = "add [motion], to whose period the number is fitted";
+            log.report("a calibration needs a motion", &labels, help);
+        }
+        calibration(&f, known_numbers)
+    });
+    if log.count() > 0 {
+        return None;
+    }
+    let body = |name: &str| Body {
+        name: name.to_owned(),
+    };
+    let mechanism = Mechanism {
+        bodies: bodies.list.iter().map(|b| body(b.name)).collect(),
+        ground: bodies.ground?,
+        joints: joints.list.into_iter().filter_map(|j| j.joint).collect(),
+        actuators: actuators.into_iter().filter_map(|a| a.actuator).collect(),
+        couplings: joints.couplings,
+    };
+    let mut requests = requested.unwrap_or_default();
+    if requests_section.is_none_or(|f| f.get("reactions").is_none()) {
+        requests.reactions = mechanism.reactions();
+    }
+    let coordinate = |c: &ParsedCoordinate<'_>| {
+        let name = c.name.to_owned();
+        let coordinate = c.coordinate?;
+        Some(NamedCoordinate { name, coordinate })
+    };
+    let coordinates = named.list[named.actuators..].iter();
+    let points = |points: &[(&str, Vec2)]| {
+        let points = points.iter();
+        points
+            .map(|(name, at)| (str::to_owned(name), *at))
+            .collect()
+    };
+    Some(Scene {
+        title: title.map_or_else(|| name.clone(), one_line),
+        name,
+        note: note.map(printable),
+        masses: bodies.list.iter().map(|b| b.mass).collect(),
+        points: bodies.list.iter().map(|b| points(&b.points)).collect(),
+        coordinates: coordinates.filter_map(coordinate).collect(),
+        motion: motion.and_then(|m| m.into_spec(&start)),
+        mechanism,
+        assembly: Assembly {
+            coordinates: start,
+            initial_guess: assembly.initial_guess,
+            branch_hints: assembly.branch_hints,
+        },
+        prescribed,
+        sweep,
+        loads,
+        drives: drives.into_iter().map(|(drive, _)| drive).collect(),
+        requests,
+        calibration,
+        source: Source::clone(source),
+        warnings: log.warnings(),
+        units: fields.units().clone(),
+        spans: log.take_spans(),
+        body_numbers,
+        section_numbers: section_numbers(fields),
+    })
 }
 
 /// The table of a section.
@@ -200,18 +207,18 @@ fn section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
 
 /// The table of a section that has to be there, and not empty.
 fn needed_section<'a>(fields: &TableReader<'a>, key: &str) -> Option<TableReader<'a>> {
-    let missing = |span: &Span, label: String| {
+    let missing = |span: &Span, label: &str| {
         let help = match key {
             "bodies" => "describe the bodies: `[bodies.crank]` with `points = { A = [0, 0] }`",
             _ => "connect the bodies: `A = { revolute = [\"ground.A\", \"crank.A\"] }`",
         };
-        let diagnostic = fields.error(format!("the scene has no {key}"));
-        diagnostic.label(span, label).help(help).reject()
+        let message = format!("the scene has no {key}");
+        fields.log().reject(message, &[(span, label)], help)
     };
     match fields.get(key) {
-        None => missing(&(0..0), format!("there is no [{key}] in this file")),
+        None => missing(&(0..0), &format!("there is no [{key}] in this file")),
         Some(entry) => match section(fields, key)? {
-            table if table.entries.is_empty() => missing(&entry.key, "nothing in it".to_owned()),
+            table if table.entries.is_empty() => missing(&entry.key, "nothing in it"),
             table => Some(table),
         },
     }
@@ -226,24 +233,17 @@ fn is_filled(fields: &TableReader<'_>, key: &str) -> bool {
 fn title<'a>(fields: &TableReader<'a>) -> Option<&'a str> {
     let (title, entry) = (text_of(fields, "title")?, fields.get("title")?);
     if title.chars().count() > MAX_TITLE_LENGTH {
-        entry
-            .error(format!(
-                "the title is longer than {MAX_TITLE_LENGTH} characters"
-            ))
-            .label(&entry.key, "this text")
-            .help("a title is a line at the head of a page; the rest can go into `note`")
-            .report();
+        let message = format!("the title is longer than {MAX_TITLE_LENGTH} characters");
+        let help = "a title is a line at the head of a page; the rest can go into `note`";
+        entry.reject::<()>(message, "this text", help);
     }
     Some(title)
 }
 
 /// A text shown to people; blank it is as good as absent.
 fn text_of<'a>(fields: &TableReader<'a>, key: &str) -> Option<&'a str> {
-    let text = fields
-        .get(key)?
-        .value
-        .string(format_args!("the {key}"))?
-        .trim();
+    let value = fields.get(key)?.value;
+    let text = value.string(format_args!("the {key}"))?.trim();
     (!text.is_empty()).then_some(text)
 }
 
@@ -256,11 +256,20 @@ fn report_unjoined_bodies(bodies: &Bodies<'_>, joints: &Joints<'_>) {
         }
     }
     for (body, _) in bodies.list.iter().zip(joined).filter(|(_, joined)| !joined) {
-        joints
-            .log
-            .error(format!("body `{}` is in no joint", shorten(body.name)))
-            .label(&body.key, "not connected")
-            .help("join it to another body in [joints], or leave it out")
-            .report();
+        let message = format!("body `{}` is in no joint", shorten(body.name));
+        let help = "join it to another body in [joints], or leave it out";
+        (joints.log).report(message, &[(&body.key, "not connected")], help);
     }
+}
+
+/// A title heads a page: whatever white space it is written with becomes single spaces.
+fn one_line(text: &str) -> String {
+    let text = printable(text);
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// Control characters other than line breaks would reach the reader's terminal: they become spaces.
+fn printable(text: &str) -> String {
+    let visible = |c: char| if c.is_control() && c != '\n' { ' ' } else { c };
+    text.chars().map(visible).collect()
 }

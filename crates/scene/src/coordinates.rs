@@ -5,11 +5,12 @@ use crate::diagnostics::{Diagnostics, Span};
 use crate::joints::Joints;
 use crate::keys::table;
 use crate::names::check;
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{Unit, Units};
 use crate::value::Value;
 use crate::wording::shorten;
-use dwell_geometry::{Actuator, ActuatorKind, BodyId, Coordinate, Vec2};
+use dwell_geometry::{Actuator, ActuatorId, ActuatorKind, BodyId, Coordinate, Vec2};
 use std::collections::HashMap;
 use std::fmt::Display;
 use toml::de::DeValue;
@@ -44,10 +45,7 @@ impl ParsedActuator<'_> {
         if self.is_distance() && si <= 0.0 {
             let message = format!("{what} is a length that is not above zero");
             let help = "two points that coincide have no line along which to drive them";
-            return value
-                .wrong(message, "expected a number above 0")
-                .help(help)
-                .reject();
+            return value.reject(message, "expected a number above 0", help);
         }
         Some(si)
     }
@@ -101,11 +99,10 @@ impl<'a> ParsedCoordinates<'a> {
                 let other = (&all.list[*k].key, "an actuator");
                 report_ambiguous_name(entry, other, "a coordinate", "an expression");
             }
-            all.push(
-                entry.name,
-                &entry.key,
-                read_coordinate(entry, bodies, joints),
-            );
+            let location = SceneLocation::Coordinate(all.list.len() - actuators.len());
+            all.log.place(location, &entry.key);
+            let coordinate = read_coordinate(entry, bodies, joints);
+            all.push(entry.name, &entry.key, coordinate);
         }
         all
     }
@@ -127,13 +124,9 @@ impl<'a> ParsedCoordinates<'a> {
         }
         let names = self.list.iter().map(|m| m.name);
         let help = self.log.choices(name, "coordinates", names);
-        let diagnostic = self
-            .log
-            .error(format!("there is no coordinate `{}`", shorten(name)));
-        diagnostic
-            .label(at, "neither an actuator nor in [coordinates]")
-            .help(help)
-            .reject()
+        let message = format!("there is no coordinate `{}`", shorten(name));
+        let labels = [(at, "neither an actuator nor in [coordinates]")];
+        self.log.reject(message, &labels, help)
     }
 
     /// The coordinate that the value of an entry of `fields` names.
@@ -167,11 +160,9 @@ pub(crate) fn is_same(a: Coordinate, b: Coordinate) -> bool {
 fn check_coordinate_name(entry: &Entry<'_>, kind: &str) {
     check(kind, entry);
     if entry.name == "t" {
-        entry
-            .error(format!("`t` cannot be the name of {kind}"))
-            .label(&entry.key, "this name")
-            .help("`t` is the time in expressions: take another name")
-            .report();
+        let message = format!("`t` cannot be the name of {kind}");
+        let help = "`t` is the time in expressions: take another name";
+        entry.reject::<()>(message, "this name", help);
     }
 }
 
@@ -182,23 +173,14 @@ fn report_ambiguous_name(
     kind: &str,
     context: &str,
 ) {
-    let the = |kind: &str| {
-        format!(
-            "the {}",
-            kind.trim_start_matches("an ").trim_start_matches("a ")
-        )
-    };
-    entry
-        .error(format!(
-            "`{}` names both {other} and {kind}",
-            shorten(entry.name)
-        ))
-        .label(key, the(other))
-        .label(&entry.key, the(kind))
-        .help(format!(
-            "rename one: in {context} the name would be ambiguous"
-        ))
-        .report();
+    let [first, second] = [other, kind].map(|kind| {
+        let thing = kind.trim_start_matches("an ").trim_start_matches("a ");
+        format!("the {thing}")
+    });
+    let message = format!("`{}` names both {other} and {kind}", shorten(entry.name));
+    let help = format!("rename one: in {context} the name would be ambiguous");
+    let labels = [(key, first.as_str()), (&entry.key, &second)];
+    entry.log().report(message, &labels, help);
 }
 
 /// All the actuators. A body of the same name is an error: both are keys of `[assembly]`.
@@ -214,6 +196,8 @@ pub(crate) fn actuators<'a>(
             let other = (&bodies.list[k].key, "a body");
             report_ambiguous_name(entry, other, "an actuator", "[assembly]");
         }
+        let location = SceneLocation::Actuator(ActuatorId(list.len()));
+        entry.log().place(location, &entry.key);
         let parsed = ParsedActuator {
             name: entry.name,
             key: entry.key.clone(),
@@ -225,14 +209,10 @@ pub(crate) fn actuators<'a>(
         };
         if let Some(other) = list.iter().find(same) {
             let (a, b) = (shorten(other.name), shorten(entry.name));
-            fields
-                .error(format!(
-                    "actuators `{a}` and `{b}` drive the same coordinate"
-                ))
-                .label(&other.key, "one of them")
-                .label(&entry.key, "and the other")
-                .help("leave one out: each actuator has a coordinate of its own")
-                .report();
+            let message = format!("actuators `{a}` and `{b}` drive the same coordinate");
+            let labels = [(&other.key, "one of them"), (&entry.key, "and the other")];
+            let help = "leave one out: each actuator has a coordinate of its own";
+            fields.log().report(message, &labels, help);
         }
         list.push(parsed);
     }
@@ -248,10 +228,10 @@ fn read_actuator(entry: &Entry<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) ->
     let lacks = ("has no coordinate", "which angle or length?");
     let chosen = fields.alternative(table("actuator"), lacks, help)?;
     let (bodies, kind) = match (chosen.name, chosen.value.get()) {
-        ("angle", _) => (
-            angle(chosen, &fields, "drives", bodies)?,
-            ActuatorKind::Angle,
-        ),
+        ("angle", _) => {
+            let bodies = angle(chosen, &fields, "drives", bodies)?;
+            (bodies, ActuatorKind::Angle)
+        }
         (_, DeValue::String(name)) => {
             let joint = joints.sliding(name, &chosen.value.span())?;
             let bodies = joints.list.get(joint.0)?.joint.as_ref()?.bodies;
@@ -284,9 +264,8 @@ fn read_coordinate(
         "angle" => angle(chosen, &fields, "measures", bodies).map(Coordinate::Angle),
         "travel" => {
             let name = chosen.value.string(fields.name_of(chosen))?;
-            joints
-                .sliding(name, &chosen.value.span())
-                .map(Coordinate::Travel)
+            let joint = joints.sliding(name, &chosen.value.span())?;
+            Some(Coordinate::Travel(joint))
         }
         _ => {
             let (bodies, points) = length(chosen, &fields, ("measures", TWO_POINTS), bodies)?;
@@ -302,18 +281,10 @@ fn angle(
     verb: &str,
     bodies: &Bodies<'_>,
 ) -> Option<[BodyId; 2]> {
-    let [(a, at_a), (b, at_b)] = bodies.find_two(entry.value, fields.name_of(entry))?;
-    if a != b {
-        return Some([a, b]);
-    }
+    let [a, b] = &bodies.find_two(entry.value, fields.name_of(entry))?;
     let message = |name: &str| format!("{} {verb} body `{name}` against itself", fields.what);
-    let labels = [(&at_a, "this body"), (&at_b, "and the same again")];
-    bodies.reject_same_body(
-        a,
-        message,
-        labels,
-        "an angle is between two different bodies",
-    )
+    let help = "an angle is between two different bodies";
+    bodies.require_different([(a.0, &a.1), (b.0, &b.1)], message, help)
 }
 
 /// Two points of different bodies, of which `fields` drives or measures the distance.
@@ -327,11 +298,10 @@ fn length(
     if a.0 != b.0 {
         return Some(([a.0, b.0], [bodies.at(&a), bodies.at(&b)]));
     }
-    let message = |name: &str| format!("{} {verb} a length within body `{name}`", fields.what);
-    let labels = [
-        (&a.2, "a point of this body"),
-        (&b.2, "and another of the same"),
-    ];
+    let name = bodies.list[a.0.0].name;
+    let message = format!("{} {verb} a length within body `{name}`", fields.what);
+    let first = (&a.2, "a point of this body");
+    let labels = [first, (&b.2, "and another of the same")];
     let help = "a length that can change is between two different bodies";
-    bodies.reject_same_body(a.0, message, labels, help)
+    fields.log().reject(message, &labels, help)
 }

@@ -1,6 +1,7 @@
-//! Gathering the errors of a file, so that one report holds them all.
+//! Gathering the errors of a file, so that one report holds them all, and the places of what it describes.
 
 use crate::error::{SceneError, SceneWarning, Source};
+use crate::spans::{SceneLocation, SceneSpans};
 use crate::wording::choices;
 use std::cell::{Cell, RefCell};
 use std::collections::HashSet;
@@ -13,56 +14,24 @@ pub(crate) type Span = Range<usize>;
 /// Errors reported at once. A file can be wrong twenty thousand times over, a reader cannot.
 const MAX_REPORTED: usize = 40;
 
-/// One thing that is wrong, until it is reported.
+/// One thing that is wrong.
 #[derive(Debug)]
-#[must_use]
-pub(crate) struct Diagnostic<'l> {
-    log: &'l Diagnostics,
-    found: Found,
-}
-
-#[derive(Debug)]
-struct Found {
+struct Diagnostic {
     message: String,
     help: Option<String>,
     labels: Vec<(Span, String)>,
-}
-
-impl Diagnostic<'_> {
-    pub(crate) fn label(mut self, span: &Span, label: impl Into<String>) -> Self {
-        self.found.labels.push((span.clone(), label.into()));
-        self
-    }
-
-    /// How to mend it; nothing where the text is empty.
-    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
-        self.found.help = Some(help.into()).filter(|help| !help.is_empty());
-        self
-    }
-
-    pub(crate) fn report(self) {
-        if self.log.full() {
-            self.log.suppressed.set(self.log.suppressed.get() + 1);
-        } else {
-            self.log.found.borrow_mut().push(self.found);
-        }
-    }
-
-    /// Reports it, in place of what could not be read.
-    pub(crate) fn reject<T>(self) -> Option<T> {
-        self.report();
-        None
-    }
 }
 
 /// Everything that is wrong with one file. Its readers share it.
 #[derive(Debug)]
 pub(crate) struct Diagnostics {
     source: Source,
-    found: RefCell<Vec<Found>>,
+    found: RefCell<Vec<Diagnostic>>,
     suppressed: Cell<usize>,
     /// Former names that the file uses: the name, what it is called now, where it stands.
     renamed: RefCell<Vec<(String, String, Span)>>,
+    /// Where the things of the scene are written.
+    spans: RefCell<SceneSpans>,
 }
 
 impl Diagnostics {
@@ -72,19 +41,47 @@ impl Diagnostics {
             found: RefCell::default(),
             suppressed: Cell::new(0),
             renamed: RefCell::default(),
+            spans: RefCell::default(),
         }
     }
 
-    /// Something that is wrong, to be reported once its places are added.
-    pub(crate) fn error(&self, message: impl Into<String>) -> Diagnostic<'_> {
-        let message = message.into();
-        let (help, labels) = (None, Vec::new());
-        let found = Found {
-            message,
-            help,
-            labels,
-        };
-        Diagnostic { log: self, found }
+    /// Reports something that is wrong, where it is, the main place first, and how to mend it (nothing where the text is empty).
+    pub(crate) fn report(
+        &self,
+        message: impl Into<String>,
+        labels: &[(&Span, &str)],
+        help: impl Into<String>,
+    ) {
+        if self.full() {
+            return self.suppressed.set(self.suppressed.get() + 1);
+        }
+        let labels = labels.iter().map(|&(at, label)| (at.clone(), label.into()));
+        self.found.borrow_mut().push(Diagnostic {
+            message: message.into(),
+            help: Some(help.into()).filter(|help| !help.is_empty()),
+            labels: labels.collect(),
+        });
+    }
+
+    /// Reports it, in place of what could not be read.
+    pub(crate) fn reject<T>(
+        &self,
+        message: impl Into<String>,
+        labels: &[(&Span, &str)],
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.report(message, labels, help);
+        None
+    }
+
+    /// Notes where a thing of the scene is written.
+    pub(crate) fn place(&self, location: SceneLocation, span: &Span) {
+        self.spans.borrow_mut().insert(location, span.clone());
+    }
+
+    /// All that has been noted.
+    pub(crate) fn take_spans(&self) -> SceneSpans {
+        self.spans.take()
     }
 
     /// Where in the file a part of a string is. A string with escapes does not stand in the file
@@ -166,7 +163,8 @@ impl Diagnostics {
         let mut found = self.found.take();
         // In the order of the file, whatever order the sections were read in.
         found.sort_by_key(|p| p.labels.first().map_or(0, |(span, _)| span.start));
-        let single = |p: Found| SceneError::with_labels(&self.source, p.message, p.help, p.labels);
+        let single =
+            |p: Diagnostic| SceneError::with_labels(&self.source, p.message, p.help, p.labels);
         let mut errors: Vec<_> = found.into_iter().map(single).collect();
         if errors.len() < 2 {
             return errors.pop();

@@ -1,12 +1,13 @@
 //! The drives of a free motion.
 
-use crate::coordinates::{ParsedActuator, ParsedCoordinates, is_same};
+use crate::coordinates::{ParsedActuator, is_same};
 use crate::diagnostics::Span;
 use crate::keys;
-use crate::kind::kind;
-use crate::magnitude::Magnitudes;
+use crate::kind::{kind, reject_unread_kind};
+use crate::magnitude::{Magnitudes, Names};
 use crate::motion::ParsedMotion;
 use crate::names::check;
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};
 use crate::value::{NumberRule, SignRule};
@@ -14,52 +15,29 @@ use crate::wording::{list, shorten};
 use dwell_geometry::{Actuator, Coordinate};
 use dwell_kinetostatics::{Drive, DriveKind, Magnitude, Motor, SpeedController};
 
-/// A drive as read; nothing in it if it was wrong.
-#[derive(Debug)]
-pub(crate) struct ParsedDrive {
-    pub(crate) key: Span,
-    /// Its magnitude, voltage, stall torque or reference speed.
-    pub(crate) magnitude: Option<Span>,
-    /// Where its coordinate is named.
-    at: Option<Span>,
-    pub(crate) drive: Option<Drive>,
-}
-
-/// Reads the drives.
-pub(crate) struct DriveReader<'r> {
-    pub(crate) named_coordinates: &'r ParsedCoordinates<'r>,
-    pub(crate) magnitudes: &'r Magnitudes,
-}
-
-impl DriveReader<'_> {
-    /// Every drive of the section.
-    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<ParsedDrive> {
-        let one = |entry: &Entry<'_>| {
+impl Names<'_> {
+    /// Every drive of the section that was read well, with where its coordinate is named. The drives follow the `loads`, as in a
+    /// model that has them as its last loads.
+    pub(crate) fn drives(&self, fields: &TableReader<'_>, loads: usize) -> Vec<(Drive, Span)> {
+        let one = |(k, entry): (usize, &Entry<'_>)| {
             check("a drive", entry);
-            self.drive(entry)
+            entry.log().place(SceneLocation::Drive(k), &entry.key);
+            let location = SceneLocation::Load(loads + k);
+            entry.log().place(location, &entry.key);
+            self.drive(entry, SceneLocation::Magnitude(loads + k))
         };
-        fields.entries.iter().map(one).collect()
+        fields.entries.iter().enumerate().filter_map(one).collect()
     }
 
-    fn drive(&self, entry: &Entry<'_>) -> ParsedDrive {
-        let mut parsed = ParsedDrive {
-            key: entry.key.clone(),
-            magnitude: None,
-            at: None,
-            drive: None,
-        };
-        let fields = TableReader::open(entry, format!("drive `{}`", shorten(entry.name)));
-        let kind = fields.as_ref().and_then(|fields| kind(fields, "drive"));
-        let (Some(fields), Some((kind, kind_entry))) = (&fields, kind) else {
-            return parsed;
-        };
-        let coordinate = self.named_coordinates.named_by(kind_entry, fields);
-        parsed.at = Some(kind_entry.value.span());
-        let magnitude = ["magnitude", "voltage", "stall-torque", "speed"];
-        let magnitude = magnitude.iter().find_map(|key| fields.get(key));
-        parsed.magnitude = magnitude.map(|e| e.value.span());
+    fn drive(&self, entry: &Entry<'_>, magnitude: SceneLocation) -> Option<(Drive, Span)> {
+        let fields = &TableReader::open(entry, format!("drive `{}`", shorten(entry.name)))?;
+        let (kind, kind_entry) = kind(fields, "drive")?;
+        let coordinate = self.coordinates.named_by(kind_entry, fields);
+        for key in ["speed", "stall-torque", "voltage", "magnitude"] {
+            fields.place(key, magnitude);
+        }
         let table = DriveTable {
-            magnitudes: self.magnitudes,
+            magnitudes: &self.magnitudes,
             fields,
             // Units of what could not be read do not matter: there is an error already.
             is_angle: coordinate.is_none_or(Coordinate::is_angle),
@@ -67,14 +45,15 @@ impl DriveReader<'_> {
         let kind = match kind {
             "applied-force" => table.applied_force(),
             "motor" => table.motor(),
-            _ => table.speed_controller(),
+            "speed-controller" => table.speed_controller(),
+            _ => reject_unread_kind(kind_entry),
         };
-        parsed.drive = coordinate.zip(kind).map(|(coordinate, kind)| Drive {
+        let drive = Drive {
             name: entry.name.to_owned(),
-            coordinate,
-            kind,
-        });
-        parsed
+            coordinate: coordinate?,
+            kind: kind?,
+        };
+        Some((drive, kind_entry.value.span()))
     }
 }
 
@@ -128,27 +107,25 @@ impl DriveTable<'_> {
             .iter()
             .map(|set| set.iter().find_map(|key| self.fields.get(key)));
         let what = &self.fields.what;
-        let diagnostic = match (given.next().flatten(), given.next().flatten()) {
+        let (message, labels) = match (given.next().flatten(), given.next().flatten()) {
             (Some(_), None) => return Some(false),
             (None, Some(_)) => return Some(true),
-            (None, None) => {
-                let message = format!("{what} has neither a circuit nor a torque–speed line");
-                let diagnostic = self.fields.error(message);
-                diagnostic.label(&self.fields.key, "its motor is not described")
-            }
+            (None, None) => (
+                format!("{what} has neither a circuit nor a torque–speed line"),
+                vec![(&self.fields.key, "its motor is not described")],
+            ),
             (Some(a), Some(b)) => {
                 let (one, other) = (a.written(), b.written());
-                self.fields
-                    .error(format!("{what} has both `{one}` and `{other}`"))
-                    .label(&a.key, "part of the circuit")
-                    .label(&b.key, "part of the torque–speed line")
+                let circuit = (&a.key, "part of the circuit");
+                let line = (&b.key, "part of the torque–speed line");
+                let message = format!("{what} has both `{one}` and `{other}`");
+                (message, vec![circuit, line])
             }
         };
-        let sets = sets.into_iter().filter_map(|set| list(set.into_iter()));
+        let sets = sets.iter().filter_map(|set| list(set.iter().copied()));
         let sets: Vec<_> = sets.collect();
-        diagnostic
-            .help(format!("a motor is given by {}", sets.join(", or by ")))
-            .reject()
+        let help = format!("a motor is given by {}", sets.join(", or by "));
+        self.fields.log().reject(message, &labels, help)
     }
 
     /// Voltage; torque constant, resistance and inductance.
@@ -178,11 +155,10 @@ impl DriveTable<'_> {
         let no_load_speed = fields.number("no-load-speed", &help, &rule(angle));
         if let Some(entry) = fields.get("inductance") {
             let what = &fields.what;
-            return fields
-                .error(format!("{what} has an inductance and a torque–speed line"))
-                .label(&entry.key, "the inductance belongs to a circuit")
-                .help("give the motor by `voltage`, `torque-constant` and `resistance`, or leave the inductance out")
-                .reject();
+            let message = format!("{what} has an inductance and a torque–speed line");
+            let label = "the inductance belongs to a circuit";
+            let help = "give the motor by `voltage`, `torque-constant` and `resistance`, or leave the inductance out";
+            return entry.reject(message, label, help);
         }
         let constant = 1.0 / no_load_speed?;
         let numbers = [constant, constant / stall_torque?, 0.0];
@@ -223,7 +199,7 @@ impl DriveTable<'_> {
 
 /// Reports drives that act on a prescribed actuator.
 pub(crate) fn reject_drives_of_prescribed(
-    drives: &[ParsedDrive],
+    drives: &[(Drive, Span)],
     motion: &ParsedMotion<'_>,
     actuators: &[ParsedActuator<'_>],
 ) {
@@ -232,17 +208,14 @@ pub(crate) fn reject_drives_of_prescribed(
         else {
             continue;
         };
-        for parsed in drives {
-            if let (Some(drive), Some(at)) = (&parsed.drive, &parsed.at)
-                && is_same(drive.coordinate, prescribed)
-            {
-                let (drive, name) = (shorten(&drive.name), shorten(a.name));
-                law.error(format!("drive `{drive}` acts on `{name}`, which is prescribed"))
-                    .label(at, "driven here")
-                    .label(&law.key, "prescribed here")
-                    .help("leave out the drive, which cannot change a prescribed motion, or the motion law")
-                    .report();
-            }
+        let acts_on_it = |(drive, _): &&(Drive, Span)| is_same(drive.coordinate, prescribed);
+        for (drive, at) in drives.iter().filter(acts_on_it) {
+            let (drive, name) = (shorten(&drive.name), shorten(a.name));
+            let message = format!("drive `{drive}` acts on `{name}`, which is prescribed");
+            let labels = [(at, "driven here"), (&law.key, "prescribed here")];
+            let help =
+                "leave out the drive, which cannot change a prescribed motion, or the motion law";
+            law.log().report(message, &labels, help);
         }
     }
 }

@@ -70,7 +70,7 @@ impl SceneWarning {
 
 impl SceneError {
     /// An error without a place: there is no text.
-    pub(crate) fn without_labels(message: String, help: Option<String>) -> Self {
+    pub fn without_labels(message: String, help: Option<String>) -> Self {
         Self {
             message,
             help,
@@ -114,11 +114,9 @@ impl SceneError {
             return Self::without_labels(format!("{message} ({position})"), help);
         }
         Self {
-            message,
-            help,
             labels,
             text: Some(Arc::clone(source)),
-            related: Vec::new(),
+            ..Self::without_labels(message, help)
         }
     }
 

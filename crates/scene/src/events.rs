@@ -1,44 +1,40 @@
 //! The events of a free motion.
 
-use crate::coordinates::ParsedCoordinates;
 use crate::diagnostics::Span;
-use crate::joints::Joints;
-use crate::kind::kind;
+use crate::kind::{kind, reject_unread_kind};
+use crate::magnitude::Names;
 use crate::names::check;
 use crate::requests::{components, joint_and_component};
 use crate::scene::{EventTrigger, NamedEvent};
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
 use crate::value::{NumberRule, SignRule};
 use crate::wording::{list, shorten};
 use dwell_geometry::{Coordinate, JointId, Reaction};
 
-/// Reads the events.
-pub(crate) struct EventReader<'r> {
-    pub(crate) named_coordinates: &'r ParsedCoordinates<'r>,
-    pub(crate) joints: &'r Joints<'r>,
-}
-
-impl EventReader<'_> {
-    /// Every event of `[motion.events]`, each with where it is named.
-    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<(NamedEvent, Span)> {
-        let one = |entry: &Entry<'_>| {
+impl Names<'_> {
+    /// Every event of `[motion.events]`.
+    pub(crate) fn events(&self, fields: &TableReader<'_>) -> Vec<NamedEvent> {
+        let one = |(k, entry): (usize, &Entry<'_>)| {
             check("an event", entry);
-            Some((self.event(entry)?, entry.key.clone()))
+            entry.log().place(SceneLocation::Event(k), &entry.key);
+            self.event(entry)
         };
-        fields.entries.iter().filter_map(one).collect()
+        fields.entries.iter().enumerate().filter_map(one).collect()
     }
 
     fn event(&self, entry: &Entry<'_>) -> Option<NamedEvent> {
         let fields = TableReader::open(entry, format!("event `{}`", shorten(entry.name)))?;
         let (kind, kind_entry) = kind(&fields, "event")?;
         let terminal = fields.boolean("stop");
-        let coordinate = || self.named_coordinates.named_by(kind_entry, &fields);
+        let coordinate = || self.coordinates.named_by(kind_entry, &fields);
         let trigger = match kind {
             "reaches" => reaches(coordinate(), &fields),
             "reverses" => coordinate().map(EventTrigger::Reversal),
-            "reaction" => self.reaction(kind_entry, &fields),
-            _ => revolution(coordinate()?, kind_entry, &fields),
+            "reaction" => self.reaction_event(kind_entry, &fields),
+            "revolution" => revolution(coordinate()?, kind_entry, &fields),
+            _ => reject_unread_kind(kind_entry),
         };
         let name = entry.name.to_owned();
         Some(NamedEvent {
@@ -48,7 +44,7 @@ impl EventReader<'_> {
         })
     }
 
-    fn reaction(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<EventTrigger> {
+    fn reaction_event(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<EventTrigger> {
         let text = entry.value.string(fields.name_of(entry));
         let rule = NumberRule::new(&SI, SignRule::Any);
         let value = fields.number_or(0.0, "value", &rule);
@@ -78,11 +74,11 @@ impl EventReader<'_> {
             return Some(*reaction);
         }
         let names = list(all.iter().map(|(_, name)| name.as_str())).unwrap_or_default();
+        let message = format!("{} names {} reactions", fields.what, all.len());
+        let help = format!("name one of {names}");
         fields
-            .error(format!("{} names {} reactions", fields.what, all.len()))
-            .label(at, "which of them?")
-            .help(format!("name one of {names}"))
-            .reject()
+            .log()
+            .reject(message, &[(at, "which of them?")], help)
     }
 }
 
@@ -106,9 +102,5 @@ fn revolution(
     }
     let message = format!("{} counts revolutions of a length", fields.what);
     let help = "only an angle makes revolutions; a length `reaches` a value or `reverses`";
-    entry
-        .value
-        .wrong(message, "not an angle")
-        .help(help)
-        .reject()
+    entry.value.reject(message, "not an angle", help)
 }

@@ -18,6 +18,6 @@ pub(crate) fn expression(value: Value<'_>, variables: &[&str], what: &str) -> Op
         _ => error.help.unwrap_or_default(),
     };
     let at = value.log().part_span(&value.span(), text, error.span);
-    let diagnostic = value.error(format!("{what}: {}", error.message));
-    diagnostic.label(&at, "here").help(help).reject()
+    let message = format!("{what}: {}", error.message);
+    value.log().reject(message, &[(&at, "here")], help)
 }

@@ -78,12 +78,10 @@ fn rename(table: &mut DeTable<'_>, key: &'static KeySchema, log: &Diagnostics) {
     };
     let (name, span) = (key.name.as_str(), written.span());
     if let Some((current, _)) = table.get_key_value(name) {
-        return log
-            .error(format!("both `{former}` and `{name}` are given"))
-            .label(&span, "the former name")
-            .label(&current.span(), "the current name of the same key")
-            .help(format!("keep `{name}` and delete `{former}`"))
-            .report();
+        let message = format!("both `{former}` and `{name}` are given");
+        let current = (&current.span(), "the current name of the same key");
+        let help = format!("keep `{name}` and delete `{former}`");
+        return log.report(message, &[(&span, "the former name"), current], help);
     }
     log.warn_renamed(former, name, span.clone());
     table.insert(Spanned::new(span, Cow::Borrowed(name)), value);

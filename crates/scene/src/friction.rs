@@ -3,21 +3,20 @@
 use crate::diagnostics::Span;
 use crate::joints::{Joints, kind_name};
 use crate::keys::table;
-use crate::loads::ParsedLoad;
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::{SI, Unit};
 use crate::value::{NumberRule, SignRule};
 use crate::wording::shorten;
-use dwell_geometry::{Joint, JointId, JointKind};
+use dwell_geometry::{JointId, JointKind};
 use dwell_kinetostatics::{Friction, FrictionContact, Load, LoadKind, Magnitude};
 
 /// Regularization speed where the scene gives none, rad/s and m/s: small compared with the speeds of a machine, yet
 /// large enough that the equation of motion is not stiff for an explicit method.
 const DEFAULT_REGULARIZATION_SPEED: [f64; 2] = [0.01, 0.001];
 
-/// The friction of every joint of the section: loads, in the order of the file.
-pub(crate) fn friction(fields: &TableReader<'_>, joints: &Joints<'_>) -> Vec<ParsedLoad> {
-    let mut loads = Vec::new();
+/// Appends the friction of every joint of the section, in the order of the file.
+pub(crate) fn add_friction(fields: &TableReader<'_>, joints: &Joints<'_>, loads: &mut Vec<Load>) {
     let mut assigned: Vec<(usize, Span)> = Vec::new();
     for entry in &fields.entries {
         let Some(range) = joints.find(entry.name, &entry.key) else {
@@ -25,161 +24,154 @@ pub(crate) fn friction(fields: &TableReader<'_>, joints: &Joints<'_>) -> Vec<Par
         };
         if let Some((k, other)) = assigned.iter().find(|(k, _)| range.contains(k)) {
             let name = shorten(&joints.list[*k].name);
-            entry
-                .error(format!("joint `{name}` has two friction tables"))
-                .label(other, "here")
-                .label(&entry.key, "and here again")
-                .help("keep one of them: the name of a pin of several bodies stands for all its joints")
-                .report();
+            let message = format!("joint `{name}` has two friction tables");
+            let labels = [(other, "here"), (&entry.key, "and here again")];
+            let help =
+                "keep one of them: the name of a pin of several bodies stands for all its joints";
+            entry.log().report(message, &labels, help);
             continue;
         }
         assigned.extend(range.clone().map(|k| (k, entry.key.clone())));
         // The joints of a pin have the same friction: an error is reported once, for the first.
         let first = joints.list[range.start].joint.as_ref();
-        let Some(parsed) = first.and_then(|first| ParsedFriction::read(entry, first.kind)) else {
-            continue;
-        };
-        for k in range {
-            if let Some(joint) = &joints.list[k].joint {
-                loads.extend(parsed.loads(entry, JointId(k), joint, joints));
+        let id = JointId(range.start);
+        let parsed = first.and_then(|joint| read_friction(entry, id, joint.kind));
+        if let Some((fields, friction, viscous)) = parsed {
+            for k in range {
+                add_loads(JointId(k), &fields, friction, viscous, joints, loads);
             }
         }
     }
-    loads
 }
 
-/// The friction of a joint, each part with its place in the file.
-struct ParsedFriction {
-    dry: Option<DryFriction>,
-    viscous: Option<(f64, Span)>,
-}
-
-struct DryFriction {
-    coefficient: f64,
-    contact: FrictionContact,
-    /// rad/s or m/s.
-    regularization_speed: f64,
-    span: Span,
-}
-
-impl ParsedFriction {
-    fn read(entry: &Entry<'_>, kind: JointKind) -> Option<Self> {
-        let name = shorten(entry.name);
-        let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
-        let is_revolute = match kind {
-            JointKind::Revolute => true,
-            JointKind::Prismatic { .. } | JointKind::Slot { .. } => false,
-            _ => {
-                let diagnostic = entry.error(format!("joint `{name}` cannot have friction"));
-                let label = format!("its kind is {}", kind_name(kind));
-                let help = "revolute joints, prismatic joints and slots can have friction";
-                return diagnostic.label(&entry.key, label).help(help).reject();
-            }
-        };
-        let before = fields.log().count();
-        check_friction_keys(&fields, kind);
-        let number = |key: &str, unit: &Unit, sign: SignRule| {
-            let entry = fields.get(key)?;
-            let rule = NumberRule::new(unit, sign);
-            let si = entry
-                .value
-                .quantity_with_sign(&rule, fields.name_of(entry))?;
-            Some((si, entry.value.span()))
-        };
-        let units = fields.units();
-        let coefficient = number("coefficient", &SI, SignRule::NotNegative);
-        let radius = number("radius", &units.length, SignRule::Positive);
-        let guide = number("guide-length", &units.length, SignRule::NotNegative);
-        let speed_unit = units.coordinate_unit(is_revolute);
-        let speed = number("regularization-speed", speed_unit, SignRule::Positive);
-        let viscous = number("viscous", &SI, SignRule::NotNegative);
-        // A guide in its place is one slip, not two.
-        let has_guide = fields.get("guide-length").is_some();
-        if is_revolute && fields.get("coefficient").is_some() && !has_guide {
-            let unit = &units.length.name;
-            let help = format!("add `radius`, the radius of the pin, in {unit}");
-            fields.require("radius", &help);
-        }
-        if fields.log().count() != before {
-            return None;
-        }
-        let [default_of_revolute, default_of_prismatic] = DEFAULT_REGULARIZATION_SPEED;
-        let (contact, default) = if is_revolute {
-            let radius = radius.map_or(0.0, |s| s.0);
-            (FrictionContact::Pin { radius }, default_of_revolute)
-        } else {
-            let length = guide.map_or(0.0, |s| s.0);
-            (FrictionContact::Guide { length }, default_of_prismatic)
-        };
-        let dry = coefficient.map(|(coefficient, span)| DryFriction {
-            coefficient,
-            contact,
-            regularization_speed: speed.map_or(default, |f| f.0),
-            span,
+/// Appends the friction of one joint, described by `fields`.
+fn add_loads(
+    id: JointId,
+    fields: &TableReader<'_>,
+    friction: Option<Friction>,
+    viscous: Option<f64>,
+    joints: &Joints<'_>,
+    loads: &mut Vec<Load>,
+) {
+    let Some(joint) = &joints.list[id.0].joint else {
+        return;
+    };
+    let bodies = joint.bodies;
+    let [force, damper] = match joints.guide(id) {
+        Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
+        None => [
+            LoadKind::Torque { bodies },
+            LoadKind::RotationalDamper { bodies },
+        ],
+    };
+    let friction = friction.map(|friction| Friction {
+        joint: id,
+        ..friction
+    });
+    let friction = friction.map(Magnitude::Friction);
+    let viscous = viscous.map(Magnitude::Constant);
+    for (key, suffix, kind, magnitude) in [
+        ("coefficient", "friction", force, friction),
+        ("viscous", "viscous", damper, viscous),
+    ] {
+        let Some(magnitude) = magnitude else { continue };
+        fields
+            .log()
+            .place(SceneLocation::Load(loads.len()), &fields.key);
+        fields.place(key, SceneLocation::Magnitude(loads.len()));
+        let name = format!("{}.{suffix}", joint.name);
+        loads.push(Load {
+            name,
+            kind,
+            magnitude,
         });
-        Some(Self { dry, viscous })
     }
+}
 
-    fn loads(
-        &self,
-        entry: &Entry<'_>,
-        id: JointId,
-        joint: &Joint,
-        joints: &Joints<'_>,
-    ) -> Vec<ParsedLoad> {
-        let bodies = joint.bodies;
-        let [force, damper] = match joints.guide(id) {
-            Some(guide) => [LoadKind::SlideForce(guide), LoadKind::SlideDamper(guide)],
-            None => [
-                LoadKind::Torque { bodies },
-                LoadKind::RotationalDamper { bodies },
-            ],
-        };
-        let dry = self.dry.as_ref().map(|dry| {
-            let friction = Friction {
-                joint: id,
-                coefficient: dry.coefficient,
-                contact: dry.contact,
-                regularization_speed: dry.regularization_speed,
-            };
-            ("friction", force, Magnitude::Friction(friction), &dry.span)
-        });
-        let viscous = self.viscous.as_ref();
-        let viscous =
-            viscous.map(|(constant, at)| ("viscous", damper, Magnitude::Constant(*constant), at));
-        let both = dry.into_iter().chain(viscous);
-        let parsed = |(suffix, kind, magnitude, at): (&str, _, _, &Span)| ParsedLoad {
-            key: entry.key.clone(),
-            magnitude: Some(at.clone()),
-            load: Some(Load {
-                name: format!("{}.{suffix}", joint.name),
-                kind,
-                magnitude,
-            }),
-        };
-        both.map(parsed).collect()
+/// The friction of a joint: its table, and what that gives of dry and of viscous friction.
+fn read_friction<'a>(
+    entry: &Entry<'a>,
+    joint: JointId,
+    kind: JointKind,
+) -> Option<(TableReader<'a>, Option<Friction>, Option<f64>)> {
+    let name = shorten(entry.name);
+    let fields = TableReader::open(entry, format!("friction of `{name}`"))?;
+    let is_revolute = has_pin(entry, kind)?;
+    let before = fields.log().count();
+    check_friction_keys(&fields, kind, is_revolute);
+    let number = |key: &str, unit: &Unit, sign: SignRule| {
+        let entry = fields.get(key)?;
+        let rule = NumberRule::new(unit, sign);
+        entry.value.quantity_with_sign(&rule, fields.name_of(entry))
+    };
+    let units = fields.units();
+    let coefficient = number("coefficient", &SI, SignRule::NotNegative);
+    let radius = number("radius", &units.length, SignRule::Positive);
+    let guide = number("guide-length", &units.length, SignRule::NotNegative);
+    let speed_unit = units.coordinate_unit(is_revolute);
+    let speed = number("regularization-speed", speed_unit, SignRule::Positive);
+    let viscous = number("viscous", &SI, SignRule::NotNegative);
+    // A guide in its place is one slip, not two.
+    let has_guide = fields.get("guide-length").is_some();
+    if is_revolute && fields.get("coefficient").is_some() && !has_guide {
+        let unit = &units.length.name;
+        let help = format!("add `radius`, the radius of the pin, in {unit}");
+        fields.require("radius", &help);
+    }
+    if fields.log().count() != before {
+        return None;
+    }
+    let [default_of_revolute, default_of_prismatic] = DEFAULT_REGULARIZATION_SPEED;
+    let (contact, default) = if is_revolute {
+        let radius = radius.unwrap_or(0.0);
+        (FrictionContact::Pin { radius }, default_of_revolute)
+    } else {
+        let length = guide.unwrap_or(0.0);
+        (FrictionContact::Guide { length }, default_of_prismatic)
+    };
+    let friction = coefficient.map(|coefficient| Friction {
+        joint,
+        coefficient,
+        contact,
+        regularization_speed: speed.unwrap_or(default),
+    });
+    Some((fields, friction, viscous))
+}
+
+/// Whether the friction of a joint is that of a pin, not of a guide; an error for a joint that cannot have friction.
+fn has_pin(entry: &Entry<'_>, kind: JointKind) -> Option<bool> {
+    match kind {
+        JointKind::Revolute => Some(true),
+        JointKind::Prismatic { .. } | JointKind::Slot { .. } => Some(false),
+        JointKind::Weld { .. }
+        | JointKind::Gear { .. }
+        | JointKind::Rack { .. }
+        | JointKind::Rolling { .. }
+        | JointKind::Distance { .. }
+        | JointKind::Coupling(_) => {
+            let message = format!("joint `{}` cannot have friction", shorten(entry.name));
+            let label = format!("its kind is {}", kind_name(kind));
+            let help = "revolute joints, prismatic joints and slots can have friction";
+            entry.reject(message, &label, help)
+        }
     }
 }
 
 /// Reports keys that do not belong to this kind of joint, and missing ones of dry friction.
-fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind) {
-    let table = match kind {
-        JointKind::Revolute => table("revolute-friction"),
-        _ => table("prismatic-friction"),
+fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind, is_revolute: bool) {
+    let table = match is_revolute {
+        true => table("revolute-friction"),
+        false => table("prismatic-friction"),
     };
     let is_slot = matches!(kind, JointKind::Slot { .. });
     let dry = fields.get("coefficient");
     // What seems to be missing may be a key that is misspelt.
     let misspelt = fields.unknown_entries(table).next().is_some();
     if dry.is_none() && fields.get("viscous").is_none() && !misspelt {
-        return fields
-            .error(format!(
-                "{} has neither `coefficient` nor `viscous`",
-                fields.what
-            ))
-            .label(&fields.span, "no friction is given")
-            .help("add a `coefficient` of dry friction, or `viscous`")
-            .report();
+        let message = format!("{} has neither `coefficient` nor `viscous`", fields.what);
+        let labels = [(&fields.span, "no friction is given")];
+        let help = "add a `coefficient` of dry friction, or `viscous`";
+        return fields.log().report(message, &labels, help);
     }
     for entry in &fields.entries {
         let (name, what) = (entry.written(), &fields.what);
@@ -202,10 +194,6 @@ fn check_friction_keys(fields: &TableReader<'_>, kind: JointKind) {
             }
         };
         let label = format!("its kind is {}", kind_name(kind));
-        fields
-            .error(message)
-            .label(&entry.key, label)
-            .help(help)
-            .report();
+        entry.reject::<()>(message, &label, help);
     }
 }

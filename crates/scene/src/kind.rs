@@ -26,8 +26,7 @@ pub(crate) fn kind<'f, 'a>(
         let (kind, key) = (entry.written(), other.written());
         let message = format!("{} is of kind `{kind}` and has no `{key}`", fields.what);
         let label = format!("not for this kind of {thing}");
-        let diagnostic = other.error(message).label(&other.key, label);
-        diagnostic.help("leave it out").report();
+        other.reject::<()>(message, &label, "leave it out");
     }
     Some((table.kind_key(), entry))
 }
@@ -54,6 +53,13 @@ fn report_missing_kind(fields: &TableReader<'_>, thing: &str, kinds: &[&'static 
     let example = example.join(", ");
     let list = list(kind_names).unwrap_or_default();
     let help = format!("write it as `{{ {example} }}`; the kinds are {list}");
-    let diagnostic = fields.error(format!("{} has no kind", fields.what));
-    diagnostic.label(&fields.key, "no kind").help(help).report();
+    let message = format!("{} has no kind", fields.what);
+    let labels = [(&fields.key, "no kind")];
+    fields.log().report(message, &labels, help);
+}
+
+/// Reports a kind that keys.toml knows and its reader does not: taken for another kind it would do something else.
+pub(crate) fn reject_unread_kind<T>(entry: &Entry<'_>) -> Option<T> {
+    let message = format!("`{}` cannot be read by this version", entry.name);
+    entry.reject(message, "this kind", "")
 }

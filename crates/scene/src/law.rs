@@ -29,11 +29,8 @@ pub(crate) fn law(entry: &Entry<'_>, owner: &str, domain: &LawDomain<'_>) -> Opt
         "table" => table(entry.value, &what, domain),
         "speed" => {
             let speed = entry.value.quantity(domain.y_unit, what)?;
-            Some(Law::Polynomial(Polynomial::motion(
-                domain.start_value,
-                speed,
-                0.0,
-            )))
+            let law = Polynomial::motion(domain.start_value, speed, 0.0);
+            Some(Law::Polynomial(law))
         }
         "sinusoid" => sinusoid(entry, &what, domain),
         _ => profile(entry, &what, domain),
@@ -48,9 +45,7 @@ pub(crate) fn spline(value: Value<'_>, what: &str, rows: &[[f64; 2]]) -> Option<
 fn built<T>(result: Result<T, LawError>, value: Value<'_>, what: &str) -> Option<T> {
     match result {
         Ok(law) => Some(law),
-        Err(e) => value
-            .wrong(format!("{what}: {e}"), "no smooth function")
-            .reject(),
+        Err(e) => value.reject(format!("{what}: {e}"), "no smooth function", ""),
     }
 }
 
@@ -61,9 +56,9 @@ fn table(value: Value<'_>, what: &str, domain: &LawDomain<'_>) -> Option<Law> {
         let [first, last] = law.range();
         if first > 0.0 || last < end {
             let message = format!("{what} does not last as long as the motion");
-            let diagnostic = value.wrong(message, &format!("from {first} s to {last} s"));
+            let label = format!("from {first} s to {last} s");
             let help = format!("its rows have to reach from 0 s to {end} s");
-            return diagnostic.help(help).reject();
+            return value.reject(message, &label, help);
         }
     }
     Some(Law::Spline(law))
@@ -117,9 +112,7 @@ fn profile(entry: &Entry<'_>, what: &str, domain: &LawDomain<'_>) -> Option<Law>
         let help = "the speed rises for one ramp and falls for another";
         return e
             .value
-            .wrong(message, "at most half of the duration")
-            .help(help)
-            .reject();
+            .reject(message, "at most half of the duration", help);
     }
     let start = domain.start_value;
     let motion = Rise {

@@ -88,7 +88,6 @@ mod read;
 mod requests;
 mod scene;
 mod schema;
-mod section_numbers;
 mod spans;
 mod table_reader;
 mod unit_reader;

@@ -38,13 +38,8 @@ impl Scene {
             None => self.coordinate(name).map(Signal::Value),
         };
         found.ok_or_else(|| {
-            let actuators = self.mechanism.actuators.iter().map(|a| &a.name);
-            let known = actuators.chain(self.coordinates.iter().map(|c| &c.name));
-            let help = choices(
-                name.trim_end_matches(".velocity"),
-                "coordinates",
-                known.map(String::as_str),
-            );
+            let known = self.all_coordinates().map(|(name, _)| name);
+            let help = choices(name.trim_end_matches(".velocity"), "coordinates", known);
             let message = format!(
                 "the function of load `{}` depends on `{name}`, which is not `t`, a coordinate or a velocity",
                 self.loads[load].name

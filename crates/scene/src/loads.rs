@@ -1,11 +1,12 @@
 //! The loads on the mechanism: where they act, and their magnitudes.
 
-use crate::bodies::{Bodies, TWO_POINTS};
+use crate::bodies::TWO_POINTS;
 use crate::diagnostics::Span;
-use crate::joints::{Joints, ParsedJoint};
-use crate::kind::kind;
-use crate::magnitude::Magnitudes;
+use crate::joints::Joints;
+use crate::kind::{kind, reject_unread_kind};
+use crate::magnitude::Names;
 use crate::names::check;
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
 use crate::value::{NumberRule, POINT, SignRule, Value};
@@ -14,76 +15,43 @@ use dwell_geometry::{BodyId, JointId, Vec2, vec2};
 use dwell_kinetostatics::{Load, LoadKind, Magnitude};
 use toml::de::DeValue;
 
-/// A load as read; nothing in it if it was wrong.
-#[derive(Debug)]
-pub(crate) struct ParsedLoad {
-    pub(crate) key: Span,
-    /// Where its magnitude is, or that of gravity.
-    pub(crate) magnitude: Option<Span>,
-    pub(crate) load: Option<Load>,
-}
-
-/// Reads the loads.
-pub(crate) struct LoadReader<'r> {
-    pub(crate) bodies: &'r Bodies<'r>,
-    pub(crate) joints: &'r Joints<'r>,
-    pub(crate) magnitudes: &'r Magnitudes,
-}
-
-impl LoadReader<'_> {
-    /// Every load of the section.
-    pub(crate) fn read(&self, fields: &TableReader<'_>) -> Vec<ParsedLoad> {
+impl Names<'_> {
+    /// Every load of the section that was read well.
+    pub(crate) fn loads(&self, fields: &TableReader<'_>) -> Vec<Load> {
         let mut gravity: Option<Span> = None;
-        let one = |entry: &Entry<'_>| {
+        let one = |(k, entry): (usize, &Entry<'_>)| {
             check("a load", entry);
-            let parsed = self.load(entry);
-            let kind = parsed.load.as_ref().map(|load| load.kind);
-            if let Some(LoadKind::Gravity { .. }) = kind
+            entry.log().place(SceneLocation::Load(k), &entry.key);
+            let fields = TableReader::open(entry, format!("load `{}`", shorten(entry.name)))?;
+            let (kind, magnitude) = self.kind_and_magnitude(&fields, k)?;
+            if let LoadKind::Gravity { .. } = kind
                 && let Some(other) = gravity.replace(entry.key.clone())
             {
-                entry
-                    .error("gravity is given twice")
-                    .label(&other, "here")
-                    .label(&entry.key, "and here again")
-                    .help("keep one of them: both would add up")
-                    .report();
+                let labels = [(&other, "here"), (&entry.key, "and here again")];
+                let help = "keep one of them: both would add up";
+                let log = entry.log();
+                log.report("gravity is given twice", &labels, help);
             }
-            parsed
+            Some(Load {
+                name: entry.name.to_owned(),
+                kind,
+                magnitude,
+            })
         };
-        fields.entries.iter().map(one).collect()
+        fields.entries.iter().enumerate().filter_map(one).collect()
     }
 
-    fn load(&self, entry: &Entry<'_>) -> ParsedLoad {
-        let fields = TableReader::open(entry, format!("load `{}`", shorten(entry.name)));
-        let (magnitude, load) = match fields {
-            Some(fields) => self.kind_and_magnitude(&fields),
-            None => (None, None),
-        };
-        let load = load.map(|(kind, magnitude)| Load {
-            name: entry.name.to_owned(),
-            kind,
-            magnitude,
-        });
-        ParsedLoad {
-            key: entry.key.clone(),
-            magnitude,
-            load,
-        }
-    }
-
-    /// Where the magnitude is, and the load without its name.
+    /// The k-th load without its name.
     fn kind_and_magnitude(
         &self,
         fields: &TableReader<'_>,
-    ) -> (Option<Span>, Option<(LoadKind, Magnitude)>) {
-        let Some((kind, entry)) = kind(fields, "load") else {
-            return (None, None);
-        };
+        k: usize,
+    ) -> Option<(LoadKind, Magnitude)> {
+        let (kind, entry) = kind(fields, "load")?;
+        let location = SceneLocation::Magnitude(k);
         if kind == "gravity" {
-            return (
-                Some(entry.value.span()),
-                gravity(entry.value, &fields.name_of(entry)),
-            );
+            fields.place(kind, location);
+            return gravity(entry.value, &fields.name_of(entry));
         }
         let stiffness = "a negative stiffness would push away from the free position";
         let damping = "negative damping would accelerate the motion";
@@ -95,18 +63,15 @@ impl LoadReader<'_> {
             "spring" => ("stiffness", "N/m", SignRule::NotNegative, stiffness),
             "torsion-spring" => ("stiffness", "N m/rad", SignRule::NotNegative, stiffness),
             "damper" => ("damping", "N s/m", SignRule::NotNegative, damping),
-            _ => ("damping", "N m s/rad", SignRule::NotNegative, damping),
+            "rotational-damper" => ("damping", "N m s/rad", SignRule::NotNegative, damping),
+            _ => return reject_unread_kind(entry),
         };
         let kind = self.load_kind(kind, entry, fields);
         let magnitude = fields.require(size, &format!("add for instance `{size} = 10`, in {unit}"));
-        let span = magnitude.map(|e| e.value.span());
-        let rule = NumberRule {
-            unit: &SI,
-            sign,
-            why,
-        };
+        fields.place(size, location);
+        let rule = NumberRule::new(&SI, sign).because(why);
         let magnitude = magnitude.and_then(|e| self.magnitudes.read(e, fields, &rule));
-        (span, kind.zip(magnitude))
+        kind.zip(magnitude)
     }
 
     fn load_kind(
@@ -126,11 +91,11 @@ impl LoadReader<'_> {
                 let rule = NumberRule::new(&fields.units().length, SignRule::NotNegative);
                 let help = "add `free-length = 0.1`, its length without force";
                 let free_length = fields.number("free-length", help, &rule);
-                let (bodies, points) = both?;
+                let ((bodies, points), free_length) = (both?, free_length?);
                 Some(LoadKind::Spring {
                     bodies,
                     points,
-                    free_length: free_length?,
+                    free_length,
                 })
             }
             "damper" => {
@@ -151,15 +116,14 @@ impl LoadReader<'_> {
                 let help = "add `free-angle = 0.0`, the angle at which its torque is zero";
                 let free = fields.require("free-angle", help);
                 let free_angle = free.and_then(|e| e.value.angle(fields.name_of(e)));
-                Some(LoadKind::TorsionSpring {
-                    bodies: bodies?,
-                    free_angle: free_angle?,
-                })
+                let (bodies, free_angle) = (bodies?, free_angle?);
+                Some(LoadKind::TorsionSpring { bodies, free_angle })
             }
-            _ => {
+            "rotational-damper" => {
                 let bodies = self.two_bodies(entry, fields)?;
                 Some(LoadKind::RotationalDamper { bodies })
             }
+            _ => reject_unread_kind(entry),
         }
     }
 
@@ -202,10 +166,9 @@ impl LoadReader<'_> {
         if self.bodies.ground != Some(body.0) {
             return Some(());
         }
-        let diagnostic = value.wrong(format!("{what} acts on the ground"), "it does not move");
-        diagnostic
-            .help("let it act on a moving body, or leave it out")
-            .reject()
+        let message = format!("{what} acts on the ground");
+        let help = "let it act on a moving body, or leave it out";
+        value.reject(message, "it does not move", help)
     }
 
     fn two_points(
@@ -216,47 +179,38 @@ impl LoadReader<'_> {
         let what = fields.name_of(entry);
         let [a, b] = self.bodies.find_two_points(entry.value, TWO_POINTS, what)?;
         let points = [self.bodies.at(&a), self.bodies.at(&b)];
-        let bodies = self.require_different_bodies([(a.0, a.2), (b.0, b.2)], fields)?;
+        let bodies = self.require_different_bodies([(a.0, &a.2), (b.0, &b.2)], fields)?;
         Some((bodies, points))
     }
 
     fn two_bodies(&self, entry: &Entry<'_>, fields: &TableReader<'_>) -> Option<[BodyId; 2]> {
-        let both = self.bodies.find_two(entry.value, fields.name_of(entry))?;
-        self.require_different_bodies(both, fields)
+        let [a, b] = &self.bodies.find_two(entry.value, fields.name_of(entry))?;
+        self.require_different_bodies([(a.0, &a.1), (b.0, &b.1)], fields)
     }
 
     fn require_different_bodies(
         &self,
-        [(a, at_a), (b, at_b)]: [(BodyId, Span); 2],
+        both: [(BodyId, &Span); 2],
         fields: &TableReader<'_>,
     ) -> Option<[BodyId; 2]> {
-        if a != b {
-            return Some([a, b]);
-        }
         let message = |name: &str| format!("{} acts between body `{name}` and itself", fields.what);
-        let labels = [(&at_a, "this body"), (&at_b, "and the same again")];
         let help = "a load within one rigid body has no effect";
-        self.bodies.reject_same_body(a, message, labels, help)
+        self.bodies.require_different(both, message, help)
     }
 }
 
-/// The separating forces of the teeth that have a pressure angle, in the order of the file.
-pub(crate) fn separating_forces(joints: &Joints<'_>) -> Vec<ParsedLoad> {
-    let separating = |(k, parsed): (usize, &ParsedJoint)| {
-        let (angle, at) = parsed.pressure_angle.as_ref()?;
-        let load = Load::separating(parsed.joint.as_ref()?, JointId(k), *angle)?;
-        Some(ParsedLoad {
-            key: parsed.key.clone(),
-            magnitude: Some(at.clone()),
-            load: Some(load),
-        })
-    };
-    joints
-        .list
-        .iter()
-        .enumerate()
-        .filter_map(separating)
-        .collect()
+/// Appends the separating forces of the teeth that have a pressure angle, in the order of the file.
+pub(crate) fn add_separating_forces(joints: &Joints<'_>, loads: &mut Vec<Load>) {
+    for (k, parsed) in joints.list.iter().enumerate() {
+        if let (Some((angle, at)), Some(joint)) = (&parsed.pressure_angle, &parsed.joint)
+            && let Some(load) = Load::separating(joint, JointId(k), *angle)
+        {
+            let log = joints.log;
+            log.place(SceneLocation::Load(loads.len()), &parsed.key);
+            log.place(SceneLocation::Magnitude(loads.len()), at);
+            loads.push(load);
+        }
+    }
 }
 
 /// An acceleration as a direction and a magnitude.
@@ -278,7 +232,7 @@ fn frame(value: Value<'_>, what: &str) -> Option<bool> {
             let message = format!("unknown frame `{}` of {what}", shorten(name));
             let help =
                 "`\"ground\"` keeps the direction constant, `\"body\"` rotates it with the body";
-            value.wrong(message, "unknown frame").help(help).reject()
+            value.reject(message, "unknown frame", help)
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::error::SceneError;
 use crate::scene::Scene;
-use crate::spans::{SceneLocation, SceneSpans};
+use crate::spans::SceneLocation;
 
 impl Scene {
     /// An error at places of the scene, each with a remark of its own, for what is found out
@@ -23,10 +23,10 @@ impl Scene {
     pub fn span(&self, mut location: SceneLocation) -> std::ops::Range<usize> {
         // Every step outwards ends at the whole, which has no span: three steps at most.
         while location != SceneLocation::Whole {
-            if let Some(span) = self.spans.span(location) {
-                return span;
+            if let Some(span) = self.spans.get(&location) {
+                return span.clone();
             }
-            location = SceneSpans::enclosing(location);
+            location = location.enclosing();
         }
         0..0
     }

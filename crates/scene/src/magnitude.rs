@@ -1,7 +1,9 @@
 //! Magnitudes of loads and drives: a number, an expression, or a table.
 
+use crate::bodies::Bodies;
 use crate::coordinates::ParsedCoordinates;
 use crate::expression::expression;
+use crate::joints::Joints;
 use crate::keys;
 use crate::law::spline;
 use crate::table_reader::{Entry, TableReader};
@@ -13,30 +15,35 @@ use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Expression, Law};
 use toml::de::DeValue;
 
+/// What the loads, the drives and the events of a scene can name.
+pub(crate) struct Names<'r> {
+    pub(crate) bodies: &'r Bodies<'r>,
+    pub(crate) joints: &'r Joints<'r>,
+    pub(crate) coordinates: &'r ParsedCoordinates<'r>,
+    pub(crate) magnitudes: Magnitudes,
+}
+
 /// Reads magnitudes.
 pub(crate) struct Magnitudes {
-    /// The signals an expression can name, and their names.
-    signals: Vec<(String, Option<Signal>)>,
-    /// Former names of signals, which are still read, and their current names.
-    former_names: Vec<(String, String)>,
+    /// The signals an expression can name: name, former name that is still read, and signal; none if its coordinate was wrong.
+    signals: Vec<(String, Option<String>, Option<Signal>)>,
 }
 
 impl Magnitudes {
     pub(crate) fn new(named: &ParsedCoordinates<'_>) -> Self {
-        let mut signals = vec![("t".to_owned(), Some(Signal::Time))];
-        for m in &named.list {
-            signals.push((m.name.to_owned(), m.coordinate.map(Signal::Value)));
-            let velocity = m.coordinate.map(Signal::Velocity);
-            signals.push((format!("{}.velocity", m.name), velocity));
+        let mut signals = vec![("t".to_owned(), None, Some(Signal::Time))];
+        for c in &named.list {
+            signals.push((c.name.to_owned(), None, c.coordinate.map(Signal::Value)));
+            let [former, velocity] = ["speed", "velocity"].map(|s| format!("{}.{s}", c.name));
+            let signal = c.coordinate.map(Signal::Velocity);
+            signals.push((velocity, Some(former), signal));
         }
-        let former_names = named.list.iter().map(|m| {
-            let [former, current] = ["speed", "velocity"].map(|s| format!("{}.{s}", m.name));
-            (former, current)
-        });
-        Self {
-            signals,
-            former_names: former_names.collect(),
-        }
+        Self { signals }
+    }
+
+    /// Current names of the signals.
+    fn names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.signals.iter().map(|(name, ..)| name.as_str())
     }
 
     /// The magnitude that an entry of `fields` is: a number, an expression, or a table.
@@ -62,9 +69,9 @@ impl Magnitudes {
 
     fn expression(&self, value: Value<'_>, what: &str) -> Option<Magnitude> {
         let text = value.string(what)?;
-        let names: Vec<_> = self.signals.iter().map(|(name, _)| name.as_str()).collect();
-        let former = self.former_names.iter().map(|(former, _)| former.as_str());
-        let with_former: Vec<_> = names.iter().copied().chain(former).collect();
+        let names: Vec<_> = self.names().collect();
+        let former = self.signals.iter().filter_map(|(_, f, _)| f.as_deref());
+        let with_former: Vec<_> = self.names().chain(former).collect();
         let parsed = match Expression::parse(text, &with_former) {
             Ok(parsed) => parsed,
             // The message lists the current names only.
@@ -73,19 +80,20 @@ impl Magnitudes {
         .retain_used();
         let used = parsed.variables().iter();
         // Collected before any is missed: every former name is to be reported.
-        let signals: Vec<_> = used.map(|name| self.signal(name, value)).collect();
+        let signals: Vec<_> = used.map(|name| self.signal(name, value)?).collect();
         let signals = signals.into_iter().collect::<Option<Vec<_>>>()?;
         Some(Magnitude::Expression(parsed, signals))
     }
 
-    /// The signal of that name, which `value` uses; nothing if its coordinate was wrong, which has been reported.
-    fn signal(&self, name: &str, value: Value<'_>) -> Option<Signal> {
-        let renamed = self.former_names.iter().find(|(former, _)| former == name);
-        let name = renamed.map_or(name, |(former, current)| {
-            value.log().warn_renamed(former, current, value.span());
-            current
-        });
-        self.signals.iter().find(|(n, _)| n == name)?.1
+    /// The signal of that name, which `value` uses, if there is one.
+    fn signal(&self, name: &str, value: Value<'_>) -> Option<Option<Signal>> {
+        let named = |former: &Option<String>| former.as_deref() == Some(name);
+        let mut signals = self.signals.iter();
+        let (current, former, signal) = signals.find(|(n, f, _)| n == name || named(f))?;
+        if named(former) {
+            value.log().warn_renamed(name, current, value.span());
+        }
+        Some(*signal)
     }
 
     fn table(&self, entry: &Entry<'_>, what: &str, rule: &NumberRule<'_>) -> Option<Magnitude> {
@@ -107,8 +115,7 @@ impl Magnitudes {
         let name = format!("the table of {what}");
         let rows = table.rows([unit, rule.unit], &name)?;
         if rule.sign == SignRule::NotNegative && rows.iter().any(|[_, y]| *y < 0.0) {
-            let diagnostic = table.wrong(format!("{name} goes below zero"), "negative");
-            return diagnostic.help(rule.why).reject();
+            return table.reject(format!("{name} goes below zero"), "negative", rule.why);
         }
         let law = spline(table, &name, &rows)?;
         Some(Magnitude::Law(signal, Law::Spline(law)))
@@ -116,15 +123,12 @@ impl Magnitudes {
 
     fn of(&self, value: Value<'_>, what: &str) -> Option<Signal> {
         let name = value.string(format_args!("`of` in {what}"))?;
-        let mut known = self.signals.iter().map(|(n, _)| n);
-        let mut former = self.former_names.iter().map(|(n, _)| n);
-        if known.any(|n| n == name) || former.any(|n| n == name) {
-            return self.signal(name, value);
+        if let Some(signal) = self.signal(name, value) {
+            return signal;
         }
-        let names = self.signals.iter().map(|(n, _)| n.as_str());
-        let help = value.log().choices(name, "signals", names);
+        let help = value.log().choices(name, "signals", self.names());
         let message = format!("`{}` cannot be the variable of a table", shorten(name));
         let label = "neither the time nor a coordinate or its velocity";
-        value.wrong(message, label).help(help).reject()
+        value.reject(message, label, help)
     }
 }

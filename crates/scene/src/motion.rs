@@ -1,28 +1,29 @@
 //! The free motion, and the calibration of one number to a period.
 
-use crate::bodies::Bodies;
 use crate::coordinates::ParsedActuator;
-use crate::diagnostics::Span;
 use crate::keys::table;
+use crate::number_paths::{SceneNumber, no_number};
 use crate::prescribed::{actuator_named, law_of, positive, require_actuators};
-use crate::scene::{Calibration, MotionDuration, NamedEvent};
+use crate::scene::{Calibration, FreeMotionSpec, MotionDuration, NamedEvent};
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::value::Value;
 use crate::wording::{list, shorten};
+use dwell_geometry::ActuatorId;
 use dwell_laws::Law;
 use std::fmt::Display;
 
 /// `[motion]` as read: what it gives of each actuator, in rad and rad/s or m and m/s.
 #[derive(Debug)]
 pub(crate) struct ParsedMotion<'a> {
-    pub(crate) initial_coordinates: Vec<Option<(f64, Span)>>,
-    pub(crate) initial_velocities: Vec<Option<(f64, Span)>>,
-    pub(crate) duration: Option<(MotionDuration, Span)>,
+    pub(crate) initial_coordinates: Vec<Option<f64>>,
+    pub(crate) initial_velocities: Vec<Option<f64>>,
+    pub(crate) duration: Option<MotionDuration>,
     /// The entry of each prescribed actuator's motion law.
     pub(crate) prescribed: Vec<Option<Entry<'a>>>,
     /// The laws of these, which [`Self::read_laws`] reads.
     pub(crate) laws: Vec<Option<Law>>,
-    pub(crate) events: Vec<(NamedEvent, Span)>,
+    pub(crate) events: Vec<NamedEvent>,
 }
 
 impl<'a> ParsedMotion<'a> {
@@ -45,17 +46,18 @@ impl<'a> ParsedMotion<'a> {
             return parsed;
         }
         let all_known = parsed.find_prescribed(fields, actuators);
-        let each = |key| {
-            let prescribed = &parsed.prescribed;
-            PerActuator {
+        let prescribed = &parsed.prescribed;
+        let each = |key, location| {
+            let per_actuator = PerActuator {
                 key,
+                location,
                 actuators,
                 prescribed,
-            }
-            .read(fields.get(key))
+            };
+            per_actuator.read(fields.get(key))
         };
-        let initial_coordinates = each("initial-coordinate");
-        let initial_velocities = each("initial-velocity");
+        let initial_coordinates = each("initial-coordinate", SceneLocation::InitialCoordinate);
+        let initial_velocities = each("initial-velocity", SceneLocation::InitialVelocity);
         if let Some(initial_velocities) = &initial_velocities
             && all_known
             && !can_start_at_rest
@@ -82,6 +84,8 @@ impl<'a> ParsedMotion<'a> {
         let laws = laws.and_then(|e| TableReader::open(e, "prescribed of [motion]"));
         for entry in laws.iter().flat_map(|f| &f.entries) {
             if let Some(k) = actuator_named(entry, actuators) {
+                let location = SceneLocation::MotionLaw(ActuatorId(k));
+                entry.log().place(location, &entry.key);
                 self.prescribed[k] = Some(entry.clone());
             }
         }
@@ -90,29 +94,21 @@ impl<'a> ParsedMotion<'a> {
 
     /// At least one actuator has to be free, and exactly one where the duration is in periods.
     fn count_free(&self, fields: &TableReader<'_>, actuators: &[ParsedActuator<'_>]) {
-        let free = actuators.iter().zip(&self.prescribed);
-        let free: Vec<_> = free
-            .filter(|(_, l)| l.is_none())
-            .map(|(a, _)| a.name)
-            .collect();
+        let free = (0..actuators.len()).filter(|&k| self.prescribed[k].is_none());
+        let free: Vec<_> = free.map(|k| actuators[k].name).collect();
         let names = list(free.iter().copied());
         if let (None, Some(laws)) = (&names, fields.get("prescribed")) {
-            fields
-                .error("[motion] prescribes every actuator: none is free")
-                .label(&laws.key, "all of them")
-                .help("a motion in which all actuators are prescribed belongs in [prescribed]")
-                .report();
+            let message = "[motion] prescribes every actuator: none is free";
+            let help = "a motion in which all actuators are prescribed belongs in [prescribed]";
+            laws.reject::<()>(message, "all of them", help);
         }
         if let (Some(names), Some(periods)) = (names, fields.get("periods"))
             && free.len() > 1
         {
-            fields
-                .error(format!("`periods` with {} free actuators", free.len()))
-                .label(&periods.key, "ambiguous: several actuators are free")
-                .help(format!(
-                    "{names} are free: give the duration in s, as in `duration = 5.0`"
-                ))
-                .report();
+            let message = format!("`periods` with {} free actuators", free.len());
+            let label = "ambiguous: several actuators are free";
+            let help = format!("{names} are free: give the duration in s, as in `duration = 5.0`");
+            periods.reject::<()>(message, label, help);
         }
     }
 
@@ -123,7 +119,7 @@ impl<'a> ParsedMotion<'a> {
         assembly_coordinates: &[f64],
     ) {
         let end = match self.duration {
-            Some((MotionDuration::Seconds(end), _)) => end,
+            Some(MotionDuration::Seconds(end)) => end,
             // How long periods take is not known yet, and no length has been reported.
             _ => 0.0,
         };
@@ -134,46 +130,62 @@ impl<'a> ParsedMotion<'a> {
             }
         }
     }
+
+    /// The free motion, whose coordinates are at `start` where it does not say otherwise.
+    pub(crate) fn into_spec(self, start: &[f64]) -> Option<FreeMotionSpec> {
+        let (mut initial_coordinates, mut initial_velocities) = (Vec::new(), Vec::new());
+        for (k, &at) in start.iter().enumerate() {
+            let prescribed = self.laws[k].as_ref().map(|law| law.eval(0.0));
+            // A law that has no value at 0 is reported by the analysis that follows it.
+            let prescribed = prescribed.filter(|values| values[..2].iter().all(|v| v.is_finite()));
+            let [q, v] = prescribed.map_or([None; 2], |[q, v, ..]| [Some(q), Some(v)]);
+            initial_coordinates.push(q.or(self.initial_coordinates[k]).unwrap_or(at));
+            initial_velocities.push(v.or(self.initial_velocities[k]).unwrap_or(0.0));
+        }
+        Some(FreeMotionSpec {
+            initial_coordinates,
+            initial_velocities,
+            laws: self.laws,
+            duration: self.duration?,
+            events: self.events,
+        })
+    }
 }
 
 /// Reports missing initial velocities of a motion without loads, drives and motion laws.
 fn report_missing_velocities(
     fields: &TableReader<'_>,
     actuators: &[ParsedActuator<'_>],
-    initial_velocities: &[Option<(f64, Span)>],
+    initial_velocities: &[Option<f64>],
 ) {
-    let missing = actuators.iter().zip(initial_velocities);
-    let missing: Vec<_> = missing
-        .filter(|(_, s)| s.is_none())
-        .map(|(a, _)| a)
-        .collect();
+    let missing = (0..actuators.len()).filter(|&k| initial_velocities[k].is_none());
+    let missing: Vec<_> = missing.map(|k| &actuators[k]).collect();
     let Some(names) = list(missing.iter().map(|a| a.name)) else {
         return;
     };
-    let at = fields
-        .get("initial-velocity")
-        .map_or(&fields.span, |e| &e.key);
+    let given = fields.get("initial-velocity");
+    let at = given.map_or(&fields.span, |e| &e.key);
     let (first, unit) = (missing[0].name, &missing[0].unit(fields.units()).name);
     let help = format!(
         "in {unit}/s: `initial-velocity = {{ {first} = 1.0 }}`; without loads and drives the mechanism would not move"
     );
-    let diagnostic = fields.error(format!("the initial velocity of {names} is not given"));
-    diagnostic
-        .label(at, "no initial velocity")
-        .help(help)
-        .report();
+    let message = format!("the initial velocity of {names} is not given");
+    fields
+        .log()
+        .report(message, &[(at, "no initial velocity")], help);
 }
 
 /// `initial-coordinate` or `initial-velocity`: one value for each free actuator, or a number for the only one.
 struct PerActuator<'p, 'a> {
     key: &'static str,
+    location: fn(ActuatorId) -> SceneLocation,
     actuators: &'p [ParsedActuator<'p>],
     prescribed: &'p [Option<Entry<'a>>],
 }
 
 impl PerActuator<'_, '_> {
     /// What it gives of each actuator; none if it is wrong.
-    fn read(&self, entry: Option<&Entry<'_>>) -> Option<Vec<Option<(f64, Span)>>> {
+    fn read(&self, entry: Option<&Entry<'_>>) -> Option<Vec<Option<f64>>> {
         let mut values = vec![None; self.actuators.len()];
         let Some(entry) = entry else {
             return Some(values);
@@ -182,8 +194,7 @@ impl PerActuator<'_, '_> {
         let what = format!("{key} of [motion]");
         if entry.value.is_number() {
             let k = self.only_free(entry, &what)?;
-            let si = self.value(k, entry.value, what)?;
-            values[k] = Some((si, entry.value.span()));
+            values[k] = Some(self.value(k, entry.value, what)?);
             return Some(values);
         }
         let count = entry.log().count();
@@ -194,23 +205,15 @@ impl PerActuator<'_, '_> {
             };
             let name = shorten(value.name);
             if let Some(law) = &self.prescribed[k] {
-                fields
-                    .error(format!(
-                        "`{name}` in [motion] has both a motion law and an {}",
-                        self.key
-                    ))
-                    .label(&law.key, "prescribed here")
-                    .label(&value.key, format!("{key} given here"))
-                    .help("keep one of them: the law determines the whole motion of the actuator")
-                    .report();
+                let (key, given) = (self.key, format!("{key} given here"));
+                let message = format!("`{name}` in [motion] has both a motion law and an {key}");
+                let labels = [(&law.key, "prescribed here"), (&value.key, &given)];
+                let help = "keep one of them: the law determines the whole motion of the actuator";
+                fields.log().report(message, &labels, help);
                 continue;
             }
-            let si = self.value(
-                k,
-                value.value,
-                format_args!("{key} of `{name}` in [motion]"),
-            );
-            values[k] = si.map(|si| (si, value.value.span()));
+            let what = format_args!("{key} of `{name}` in [motion]");
+            values[k] = self.value(k, value.value, what);
         }
         (fields.log().count() == count).then_some(values)
     }
@@ -223,21 +226,22 @@ impl PerActuator<'_, '_> {
         if let [] | [_] = free.as_slice() {
             return free.first().copied();
         }
-        let each = free
-            .iter()
-            .map(|&k| format!("{} = 0.0", self.actuators[k].name));
-        let example = shorten(&each.collect::<Vec<_>>().join(", "));
+        let each = free.iter().map(|&k| self.actuators[k].name);
+        let each: Vec<_> = each.map(|name| format!("{name} = 0.0")).collect();
+        let example = shorten(&each.join(", "));
         let kind = match free.len() == all {
             true => "actuators",
             false => "free actuators",
         };
         let message = format!("{what} is one number for {} {kind}", free.len());
         let help = format!("write `{} = {{ {example} }}`", self.key);
-        entry.value.wrong(message, "ambiguous").help(help).reject()
+        entry.value.reject(message, "ambiguous", help)
     }
 
     fn value(&self, k: usize, value: Value<'_>, what: impl Display) -> Option<f64> {
         let actuator = &self.actuators[k];
+        let location = (self.location)(ActuatorId(k));
+        value.log().place(location, &value.span());
         match self.key {
             "initial-coordinate" => actuator.coordinate_value(value, what),
             _ => value.quantity(actuator.unit(value.units()), what),
@@ -245,33 +249,32 @@ impl PerActuator<'_, '_> {
     }
 }
 
-fn duration(fields: &TableReader<'_>) -> Option<(MotionDuration, Span)> {
+fn duration(fields: &TableReader<'_>) -> Option<MotionDuration> {
     let (periods, duration) = (fields.get("periods"), fields.get("duration"));
     if let (Some(a), Some(b)) = (periods, duration) {
         fields.reject_both(a, b, ["duration in periods", "duration in seconds"]);
         return None;
     }
     let Some(entry) = periods.or(duration) else {
-        let diagnostic = fields
-            .error("[motion] has no duration")
-            .label(&fields.span, "no duration");
-        return diagnostic
-            .help("add `periods = 10`, or `duration = 5.0` in s")
-            .reject();
+        let labels = [(&fields.span, "no duration")];
+        let help = "add `periods = 10`, or `duration = 5.0` in s";
+        return fields
+            .log()
+            .reject("[motion] has no duration", &labels, help);
     };
+    entry.log().place(SceneLocation::Duration, &entry.span());
     let value = positive(entry, "[motion]")?;
-    let motion_duration = match periods {
+    Some(match periods {
         Some(_) => MotionDuration::Periods(value),
         None => MotionDuration::Seconds(value),
-    };
-    Some((motion_duration, entry.span()))
+    })
 }
 
-/// `[calibration]`, and where the number it fits is named; `bodies` where all of them were read.
+/// `[calibration]`; `numbers` are those of the bodies, where all of them were read.
 pub(crate) fn calibration(
     fields: &TableReader<'_>,
-    bodies: Option<&Bodies<'_>>,
-) -> Option<(Calibration, Span)> {
+    numbers: Option<&[SceneNumber]>,
+) -> Option<Calibration> {
     fields.reject_unknown_keys(table("calibration"));
     let help = "name the number to be fitted: `parameter = \"crank.inertia\"`";
     let path = fields.require("parameter", help).and_then(|e| {
@@ -286,8 +289,14 @@ pub(crate) fn calibration(
         .and_then(|e| positive(e, "[calibration]"));
     let (path, at) = path?;
     let period = period?;
-    if let Some(bodies) = bodies {
-        bodies.check_number(&path, &at);
+    fields.log().place(SceneLocation::Calibration, &at);
+    if let Some(numbers) = numbers
+        && numbers.iter().all(|n| n.path != path)
+    {
+        let (message, help) = no_number(&path, numbers.iter());
+        fields
+            .log()
+            .report(message, &[(&at, "unknown number")], help);
     }
-    Some((Calibration { path, period }, at))
+    Some(Calibration { path, period })
 }

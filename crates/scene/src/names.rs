@@ -25,11 +25,7 @@ pub(crate) fn check(kind: &str, entry: &Entry<'_>) {
     } else {
         return;
     };
-    entry
-        .error(message)
-        .label(&entry.key, "this name")
-        .help(help)
-        .report();
+    entry.reject::<()>(message, "this name", help);
 }
 
 fn allowed(c: char) -> bool {

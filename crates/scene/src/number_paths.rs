@@ -1,33 +1,21 @@
-//! The numbers that a scene gives, and their paths.
+//! The numbers that a scene gives, by their paths. A changed number changes the text, which is read again, so nothing here depends on
+//! what the numbers mean.
 
+use crate::bodies::Bodies;
 use crate::diagnostics::Span;
+use crate::former_keys::schemas_of;
+use crate::keys::{KeySchema, ValueShape, table};
+use crate::spans::SceneLocation;
+use crate::table_reader::TableReader;
+use crate::value::written_number;
 use crate::wording::{choices, shorten};
 use dwell_geometry::BodyId;
+use toml::Spanned;
+use toml::de::DeValue;
 
 /// A number of the scene that may be changed, and where it is written.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct BodyNumber {
-    pub(crate) body: BodyId,
-    pub(crate) field: BodyField,
-    /// As written, in the scene's unit.
-    pub(crate) value: f64,
-    pub(crate) span: Span,
-}
-
-/// Which number of a body.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum BodyField {
-    Mass,
-    Inertia,
-    /// Component of the centre of mass.
-    Center(usize),
-    /// Component of the k-th point.
-    Point(usize, usize),
-}
-
-/// A number outside the bodies.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct SectionNumber {
+pub(crate) struct SceneNumber {
     /// The keys that lead to it, by their current names.
     pub(crate) path: String,
     /// The same by their former names; equal to `path` where no key was renamed.
@@ -35,41 +23,126 @@ pub(crate) struct SectionNumber {
     /// As written, in the scene's unit.
     pub(crate) value: f64,
     pub(crate) span: Span,
+    /// What of a body it belongs to; outside the bodies the whole.
+    pub(crate) location: SceneLocation,
 }
 
-impl BodyNumber {
-    /// Its path; `point` gives the name of the k-th point of the body.
-    pub(crate) fn path<'n>(&self, body: &str, point: impl Fn(usize) -> &'n str) -> String {
-        match self.field {
-            BodyField::Mass => format!("{body}.mass"),
-            BodyField::Inertia => format!("{body}.inertia"),
-            BodyField::Center(axis) => format!("{body}.center[{axis}]"),
-            BodyField::Point(k, axis) => format!("{body}.points.{}[{axis}]", point(k)),
+/// Sections whose numbers can be varied: all that describe the mechanism and its motion.
+const SECTIONS: [&str; 8] = [
+    "joints",
+    "loads",
+    "friction",
+    "drives",
+    "assembly",
+    "motion",
+    "prescribed",
+    "coordinate-sweep",
+];
+
+/// The numbers outside the bodies, section by section: `loads.brake.damping`, `motion.initial-velocity.phi`,
+/// `joints.guide.axis[0]`. The keys of `root` have their current names.
+pub(crate) fn section_numbers(root: &TableReader<'_>) -> Vec<SceneNumber> {
+    let mut found = Vec::new();
+    for section in SECTIONS {
+        if let (Some(entry), Some(key)) = (root.get(section), table("scene").key(section)) {
+            let paths = [section, key.former_name()].map(str::to_owned);
+            let location = SceneLocation::Whole;
+            gather(
+                location,
+                paths,
+                entry.value.tree,
+                Some(&key.shape),
+                &mut found,
+            );
+        }
+    }
+    found
+}
+
+/// The numbers of the bodies; the ground has its points alone, since its mass has no effect.
+pub(crate) fn body_numbers(bodies: &Bodies<'_>, fields: &TableReader<'_>) -> Vec<SceneNumber> {
+    let mut found = Vec::new();
+    for (k, (body, entry)) in bodies.list.iter().zip(&fields.entries).enumerate() {
+        let (id, body_table) = (BodyId(k), entry.value.get());
+        let mut add = |location, keys: String, value: Option<&Spanned<DeValue<'_>>>| {
+            let paths = [(); 2].map(|()| format!("{}.{keys}", body.name));
+            if let Some(value) = value {
+                gather(location, paths, value, None, &mut found);
+            }
+        };
+        for (k, (name, _)) in body.points.iter().enumerate() {
+            let value = body_table
+                .get("points")
+                .and_then(|p| p.get_ref().get(*name));
+            add(SceneLocation::Point(id, k), format!("points.{name}"), value);
+        }
+        let of_mass = [
+            ("mass", SceneLocation::Mass(id)),
+            ("inertia", SceneLocation::Inertia(id)),
+            ("center", SceneLocation::Center(id)),
+        ];
+        for (key, location) in of_mass.into_iter().filter(|_| bodies.ground != Some(k)) {
+            add(location, key.to_owned(), body_table.get(key));
+        }
+    }
+    found
+}
+
+/// Appends the numbers below `value`, whose paths by current and former names are `paths`.
+fn gather(
+    location: SceneLocation,
+    paths: [String; 2],
+    value: &Spanned<DeValue<'_>>,
+    shape: Option<&'static ValueShape>,
+    found: &mut Vec<SceneNumber>,
+) {
+    match value.get_ref() {
+        DeValue::Table(table) => {
+            let schemas = shape.map_or_else(Vec::new, |shape| schemas_of(table, shape));
+            for (key, value) in table {
+                let name = key.get_ref().as_ref();
+                let schema = schemas.iter().find_map(|schema| schema.key(name));
+                // A name of the scene's own has no former one.
+                let described = schema.filter(|s| s.name == name);
+                let former = described.map_or(name, KeySchema::former_name);
+                let [path, former_path] = &paths;
+                let paths = [format!("{path}.{name}"), format!("{former_path}.{former}")];
+                gather(location, paths, value, schema.map(|s| &s.shape), found);
+            }
+        }
+        DeValue::Array(array) => {
+            for (i, value) in array.iter().enumerate() {
+                let paths = paths.each_ref().map(|path| format!("{path}[{i}]"));
+                gather(location, paths, value, None, found);
+            }
+        }
+        number => {
+            let span = value.span();
+            if let Some(value) = written_number(number).filter(|n| n.is_finite()) {
+                let [path, former_path] = paths;
+                found.push(SceneNumber {
+                    path,
+                    former_path,
+                    value,
+                    span,
+                    location,
+                });
+            }
         }
     }
 }
 
 /// Message and help for a path without a number: the numbers of that body, or all.
-pub(crate) fn no_number(path: &str, all: &[String]) -> (String, String) {
-    let first = |path: &str| path.split('.').next().map(str::to_owned);
-    let body = first(path).unwrap_or_default();
-    let of_body: Vec<_> = all
-        .iter()
-        .filter(|p| first(p).as_deref() == Some(&body))
-        .map(String::as_str)
-        .collect();
-    let help = if of_body.is_empty() {
-        choices(
-            path,
-            "numbers written in the scene",
-            all.iter().map(String::as_str),
-        )
-    } else {
-        choices(
-            path,
-            &format!("numbers written in `{body}`"),
-            of_body.into_iter(),
-        )
+pub(crate) fn no_number<'n>(
+    path: &str,
+    all: impl Iterator<Item = &'n SceneNumber> + Clone,
+) -> (String, String) {
+    let body = path.split('.').next().unwrap_or_default();
+    let all = all.map(|n| n.path.as_str());
+    let of_body = all.clone().filter(|p| p.split('.').next() == Some(body));
+    let help = match of_body.clone().next() {
+        None => choices(path, "numbers written in the scene", all),
+        Some(_) => choices(path, &format!("numbers written in `{body}`"), of_body),
     };
     (format!("the scene has no number `{}`", shorten(path)), help)
 }

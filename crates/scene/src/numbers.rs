@@ -3,7 +3,7 @@
 
 use crate::diagnostics::Span;
 use crate::error::SceneError;
-use crate::number_paths::{BodyField, BodyNumber, no_number};
+use crate::number_paths::{SceneNumber, no_number};
 use crate::scene::Scene;
 use crate::spans::SceneLocation;
 use miette::NamedSource;
@@ -16,7 +16,7 @@ impl Scene {
     /// written as [x, y]), `crank.points.B[1]`. Only what the file writes down has a path. The
     /// ground has its points alone, since its mass has no effect.
     pub fn number_paths(&self) -> Vec<String> {
-        self.body_numbers.iter().map(|n| self.path_of(n)).collect()
+        self.body_numbers.iter().map(|n| n.path.clone()).collect()
     }
 
     /// The number at `path`, in the scene's own unit.
@@ -26,7 +26,7 @@ impl Scene {
     /// # Errors
     /// [`SceneError`] when the path leads nowhere.
     pub fn value(&self, path: &str) -> Result<f64, SceneError> {
-        self.find_number(path).map(|(value, _)| value)
+        self.find_number(path).map(|n| n.value)
     }
 
     /// The current path of a number whose keys were renamed since `path` was written; none where `path` is current or leads nowhere.
@@ -38,11 +38,11 @@ impl Scene {
 
     /// The unit of the number at `path`, such as `mm` or `kg m2`; empty if there is no such number.
     pub fn unit_of(&self, path: &str) -> &str {
-        match self.body_number(path).map(|n| n.field) {
-            None => "",
-            Some(BodyField::Mass) => &self.units.mass.name,
-            Some(BodyField::Inertia) => &self.units.inertia.name,
-            Some(BodyField::Center(_) | BodyField::Point(..)) => &self.units.length.name,
+        match self.location_of(path) {
+            SceneLocation::Mass(_) => &self.units.mass.name,
+            SceneLocation::Inertia(_) => &self.units.inertia.name,
+            SceneLocation::Center(_) | SceneLocation::Point(..) => &self.units.length.name,
+            _ => "",
         }
     }
 
@@ -76,29 +76,17 @@ impl Scene {
     pub fn with_values(&self, values: &[(&str, f64)]) -> Result<Self, SceneError> {
         let mut changes = Vec::with_capacity(values.len());
         for &(path, value) in values {
-            let (_, span) = self.find_number(path)?;
+            let span = self.find_number(path)?.span.clone();
             if !value.is_finite() {
                 let message = format!("{value} is not a value for `{path}`: it is not finite");
-                let label = (span.clone(), "this number".to_owned());
-                return Err(SceneError::with_labels(
-                    &self.source,
-                    message,
-                    None,
-                    [label],
-                ));
+                return Err(self.error_at(message, span, "this number"));
             }
             changes.push((span, path, value));
         }
         changes.sort_by_key(|(span, ..)| span.start);
         if let Some(duplicate) = changes.windows(2).find(|two| two[0].0 == two[1].0) {
             let message = format!("`{}` is given two values", duplicate[0].1);
-            let label = (duplicate[0].0.clone(), "one number".to_owned());
-            return Err(SceneError::with_labels(
-                &self.source,
-                message,
-                None,
-                [label],
-            ));
+            return Err(self.error_at(message, duplicate[0].0.clone(), "one number"));
         }
         let old = self.source.inner();
         let (mut text, mut from) = (String::with_capacity(old.len() + 24 * changes.len()), 0);
@@ -115,43 +103,25 @@ impl Scene {
         Ok(scene)
     }
 
+    fn error_at(&self, message: String, span: Span, label: &str) -> SceneError {
+        SceneError::with_labels(&self.source, message, None, [(span, label.to_owned())])
+    }
+
     /// Where the number at `path` is written: itself, or the point it belongs to.
     pub fn location_of(&self, path: &str) -> SceneLocation {
-        match self.body_number(path).map(|n| (n.field, n.body)) {
-            None => SceneLocation::Whole,
-            Some((BodyField::Mass, body)) => SceneLocation::Mass(body),
-            Some((BodyField::Inertia, body)) => SceneLocation::Inertia(body),
-            Some((BodyField::Center(_), body)) => SceneLocation::Center(body),
-            Some((BodyField::Point(k, _), body)) => SceneLocation::Point(body, k),
-        }
+        let mut numbers = self.body_numbers.iter();
+        let found = numbers.find(|n| n.path == path);
+        found.map_or(SceneLocation::Whole, |n| n.location)
     }
 
-    fn body_number(&self, path: &str) -> Option<&BodyNumber> {
-        // The body first: a large scene has many numbers, and few of them need their path spelt.
-        let body = path.split('.').next()?;
-        self.body_numbers
-            .iter()
-            .find(|n| self.mechanism.body_name(n.body) == body && self.path_of(n) == path)
-    }
-
-    /// The number at a path and where it is written; of a body that is called as a section is, before the section's.
-    fn find_number(&self, path: &str) -> Result<(f64, &Span), SceneError> {
-        if let Some(number) = self.body_number(path) {
-            return Ok((number.value, &number.span));
-        }
-        let mut numbers = self.section_numbers.iter();
-        let found = numbers.find(|n| n.path == path || n.former_path == path);
-        found.map(|n| (n.value, &n.span)).ok_or_else(|| {
-            let mut all = self.number_paths();
-            all.extend(self.section_numbers.iter().map(|n| n.path.clone()));
-            let (message, help) = no_number(path, &all);
+    /// The number at a path; of a body that is called as a section is, before the section's.
+    fn find_number(&self, path: &str) -> Result<&SceneNumber, SceneError> {
+        let mut all = self.body_numbers.iter().chain(&self.section_numbers);
+        let found = all.find(|n| n.path == path || n.former_path == path);
+        found.ok_or_else(|| {
+            let all = self.body_numbers.iter().chain(&self.section_numbers);
+            let (message, help) = no_number(path, all);
             SceneError::without_labels(message, Some(help))
         })
-    }
-
-    fn path_of(&self, number: &BodyNumber) -> String {
-        let body = number.body.0;
-        let point = |k: usize| self.points[body][k].0.as_str();
-        number.path(&self.mechanism.bodies[body].name, point)
     }
 }

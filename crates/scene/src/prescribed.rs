@@ -5,6 +5,7 @@ use crate::diagnostics::Span;
 use crate::keys::{TableSchema, table};
 use crate::law::{LawDomain, law};
 use crate::scene::{CoordinateSweep, PrescribedMotion};
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::units::SI;
 use crate::value::{NumberRule, SignRule, Value};
@@ -15,32 +16,16 @@ use dwell_laws::Law;
 /// Positions or times, where the scene does not give their number.
 const DEFAULT_POINTS: usize = 361;
 
-/// `[prescribed]` as read, and where each actuator's law is.
-#[derive(Debug, Default)]
-pub(crate) struct ParsedPrescribedMotion {
-    pub(crate) prescribed: Option<PrescribedMotion>,
-    pub(crate) laws: Vec<Option<Span>>,
-}
-
-/// `[coordinate-sweep]` as read, and the span of each actuator's entry.
-#[derive(Debug, Default)]
-pub(crate) struct ParsedSweep {
-    pub(crate) sweep: Option<CoordinateSweep>,
-    pub(crate) actuators: Vec<Option<Span>>,
-}
-
 /// Reports a section of motion in a scene without actuators.
 pub(crate) fn require_actuators(
     fields: &TableReader<'_>,
     actuators: &[ParsedActuator<'_>],
 ) -> Option<()> {
     if actuators.is_empty() {
-        let diagnostic = fields.error(format!("there is a {} but no actuator", fields.what));
+        let message = format!("there is a {} but no actuator", fields.what);
+        let labels = [(&fields.span, "no coordinate can move")];
         let help = "declare an independent coordinate, as in `[actuators.phi]`";
-        return diagnostic
-            .label(&fields.span, "no coordinate can move")
-            .help(help)
-            .reject();
+        return fields.log().reject(message, &labels, help);
     }
     Some(())
 }
@@ -51,17 +36,14 @@ pub(crate) fn actuator_named(entry: &Entry<'_>, actuators: &[ParsedActuator<'_>]
     found.or_else(|| {
         let names = actuators.iter().map(|a| a.name);
         let help = entry.log().choices(entry.name, "actuators", names);
-        let diagnostic = entry.error(format!("there is no actuator `{}`", shorten(entry.name)));
-        diagnostic
-            .label(&entry.key, "unknown actuator")
-            .help(help)
-            .reject()
+        let message = format!("there is no actuator `{}`", shorten(entry.name));
+        entry.reject(message, "unknown actuator", help)
     })
 }
 
 /// The entries of a section that are named by actuators, in the order of these; the section's own
 /// keys are no names.
-fn by_actuator<'f, 'a>(
+fn entries_by_actuator<'f, 'a>(
     fields: &'f TableReader<'a>,
     table: &'static TableSchema,
     actuators: &[ParsedActuator<'_>],
@@ -69,16 +51,10 @@ fn by_actuator<'f, 'a>(
     let section = &fields.what;
     require_actuators(fields, actuators)?;
     if let Some(a) = actuators.iter().find(|a| table.contains_key(a.name)) {
-        return fields
-            .error(format!(
-                "actuator `{}` has the name of a key of {section}",
-                shorten(a.name)
-            ))
-            .label(&a.key, "this name")
-            .help(format!(
-                "rename it: in {section} the name would be ambiguous"
-            ))
-            .reject();
+        let name = shorten(a.name);
+        let message = format!("actuator `{name}` has the name of a key of {section}");
+        let help = format!("rename it: in {section} the name would be ambiguous");
+        return fields.log().reject(message, &[(&a.key, "this name")], help);
     }
     let mut entries = vec![None; actuators.len()];
     for entry in fields.unknown_entries(table) {
@@ -87,66 +63,52 @@ fn by_actuator<'f, 'a>(
             continue;
         }
         let names = actuators.iter().map(|a| a.name).chain(table.names());
-        let help = fields
-            .log()
-            .choices(entry.name, &format!("keys of {section}"), names);
-        let name = shorten(entry.name);
-        fields
-            .error(format!(
-                "`{name}` in {section} is neither an actuator nor a key of it"
-            ))
-            .label(&entry.key, "unknown name")
-            .help(help)
-            .report();
+        let (name, kind) = (shorten(entry.name), format!("keys of {section}"));
+        let help = fields.log().choices(entry.name, &kind, names);
+        let message = format!("`{name}` in {section} is neither an actuator nor a key of it");
+        entry.reject::<()>(message, "unknown name", help);
     }
     Some(entries)
 }
 
-impl ParsedPrescribedMotion {
-    /// `start` holds each actuator's coordinate at assembly, SI.
-    pub(crate) fn read(
-        fields: &TableReader<'_>,
-        actuators: &[ParsedActuator<'_>],
-        start: &[f64],
-    ) -> Self {
-        let help = "add `duration = 2.0`: how long the motion lasts, in s";
-        let duration = fields
-            .require("duration", help)
-            .and_then(|e| positive(e, &fields.what));
-        let points = points(fields);
-        let Some(entries) = by_actuator(fields, table("prescribed"), actuators) else {
-            return Self::default();
-        };
-        let missing = actuators.iter().zip(&entries).filter(|(_, e)| e.is_none());
-        let missing: Vec<_> = missing.map(|(a, _)| a.name).collect();
-        if let Some(names) = list(missing.iter().copied()) {
-            fields
-                .error(format!("[prescribed] has no law of {names}"))
-                .label(&fields.span, "no motion law")
-                .help(format!(
-                    "add for instance `{} = {{ speed = 1.0 }}`; a fixed actuator has speed 0",
-                    missing[0]
-                ))
-                .report();
-        }
-        // A wrong duration is reported once, not again for each table.
-        let end = duration.unwrap_or(0.0);
-        let each = actuators.iter().zip(&entries).zip(start);
-        let laws = each.map(|((a, e), &start)| law_of((*e)?, "[prescribed]", a, (start, end)));
-        // All are read before one is missed, so that each error is reported.
-        let laws: Vec<_> = laws.collect();
-        let laws: Option<Vec<Law>> = laws.into_iter().collect();
-        let all = duration.zip(points).zip(laws);
-        let motion = |((duration, points), laws)| PrescribedMotion {
-            duration,
-            points,
-            laws,
-        };
-        Self {
-            prescribed: all.map(motion),
-            laws: entries.iter().map(|e| e.map(|e| e.key.clone())).collect(),
-        }
+/// `[prescribed]`; `start` holds each actuator's coordinate at assembly, SI.
+pub(crate) fn prescribed_motion(
+    fields: &TableReader<'_>,
+    actuators: &[ParsedActuator<'_>],
+    start: &[f64],
+) -> Option<PrescribedMotion> {
+    let help = "add `duration = 2.0`: how long the motion lasts, in s";
+    let duration = fields.require("duration", help);
+    let duration = duration.and_then(|e| positive(e, &fields.what));
+    let points = points(fields);
+    let entries = entries_by_actuator(fields, table("prescribed"), actuators)?;
+    let missing = actuators.iter().zip(&entries).filter(|(_, e)| e.is_none());
+    let missing: Vec<_> = missing.map(|(a, _)| a.name).collect();
+    if let Some(names) = list(missing.iter().copied()) {
+        let message = format!("[prescribed] has no law of {names}");
+        let help = format!(
+            "add for instance `{} = {{ speed = 1.0 }}`; a fixed actuator has speed 0",
+            missing[0]
+        );
+        fields
+            .log()
+            .report(message, &[(&fields.span, "no motion law")], help);
     }
+    // A wrong duration is reported once, not again for each table.
+    let end = duration.unwrap_or(0.0);
+    let law = |(k, entry): (usize, &Option<&Entry<'_>>)| {
+        let entry = (*entry)?;
+        let location = SceneLocation::PrescribedLaw(ActuatorId(k));
+        entry.log().place(location, &entry.key);
+        law_of(entry, "[prescribed]", &actuators[k], (start[k], end))
+    };
+    // All are read before one is missed, so that each error is reported.
+    let laws: Vec<Option<Law>> = entries.iter().enumerate().map(law).collect();
+    Some(PrescribedMotion {
+        duration: duration?,
+        points: points?,
+        laws: laws.into_iter().collect::<Option<_>>()?,
+    })
 }
 
 /// The law of an actuator from time 0 to `end` (s); a constant speed, a sinusoid and a rise start from `start` (SI).
@@ -186,66 +148,61 @@ fn points(fields: &TableReader<'_>) -> Option<usize> {
     }
 }
 
-impl ParsedSweep {
-    pub(crate) fn read(
-        fields: &TableReader<'_>,
-        actuators: &[ParsedActuator<'_>],
-        start: &[f64],
-    ) -> Self {
-        let before = fields.log().count();
-        let points = points(fields);
-        let Some(entries) = by_actuator(fields, table("coordinate-sweep"), actuators) else {
-            return Self::default();
-        };
-        let mut fixed_coordinates = start.to_vec();
-        let mut range: Option<(usize, [f64; 2], Span)> = None;
-        for (k, entry) in entries.iter().enumerate() {
-            let Some(entry) = entry else { continue };
-            match sweep_coordinate(entry, &actuators[k]) {
-                Some(SweepCoordinate::Fixed(at)) => fixed_coordinates[k] = at,
-                Some(SweepCoordinate::Swept(ends)) => match &range {
-                    Some((_, _, other)) => fields
-                        .error("[coordinate-sweep] sweeps two actuators")
-                        .label(other, "swept here")
-                        .label(&entry.value.span(), "and swept here")
-                        .help("fix all but one of them with a single number")
-                        .report(),
-                    None => range = Some((k, ends, entry.value.span())),
-                },
-                None => {}
-            }
+/// `[coordinate-sweep]`; `start` holds each actuator's coordinate at assembly, SI.
+pub(crate) fn coordinate_sweep(
+    fields: &TableReader<'_>,
+    actuators: &[ParsedActuator<'_>],
+    start: &[f64],
+) -> Option<CoordinateSweep> {
+    let before = fields.log().count();
+    let points = points(fields);
+    let entries = entries_by_actuator(fields, table("coordinate-sweep"), actuators)?;
+    let mut fixed_coordinates = start.to_vec();
+    let mut range: Option<(usize, [f64; 2], Span)> = None;
+    for (k, entry) in entries.iter().enumerate() {
+        let Some(entry) = entry else { continue };
+        let location = SceneLocation::Swept(ActuatorId(k));
+        fields.log().place(location, &entry.span());
+        match sweep_coordinate(entry, &actuators[k]) {
+            Some(SweepCoordinate::Fixed(at)) => fixed_coordinates[k] = at,
+            Some(SweepCoordinate::Swept(ends)) => match &range {
+                Some((_, _, other)) => {
+                    let message = "[coordinate-sweep] sweeps two actuators";
+                    let second = (&entry.value.span(), "and swept here");
+                    let help = "fix all but one of them with a single number";
+                    fields
+                        .log()
+                        .report(message, &[(other, "swept here"), second], help);
+                }
+                None => range = Some((k, ends, entry.value.span())),
+            },
+            None => {}
         }
-        let mut not_named = (0..actuators.len()).filter(|&k| entries[k].is_none());
-        let swept = match (&range, not_named.next(), not_named.next()) {
-            (Some((k, ..)), ..) => Some(*k),
-            (None, only, None) => only,
-            (None, ..) => None,
-        };
-        if swept.is_none() && fields.log().count() == before {
-            fields
-                .error("[coordinate-sweep] does not name the swept actuator")
-                .label(&fields.span, "several actuators are possible")
-                .help(format!(
-                    "give one of them an interval: `{} = [0.0, 1.0]`",
-                    actuators[0].name
-                ))
-                .report();
-        }
-        let is_angle = swept.is_none_or(|k| actuators[k].is_angle());
-        let rule = NumberRule::new(fields.units().coordinate_unit(is_angle), SignRule::Positive);
-        let rule = rule.because("the order of the interval's ends gives the direction");
-        let speed = fields.number_or(1.0, "speed", &rule);
-        let all = swept.zip(points).zip(speed);
-        let sweep = all.map(|((k, points), speed)| CoordinateSweep {
-            actuator: ActuatorId(k),
-            range: range.map(|(_, ends, _)| ends),
-            fixed_coordinates,
-            points,
-            speed,
-        });
-        let actuators = entries.iter().map(|e| e.map(Entry::span)).collect();
-        Self { sweep, actuators }
     }
+    let mut not_named = (0..actuators.len()).filter(|&k| entries[k].is_none());
+    let swept = match (&range, not_named.next(), not_named.next()) {
+        (Some((k, ..)), ..) => Some(*k),
+        (None, only, None) => only,
+        (None, ..) => None,
+    };
+    if swept.is_none() && fields.log().count() == before {
+        let message = "[coordinate-sweep] does not name the swept actuator";
+        let labels = [(&fields.span, "several actuators are possible")];
+        let first = actuators[0].name;
+        let help = format!("give one of them an interval: `{first} = [0.0, 1.0]`");
+        fields.log().report(message, &labels, help);
+    }
+    let is_angle = swept.is_none_or(|k| actuators[k].is_angle());
+    let rule = NumberRule::new(fields.units().coordinate_unit(is_angle), SignRule::Positive);
+    let rule = rule.because("the order of the interval's ends gives the direction");
+    let speed = fields.number_or(1.0, "speed", &rule);
+    Some(CoordinateSweep {
+        actuator: ActuatorId(swept?),
+        range: range.map(|(_, ends, _)| ends),
+        fixed_coordinates,
+        points: points?,
+        speed: speed?,
+    })
 }
 
 /// Where an actuator is during a sweep.
@@ -265,17 +222,14 @@ fn sweep_coordinate(entry: &Entry<'_>, actuator: &ParsedActuator<'_>) -> Option<
     let values = value.array(expected, &what)?;
     let [from, to] = values.as_slice() else {
         let label = format!("{} values", values.len());
-        return value
-            .wrong(format!("{what}: expected {expected}"), &label)
-            .reject();
+        return value.reject(format!("{what}: expected {expected}"), &label, "");
     };
     let (from, to) = (read(*from), read(*to));
     let (from, to) = (from?, to?);
     if from == to {
-        let diagnostic = value.wrong(format!("{what} ends where it begins"), "nothing to sweep");
-        return diagnostic
-            .help("a single number fixes the actuator there")
-            .reject();
+        let message = format!("{what} ends where it begins");
+        let help = "a single number fixes the actuator there";
+        return value.reject(message, "nothing to sweep", help);
     }
     Some(SweepCoordinate::Swept([from, to]))
 }

@@ -55,7 +55,7 @@ pub(crate) fn scene_name(path: &Path) -> String {
 }
 
 fn bytes(path: &Path, display_path: &str) -> Result<Vec<u8>, SceneError> {
-    let error = |message: String, help: Option<String>| SceneError::without_labels(message, help);
+    let error = SceneError::without_labels;
     if path.is_dir() {
         let inside = path.join("scene.toml");
         let help = match inside.is_file() {
@@ -67,11 +67,8 @@ fn bytes(path: &Path, display_path: &str) -> Result<Vec<u8>, SceneError> {
     let unreadable = |e: &std::io::Error| match e.kind() {
         ErrorKind::NotFound => {
             let with_ending = path.with_added_extension("toml");
-            let help = if with_ending.is_file() {
-                Some(format!("did you mean `{}`?", with_ending.display()))
-            } else {
-                None
-            };
+            let meant = || format!("did you mean `{}`?", with_ending.display());
+            let help = with_ending.is_file().then(meant);
             error(format!("there is no file `{display_path}`"), help)
         }
         _ => error(format!("`{display_path}` cannot be read: {e}"), None),
@@ -82,10 +79,8 @@ fn bytes(path: &Path, display_path: &str) -> Result<Vec<u8>, SceneError> {
     let read = file.take(MAX_SCENE_BYTES + 1).read_to_end(&mut bytes);
     let length = read.map_err(|e| unreadable(&e))?;
     if length as u64 > MAX_SCENE_BYTES {
-        let message = format!(
-            "`{display_path}` is longer than {} MiB",
-            MAX_SCENE_BYTES >> 20
-        );
+        let limit = MAX_SCENE_BYTES >> 20;
+        let message = format!("`{display_path}` is longer than {limit} MiB");
         return Err(error(message, Some("is it a scene?".to_owned())));
     }
     Ok(bytes)

@@ -4,37 +4,34 @@ use crate::bodies::Bodies;
 use crate::diagnostics::Span;
 use crate::joints::Joints;
 use crate::keys::table;
-use crate::scene::{DwellRequest, PathPoint, SectionRequest};
+use crate::scene::{DwellRequest, PathPoint, Requests, SectionRequest};
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::value::Value;
 use crate::wording::shorten;
 use dwell_geometry::{BodyId, Component, Joint, JointId, Reaction};
 use std::collections::HashSet;
 
-/// `[requests]` as read, each with where it is asked for. No reactions: all of them.
-#[derive(Debug, Default)]
-pub(crate) struct ParsedRequests {
-    pub(crate) reactions: Option<Vec<(Reaction, Span)>>,
-    pub(crate) paths: Vec<(PathPoint, Span)>,
-    pub(crate) dwell: Option<(DwellRequest, Span)>,
-    pub(crate) variables: Option<Vec<(String, Span)>>,
-    pub(crate) sections: Vec<(SectionRequest, Span)>,
-}
-
-impl ParsedRequests {
-    pub(crate) fn read(fields: &TableReader<'_>, bodies: &Bodies<'_>, joints: &Joints<'_>) -> Self {
-        fields.reject_unknown_keys(table("requests"));
-        let dwell = |e: &Entry<'_>| Some((dwell_of(e, bodies)?, e.value.span()));
-        let sections = fields.get("sections");
-        Self {
-            reactions: fields.get("reactions").map(|e| reactions_of(e, joints)),
-            paths: fields
-                .get("paths")
-                .map_or_else(Vec::new, |e| paths_of(e, bodies)),
-            dwell: fields.get("dwell").and_then(dwell),
-            variables: fields.get("variables").map(variables_of),
-            sections: sections.map_or_else(Vec::new, |e| sections_of(e.value, bodies)),
-        }
+/// `[requests]`, without reactions where it does not have that key.
+pub(crate) fn requests(
+    fields: &TableReader<'_>,
+    bodies: &Bodies<'_>,
+    joints: &Joints<'_>,
+) -> Requests {
+    fields.reject_unknown_keys(table("requests"));
+    fields.place("dwell", SceneLocation::Dwell);
+    let reactions = fields.get("reactions").map(|e| reactions_of(e, joints));
+    let paths = fields.get("paths").map(|e| paths_of(e, bodies));
+    let dwell = fields.get("dwell").and_then(|e| dwell_of(e, bodies));
+    let variables = fields.get("variables").map(variables_of);
+    let sections = fields.get("sections");
+    let sections = sections.map(|e| sections_of(e.value, bodies));
+    Requests {
+        reactions: reactions.unwrap_or_default(),
+        paths: paths.unwrap_or_default(),
+        dwell,
+        variables,
+        sections: sections.unwrap_or_default(),
     }
 }
 
@@ -49,9 +46,8 @@ fn strings<'a>(entry: &Entry<'a>, expected: &str) -> Vec<(&'a str, Span)> {
     values.filter_map(one).collect()
 }
 
-fn reactions_of(entry: &Entry<'_>, joints: &Joints<'_>) -> Vec<(Reaction, Span)> {
-    let mut requested = HashSet::new();
-    let mut reactions = Vec::new();
+fn reactions_of(entry: &Entry<'_>, joints: &Joints<'_>) -> Vec<Reaction> {
+    let (mut requested, mut reactions) = (HashSet::new(), Vec::new());
     for (text, at) in strings(entry, "an array such as [\"slide.normal\"]") {
         let (name, component) = joint_and_component(text);
         for k in joints.find(name, &at).into_iter().flatten() {
@@ -70,7 +66,9 @@ fn reactions_of(entry: &Entry<'_>, joints: &Joints<'_>) -> Vec<(Reaction, Span)>
                 };
                 // Asked for twice, as `slide` and `slide.normal`, it is still one reaction.
                 if requested.insert(reaction) {
-                    reactions.push((reaction, at.clone()));
+                    let location = SceneLocation::Reaction(reactions.len());
+                    entry.log().place(location, &at);
+                    reactions.push(reaction);
                 }
             }
         }
@@ -96,41 +94,37 @@ pub(crate) fn components(
     let mut all = joint.kind.components(&joints.couplings).to_vec();
     if let Some(name) = name {
         let names = all.iter().map(|c| c.name());
-        let help = joints
-            .log
-            .choices(name, "components of its reaction", names);
+        let kind = "components of its reaction";
+        let help = joints.log.choices(name, kind, names);
         all.retain(|c| c.name() == name);
         if all.is_empty() {
             let (joint, name) = (&joint.name, shorten(name));
             let message = format!("the reaction of joint `{joint}` has no component `{name}`");
-            joints
-                .log
-                .error(message)
-                .label(at, "unknown component")
-                .help(help)
-                .report();
+            let labels = [(at, "unknown component")];
+            joints.log.report(message, &labels, help);
         }
     }
     all
 }
 
-fn paths_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Vec<(PathPoint, Span)> {
-    let mut requested = HashSet::new();
-    let mut paths = Vec::new();
+fn paths_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Vec<PathPoint> {
+    let (mut requested, mut paths) = (HashSet::new(), Vec::new());
     for (text, span) in strings(entry, "an array such as [\"coupler.P\"]") {
         let Some((body, k)) = bodies.find_point(text, &span) else {
             continue;
         };
         if bodies.ground == Some(body.0) {
+            let message = format!("`{}` is a point of the ground", shorten(text));
+            let help = "ask for a point of a moving body";
             entry
-                .error(format!("`{}` is a point of the ground", shorten(text)))
-                .label(&span, "it has no path")
-                .help("ask for a point of a moving body")
-                .report();
+                .log()
+                .report(message, &[(&span, "it has no path")], help);
         } else if requested.insert((body, k)) {
-            let point = &bodies.list[body.0].points[k];
-            let (name, at) = (point.name.to_owned(), point.at);
-            paths.push((PathPoint { body, name, at }, span));
+            let location = SceneLocation::Path(paths.len());
+            entry.log().place(location, &span);
+            let (name, at) = bodies.list[body.0].points[k];
+            let name = name.to_owned();
+            paths.push(PathPoint { body, name, at });
         }
     }
     paths
@@ -148,10 +142,7 @@ fn moving_body(
     let body = bodies.find(name, &value.span())?;
     if bodies.ground == Some(body.0) {
         let message = format!("`{}` is the ground, which {lacks}", shorten(name));
-        return value
-            .wrong(message, "not a moving body")
-            .help(help)
-            .reject();
+        return value.reject(message, "not a moving body", help);
     }
     Some(body)
 }
@@ -162,16 +153,14 @@ fn dwell_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Option<DwellRequest> {
     let (Some(body), Some(band)) = (fields.get("body"), fields.get("relative-band")) else {
         let message = "dwell in [requests] needs a body and a band";
         let help = "write `dwell = { body = \"guide\", relative-band = 0.02 }`";
-        return entry.value.wrong(message, "incomplete").help(help).reject();
+        return entry.value.reject(message, "incomplete", help);
     };
     let body = moving_body(body.value, "the body of dwell", "does not move", "", bodies);
     let relative_band = band.value.number("the band of dwell")?;
     if !(relative_band > 0.0 && relative_band < 1.0) {
         let message = "the band of a dwell is a fraction of the body's angular range";
-        return band
-            .value
-            .wrong(message, "expected a number between 0 and 1")
-            .reject();
+        let label = "expected a number between 0 and 1";
+        return band.value.reject(message, label, "");
     }
     Some(DwellRequest {
         body: body?,
@@ -180,23 +169,29 @@ fn dwell_of(entry: &Entry<'_>, bodies: &Bodies<'_>) -> Option<DwellRequest> {
 }
 
 /// The names of columns, each once.
-fn variables_of(entry: &Entry<'_>) -> Vec<(String, Span)> {
+fn variables_of(entry: &Entry<'_>) -> Vec<String> {
     let mut requested = HashSet::new();
-    let names = strings(entry, "an array such as [\"crank.angle\"]").into_iter();
-    let names = names.filter(|(name, _)| requested.insert(*name));
-    names.map(|(name, at)| (name.to_owned(), at)).collect()
+    let mut names = strings(entry, "an array such as [\"crank.angle\"]");
+    names.retain(|(name, _)| requested.insert(*name));
+    for (k, (_, at)) in names.iter().enumerate() {
+        entry.log().place(SceneLocation::Variable(k), at);
+    }
+    let names = names.into_iter();
+    names.map(|(name, _)| name.to_owned()).collect()
 }
 
 /// The links, each once.
-fn sections_of(value: Value<'_>, bodies: &Bodies<'_>) -> Vec<(SectionRequest, Span)> {
+fn sections_of(value: Value<'_>, bodies: &Bodies<'_>) -> Vec<SectionRequest> {
     let expected = "an array such as [{ body = \"rod\", from = \"B\", to = \"P\" }]";
     let values = value.array(expected, "sections in [requests]");
-    let mut sections: Vec<(SectionRequest, Span)> = Vec::new();
+    let mut sections = Vec::new();
     for value in values.into_iter().flatten() {
         if let Some(section) = section_of(value, bodies)
-            && sections.iter().all(|(known, _)| *known != section)
+            && !sections.contains(&section)
         {
-            sections.push((section, value.span()));
+            let location = SceneLocation::Section(sections.len());
+            value.log().place(location, &value.span());
+            sections.push(section);
         }
     }
     sections
@@ -209,13 +204,8 @@ fn section_of(value: Value<'_>, bodies: &Bodies<'_>) -> Option<SectionRequest> {
     let help = "write it as `{ body = \"rod\", from = \"B\", to = \"P\" }`";
     let [body, from, to] = ["body", "from", "to"].map(|key| fields.require(key, help));
     let help = "ask for the sections of a moving body";
-    let id = moving_body(
-        body?.value,
-        &fields.name_of(body?),
-        "has no sections",
-        help,
-        bodies,
-    )?;
+    let (value, named) = (body?.value, fields.name_of(body?));
+    let id = moving_body(value, &named, "has no sections", help, bodies)?;
     let body = &bodies.list[id.0];
     let end = |entry: Option<&Entry<'_>>| {
         let (entry, at) = (entry?, entry?.value.span());
@@ -224,17 +214,15 @@ fn section_of(value: Value<'_>, bodies: &Bodies<'_>) -> Option<SectionRequest> {
     };
     let (from, to) = (end(from), end(to));
     let ((from, at_from), (to, at_to)) = (from?, to?);
-    if from.at == to.at {
-        return fields
-            .error(format!("{what} of `{}` has no length", shorten(body.name)))
-            .label(&at_from, "from here")
-            .label(&at_to, "to the same place")
-            .help("give two points that are apart")
-            .reject();
+    if from.1 == to.1 {
+        let message = format!("{what} of `{}` has no length", shorten(body.name));
+        let labels = [(&at_from, "from here"), (&at_to, "to the same place")];
+        let help = "give two points that are apart";
+        return fields.log().reject(message, &labels, help);
     }
     Some(SectionRequest {
         body: id,
-        names: [from, to].map(|p| p.name.to_owned()),
-        points: [from.at, to.at],
+        names: [from, to].map(|(name, _)| (*name).to_owned()),
+        points: [from.1, to.1],
     })
 }

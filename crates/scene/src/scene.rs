@@ -1,7 +1,7 @@
 //! The scene as plain data.
 
 use crate::error::SceneWarning;
-use crate::number_paths::{BodyNumber, SectionNumber};
+use crate::number_paths::SceneNumber;
 use crate::spans::SceneSpans;
 use crate::units::Units;
 use dwell_geometry::{
@@ -55,9 +55,9 @@ pub struct Scene {
     pub warnings: Vec<SceneWarning>,
     pub(crate) units: Units,
     pub(crate) spans: SceneSpans,
-    pub(crate) body_numbers: Vec<BodyNumber>,
+    pub(crate) body_numbers: Vec<SceneNumber>,
     /// Those outside the bodies.
-    pub(crate) section_numbers: Vec<SectionNumber>,
+    pub(crate) section_numbers: Vec<SceneNumber>,
 }
 
 /// Where and how the mechanism is put together at the start; it picks the branch.
@@ -83,7 +83,7 @@ impl Assembly {
 }
 
 /// What the scene asks for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Requests {
     /// Reactions: those named, in that order and each once, or else all of the mechanism's.
     pub reactions: Vec<Reaction>,
@@ -224,24 +224,27 @@ pub struct Calibration {
 impl Scene {
     /// The coordinate of that name: an actuator's, or one of `[coordinates]`.
     pub fn coordinate(&self, name: &str) -> Option<Coordinate> {
-        let actuators = &self.mechanism.actuators;
-        let actuator = actuators.iter().find(|a| a.name == name);
-        let named = || self.coordinates.iter().find(|c| c.name == name);
-        match actuator {
-            Some(a) => Some(a.coordinate()),
-            None => named().map(|c| c.coordinate),
-        }
+        let mut named = self.all_coordinates();
+        named.find(|(n, _)| *n == name).map(|(_, c)| c)
     }
 
     /// The name of a coordinate: an actuator's, or one of `[coordinates]`; empty if it has none.
     pub fn name_of(&self, coordinate: Coordinate) -> String {
-        let actuators = &self.mechanism.actuators;
-        let actuator = actuators.iter().find(|a| a.coordinate() == coordinate);
-        let named = || self.coordinates.iter().find(|c| c.coordinate == coordinate);
-        match actuator {
-            Some(a) => a.name.clone(),
-            None => named().map(|c| c.name.clone()).unwrap_or_default(),
-        }
+        let mut named = self.all_coordinates();
+        let found = named.find(|(_, c)| *c == coordinate);
+        found.map_or_else(String::new, |(name, _)| name.to_owned())
+    }
+
+    /// Every coordinate that has a name, those of the actuators first.
+    pub(crate) fn all_coordinates(&self) -> impl Iterator<Item = (&str, Coordinate)> + Clone {
+        let actuators = self.mechanism.actuators.iter();
+        let named = self
+            .coordinates
+            .iter()
+            .map(|c| (c.name.as_str(), c.coordinate));
+        actuators
+            .map(|a| (a.name.as_str(), a.coordinate()))
+            .chain(named)
     }
 
     /// SHA-256 of the scene's text, as 64 hexadecimal digits: what a result names its scene by. Line ends count as `\n` and a

@@ -9,28 +9,15 @@ use toml::de::{DeTable, DeValue};
 /// [`Scene::read`](crate::Scene::read) to say.
 pub fn schema() -> String {
     let mut schema = table(keys::table("scene"));
-    set(
-        &mut schema,
-        "$schema",
-        "http://json-schema.org/draft-07/schema#",
-    );
-    set(&mut schema, "title", "Scene of Dwell");
+    schema["$schema"] = json!("http://json-schema.org/draft-07/schema#");
+    schema["title"] = json!("Scene of Dwell");
     // The alternate form of `Display` is the indented one.
     format!("{schema:#}\n")
 }
 
-fn set(schema: &mut Value, key: &str, value: impl Into<Value>) {
-    if let Some(object) = schema.as_object_mut() {
-        object.insert(key.to_owned(), value.into());
-    }
-}
-
 fn table(table: &TableSchema) -> Value {
-    let properties: Map<_, _> = table
-        .keys
-        .iter()
-        .map(|k| (k.name.clone(), key(k)))
-        .collect();
+    let properties = table.keys.iter().map(|k| (k.name.clone(), key(k)));
+    let properties: Map<_, _> = properties.collect();
     let mut schema = json!({
         "type": "object",
         "title": table.name,
@@ -41,14 +28,14 @@ fn table(table: &TableSchema) -> Value {
     let required = table.keys.iter().filter(|k| k.presence.is_none());
     let required: Vec<_> = required.map(|k| k.name.as_str()).collect();
     if !required.is_empty() {
-        set(&mut schema, "required", required);
+        schema["required"] = json!(required);
     }
     // The sets of keys of which exactly one is needed.
     let single = table.alternatives().into_iter().map(|name| vec![name]);
     let choices: Vec<_> = single.chain(table.sets()).collect();
     if !choices.is_empty() {
         let each = choices.iter().map(|names| json!({ "required": names }));
-        set(&mut schema, "oneOf", each.collect::<Vec<_>>());
+        schema["oneOf"] = each.collect();
     }
     schema
 }
@@ -62,9 +49,9 @@ fn key(key: &KeySchema) -> Value {
     if let Some(Presence::Absent(default)) = &key.presence {
         doc.push_str(&format!(" Absent: {default}."));
     }
-    set(&mut schema, "description", doc);
+    schema["description"] = json!(doc);
     if let Some(example) = example(&key.example) {
-        set(&mut schema, "examples", vec![example]);
+        schema["examples"] = json!([example]);
     }
     schema
 }
@@ -117,9 +104,8 @@ pub(crate) fn as_json(value: &DeValue<'_>) -> Value {
         DeValue::Datetime(d) => json!(d.to_string()),
         DeValue::Array(values) => values.iter().map(|v| as_json(v.get_ref())).collect(),
         DeValue::Table(table) => {
-            let entries = table
-                .iter()
-                .map(|(k, v)| (k.get_ref().to_string(), as_json(v.get_ref())));
+            let entries = table.iter();
+            let entries = entries.map(|(k, v)| (k.get_ref().to_string(), as_json(v.get_ref())));
             Value::Object(entries.collect())
         }
     }

@@ -1,8 +1,8 @@
 //! Places of a scene, by the ids the crates above work with, and where they are in the text.
 
-use crate::diagnostics::Span;
 use dwell_geometry::{ActuatorId, BodyId, JointId};
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// Something a message can point at. What the file does not write down points at the nearest
 /// thing around it that it does: a missing mass at its body, a missing section at the beginning.
@@ -83,57 +83,28 @@ pub enum SceneLocation {
     Calibration,
 }
 
-/// Where each place is. A place that is not written down is absent.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct SceneSpans(HashMap<SceneLocation, Span>);
+/// Where the things of a scene are written.
+pub(crate) type SceneSpans = HashMap<SceneLocation, Range<usize>>;
 
-impl SceneSpans {
-    pub(crate) fn put(&mut self, location: SceneLocation, span: impl Into<Option<Span>>) {
-        self.0.extend(span.into().map(|span| (location, span)));
-    }
-
-    /// The places of a list, by their indices in it.
-    pub(crate) fn put_all<S: Into<Option<Span>>>(
-        &mut self,
-        location: impl Fn(usize) -> SceneLocation,
-        spans: impl IntoIterator<Item = S>,
-    ) {
-        for (k, span) in spans.into_iter().enumerate() {
-            self.put(location(k), span);
-        }
-    }
-
-    pub(crate) fn span(&self, location: SceneLocation) -> Option<Span> {
-        self.0.get(&location).cloned()
-    }
-
+impl SceneLocation {
     /// What stands around a place that is not written down.
-    pub(crate) fn enclosing(location: SceneLocation) -> SceneLocation {
-        match location {
-            SceneLocation::Point(b, _)
-            | SceneLocation::Mass(b)
-            | SceneLocation::Inertia(b)
-            | SceneLocation::Center(b) => SceneLocation::Body(b),
-            SceneLocation::JointPoint(j, _)
-            | SceneLocation::Axis(j)
-            | SceneLocation::CouplingLaw(j) => SceneLocation::Joint(j),
-            SceneLocation::PrescribedLaw(_) => SceneLocation::Prescribed,
-            SceneLocation::Swept(_) => SceneLocation::CoordinateSweep,
-            SceneLocation::Magnitude(k) => SceneLocation::Load(k),
-            SceneLocation::AssemblyCoordinate(a) => SceneLocation::InitialCoordinate(a),
-            SceneLocation::InitialCoordinate(a) | SceneLocation::InitialVelocity(a) => {
-                SceneLocation::Actuator(a)
-            }
-            SceneLocation::InitialGuess(b) => SceneLocation::Body(b),
-            SceneLocation::Reaction(_)
-            | SceneLocation::Path(_)
-            | SceneLocation::Dwell
-            | SceneLocation::Variable(_)
-            | SceneLocation::Section(_) => SceneLocation::Requests,
-            SceneLocation::MotionLaw(_) | SceneLocation::Event(_) | SceneLocation::Duration => {
-                SceneLocation::Motion
-            }
-            _ => SceneLocation::Whole,
+    pub(crate) fn enclosing(self) -> Self {
+        match self {
+            Self::Point(b, _) | Self::Mass(b) | Self::Inertia(b) | Self::Center(b) => Self::Body(b),
+            Self::JointPoint(j, _) | Self::Axis(j) | Self::CouplingLaw(j) => Self::Joint(j),
+            Self::PrescribedLaw(_) => Self::Prescribed,
+            Self::Swept(_) => Self::CoordinateSweep,
+            Self::Magnitude(k) => Self::Load(k),
+            Self::AssemblyCoordinate(a) => Self::InitialCoordinate(a),
+            Self::InitialCoordinate(a) | Self::InitialVelocity(a) => Self::Actuator(a),
+            Self::InitialGuess(b) => Self::Body(b),
+            Self::Reaction(_)
+            | Self::Path(_)
+            | Self::Dwell
+            | Self::Variable(_)
+            | Self::Section(_) => Self::Requests,
+            Self::MotionLaw(_) | Self::Event(_) | Self::Duration => Self::Motion,
+            _ => Self::Whole,
         }
     }
 }

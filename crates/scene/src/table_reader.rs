@@ -1,7 +1,8 @@
 //! Tables of the file, and their entries by key.
 
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::diagnostics::{Diagnostics, Span};
 use crate::keys::TableSchema;
+use crate::spans::SceneLocation;
 use crate::units::Units;
 use crate::value::{Context, NumberRule, Value};
 use crate::wording::shorten;
@@ -32,8 +33,14 @@ impl<'a> Entry<'a> {
         self.value.log()
     }
 
-    pub(crate) fn error(&self, message: impl Into<String>) -> Diagnostic<'a> {
-        self.value.error(message)
+    /// Reports that something is wrong with its key.
+    pub(crate) fn reject<T>(
+        &self,
+        message: impl Into<String>,
+        label: &str,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.log().reject(message, &[(&self.key, label)], help)
     }
 }
 
@@ -98,12 +105,15 @@ impl<'a> TableReader<'a> {
         self.context.units
     }
 
-    pub(crate) fn error(&self, message: impl Into<String>) -> Diagnostic<'a> {
-        self.log().error(message)
-    }
-
     pub(crate) fn get(&self, name: &str) -> Option<&Entry<'a>> {
         self.entries.iter().find(|e| e.name == name)
+    }
+
+    /// Notes where the value of a key is, if it is given.
+    pub(crate) fn place(&self, name: &str, location: SceneLocation) {
+        if let Some(entry) = self.get(name) {
+            self.log().place(location, &entry.value.span());
+        }
     }
 
     /// How a message calls an entry of it: by the key as the file has it.
@@ -114,11 +124,9 @@ impl<'a> TableReader<'a> {
     /// The entry of that key, or an error that it is missing; `help` says how to write it.
     pub(crate) fn require(&self, key: &str, help: &str) -> Option<&Entry<'a>> {
         self.get(key).or_else(|| {
-            let diagnostic = self.error(format!("{} has no `{key}`", self.what));
-            diagnostic
-                .label(&self.key, format!("`{key}` is missing"))
-                .help(help)
-                .reject()
+            let message = format!("{} has no `{key}`", self.what);
+            let label = format!("`{key}` is missing");
+            self.log().reject(message, &[(&self.key, &label)], help)
         })
     }
 
@@ -171,10 +179,7 @@ impl<'a> TableReader<'a> {
     ) {
         let help = self.log().choices(entry.name, kind, names);
         let message = format!("unknown key `{}` in {}", shorten(entry.name), self.what);
-        self.error(message)
-            .label(&entry.key, "unknown key")
-            .help(help)
-            .report();
+        entry.reject::<()>(message, "unknown key", help);
     }
 
     /// The one of several keys that exclude each other; nothing if none is there, and an error if
@@ -202,8 +207,8 @@ impl<'a> TableReader<'a> {
         let alternatives = table.alternatives();
         let chosen = self.one_of(|name| alternatives.contains(&name)).ok()?;
         if chosen.is_none() && self.unknown_entries(table).next().is_none() {
-            let diagnostic = self.error(format!("{} {lacks}", self.what));
-            diagnostic.label(&self.key, label).help(help).report();
+            let message = format!("{} {lacks}", self.what);
+            self.log().report(message, &[(&self.key, label)], help);
         }
         chosen
     }
@@ -211,8 +216,8 @@ impl<'a> TableReader<'a> {
     /// Reports two keys of which only one can be given; the labels say what each is.
     pub(crate) fn reject_both(&self, a: &Entry<'_>, b: &Entry<'_>, labels: [&str; 2]) {
         let (one, other) = (a.written(), b.written());
-        let diagnostic = self.error(format!("{} has both `{one}` and `{other}`", self.what));
-        let diagnostic = diagnostic.label(&a.key, labels[0]).label(&b.key, labels[1]);
-        diagnostic.help("keep one of them").report();
+        let message = format!("{} has both `{one}` and `{other}`", self.what);
+        let labels = [(&a.key, labels[0]), (&b.key, labels[1])];
+        self.log().report(message, &labels, "keep one of them");
     }
 }

@@ -10,11 +10,10 @@ impl Units {
     /// Reports an inertia, given at `at`, whose unit is not given.
     pub(crate) fn require_inertia_unit(&self, at: &Span, log: &Diagnostics) {
         if let Some(span) = &self.missing_inertia_unit {
-            log.error("[units] does not give the unit of inertia")
-                .label(span, "not an SI unit")
-                .label(at, "inertia without a unit")
-                .help("add for instance `inertia = \"kg m2\"` to [units]")
-                .report();
+            let message = "[units] does not give the unit of inertia";
+            let labels = [(span, "not an SI unit"), (at, "inertia without a unit")];
+            let help = "add for instance `inertia = \"kg m2\"` to [units]";
+            log.report(message, &labels, help);
         }
     }
 
@@ -31,7 +30,7 @@ impl Units {
             find(name).or_else(|| {
                 let message = format!("unknown unit of {key} `{}`", shorten(name));
                 let label = format!("unknown unit of {key}");
-                value.wrong(message, &label).help(names()).reject()
+                value.reject(message, &label, names())
             })
         };
         let simple = |key, known: &[KnownUnit]| {

@@ -1,7 +1,7 @@
 //! Typed reading of one value: each reader returns what it was asked for, or reports what it found
 //! instead. `what` is how a message calls the value.
 
-use crate::diagnostics::{Diagnostic, Diagnostics, Span};
+use crate::diagnostics::{Diagnostics, Span};
 use crate::units::{Unit, Units};
 use dwell_geometry::{Vec2, vec2};
 use std::fmt::Display;
@@ -63,6 +63,19 @@ impl<'u> NumberRule<'u> {
     }
 }
 
+/// The number that a value is, if it is one of double precision.
+pub(crate) fn written_number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        // Decimal digits go to the float parser whatever their count, so that they round once.
+        DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
+        DeValue::Integer(i) => u64::from_str_radix(i.as_str(), i.radix())
+            .ok()
+            .map(|n| n as f64),
+        DeValue::Float(x) => x.as_str().parse().ok(),
+        _ => None,
+    }
+}
+
 impl<'a> Value<'a> {
     pub(crate) fn get(self) -> &'a DeValue<'a> {
         self.tree.get_ref()
@@ -84,13 +97,14 @@ impl<'a> Value<'a> {
         matches!(self.get(), DeValue::Integer(_) | DeValue::Float(_))
     }
 
-    pub(crate) fn error(self, message: impl Into<String>) -> Diagnostic<'a> {
-        self.log().error(message)
-    }
-
-    /// An error whose first label is at this value.
-    pub(crate) fn wrong(self, message: impl Into<String>, label: &str) -> Diagnostic<'a> {
-        self.error(message).label(&self.span(), label)
+    /// Reports that this value is wrong.
+    pub(crate) fn reject<T>(
+        self,
+        message: impl Into<String>,
+        label: &str,
+        help: impl Into<String>,
+    ) -> Option<T> {
+        self.log().reject(message, &[(&self.span(), label)], help)
     }
 
     /// Reports that it is not what was expected.
@@ -115,30 +129,30 @@ impl<'a> Value<'a> {
             }
             _ => "",
         };
-        self.unexpected(expected, found, what).help(help).reject()
+        self.unexpected(expected, found, what, help)
     }
 
-    fn unexpected(self, expected: &str, found: &str, what: impl Display) -> Diagnostic<'a> {
+    fn unexpected<T>(
+        self,
+        expected: &str,
+        found: &str,
+        what: impl Display,
+        help: &str,
+    ) -> Option<T> {
         let message = format!("{what}: expected {expected}, found {found}");
-        self.wrong(message, &format!("expected {expected}"))
+        self.reject(message, &format!("expected {expected}"), help)
     }
 
     /// A finite number, in the unit of the scene.
     pub(crate) fn number(self, what: impl Display) -> Option<f64> {
-        let parsed = match self.get() {
-            // Decimal digits go to the float parser whatever their count, so that they round once.
-            DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
-            DeValue::Integer(i) => u64::from_str_radix(i.as_str(), i.radix())
-                .ok()
-                .map(|n| n as f64),
-            DeValue::Float(x) => x.as_str().parse().ok(),
-            _ => return self.mismatch("a number", what),
-        };
-        match (parsed, self.get()) {
-            (Some(x), _) if f64::is_finite(x) => Some(x),
+        if !self.is_number() {
+            return self.mismatch("a number", what);
+        }
+        match (written_number(self.get()), self.get()) {
+            (Some(x), _) if x.is_finite() => Some(x),
             (_, DeValue::Float(x)) if x.as_str().contains('n') => {
                 let message = format!("{what} is not finite");
-                self.wrong(message, "expected a finite number").reject()
+                self.reject(message, "expected a finite number", "")
             }
             _ => self.too_large(what),
         }
@@ -147,22 +161,24 @@ impl<'a> Value<'a> {
     fn too_large<T>(self, what: impl Display) -> Option<T> {
         let message = format!("{what} is too large to compute with");
         let help = format!("the largest number, in SI, is {MAX_NUMBER:e}");
-        self.wrong(message, "too large").help(help).reject()
-    }
-
-    /// A number as (as written, in SI).
-    pub(crate) fn written_and_si(self, unit: &Unit, what: impl Display) -> Option<(f64, f64)> {
-        let written = self.number(&what)?;
-        let si = unit.to_si(written);
-        match si.abs() <= MAX_NUMBER {
-            true => Some((written, si)),
-            false => self.too_large(what),
-        }
+        self.reject(message, "too large", help)
     }
 
     /// A number in SI.
     pub(crate) fn quantity(self, unit: &Unit, what: impl Display) -> Option<f64> {
-        self.written_and_si(unit, what).map(|(_, si)| si)
+        let si = unit.to_si(self.number(&what)?);
+        match si.abs() <= MAX_NUMBER {
+            true => Some(si),
+            false => self.too_large(what),
+        }
+    }
+
+    /// A point, m.
+    pub(crate) fn point(self, what: &str) -> Option<Vec2> {
+        let unit = &self.units().length;
+        let coordinate = |value: Self, what: String| value.quantity(unit, what);
+        let [x, y] = self.pair_of(POINT, what, ["x", "y"], coordinate)?;
+        Some(vec2(x, y))
     }
 
     /// An angle in rad.
@@ -173,9 +189,7 @@ impl<'a> Value<'a> {
         }
         let help = "subtract whole revolutions: so large an angle has lost its last digits";
         let message = format!("{what} is more than {MAX_ANGLE:e} rad");
-        self.wrong(message, "too many revolutions")
-            .help(help)
-            .reject()
+        self.reject(message, "too many revolutions", help)
     }
 
     /// A coordinate or its speed, in SI: an angle does not have too many revolutions.
@@ -199,12 +213,10 @@ impl<'a> Value<'a> {
             SignRule::Positive => (si > 0.0, "is not above zero", "expected a number above 0"),
             SignRule::NotZero => (si != 0.0, "is zero", "expected a number other than 0"),
         };
-        if good {
-            return Some(si);
+        match good {
+            true => Some(si),
+            false => self.reject(format!("{what} {wrong}"), expected, rule.why),
         }
-        self.wrong(format!("{what} {wrong}"), expected)
-            .help(rule.why)
-            .reject()
     }
 
     /// A count of at least two and at most a million.
@@ -215,7 +227,7 @@ impl<'a> Value<'a> {
             return Some(x as usize);
         }
         let message = format!("{what} is not a whole number from 2 to {MAX_COUNT:e}");
-        self.wrong(message, "expected a whole number").reject()
+        self.reject(message, "expected a whole number", "")
     }
 
     /// The rows [x, y] of a table in SI: two or more, each x above the one before.
@@ -236,7 +248,7 @@ impl<'a> Value<'a> {
             if rows.last().is_some_and(|last| x <= last[0]) {
                 let message = format!("x in {name} is not above that of the row before");
                 let help = "sort the rows of a table by x, each x once";
-                row.wrong(message, "out of order").help(help).report();
+                row.reject::<()>(message, "out of order", help);
             }
             rows.push([x, y]);
         }
@@ -244,22 +256,20 @@ impl<'a> Value<'a> {
             return None;
         }
         if rows.len() < 2 {
-            let diagnostic = self.wrong(format!("{what} has fewer than two rows"), "no curve");
-            return diagnostic.help("give at least two rows [x, y]").reject();
+            let message = format!("{what} has fewer than two rows");
+            return self.reject(message, "no curve", "give at least two rows [x, y]");
         }
         Some(rows)
     }
 
     /// A direction: only the ratio of its components counts, so it has no unit.
     pub(crate) fn unit_vector(self, what: impl Display) -> Option<Vec2> {
-        let [x, y] = self.pair(POINT, &what)?;
-        let x = x.number(format_args!("x of {what}"));
-        let y = y.number(format_args!("y of {what}"));
-        let (x, y) = (x?, y?);
+        let component = |value: Self, what: String| value.number(what);
+        let [x, y] = self.pair_of(POINT, &what, ["x", "y"], component)?;
         let largest = x.abs().max(y.abs());
         if largest == 0.0 {
-            let diagnostic = self.wrong(format!("{what} has no length"), "no direction");
-            return diagnostic.help("give a direction, such as [1, 0]").reject();
+            let message = format!("{what} has no length");
+            return self.reject(message, "no direction", "give a direction, such as [1, 0]");
         }
         // Scaled first: the largest and the smallest numbers would lose their direction in a square.
         let (x, y) = (x / largest, y / largest);
@@ -301,7 +311,22 @@ impl<'a> Value<'a> {
             2 => return Some([values[0], values[1]]),
             n => format!("{n} values"),
         };
-        self.unexpected(expected, &found, what).reject()
+        self.unexpected(expected, &found, what, "")
+    }
+
+    /// The two values of an array, read by `one`, which is told how a message calls each. Both are read before either fails, so
+    /// that both are reported.
+    pub(crate) fn pair_of<T>(
+        self,
+        expected: &str,
+        what: impl Display,
+        names: [&str; 2],
+        one: impl Fn(Self, String) -> Option<T>,
+    ) -> Option<[T; 2]> {
+        let [a, b] = self.pair(expected, &what)?;
+        let [first, second] = names.map(|name| format!("{name} of {what}"));
+        let (a, b) = (one(a, first), one(b, second));
+        Some([a?, b?])
     }
 
     /// Two strings.

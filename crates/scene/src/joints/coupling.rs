@@ -4,9 +4,10 @@ use super::Joints;
 use crate::coordinates::{ParsedCoordinates, is_same};
 use crate::keys::table;
 use crate::law::{LawDomain, law};
+use crate::spans::SceneLocation;
 use crate::table_reader::TableReader;
 use crate::wording::list;
-use dwell_geometry::{BodyId, Coordinate, Coupling, Joint, JointKind, Vec2};
+use dwell_geometry::{BodyId, Coordinate, Coupling, Joint, JointId, JointKind, Vec2};
 
 impl Joints<'_> {
     /// Reads the couplings, once the coordinates are known.
@@ -26,7 +27,8 @@ impl Joints<'_> {
         let laws = list(table("coupling").alternatives().into_iter()).unwrap_or_default();
         let help = format!("add `expression = \"0.01*(1 - cos(x))\"`; the laws are {laws}");
         let chosen = fields.alternative(table("coupling"), ("has no law", "no law"), help)?;
-        self.list[k].law = Some(chosen.span());
+        let location = SceneLocation::CouplingLaw(JointId(k));
+        self.log.place(location, &chosen.span());
         let [dependent, independent] = both?;
         let what = &fields.what;
         let start = match fields.get("start") {
@@ -40,12 +42,8 @@ impl Joints<'_> {
                 "{what} has a `start` that its {} does not need",
                 chosen.name
             );
-            let diagnostic = e
-                .error(message)
-                .label(&e.key, "only for a sinusoid or a rise");
-            return diagnostic
-                .help("leave it out, or add it to the function itself")
-                .reject();
+            let help = "leave it out, or add it to the function itself";
+            return e.reject(message, "only for a sinusoid or a rise", help);
         }
         let units = fields.units();
         let domain = LawDomain {
@@ -80,16 +78,17 @@ impl Joints<'_> {
         let entry = fields.get("coupling")?;
         let expected = "two coordinates [\"value\", \"variable\"]";
         let names = entry.value.two_strings(expected, fields.name_of(entry))?;
-        self.list[k].points = [names[0].1.clone(), names[1].1.clone()];
+        for (i, (_, at)) in names.iter().enumerate() {
+            self.log.place(SceneLocation::JointPoint(JointId(k), i), at);
+        }
         let [first, second] = names.each_ref().map(|(name, at)| named.find(name, at));
         let (first, second) = (first?, second?);
         if is_same(first, second) {
-            return fields
-                .error(format!("{} couples a coordinate to itself", fields.what))
-                .label(&names[0].1, "this coordinate")
-                .label(&names[1].1, "and the same again")
-                .help("the first is the function's value, the second its variable")
-                .reject();
+            let message = format!("{} couples a coordinate to itself", fields.what);
+            let [first, second] = &names.map(|(_, at)| at);
+            let labels = [(first, "this coordinate"), (second, "and the same again")];
+            let help = "the first is the function's value, the second its variable";
+            return fields.log().reject(message, &labels, help);
         }
         Some([first, second])
     }

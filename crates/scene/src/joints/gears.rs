@@ -3,7 +3,7 @@
 use super::pairs::axis;
 use crate::diagnostics::Span;
 use crate::table_reader::TableReader;
-use crate::value::{NumberRule, SignRule};
+use crate::value::{NumberRule, SignRule, Value};
 use dwell_geometry::{JointKind, Vec2};
 use dwell_kinetostatics::PressureAngle;
 
@@ -17,19 +17,16 @@ pub(super) fn gear(fields: &TableReader<'_>) -> Option<JointKind> {
     let rule = NumberRule::new(&fields.units().length, SignRule::Positive);
     let rule =
         rule.because("a pitch radius is above zero; a ring gear is one with `internal = true`");
-    let [a, b] = given
-        .value
-        .pair("two radii [r1, r2]", format_args!("the radii of {what}"))?;
-    let a = a.quantity_with_sign(&rule, format_args!("the first of the radii of {what}"));
-    let b = b.quantity_with_sign(&rule, format_args!("the second of the radii of {what}"));
-    let (radii, internal) = ([a?, b?], internal?);
+    let names = ["the first", "the second"];
+    let radius = |value: Value<'_>, name: String| value.quantity_with_sign(&rule, name);
+    let all = format!("the radii of {what}");
+    let radii = (given.value).pair_of("two radii [r1, r2]", all, names, radius);
+    let (radii, internal) = (radii?, internal?);
     if internal && radii[0] == radii[1] {
         let message = format!("the ring and the gear of {what} have equal radii");
         let help = "the ring's radius is the larger one; two equal gears are external";
-        let diagnostic = given
-            .value
-            .wrong(message, "the gear does not fit into the ring");
-        return diagnostic.help(help).reject();
+        let label = "the gear does not fit into the ring";
+        return given.value.reject(message, label, help);
     }
     Some(JointKind::Gear { radii, internal })
 }
@@ -45,11 +42,7 @@ pub(super) fn pressure_angle(fields: &TableReader<'_>) -> Option<(f64, Span)> {
     let message = format!("{what} is not between 0° and 45°");
     let help = "standard teeth have 20°; leave it out for teeth without a separating force";
     let unit = &fields.units().angle.name;
-    entry
-        .value
-        .wrong(message, &format!("in {unit}"))
-        .help(help)
-        .reject()
+    entry.value.reject(message, &format!("in {unit}"), help)
 }
 
 /// The axis and the radius of a pinion or wheel that rolls along a line.

@@ -6,11 +6,12 @@ mod pairs;
 
 use crate::bodies::{Bodies, NamedPoint, TWO_POINTS};
 use crate::diagnostics::{Diagnostics, Span};
-use crate::kind::kind;
+use crate::kind::{kind, reject_unread_kind};
 use crate::names::check;
+use crate::spans::SceneLocation;
 use crate::table_reader::{Entry, TableReader};
 use crate::wording::shorten;
-use dwell_geometry::{Coupling, Joint, JointId, JointKind};
+use dwell_geometry::{BodyId, Coupling, Joint, JointId, JointKind};
 use dwell_kinetostatics::Guide;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -20,12 +21,6 @@ use std::ops::Range;
 pub(crate) struct ParsedJoint {
     pub(crate) name: String,
     pub(crate) key: Span,
-    /// Where its two points are named; of a coupling, its coordinates.
-    pub(crate) points: [Span; 2],
-    /// Its axis or axes.
-    pub(crate) axis: Option<Span>,
-    /// The law of a coupling.
-    pub(crate) law: Option<Span>,
     /// The pressure angle of teeth, rad.
     pub(crate) pressure_angle: Option<(f64, Span)>,
     pub(crate) joint: Option<Joint>,
@@ -81,10 +76,8 @@ impl<'a> Joints<'a> {
         if found.is_none() && !self.list.is_empty() {
             let names = self.list.iter().map(|j| j.name.as_str());
             let help = self.log.choices(name, "joints", names);
-            let diagnostic = self
-                .log
-                .error(format!("there is no joint `{}`", shorten(name)));
-            diagnostic.label(at, "unknown joint").help(help).report();
+            let message = format!("there is no joint `{}`", shorten(name));
+            self.log.report(message, &[(at, "unknown joint")], help);
         }
         found.cloned()
     }
@@ -99,13 +92,9 @@ impl<'a> Joints<'a> {
         let has_travel = |j: &&ParsedJoint| j.joint.as_ref().is_some_and(|j| has_travel(j.kind));
         let sliding = self.list.iter().filter(has_travel).map(|j| j.name.as_str());
         let help = self.log.choices("", "prismatic joints and slots", sliding);
-        let diagnostic = self
-            .log
-            .error(format!("joint `{}` has no travel", shorten(name)));
-        diagnostic
-            .label(at, format!("its kind is {}", kind_name(kind)))
-            .help(help)
-            .reject()
+        let message = format!("joint `{}` has no travel", shorten(name));
+        let label = format!("its kind is {}", kind_name(kind));
+        self.log.reject(message, &[(at, &label)], help)
     }
 
     /// The line along which a joint slides.
@@ -127,68 +116,65 @@ impl<'a> Joints<'a> {
     /// several bodies have names of their own, which no other joint may have.
     fn name_pins(&mut self) {
         for (k, joint) in self.list.iter().enumerate() {
-            if self
-                .by_name
-                .get(&joint.name)
-                .is_some_and(|r| r.contains(&k))
-            {
+            let named = self.by_name.get(&joint.name);
+            if named.is_some_and(|r| r.contains(&k)) {
                 continue;
             }
-            let Some(other) = self.by_name.insert(joint.name.clone(), k..k + 1) else {
-                continue;
-            };
-            self.log
-                .error(format!("two joints are named `{}`", shorten(&joint.name)))
-                .label(&joint.key, "one is made from this pin")
-                .label(&self.list[other.start].key, "the other is here")
-                .help("rename this joint: a pin of several bodies makes joints named `pin-body`")
-                .report();
+            if let Some(other) = self.by_name.insert(joint.name.clone(), k..k + 1) {
+                let message = format!("two joints are named `{}`", shorten(&joint.name));
+                let pin = (&joint.key, "one is made from this pin");
+                let other = (&self.list[other.start].key, "the other is here");
+                let help =
+                    "rename this joint: a pin of several bodies makes joints named `pin-body`";
+                self.log.report(message, &[pin, other], help);
+            }
         }
     }
 
     /// Appends the joints that an entry describes, several if it is a pin of several bodies.
     fn joint(&mut self, entry: &Entry<'a>, bodies: &Bodies<'_>) {
-        let key = entry.key.clone();
         let mut parsed = ParsedJoint {
             name: entry.name.to_owned(),
-            points: [key.clone(), key.clone()],
-            key,
-            axis: None,
-            law: None,
+            key: entry.key.clone(),
             pressure_angle: None,
             joint: None,
         };
         let fields = TableReader::open(entry, format!("joint `{}`", shorten(entry.name)));
         let kind = fields.as_ref().and_then(|fields| kind(fields, "joint"));
         let (Some(fields), Some((kind, kind_entry))) = (&fields, kind) else {
-            self.list.push(parsed);
-            return;
+            return self.push(parsed);
         };
-        let axis = fields.get("axis").or(fields.get("axes"));
-        parsed.axis = axis.map(|e| e.value.span());
         match kind {
             "revolute" => match pin_points(kind_entry, fields, bodies).as_deref() {
                 Some([first, others @ ..]) => self.pin(&parsed, first, others, bodies),
-                _ => self.list.push(parsed),
+                _ => self.push(parsed),
             },
             "coupling" => {
-                self.pending_couplings
-                    .push((self.list.len(), fields.clone()));
-                self.list.push(parsed);
+                let pending = (self.list.len(), fields.clone());
+                self.pending_couplings.push(pending);
+                self.push(parsed);
             }
             _ => {
+                let location = SceneLocation::Axis(JointId(self.list.len()));
+                fields.place("axis", location);
+                fields.place("axes", location);
                 let points = two_points(kind_entry, TWO_POINTS, fields, bodies);
                 if matches!(kind, "gear" | "rack") {
                     parsed.pressure_angle = gears::pressure_angle(fields);
                 }
-                let kind = joint_kind(kind, fields);
-                if let Some([a, b]) = points {
-                    parsed.points = [a.2.clone(), b.2.clone()];
-                    parsed.joint = kind.map(|kind| between(&parsed.name, &a, &b, kind, bodies));
+                let kind = joint_kind(kind_entry, fields);
+                if let (Some([a, b]), Some(kind)) = (points, kind) {
+                    parsed.joint = Some(self.between(&parsed.name, &a, &b, kind, bodies));
                 }
-                self.list.push(parsed);
+                self.push(parsed);
             }
         }
+    }
+
+    fn push(&mut self, joint: ParsedJoint) {
+        let id = JointId(self.list.len());
+        self.log.place(SceneLocation::Joint(id), &joint.key);
+        self.list.push(joint);
     }
 
     /// A pin: the first body holds every other.
@@ -204,44 +190,50 @@ impl<'a> Joints<'a> {
                 1 => parsed.name.clone(),
                 _ => format!("{}-{}", parsed.name, bodies.list[other.0.0].name),
             };
-            self.list.push(ParsedJoint {
-                joint: Some(between(&name, first, other, JointKind::Revolute, bodies)),
+            let joint = self.between(&name, first, other, JointKind::Revolute, bodies);
+            self.push(ParsedJoint {
+                joint: Some(joint),
                 name,
-                points: [first.2.clone(), other.2.clone()],
-                axis: None,
                 ..parsed.clone()
             });
+        }
+    }
+
+    /// The joint that is appended next.
+    fn between(
+        &self,
+        name: &str,
+        a: &NamedPoint,
+        b: &NamedPoint,
+        kind: JointKind,
+        bodies: &Bodies<'_>,
+    ) -> Joint {
+        let id = JointId(self.list.len());
+        self.log.place(SceneLocation::JointPoint(id, 0), &a.2);
+        self.log.place(SceneLocation::JointPoint(id, 1), &b.2);
+        Joint {
+            name: name.to_owned(),
+            bodies: [a.0, b.0],
+            points: [a, b].map(|point| bodies.at(point)),
+            kind,
         }
     }
 }
 
 /// The kind of a joint of two points, with its numbers.
-fn joint_kind(kind: &str, fields: &TableReader<'_>) -> Option<JointKind> {
-    match kind {
+fn joint_kind(kind: &Entry<'_>, fields: &TableReader<'_>) -> Option<JointKind> {
+    match kind.name {
         "prismatic" => pairs::prismatic(fields),
         "slot" => pairs::axis(fields).map(|axis| JointKind::Slot { axis }),
         "weld" => pairs::weld(fields),
         "distance" => pairs::distance(fields),
         "gear" => gears::gear(fields),
-        _ => gears::on_a_line(fields).map(|(axis, radius)| match kind {
-            "rack" => JointKind::Rack { axis, radius },
-            _ => JointKind::Rolling { axis, radius },
-        }),
-    }
-}
-
-fn between(
-    name: &str,
-    a: &NamedPoint,
-    b: &NamedPoint,
-    kind: JointKind,
-    bodies: &Bodies<'_>,
-) -> Joint {
-    Joint {
-        name: name.to_owned(),
-        bodies: [a.0, b.0],
-        points: [a, b].map(|point| bodies.at(point)),
-        kind,
+        "rack" => gears::on_a_line(fields).map(|(axis, radius)| JointKind::Rack { axis, radius }),
+        "rolling" => {
+            let (axis, radius) = gears::on_a_line(fields)?;
+            Some(JointKind::Rolling { axis, radius })
+        }
+        _ => reject_unread_kind(kind),
     }
 }
 
@@ -294,9 +286,8 @@ fn pin_points(
     let mut points: Vec<NamedPoint> = Vec::new();
     for value in values {
         let at = value.span();
-        let found = value
-            .string(&what)
-            .and_then(|name| bodies.find_point(name, &at));
+        let name = value.string(&what);
+        let found = name.and_then(|name| bodies.find_point(name, &at));
         let Some((body, point)) = found else {
             continue;
         };
@@ -317,16 +308,8 @@ fn require_different_bodies(
     b: &NamedPoint,
     fields: &TableReader<'_>,
     bodies: &Bodies<'_>,
-) -> Option<()> {
-    if a.0 != b.0 {
-        return Some(());
-    }
+) -> Option<[BodyId; 2]> {
     let message = |name: &str| format!("{} joins body `{name}` to itself", fields.what);
-    let labels = [(&a.2, "this body"), (&b.2, "and the same again")];
-    bodies.reject_same_body(
-        a.0,
-        message,
-        labels,
-        "a joint holds two different bodies together",
-    )
+    let help = "a joint holds two different bodies together";
+    bodies.require_different([(a.0, &a.2), (b.0, &b.2)], message, help)
 }

@@ -1,7 +1,7 @@
 //! Prismatic joints, welds and distances, and the axis of a joint.
 
 use crate::table_reader::TableReader;
-use crate::value::{NumberRule, SignRule};
+use crate::value::{NumberRule, SignRule, Value};
 use dwell_geometry::{JointKind, Vec2};
 
 pub(super) fn prismatic(fields: &TableReader<'_>) -> Option<JointKind> {
@@ -12,29 +12,22 @@ pub(super) fn prismatic(fields: &TableReader<'_>) -> Option<JointKind> {
             [axis, axis]
         }
         (None, Some(axes)) => {
-            let what = format!("the axes of {what}");
             let expected = "one axis for each body [[x, y], [x, y]]";
-            let [a, b] = axes.value.pair(expected, &what)?;
-            let a = a.unit_vector(format_args!("the first of {what}"));
-            let b = b.unit_vector(format_args!("the second of {what}"));
-            [a?, b?]
+            let names = ["the first", "the second"];
+            let (what, axis) = (format!("the axes of {what}"), Value::unit_vector);
+            axes.value.pair_of(expected, what, names, axis)?
         }
         (Some(a), Some(b)) => {
-            fields.reject_both(
-                a,
-                b,
-                ["the same axis in both bodies", "one axis for each body"],
-            );
+            let labels = ["the same axis in both bodies", "one axis for each body"];
+            fields.reject_both(a, b, labels);
             return None;
         }
         (None, None) => {
             let help =
                 "add `axis = [1, 0]`, in the frames of both bodies, or `axes` with one for each";
-            let diagnostic = fields.error(format!("{what} has no axis"));
-            return diagnostic
-                .label(&fields.key, "`axis` is missing")
-                .help(help)
-                .reject();
+            let labels = [(&fields.key, "`axis` is missing")];
+            let message = format!("{what} has no axis");
+            return fields.log().reject(message, &labels, help);
         }
     };
     Some(JointKind::Prismatic { axes })
