@@ -4,7 +4,7 @@ use crate::explain::{StudyError, missing_section_label, scene_error};
 use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem};
 use crate::models::{SolverSettings, with_drive_loads};
 use crate::progress::Progress;
-use crate::trajectory::compute::{Analysis, ComputedTrajectory, compute_along};
+use crate::trajectory::compute::{ComputedTrajectory, compute_along};
 use dwell_dynamics::{EventOccurrence, Options};
 use dwell_findings::Table;
 use dwell_scene::{Scene, SceneLocation};
@@ -85,8 +85,8 @@ pub fn compute_free_motion(
     let trajectory = problem
         .trajectory(&integrated)
         .map_err(|e| problem.explain(&e))?;
-    let (model, analysis) = (&problem.output_model, Analysis::FreeMotion);
-    let mut computed = compute_along(&loaded_scene, model, trajectory, analysis, progress)?;
+    let (model, notes) = (&problem.output_model, String::new());
+    let mut computed = compute_along(&loaded_scene, model, trajectory, notes, progress)?;
     let shortfall = problem.shortfall(scene, &integrated);
     computed.early_stop = shortfall.or(computed.early_stop);
     let mut summary = problem.summary(motion, &integrated.method_text, duration);

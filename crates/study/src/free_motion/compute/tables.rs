@@ -4,10 +4,10 @@ use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMo
 use crate::models::{drive_states, source_name};
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{
-    BALANCE, ExtraColumn, FreeTrajectory, KINETIC, POTENTIAL, Trajectory, TrajectorySample,
+    BALANCE, Column, FreeTrajectory, KINETIC, POTENTIAL, Quantity, Trajectory, TrajectorySample,
 };
 use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineState, OdeState};
-use dwell_findings::{Column, Table};
+use dwell_findings::{self as findings, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
 impl FreeMotionProblem<'_> {
@@ -94,12 +94,7 @@ impl FreeMotionProblem<'_> {
     }
 
     /// The columns of [`TrajectorySample::extra_values`].
-    fn extra_columns(&self) -> Vec<ExtraColumn> {
-        let column = |(name, unit, meaning)| ExtraColumn {
-            name,
-            unit,
-            meaning,
-        };
+    fn extra_columns(&self) -> Vec<Column> {
         let kinetic = "kinetic energy of all bodies and rotors";
         let potential = "potential energy of gravity, springs and constant forces";
         let balance =
@@ -108,31 +103,36 @@ impl FreeMotionProblem<'_> {
             (KINETIC.to_owned(), "J", kinetic),
             (POTENTIAL.to_owned(), "J", potential),
         ];
-        all.extend(
-            self.machine
-                .nonconservative_sources()
-                .iter()
-                .map(|&source| {
-                    let name = source_name(self.loaded_scene, source);
-                    (format!("{name}.work"), "J", "work since t = 0")
-                }),
-        );
+        let sources = self.machine.nonconservative_sources().iter();
+        all.extend(sources.map(|&source| {
+            let name = source_name(self.loaded_scene, source);
+            (format!("{name}.work"), "J", "work since t = 0")
+        }));
         all.push((BALANCE.to_owned(), "J", balance));
         all.extend(drive_states(self.loaded_scene));
-        all.into_iter().map(column).collect()
+        let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
+            name,
+            former: None,
+            unit,
+            quantity: Quantity::Extra(k),
+            meaning: meaning.to_owned(),
+        };
+        all.into_iter().enumerate().map(column).collect()
     }
 
     /// The time of each event, and the actuator coordinates and speeds then.
     pub(crate) fn event_table(&self, motion: &SegmentedMotion) -> Table {
-        let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
+        let mut columns = vec![
+            findings::Column::new("t", "s"),
+            findings::Column::new("event", ""),
+        ];
         let mechanism = &self.loaded_scene.mechanism;
         for actuator in &mechanism.actuators {
-            let (name, unit) = (
-                &actuator.name,
-                coordinate_unit(actuator.coordinate().is_angle()),
-            );
-            columns.push(Column::new(name, unit));
-            columns.push(Column::new(format!("{name}.velocity"), format!("{unit}/s")));
+            let name = &actuator.name;
+            let unit = coordinate_unit(actuator.coordinate().is_angle());
+            columns.push(findings::Column::new(name, unit));
+            let (name, unit) = (format!("{name}.velocity"), format!("{unit}/s"));
+            columns.push(findings::Column::new(name, unit));
         }
         let row = |(chart, o): (usize, &EventOccurrence)| {
             let machine = self.machine(motion, chart);

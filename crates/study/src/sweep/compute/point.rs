@@ -148,7 +148,7 @@ impl RequestedQuantities {
             match peak_forces(scene, &with_loads(scene, model)?, analysis) {
                 Ok(peaks) => {
                     set(ResultKind::Reaction, Ok(peaks.reactions));
-                    set(ResultKind::ActuatorForce, Ok(peaks.actuator_forces));
+                    set(ResultKind::ActuatorForce, Ok(peaks.tau));
                 }
                 Err(error) => set(ResultKind::Reaction, Err(error)),
             }

@@ -1,7 +1,7 @@
 //! The columns of a trajectory table, each with its unit and meaning.
 
 use crate::former_names::former_column;
-use crate::trajectory::compute::{Column, PowerTerm, Quantity, dyads};
+use crate::trajectory::compute::{Column, Quantity, dyads};
 use dwell_geometry::body_states::CoordinateFunction;
 use dwell_geometry::{
     ActuatorKind, BodyId, Component, Coordinate, JointId, JointKind, Plan, Reaction,
@@ -345,29 +345,20 @@ impl Columns<'_> {
         for (k, (name, unit)) in components.into_iter().enumerate() {
             self.add(name, unit, Quantity::ShakingForce(k), &*meaning);
         }
-        for (name, term, meaning) in [
-            ("actuators", PowerTerm::Actuators, "power of the actuators"),
-            ("loads", PowerTerm::Loads, "power of the loads"),
+        let powers = [
+            ("power.actuators", "power of the actuators"),
+            ("power.loads", "power of the loads"),
+            ("power.kinetic", "rate of the kinetic energy"),
             (
-                "kinetic",
-                PowerTerm::KineticRate,
-                "rate of the kinetic energy",
-            ),
-            (
-                "residual",
-                PowerTerm::Residual,
+                "power.residual",
                 "actuators + loads − dE/dt: rounding error",
             ),
-        ] {
-            self.add(format!("power.{name}"), "W", Quantity::Power(term), meaning);
+            ("energy.kinetic_bodies", "kinetic energy of the bodies"),
+        ];
+        for (k, (name, meaning)) in powers.into_iter().enumerate() {
+            let unit = if k < 4 { "W" } else { "J" };
+            self.add(name, unit, Quantity::Power(k), meaning);
         }
-        let (name, meaning) = ("energy.kinetic_bodies", "kinetic energy of the bodies");
-        self.add(
-            name,
-            "J",
-            Quantity::Power(PowerTerm::KineticEnergy),
-            meaning,
-        );
     }
 }
 

@@ -5,9 +5,9 @@ use crate::explain::{
     non_finite_coupling_error, scene_error,
 };
 use crate::number_format::{coordinate_unit, digits, number};
-use crate::trajectory::compute::{Trajectory, TrajectoryFault, TrajectorySample, table_of};
+use crate::trajectory::compute::{Trajectory, TrajectorySample, table_of};
 use dwell_geometry::body_states::BodyStates;
-use dwell_geometry::{Plan, PositionError};
+use dwell_geometry::{JointId, Plan, PositionError};
 use dwell_kinetostatics::{KinetostaticsError, LoadKind, Signal};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
@@ -33,8 +33,10 @@ pub(crate) fn unreachable_error(plan: &Plan, previous: f64, q: f64) -> Option<Po
 pub(crate) enum StopCause {
     /// There is no pose, or a load is undefined.
     NoSolution(KinetostaticsError),
-    /// There is a pose, but the trajectory is invalid there.
-    Fault(TrajectoryFault),
+    /// The table of a load does not cover this value of its argument.
+    OffTable { load: usize, value: f64 },
+    /// A coupling function is discontinuous between two neighbouring values of its variable.
+    Discontinuity { joint: JointId, between: [f64; 2] },
 }
 
 impl<E: Into<KinetostaticsError>> From<E> for StopCause {
@@ -103,14 +105,12 @@ impl EarlyStop {
         };
         match self.cause {
             StopCause::NoSolution(KinetostaticsError::Position(error)) => {
-                let location = trajectory.location;
+                let location = trajectory.location(scene);
                 self.explain_limit(scene, plan, location, &position, &error)
             }
             StopCause::NoSolution(error) => explain_load(scene, error, &when),
-            StopCause::Fault(TrajectoryFault::OffTable { load, value }) => {
-                off_table_error(scene, load, value, &when)
-            }
-            StopCause::Fault(TrajectoryFault::Discontinuity { joint, between }) => {
+            StopCause::OffTable { load, value } => off_table_error(scene, load, value, &when),
+            StopCause::Discontinuity { joint, between } => {
                 let name = &scene.mechanism.joints[joint.0].name;
                 let x = jump_location(between[0], between[1]);
                 let message = format!(

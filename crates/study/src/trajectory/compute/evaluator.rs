@@ -3,7 +3,7 @@
 use crate::bodies::BodyPose;
 use crate::explain::{StudyError, explain_model};
 use crate::trajectory::compute::{
-    Analysis, PowerTerm, Quantity, SpeedScale, StopCause, TrajectoryMonitor, TrajectorySample,
+    Analysis, Quantity, SpeedScale, StopCause, TrajectoryMonitor, TrajectorySample,
 };
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_geometry::{BodyId, Motion, Plan, Pose, Vec2};
@@ -66,7 +66,7 @@ impl<'a> ForceEvaluator<'a> {
         };
         self.pose.clone_from(state.pose());
         match self.monitor.off_table(t, state.bodies()) {
-            Some(fault) => Err(StopCause::Fault(fault)),
+            Some(cause) => Err(cause),
             None => Ok(Some(state)),
         }
     }
@@ -77,8 +77,8 @@ impl<'a> ForceEvaluator<'a> {
         plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
         plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
         self.body_states.fill(plan, pose, &self.motion_buffer);
-        let fault = self.monitor.discontinuity(&self.body_states);
-        fault.map_or(Ok(()), |fault| Err(StopCause::Fault(fault)))
+        let cause = self.monitor.discontinuity(&self.body_states);
+        cause.map_or(Ok(()), Err)
     }
 }
 
@@ -248,11 +248,11 @@ impl<'a> PositionEvaluator<'a> {
             Quantity::ForceDirection(joint) => joint_forces[joint.0].angle(),
             Quantity::ShakingForce(2) => self.position.shaking_wrench.moment,
             Quantity::ShakingForce(axis) => component(self.position.shaking_wrench.force, axis),
-            Quantity::Power(PowerTerm::Actuators) => balance.actuators,
-            Quantity::Power(PowerTerm::Loads) => balance.loads,
-            Quantity::Power(PowerTerm::KineticRate) => balance.kinetic_energy_rate,
-            Quantity::Power(PowerTerm::Residual) => balance.residual(),
-            Quantity::Power(PowerTerm::KineticEnergy) => balance.kinetic_energy,
+            Quantity::Power(0) => balance.actuators,
+            Quantity::Power(1) => balance.loads,
+            Quantity::Power(2) => balance.kinetic_energy_rate,
+            Quantity::Power(3) => balance.residual(),
+            Quantity::Power(_) => balance.kinetic_energy,
             Quantity::LoadForce(k) => self.load_force(k),
             Quantity::LoadPower(k) => self.position.load_powers[k],
             Quantity::Extra(k) => sample.extra_values[k],

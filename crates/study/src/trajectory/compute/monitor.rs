@@ -2,20 +2,12 @@
 //! coupling function is discontinuous between two positions.
 
 use crate::explain::couplings;
+use crate::trajectory::compute::StopCause;
 use dwell_geometry::JointId;
 use dwell_geometry::body_states::{BodyStates, CoordinateFunction};
 use dwell_kinetostatics::{Magnitude, Signal};
 use dwell_laws::{Law, Spline};
 use dwell_scene::Scene;
-
-/// Why a trajectory ends although the mechanism can be assembled.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum TrajectoryFault {
-    /// The table of a load does not cover this value of its argument.
-    OffTable { load: usize, value: f64 },
-    /// A coupling function is discontinuous between two neighbouring values of its variable.
-    Discontinuity { joint: JointId, between: [f64; 2] },
-}
 
 /// The table of a load and its argument.
 struct MonitoredTable<'a> {
@@ -79,7 +71,7 @@ impl<'a> TrajectoryMonitor<'a> {
     }
 
     /// The first load whose table does not cover the state of the bodies at time `t` (s).
-    pub(crate) fn off_table(&self, t: f64, states: &BodyStates) -> Option<TrajectoryFault> {
+    pub(crate) fn off_table(&self, t: f64, states: &BodyStates) -> Option<StopCause> {
         self.tables.iter().find_map(|table| {
             let value = match table.argument {
                 None => t,
@@ -90,18 +82,18 @@ impl<'a> TrajectoryMonitor<'a> {
             let tolerance = RANGE_TOLERANCE * (last - first);
             let inside = value >= first - tolerance && value <= last + tolerance;
             let load = table.load;
-            (!inside).then_some(TrajectoryFault::OffTable { load, value })
+            (!inside).then_some(StopCause::OffTable { load, value })
         })
     }
 
     /// The first coupling whose function is discontinuous since the position before.
-    pub(crate) fn discontinuity(&mut self, states: &BodyStates) -> Option<TrajectoryFault> {
+    pub(crate) fn discontinuity(&mut self, states: &BodyStates) -> Option<StopCause> {
         self.couplings.iter_mut().find_map(|coupling| {
             let now = states.coordinate(coupling.variable)[0];
             let previous = coupling.previous.replace(now)?;
             let between = coupling.law.discontinuity(previous, now)?;
             let joint = coupling.joint;
-            Some(TrajectoryFault::Discontinuity { joint, between })
+            Some(StopCause::Discontinuity { joint, between })
         })
     }
 }

@@ -47,9 +47,8 @@ pub(crate) struct FigureContext<'a> {
 pub(crate) fn trajectory_figures(
     scene: &Scene,
     computed: &ComputedTrajectory<'_>,
-    analysis: Analysis,
 ) -> (Vec<Figure>, Option<String>) {
-    let context = FigureContext::new(scene, computed, analysis);
+    let context = FigureContext::new(scene, computed);
     let mut figures = vec![context.mechanism(last_drawn(computed))];
     figures.extend(context.angles());
     figures.extend(context.paths());
@@ -70,7 +69,7 @@ pub(crate) fn trajectory_figures(
 
 /// The animation of the mechanism, with the requested paths.
 pub(crate) fn animation(scene: &Scene, computed: &ComputedTrajectory<'_>) -> Animation {
-    let context = FigureContext::new(scene, computed, Analysis::Kinematics);
+    let context = FigureContext::new(scene, computed);
     let results = context.results;
     let drawing = MechanismDrawing::new(scene, &results.body_poses).with_visible(&results.modelled);
     let last = last_drawn(computed);
@@ -122,7 +121,7 @@ fn is_closed(body_poses: &[Vec<BodyPose>]) -> bool {
 }
 
 impl<'a> FigureContext<'a> {
-    fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'_>, analysis: Analysis) -> Self {
+    fn new(scene: &'a Scene, computed: &'a ComputedTrajectory<'_>) -> Self {
         let (trajectory, results) = (&computed.trajectory, &computed.results);
         let abscissa = results.abscissa(trajectory);
         let values = results.rows.iter().map(|row| row[abscissa]);
@@ -132,17 +131,15 @@ impl<'a> FigureContext<'a> {
                 let swept = &scene.mechanism.actuators[actuator];
                 let is_angle = swept.coordinate().is_angle();
                 let drawn = values.map(|q| if is_angle { q.to_degrees() } else { q });
-                (
-                    coordinate_axis(&symbol(&swept.name), is_angle),
-                    drawn.collect(),
-                )
+                let axis = coordinate_axis(&symbol(&swept.name), is_angle);
+                (axis, drawn.collect())
             }
         };
         let [start, end] = trajectory.ends_at_limit_position;
         Self {
             scene,
             results,
-            analysis,
+            analysis: trajectory.analysis,
             method_text: trajectory.method_text.clone(),
             x,
             abscissa_values,
@@ -295,10 +292,10 @@ impl<'a> FigureContext<'a> {
         }
         let unmodelled = match self.results.unmodelled_bodies(self.scene) {
             none if none.is_empty() => String::new(),
-            bodies => format!(
-                " Not modelled, as no result depends on them: {}.",
-                bodies.join(", ")
-            ),
+            bodies => {
+                let bodies = bodies.join(", ");
+                format!(" Not modelled, as no result depends on them: {bodies}.")
+            }
         };
         let text = format!(
             "Drawn in full at {}, lighter further on.{unmodelled}",
