@@ -80,13 +80,8 @@ impl FreeMotionProblem<'_> {
         let method_text = format!("{}{suffix}, tolerance {tolerance}", method.name());
         let how = format!("{method_text}, {reason}; {} runs", found.runs);
         let (motion, difference) = (found.motion, &found.difference);
-        Ok(ComputedMotion::to_accuracy(
-            motion,
-            method_text,
-            accuracy,
-            &how,
-            difference,
-        ))
+        let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, difference);
+        Ok(found)
     }
 
     /// The first candidate that reaches the accuracy, or else the one that comes nearest to it.
@@ -188,11 +183,9 @@ impl FreeMotionProblem<'_> {
         let difference = self.difference(&motion, &delayed).ok()?;
         let method_text = "quadrature".to_owned();
         let points = orbit.points;
-        let how =
-            format!("{method_text} (conservative, periodic motion), {points} quadrature points");
-        let computed =
-            ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
-        Some(computed)
+        let how = format!("quadrature (conservative, periodic motion), {points} quadrature points");
+        let found = ComputedMotion::to_accuracy(motion, method_text, accuracy, &how, &difference);
+        Some(found)
     }
 }
 
@@ -224,11 +217,8 @@ impl ComputedMotion {
 
 /// The interval of the coordinate that a motion of one degree of freedom visits.
 fn visited_range(motion: &SegmentedMotion) -> [f64; 2] {
-    extent(
-        motion
-            .steps()
-            .filter_map(|(_, point)| point.y.first().copied()),
-    )
+    let steps = motion.steps();
+    extent(steps.filter_map(|(_, point)| point.y.first().copied()))
 }
 
 /// Whether a motion reached its end.

@@ -88,10 +88,9 @@ impl RequestedQuantities {
             let message = "this scene has no results to sweep: add a [prescribed] motion or a [coordinate-sweep]";
             return Err(SweepError::Design(message.to_owned()).into());
         }
-        let notes = requests.iter().filter_map(|request| {
+        let notes = requests.iter().map(|request| {
             let renamed = quantities.iter().filter(|q| q.matches_former(request));
-            let current: Vec<&str> = renamed.map(|q| q.name.as_str()).collect();
-            (!current.is_empty()).then(|| former_names::note(request, &current))
+            former_names::note(request, renamed.map(|q| &q.name))
         });
         let notes = notes.collect();
         if !requests.is_empty() {

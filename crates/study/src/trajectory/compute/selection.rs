@@ -19,10 +19,7 @@ pub(crate) fn check_variables(scene: &Scene, model: &Model) -> Result<String, St
     for (k, name) in variables.iter().enumerate() {
         if columns.iter().any(|c| c.matches(name)) {
             let renamed = columns.iter().filter(|c| c.matches_former(name));
-            let current: Vec<&str> = renamed.map(|c| c.name.as_str()).collect();
-            if !current.is_empty() {
-                notes += &former_names::note(name, &current);
-            }
+            notes += &former_names::note(name, renamed.map(|c| &c.name));
             continue;
         }
         if let Some(error) = indeterminate_error(scene, model, k, name) {
