@@ -7,7 +7,6 @@ mod labels;
 mod motion;
 mod position;
 mod study_error;
-mod sweep_error;
 
 pub(crate) use assembly::not_one_actuator;
 pub use assembly::{explain_machine, explain_model};
@@ -21,5 +20,4 @@ pub(crate) use labels::{
 pub use motion::explain_motion;
 pub use position::explain_position;
 pub(crate) use position::quoted_coordinate;
-pub use study_error::StudyError;
-pub use sweep_error::SweepError;
+pub use study_error::{StudyError, SweepError};

@@ -2,7 +2,6 @@
 
 mod captions;
 mod mechanism_drawing;
-mod outcome;
 mod provenance;
 
 pub(crate) use captions::{
@@ -11,6 +10,19 @@ pub(crate) use captions::{
 };
 pub use captions::{caption, coordinate_label, scene_caption, symbol};
 pub use mechanism_drawing::MechanismDrawing;
-pub use outcome::Outcome;
 pub(crate) use provenance::signed_gif;
 pub use provenance::{provenance_line, signed_png};
+
+use dwell_findings::Finding;
+use dwell_report::Files;
+
+/// The result of an analysis, in memory: nothing is written until the caller writes the files.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outcome {
+    /// Text to print.
+    pub summary: String,
+    /// Files to write, relative to the output folder.
+    pub files: Files,
+    /// Results of checks.
+    pub findings: Vec<Finding>,
+}

@@ -3,10 +3,9 @@
 use crate::number_format::{count, number};
 use crate::output::{indeterminate_note, provenance_line};
 use crate::trajectory::compute::{
-    Analysis, ComputedTrajectory, Quantity, SectionedLink, Trajectory, TrajectoryResults,
+    Analysis, Column, ComputedTrajectory, Quantity, SectionedLink, Trajectory, TrajectoryResults,
     selected_columns,
 };
-use crate::trajectory::extrema::{ColumnExtrema, extrema};
 use dwell_kinetostatics::{Distribution, Section};
 use dwell_report::{Block, Document as Page, Figure};
 use dwell_scene::Scene;
@@ -282,4 +281,48 @@ impl<'a> Document<'a> {
             },
         ]
     }
+}
+
+/// The minimum and maximum of a column, and where they occur.
+#[derive(Debug, Clone, PartialEq)]
+struct ColumnExtrema {
+    name: String,
+    unit: &'static str,
+    /// Smallest and largest value, each with its row.
+    min: (f64, usize),
+    max: (f64, usize),
+}
+
+impl ColumnExtrema {
+    fn max_abs(&self) -> f64 {
+        self.min.0.abs().max(self.max.0.abs())
+    }
+}
+
+/// The extrema of some columns, grouped by unit, largest absolute value first.
+fn extrema(columns: &[Column], selected: &[usize], rows: &[Vec<f64>]) -> Vec<ColumnExtrema> {
+    let entry = |&k: &usize| {
+        // Empty cells are skipped.
+        let values = || {
+            let rows = rows.iter().enumerate().map(|(i, row)| (row[k], i));
+            rows.filter(|(value, _)| !value.is_nan())
+        };
+        // Of equal values the first.
+        let min = values().reduce(|a, b| if b.0 < a.0 { b } else { a })?;
+        let max = values().reduce(|a, b| if b.0 > a.0 { b } else { a })?;
+        Some(ColumnExtrema {
+            name: columns[k].name.clone(),
+            unit: columns[k].unit,
+            min,
+            max,
+        })
+    };
+    let mut all: Vec<ColumnExtrema> = selected.iter().filter_map(entry).collect();
+    let units: Vec<&str> = all.iter().map(|entry| entry.unit).collect();
+    let unit_order = |p: &ColumnExtrema| units.iter().position(|u| *u == p.unit);
+    all.sort_by(|a, b| {
+        let by_unit = unit_order(a).cmp(&unit_order(b));
+        by_unit.then(b.max_abs().total_cmp(&a.max_abs()))
+    });
+    all
 }

@@ -5,13 +5,9 @@ pub mod compute;
 #[cfg(feature = "output")]
 mod document;
 #[cfg(feature = "output")]
-mod extrema;
-#[cfg(feature = "output")]
 mod figures;
 #[cfg(feature = "output")]
 mod output;
-#[cfg(feature = "output")]
-mod written_results;
 
 pub use compute::{Analysis, compute_trajectory};
 #[cfg(feature = "output")]

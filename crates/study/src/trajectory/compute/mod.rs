@@ -9,7 +9,6 @@ mod evaluator;
 mod mechanical_advantage;
 mod monitor;
 mod peak_forces;
-mod pruning;
 mod results;
 mod rounding_error;
 mod sectioned_link;
@@ -27,12 +26,13 @@ pub(crate) use evaluator::{ForceEvaluator, PositionEvaluator};
 pub(crate) use mechanical_advantage::SpeedScale;
 pub(crate) use monitor::{TrajectoryMonitor, table_of};
 pub(crate) use peak_forces::peak_forces;
-pub(crate) use pruning::{prune_model, requested_bodies};
 pub(crate) use results::compute_along;
 pub use results::{ComputedTrajectory, TrajectoryResults, compute_trajectory};
 pub(crate) use rounding_error::RoundingError;
 pub use sectioned_link::SectionedLink;
-pub(crate) use selection::{check_variables, is_requested, selected_columns};
+pub(crate) use selection::{
+    check_variables, is_requested, prune_model, requested_bodies, selected_columns,
+};
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
     BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample, swept_range,

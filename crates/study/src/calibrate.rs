@@ -1,8 +1,10 @@
-//! Finds a scene value by the period of the free motion.
+//! `dwell calibrate`: the scene value that gives a required period of the free motion.
 
 use crate::explain::{StudyError, explain_motion, missing_section_label, scene_error};
 use crate::models::{initial_reduced_state, reduced_model};
 use crate::number_format::{digits, number};
+#[cfg(feature = "output")]
+use crate::{models::PreparedScene, output::Outcome};
 use dwell_dynamics::Orbit;
 use dwell_numerics::root;
 use dwell_scene::{Scene, SceneLocation};
@@ -188,4 +190,44 @@ fn period_of(scene: &Scene) -> Result<f64, StudyError> {
     let orbit = Orbit::new(&exact, start);
     let orbit = orbit.map_err(|e| explain_motion(scene, exact.model().plan(), &e))?;
     Ok(orbit.period)
+}
+
+/// `dwell calibrate`, with the path and the period of the scene's `[calibration]` where none is given.
+///
+/// # Errors
+/// As [`find_value`]; when neither the caller nor the scene gives path and period; when a length is
+/// driven or there are loads.
+#[cfg(feature = "output")]
+pub fn calibrate(
+    scene: &Scene,
+    path: Option<&str>,
+    period: Option<f64>,
+) -> Result<Outcome, StudyError> {
+    PreparedScene::for_driven_angle(scene, true)?;
+    let section = scene.calibration.as_ref();
+    let path = path.or(section.map(|c| c.path.as_str()));
+    let period = period.or(section.map(|c| c.period));
+    let (Some(path), Some(period)) = (path, period) else {
+        return Err(scene_error(
+            scene,
+            "the value to calibrate or the required period is not given",
+            "give --parameter BODY.inertia and --period SECONDS, or a [calibration] in the scene",
+            missing_section_label("calibration"),
+        ));
+    };
+    let result = find_value(scene, path, period)?;
+    Ok(Outcome {
+        summary: format!(
+            "{}: {} = {} {} gives the period {} s\n  the scene has {} {}, which gives {} s\n",
+            scene.title,
+            result.path,
+            digits(result.value, 12),
+            result.unit,
+            digits(result.period, 12),
+            digits(result.current, 12),
+            result.unit,
+            digits(result.current_period, 13),
+        ),
+        ..Outcome::default()
+    })
 }
