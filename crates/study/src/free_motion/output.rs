@@ -4,7 +4,7 @@ use crate::explain::StudyError;
 use crate::free_motion::compute::{MotionSolver, compute_free_motion};
 use crate::models::SolverSettings;
 use crate::progress::Progress;
-use crate::trajectory::{TrajectoryOutcome, report};
+use crate::trajectory::output::{TrajectoryOutcome, report};
 use dwell_report::TableExport as _;
 use dwell_scene::Scene;
 

@@ -7,10 +7,4 @@ mod document;
 #[cfg(feature = "output")]
 mod figures;
 #[cfg(feature = "output")]
-mod output;
-
-pub use compute::{Analysis, compute_trajectory};
-#[cfg(feature = "output")]
-pub(crate) use output::report;
-#[cfg(feature = "output")]
-pub use output::{TrajectoryOutcome, analyse_trajectory};
+pub(crate) mod output;
