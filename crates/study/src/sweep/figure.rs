@@ -2,10 +2,9 @@
 
 use crate::number_format::{count, number};
 use crate::output::{self, scene_caption};
-use crate::sweep::compute::{Axis as SweepAxis, SweepQuantity};
+use crate::sweep::compute::{Axis as SweepAxis, Row, SweepQuantity};
 use crate::sweep::output::PreparedSweep;
 use crate::sweep::spread::Spread;
-use crate::sweep::store::Row;
 use dwell_report::{Axis, Chart, Figure, Mark, Paint, Series, Stroke};
 
 /// Maximum number of charts on the page, and of curves in a chart.

@@ -5,7 +5,7 @@
 //! file systems, where the write-ahead log does not.
 
 use crate::explain::SweepError;
-use crate::sweep::compute::PointResult;
+use crate::sweep::compute::{PointResult, Row};
 use rusqlite::types::Value;
 use rusqlite::{Connection, ErrorCode, params_from_iter};
 use std::collections::HashMap;
@@ -27,14 +27,6 @@ pub(crate) const SCENE_TEXT: &str = "scene_text";
 
 /// The identity of a study, by key, in the order in which differences are reported.
 pub(crate) type StudyIdentity = Vec<(&'static str, String)>;
-
-/// A finished point.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Row {
-    pub(crate) index: u64,
-    pub(crate) inputs: Vec<f64>,
-    pub(crate) result: PointResult,
-}
 
 /// An open file.
 #[derive(Debug)]
@@ -169,12 +161,9 @@ impl Store {
 
 fn cells(row: Row) -> Vec<Value> {
     // SQLite has no NaN: it is stored as NULL.
-    let real = |v: f64| {
-        if v.is_nan() {
-            Value::Null
-        } else {
-            Value::Real(v)
-        }
+    let real = |v: f64| match v.is_nan() {
+        true => Value::Null,
+        false => Value::Real(v),
     };
     // An index is far below SQLite's largest integer.
     let mut cells = vec![Value::Integer(row.index as i64)];
@@ -198,13 +187,12 @@ fn create(
         transaction.execute("INSERT INTO study VALUES (?, ?)", (key, value))?;
     }
     let columns = headings.concat();
-    let columns: Vec<String> = columns
+    let columns = columns
         .iter()
-        .map(|name| format!("{} REAL", quoted(name)))
-        .collect();
-    let columns = columns.join(", ");
+        .map(|name| format!("{} REAL, ", quoted(name)));
+    let columns: String = columns.collect();
     transaction.execute_batch(&format!(
-        "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {columns}, \"message\" TEXT);"
+        "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {columns}\"message\" TEXT);"
     ))?;
     transaction.pragma_update(None, "application_id", APPLICATION)?;
     transaction.pragma_update(None, "user_version", VERSION)?;

@@ -70,6 +70,14 @@ pub(crate) struct PointResult {
     pub(crate) message: Option<String>,
 }
 
+/// A finished point.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) index: u64,
+    pub(crate) inputs: Vec<f64>,
+    pub(crate) result: PointResult,
+}
+
 impl RequestedQuantities {
     /// The requested quantities, or all that the scene has.
     ///
