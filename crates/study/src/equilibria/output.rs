@@ -22,8 +22,8 @@ pub fn equilibria(scene: &Scene) -> Result<Outcome, StudyError> {
     let mut outcome = Outcome::default();
     let name = |rest: &str| format!("{}-equilibria.{rest}", scene.name);
     outcome.files.add(name("csv"), results.table.csv()?);
-    if let Some((curves, marked)) = &results.curves {
-        let figure = figures::equilibria(&results.prepared, curves, &results.found, marked);
+    if let Some(curves) = &results.curves {
+        let figure = figures::equilibria(&results, curves);
         outcome.files.add(name("png"), signed_png(scene, &figure)?);
     }
     outcome.summary = summary(&results);

@@ -32,7 +32,7 @@ pub(crate) fn peak_forces(
         Ok(())
     });
     match early_stop {
-        Some(stop) => Err(stop.explain(scene, plan, &trajectory)),
+        Some(stop) => Err(stop.explain(scene)),
         None => Ok(peaks),
     }
 }

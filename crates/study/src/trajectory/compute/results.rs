@@ -215,7 +215,7 @@ pub(crate) fn compute_along<'a>(
         Ok(())
     });
     let has_begun = early_stop.as_ref().is_none_or(|stop| stop.has_begun);
-    let mut early_stop = early_stop.map(|stop| stop.explain(scene, plan, &trajectory));
+    let mut early_stop = early_stop.map(|stop| stop.explain(scene));
     if let Some(error) = early_stop.take_if(|_| !has_begun) {
         return Err(error);
     }

@@ -229,11 +229,11 @@ impl<'a> Trajectory<'a> {
     }
 
     /// Visits one position after another until a visit fails. Returns where and why it ends early, if it does.
-    pub(crate) fn follow(
-        &self,
-        plan: &Plan,
+    pub(crate) fn follow<'s>(
+        &'s self,
+        plan: &'s Plan,
         mut visit: impl FnMut(usize, &TrajectorySample) -> Result<(), StopCause>,
-    ) -> Option<EarlyStop> {
+    ) -> Option<EarlyStop<'s>> {
         let in_own_coordinate = plan.actuators() == 1 && self.charts().is_empty();
         let mut previous: Option<f64> = None;
         for k in 0..self.points {
