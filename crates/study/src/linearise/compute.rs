@@ -2,7 +2,7 @@
 
 use crate::equilibria::compute::find_equilibria;
 use crate::explain::StudyError;
-use crate::models::{SceneMachine, indeterminate_reactions};
+use crate::models::{SceneMachine, requested_reactions};
 use crate::number_format::force_unit;
 use dwell_dynamics::{
     DynamicsError, Equilibrium, Machine, StateSpace, linearise as linearise_about,
@@ -99,10 +99,7 @@ pub fn compute_linearisation(
     point: OperatingPoint,
 ) -> Result<LinearisedMotion<'_>, StudyError> {
     let prepared = SceneMachine::new(scene)?;
-    let indeterminate = indeterminate_reactions(scene, prepared.machine.model().plan());
-    let requested = scene.requests.reactions.iter().copied();
-    let (omitted, reactions): (Vec<Reaction>, Vec<Reaction>) =
-        requested.partition(|reaction| indeterminate.contains(reaction));
+    let [reactions, omitted] = requested_reactions(scene, prepared.machine.model().plan());
     let machine = prepared.machine_with_reactions(&reactions)?;
     let (state, equilibrium) = match point {
         OperatingPoint::InitialState => (prepared.initial_state(), None),

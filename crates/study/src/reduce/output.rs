@@ -2,7 +2,7 @@
 
 use super::figures;
 use crate::explain::StudyError;
-use crate::models::indeterminate_reactions;
+use crate::models::requested_reactions;
 use crate::number_format::digits;
 use crate::output::{Outcome, indeterminate_note, separating_note, signed_png};
 use crate::ranges::extent;
@@ -91,8 +91,7 @@ pub(crate) fn summary(reduction: &Reduction<'_>, note: Option<&str>) -> String {
     }
     let scene = prepared.scene;
     summary += &separating_note(scene);
-    let indeterminate = indeterminate_reactions(scene, prepared.model.model().plan());
-    let requested = scene.requests.reactions.iter();
-    let names = requested.filter(|r| indeterminate.contains(r));
+    let [_, indeterminate] = requested_reactions(scene, prepared.model.model().plan());
+    let names = indeterminate.iter();
     summary + &indeterminate_note(names.map(|&r| scene.mechanism.reaction_name(r)))
 }

@@ -3,7 +3,7 @@
 use crate::explain::{
     Labels, StudyError, body_names_or_mechanism, joint_labels, not_one_actuator, scene_error,
 };
-use crate::models::{indeterminate_reactions, reduced_model};
+use crate::models::{reduced_model, requested_reactions};
 use crate::symbolic::closed_form_check::ClosedFormCheck;
 use dwell_findings::Finding;
 use dwell_geometry::Reaction;
@@ -98,11 +98,7 @@ pub fn compute_closed_form(
     let plan = exact.model().plan();
     let reaction = match reaction {
         Some(name) => Some(find_reaction(scene, name)?),
-        None => {
-            let indeterminate = indeterminate_reactions(scene, plan);
-            let mut requested = scene.requests.reactions.iter();
-            requested.find(|r| !indeterminate.contains(r)).copied()
-        }
+        None => requested_reactions(scene, plan)[0].first().copied(),
     };
     let explain = |e: SymbolicError| explain_symbolic(scene, &e);
     let symbolic = Symbolic::new(&scene.mechanism, &scene.masses, plan).map_err(explain)?;
