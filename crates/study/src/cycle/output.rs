@@ -3,7 +3,7 @@
 use super::figures;
 use crate::cycle::compute::compute_cycle;
 use crate::explain::StudyError;
-use crate::models::{SceneMachine, SolverSettings};
+use crate::models::{SceneMachine, SolverSettings, source_name};
 use crate::number_format::{count, digits};
 use crate::output::{Outcome, signed_png};
 use dwell_dynamics::{Cycle, Flywheel};
@@ -73,7 +73,7 @@ pub(crate) fn summary(prepared: &SceneMachine<'_>, cycle: &Cycle) -> String {
     );
     let sources = prepared.machine.nonconservative_sources().iter();
     for (&source, &work) in sources.zip(&cycle.works) {
-        let name = prepared.source_name(source);
+        let name = source_name(prepared.scene, source);
         text += &format!("  work of {name} per cycle {} J\n", digits(work, 9));
     }
     let sum: f64 = cycle.works.iter().sum();

@@ -56,11 +56,10 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
                     "start a little farther from it",
                 )
             } else {
-                let missing = if gap.is_finite() {
-                    format!(": {} m are missing", number(*gap))
-                } else {
-                    String::new()
-                };
+                let missing = gap
+                    .is_finite()
+                    .then(|| format!(": {} m are missing", number(*gap)));
+                let missing = missing.unwrap_or_default();
                 (
                     format!("{names} cannot be assembled at the start{missing}"),
                     "check the lengths and points of these bodies, and the actuator's coordinate in [assembly]; \

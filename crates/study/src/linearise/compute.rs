@@ -2,7 +2,7 @@
 
 use crate::equilibria::compute::find_equilibria;
 use crate::explain::StudyError;
-use crate::models::{SceneMachine, requested_reactions};
+use crate::models::{SceneMachine, build_machine, requested_reactions};
 use crate::number_format::force_unit;
 use dwell_dynamics::{
     DynamicsError, Equilibrium, Machine, StateSpace, linearise as linearise_about,
@@ -100,7 +100,7 @@ pub fn compute_linearisation(
 ) -> Result<LinearisedMotion<'_>, StudyError> {
     let prepared = SceneMachine::new(scene)?;
     let [reactions, omitted] = requested_reactions(scene, prepared.machine.model().plan());
-    let machine = prepared.machine_with_reactions(&reactions)?;
+    let machine = build_machine(scene, &prepared.spec, &reactions)?;
     let (state, equilibrium) = match point {
         OperatingPoint::InitialState => (prepared.initial_state(), None),
         OperatingPoint::Equilibrium => {

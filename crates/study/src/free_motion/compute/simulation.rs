@@ -29,17 +29,6 @@ pub enum MotionSolver {
     },
 }
 
-impl MotionSolver {
-    fn sample_interval(&self) -> Option<f64> {
-        match self {
-            Self::Settings(settings) => settings.sample_interval,
-            Self::Accuracy {
-                sample_interval, ..
-            } => *sample_interval,
-        }
-    }
-}
-
 /// A free motion, up to where it ended.
 pub struct FreeMotion {
     /// The scene with the loads through which its drives act.
@@ -113,8 +102,13 @@ impl FreeMotionProblem<'_> {
         solver: &MotionSolver,
         duration: f64,
     ) -> Result<ComputedMotion, StudyError> {
-        let interval = solver.sample_interval();
-        let interval = interval.unwrap_or(duration / DEFAULT_SAMPLES);
+        let (MotionSolver::Settings(SolverSettings {
+            sample_interval, ..
+        })
+        | MotionSolver::Accuracy {
+            sample_interval, ..
+        }) = solver;
+        let interval = sample_interval.unwrap_or(duration / DEFAULT_SAMPLES);
         let interval = interval.max(duration / MAX_SAMPLES);
         let settings = match solver {
             MotionSolver::Settings(settings) => settings,

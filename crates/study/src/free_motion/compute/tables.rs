@@ -6,7 +6,7 @@ use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{
     BALANCE, Column, FreeTrajectory, KINETIC, POTENTIAL, Quantity, Trajectory, TrajectorySample,
 };
-use dwell_dynamics::{DynamicsError, EventOccurrence, Machine, MachineState, OdeState};
+use dwell_dynamics::{DynamicsError, EventOccurrence};
 use dwell_findings::{self as findings, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
@@ -35,20 +35,37 @@ impl FreeMotionProblem<'_> {
         motion: &SegmentedMotion,
     ) -> Result<Vec<TrajectorySample>, DynamicsError> {
         let mut initial_balance: Option<f64> = None;
+        let loads = self.loaded_scene.loads.len();
         let mut samples = Vec::new();
         for (segment, (chart, solution)) in motion.segments.iter().enumerate() {
             let machine = self.machine(motion, *chart);
+            let first_work = machine.work_offset();
             let mut workspace = machine.workspace();
             for (k, point) in solution.samples.iter().enumerate() {
                 if machine.is_in_fit_window(&point.y) {
                     continue;
                 }
                 let state = machine.evaluate(point.t, &point.y, &mut workspace)?;
+                let [kinetic, potential] = state.energy();
+                let works = &point.y[first_work..];
+                let sum = kinetic + potential - works.iter().sum::<f64>();
+                let initial = *initial_balance.get_or_insert(sum);
+                let mut extra_values = vec![kinetic, potential];
+                extra_values.extend(works);
+                extra_values.push(sum - initial);
+                extra_values.extend(&point.y[2 * machine.free().len()..first_work]);
+                let (drives, magnitudes) = (loads - machine.drives()..loads, state.magnitudes());
                 let actuator_coordinates = motion.actuator_coordinates.get(segment);
-                let mut sample = self.sample(machine, point, &state, &mut initial_balance);
-                sample.chart = *chart;
-                sample.actuator_coordinate = actuator_coordinates.and_then(|s| s.get(k)).copied();
-                samples.push(sample);
+                samples.push(TrajectorySample {
+                    t: point.t,
+                    q: state.q().to_vec(),
+                    q_dot: state.q_dot().to_vec(),
+                    q_ddot: state.q_ddot().to_vec(),
+                    chart: *chart,
+                    actuator_coordinate: actuator_coordinates.and_then(|s| s.get(k)).copied(),
+                    drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
+                    extra_values,
+                });
             }
         }
         if let [only] = samples.as_slice() {
@@ -56,36 +73,6 @@ impl FreeMotionProblem<'_> {
             samples.push(only.clone());
         }
         Ok(samples)
-    }
-
-    fn sample(
-        &self,
-        machine: &Machine,
-        point: &OdeState,
-        state: &MachineState<'_>,
-        initial_balance: &mut Option<f64>,
-    ) -> TrajectorySample {
-        let first = machine.work_offset();
-        let [kinetic, potential] = state.energy();
-        let works = &point.y[first..];
-        let sum = kinetic + potential - works.iter().sum::<f64>();
-        let initial = *initial_balance.get_or_insert(sum);
-        let mut extra_values = vec![kinetic, potential];
-        extra_values.extend(works);
-        extra_values.push(sum - initial);
-        extra_values.extend(&point.y[2 * machine.free().len()..first]);
-        let count = self.loaded_scene.loads.len();
-        let drives = count - machine.drives()..count;
-        let magnitudes = state.magnitudes();
-        TrajectorySample {
-            t: point.t,
-            q: state.q().to_vec(),
-            q_dot: state.q_dot().to_vec(),
-            q_ddot: state.q_ddot().to_vec(),
-            drive_magnitudes: drives.map(|load| (load, magnitudes[load])).collect(),
-            extra_values,
-            ..TrajectorySample::default()
-        }
     }
 
     /// The error of the energy balance at a sample, J.

@@ -9,7 +9,7 @@ use crate::number_format::digits;
 use crate::output::{MechanismDrawing, chart, coordinate_axis, figure, symbol};
 use crate::ranges::extent;
 use crate::trajectory::compute::{
-    Analysis, Column, ComputedTrajectory, Quantity, Trajectory, TrajectoryResults, is_requested,
+    Analysis, Column, ComputedTrajectory, Quantity, Trajectory, TrajectoryResults,
 };
 use dwell_report::{
     Animation, Axis, Chart, Drawing, Figure, Paint, Panel, Pen, Scale, Series, Shape, Stroke,
@@ -236,11 +236,6 @@ impl<'a> FigureContext<'a> {
         let margin = 0.08 * part;
         (part > 0.0 && whole > DIVERGENCE_RATIO * part)
             .then(|| [inner[0] - margin, inner[1] + margin])
-    }
-
-    /// Whether a column is requested by name.
-    fn is_requested(&self, column: &Column) -> bool {
-        is_requested(self.scene, column)
     }
 
     /// The indices of the columns that satisfy a condition.
