@@ -3,6 +3,7 @@
 use crate::explain::{StudyError, explain_motion, missing_section_label, scene_error};
 use crate::models::{initial_reduced_state, reduced_model};
 use crate::number_format::{digits, number};
+use crate::ranges::extent;
 #[cfg(feature = "output")]
 use crate::{models::PreparedScene, output::Outcome};
 use dwell_dynamics::Orbit;
@@ -95,10 +96,8 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
 struct BracketSearch {
     /// Two values whose periods bracket the required one.
     bracket: Option<(f64, f64)>,
-    /// The smallest and the largest value that have a period.
-    values: [f64; 2],
-    /// The shortest and the longest period found, s.
-    periods: [f64; 2],
+    /// The values that have a period, each with its period, s.
+    found: Vec<[f64; 2]>,
     /// Whether a trial value had no period.
     left_range: bool,
 }
@@ -106,8 +105,9 @@ struct BracketSearch {
 impl BracketSearch {
     /// The values tried and their periods, and what to try instead.
     fn describe(&self, unit: &str) -> (String, &'static str) {
-        let [from, to] = self.values.map(|v| digits(v, 3));
-        let periods = match self.periods.map(number) {
+        let extent_of = |k: usize| extent(self.found.iter().map(|found| found[k]));
+        let [from, to] = extent_of(0).map(|v| digits(v, 3));
+        let periods = match extent_of(1).map(number) {
             [shortest, longest] if shortest == longest => format!("the period stays {shortest} s"),
             [shortest, longest] => format!("it gives periods from {shortest} to {longest} s"),
         };
@@ -128,8 +128,7 @@ impl BracketSearch {
     ) -> Self {
         let mut search = Self {
             bracket: None,
-            values: [current; 2],
-            periods: [current_period; 2],
+            found: vec![[current, current_period]],
             left_range: false,
         };
         // Whether a value has a period; sets the bracket if the required period is passed.
@@ -141,8 +140,7 @@ impl BracketSearch {
             if (period - target_period) * (current_period - target_period) <= 0.0 {
                 search.bracket = Some((last, next));
             }
-            search.values = [search.values[0].min(next), search.values[1].max(next)];
-            search.periods = [search.periods[0].min(period), search.periods[1].max(period)];
+            search.found.push([next, period]);
             true
         };
         let mut outermost = [Some(current), Some(current)];

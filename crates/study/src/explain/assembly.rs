@@ -17,17 +17,15 @@ const MARGINAL_GAP: f64 = 1e-6;
 /// Explains why a scene could not be compiled.
 pub fn explain_model(scene: &Scene, error: &ModelError) -> StudyError {
     let assembly = match error {
-        ModelError::Assembly(AssemblyError::Structure(error)) => {
-            return explain_structure(scene, error);
-        }
         ModelError::Assembly(assembly) => assembly,
         ModelError::Masses | ModelError::Reaction(_) => {
             return scene_error(scene, error.to_string(), "", [(SceneLocation::Whole, "")]);
         }
     };
+    let is_sound = !matches!(assembly, AssemblyError::Structure(_));
     match non_finite_coupling(&scene.mechanism, &scene.assembly.coordinates) {
-        Some(coupling) => non_finite_coupling_error(scene, coupling, "at the assembly coordinates"),
-        None => explain_assembly(scene, assembly),
+        Some(at) if is_sound => non_finite_coupling_error(scene, at, "at the assembly coordinates"),
+        _ => explain_assembly(scene, assembly),
     }
 }
 

@@ -163,13 +163,10 @@ fn chosen_values(rows: &[Row], axis: usize) -> Vec<f64> {
     let mut values: Vec<f64> = rows.iter().map(|row| row.inputs[axis]).collect();
     values.sort_by(f64::total_cmp);
     values.dedup();
-    let step = values
-        .len()
-        .saturating_sub(1)
-        .div_ceil(MAX_CURVES - 1)
-        .max(1);
+    let last = values.len().saturating_sub(1);
+    let step = last.div_ceil(MAX_CURVES - 1).max(1);
     let mut chosen: Vec<f64> = values.iter().copied().step_by(step).collect();
-    if !(values.len().saturating_sub(1)).is_multiple_of(step) {
+    if !last.is_multiple_of(step) {
         chosen.extend(values.last());
     }
     chosen
@@ -188,18 +185,17 @@ fn curves(
         sorted(points.map(|row| [row.inputs[abscissa], row.result.values[index]]))
     };
     let one = |group: &ChartGroup<'_>| {
+        let members = group.members.iter();
         let mut series = Vec::new();
         match parameter {
-            None => series.extend(
-                group
-                    .members
-                    .iter()
-                    .map(|&(index, member)| Series::line(member, line(index, &|_| true))),
-            ),
+            None => series.extend(members.map(|&(index, member)| {
+                let points = line(index, &|_| true);
+                Series::line(member, points)
+            })),
             Some(parameter) => {
                 let unit = unit_text(&axes[parameter].unit);
                 for (k, value) in chosen_values(rows, parameter).into_iter().enumerate() {
-                    series.extend(group.members.iter().map(|&(index, member)| {
+                    series.extend(members.clone().map(|&(index, member)| {
                         let name = format!("{} {unit} {member}", number(value));
                         let points = line(index, &|row| row.inputs[parameter] == value);
                         let stroke = match member {

@@ -72,14 +72,12 @@ impl<'a> PreparedSweep<'a> {
             return refuse(format!("{columns} columns {fault}"));
         }
         if let (Some(shard), Some(_)) = (sweep.shard, sweep.export) {
-            return refuse(format!(
-                "an export gathers all shards: leave --shard {shard} out"
-            ));
+            let message = "an export gathers all shards: leave --shard";
+            return refuse(format!("{message} {shard} out"));
         }
         let exact: Vec<String> = design.axes.iter().map(exact_text).collect();
-        let shard = sweep
-            .shard
-            .map_or(WHOLE_STUDY.to_owned(), |s| s.to_string());
+        let shard = sweep.shard.map(|shard| shard.to_string());
+        let shard = shard.unwrap_or_else(|| WHOLE_STUDY.to_owned());
         // A study without random axes has no seed.
         let seed = match design.is_random() {
             true => design.seed.to_string(),

@@ -120,13 +120,9 @@ impl Store {
         text: &str,
         read: impl FnMut(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
     ) -> Result<Vec<T>, SweepError> {
-        let all = || -> rusqlite::Result<Vec<T>> {
-            self.connection
-                .prepare(text)?
-                .query_map((), read)?
-                .collect()
-        };
-        all().map_err(|e| StoreFault::from(e).with_path(&self.path))
+        let statement = self.connection.prepare(text);
+        let all = statement.and_then(|mut statement| statement.query_map((), read)?.collect());
+        all.map_err(|e| StoreFault::from(e).with_path(&self.path))
     }
 
     /// Writes rows as they arrive, until the channel closes; each is on disk after at most 0.2 s.

@@ -47,9 +47,7 @@ impl<'a> ForceEvaluator<'a> {
         t: f64,
     ) -> Result<Option<EvaluatedState<'_>>, StopCause> {
         let (model, workspace, results) = (self.model, &mut self.workspace, &mut self.results);
-        let TrajectorySample {
-            q, q_dot, q_ddot, ..
-        } = sample;
+        let (q, q_dot, q_ddot) = (&sample.q, &sample.q_dot, &sample.q_ddot);
         let state = match self.analysis {
             Analysis::Kinematics => {
                 model.plan().positions(q, &mut self.pose)?;
@@ -65,10 +63,8 @@ impl<'a> ForceEvaluator<'a> {
             }
         };
         self.pose.clone_from(state.pose());
-        match self.monitor.off_table(t, state.bodies()) {
-            Some(cause) => Err(cause),
-            None => Ok(Some(state)),
-        }
+        self.monitor.check_tables(t, state.bodies())?;
+        Ok(Some(state))
     }
 
     /// Computes the states of the bodies at the velocities of the sample; fails where a coupling jumps.
@@ -77,8 +73,7 @@ impl<'a> ForceEvaluator<'a> {
         plan.velocities(pose, &sample.q_dot, &mut self.motion_buffer);
         plan.accelerations(pose, &sample.q_ddot, &mut self.motion_buffer);
         self.body_states.fill(plan, pose, &self.motion_buffer);
-        let cause = self.monitor.discontinuity(&self.body_states);
-        cause.map_or(Ok(()), Err)
+        self.monitor.check_couplings(&self.body_states)
     }
 }
 

@@ -70,31 +70,35 @@ impl<'a> TrajectoryMonitor<'a> {
         }
     }
 
-    /// The first load whose table does not cover the state of the bodies at time `t` (s).
-    pub(crate) fn off_table(&self, t: f64, states: &BodyStates) -> Option<StopCause> {
-        self.tables.iter().find_map(|table| {
+    /// Fails at the first load whose table does not cover the state of the bodies at time `t` (s).
+    pub(crate) fn check_tables(&self, t: f64, states: &BodyStates) -> Result<(), StopCause> {
+        for table in &self.tables {
+            let (load, [first, last]) = (table.load, table.spline.range());
             let value = match table.argument {
                 None => t,
                 Some((measured, order)) => states.coordinate(measured)[order],
             };
-            let [first, last] = table.spline.range();
             // Angles and lengths computed from the pose carry a few roundings.
             let tolerance = RANGE_TOLERANCE * (last - first);
-            let inside = value >= first - tolerance && value <= last + tolerance;
-            let load = table.load;
-            (!inside).then_some(StopCause::OffTable { load, value })
-        })
+            if !(value >= first - tolerance && value <= last + tolerance) {
+                return Err(StopCause::OffTable { load, value });
+            }
+        }
+        Ok(())
     }
 
-    /// The first coupling whose function is discontinuous since the position before.
-    pub(crate) fn discontinuity(&mut self, states: &BodyStates) -> Option<StopCause> {
-        self.couplings.iter_mut().find_map(|coupling| {
+    /// Fails at the first coupling whose function is discontinuous since the position before.
+    pub(crate) fn check_couplings(&mut self, states: &BodyStates) -> Result<(), StopCause> {
+        for coupling in &mut self.couplings {
             let now = states.coordinate(coupling.variable)[0];
-            let previous = coupling.previous.replace(now)?;
-            let between = coupling.law.discontinuity(previous, now)?;
-            let joint = coupling.joint;
-            Some(StopCause::Discontinuity { joint, between })
-        })
+            let previous = coupling.previous.replace(now);
+            let jump = previous.and_then(|previous| coupling.law.discontinuity(previous, now));
+            if let Some(between) = jump {
+                let joint = coupling.joint;
+                return Err(StopCause::Discontinuity { joint, between });
+            }
+        }
+        Ok(())
     }
 }
 
