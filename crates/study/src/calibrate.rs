@@ -214,17 +214,14 @@ pub fn calibrate(
         ));
     };
     let result = find_value(scene, path, period)?;
+    let (title, unit) = (&scene.title, &result.unit);
+    let [value, period, current] =
+        [result.value, result.period, result.current].map(|v| digits(v, 12));
+    let current_period = digits(result.current_period, 13);
     Ok(Outcome {
         summary: format!(
-            "{}: {} = {} {} gives the period {} s\n  the scene has {} {}, which gives {} s\n",
-            scene.title,
-            result.path,
-            digits(result.value, 12),
-            result.unit,
-            digits(result.period, 12),
-            digits(result.current, 12),
-            result.unit,
-            digits(result.current_period, 13),
+            "{title}: {path} = {value} {unit} gives the period {period} s\n  the scene has {current} {unit}, which gives \
+             {current_period} s\n"
         ),
         ..Outcome::default()
     })

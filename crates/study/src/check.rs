@@ -164,13 +164,9 @@ fn describe_groups(mechanism: &Mechanism, plan: &Plan) -> String {
     for (g, (size, kind)) in groups.into_iter().enumerate() {
         let joints = plan.group_joints(g);
         let joints = joints.iter().map(|j| mechanism.joints[j.0].name.as_str());
-        text += &format!(
-            "    {}. {} closed by {}: {}, {kind}\n",
-            g + 1,
-            group_bodies(mechanism, plan, g),
-            list_or(joints, "its actuator"),
-            count(size, "unknown"),
-        );
+        let (joints, unknowns) = (list_or(joints, "its actuator"), count(size, "unknown"));
+        let (number, bodies) = (g + 1, group_bodies(mechanism, plan, g));
+        text += &format!("    {number}. {bodies} closed by {joints}: {unknowns}, {kind}\n");
         let found = &plan.group_modes()[g];
         let is_ambiguous = found.modes.len() > 1;
         for (k, mode) in found.modes.iter().enumerate().filter(|_| is_ambiguous) {

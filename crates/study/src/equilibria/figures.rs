@@ -47,12 +47,6 @@ pub(crate) fn equilibria(results: &EquilibriaResults<'_>, curves: &StaticCurves)
     let text = "Filled: stable equilibria; rings: others. Drives are in their steady state at each position.";
     let positions = count(curves.q.len(), "position");
     let method = format!("static force at {positions}, and its zeros");
-    figure(
-        prepared.scene,
-        "equilibria",
-        "Equilibria",
-        text,
-        panels,
-        method,
-    )
+    let (scene, title) = (prepared.scene, "Equilibria");
+    figure(scene, "equilibria", title, text, panels, method)
 }

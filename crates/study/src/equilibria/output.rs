@@ -96,16 +96,13 @@ pub(crate) fn describe_eigenvalues(values: &[[f64; 2]]) -> String {
     let one = |&z: &[f64; 2]| {
         let [re, im] = without_rounding(z);
         let size = re.hypot(im);
+        let damping = digits(if re == 0.0 { 0.0 } else { -re / size }, 6);
+        let [a, b, angular, frequency] = [re, im, size, size / TAU].map(|v| digits(v, 9));
         match im {
-            0.0 => format!("    eigenvalue {} 1/s\n", digits(re, 9)),
+            0.0 => format!("    eigenvalue {a} 1/s\n"),
             im if im < 0.0 => String::new(),
             _ => format!(
-                "    eigenvalues {} ± {}i 1/s: {} rad/s = {} Hz, damping ratio {}\n",
-                digits(re, 9),
-                digits(im, 9),
-                digits(size, 9),
-                digits(size / TAU, 9),
-                digits(if re == 0.0 { 0.0 } else { -re / size }, 6)
+                "    eigenvalues {a} ± {b}i 1/s: {angular} rad/s = {frequency} Hz, damping ratio {damping}\n"
             ),
         }
     };

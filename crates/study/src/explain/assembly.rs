@@ -153,9 +153,9 @@ fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
 }
 
 fn freedom_text(degrees_of_freedom: usize, actuators: usize) -> String {
+    let freedom = count(degrees_of_freedom, "degree of freedom");
     format!(
-        "the mechanism has {} and {}",
-        count(degrees_of_freedom, "degree of freedom"),
+        "the mechanism has {freedom} and {}",
         count(actuators, "actuator")
     )
 }

@@ -198,13 +198,11 @@ impl ComputedMotion {
         how: &str,
         difference: &Difference,
     ) -> Self {
+        let (coordinate, energy) = (difference.coordinate, difference.energy);
+        let (required, reactions) = (two_digits(accuracy), difference.reactions);
         let remarks = format!(
-            "  accuracy {}: {how}\n  estimated errors over the whole motion: {:.1e} in the coordinates, {:.1e} of the \
-             largest kinetic energy, {:.1e} of the largest reaction\n",
-            two_digits(accuracy),
-            difference.coordinate,
-            difference.energy,
-            difference.reactions
+            "  accuracy {required}: {how}\n  estimated errors over the whole motion: {coordinate:.1e} in the coordinates, \
+             {energy:.1e} of the largest kinetic energy, {reactions:.1e} of the largest reaction\n"
         );
         Self {
             motion,

@@ -69,9 +69,7 @@ pub fn tabulate(
     };
     let cheaper = match request.required {
         true => String::new(),
-        false => {
-            format!("{rows} (cheaper than building a table); use the table between rows\n")
-        }
+        false => format!("{rows} (cheaper than building a table); use the table between rows\n"),
     };
     let text = table.to_text(&labels);
     let text = text.map_err(|e| scene_error(scene, e.to_string(), "", explain::Labels::new()))?;
@@ -90,14 +88,10 @@ fn describe_table(scene: &Scene, table: &TabulatedModel) -> String {
         None => interval_text(scene, from, to),
     };
     let parts = ["m and ½m′", "a and b", "w and c"];
-    let counts = table
-        .cells()
-        .into_iter()
-        .zip(parts)
-        .filter(|(cells, _)| *cells > 0);
-    let cells: Vec<String> = counts
-        .map(|(cells, of)| format!("{cells} of {of}"))
-        .collect();
+    let counts = table.cells().into_iter().zip(parts);
+    let counts = counts.filter(|(cells, _)| *cells > 0);
+    let cells = counts.map(|(cells, of)| format!("{cells} of {of}"));
+    let cells: Vec<String> = cells.collect();
     let [inertia, all] = table.bytes().map(|bytes| bytes.div_ceil(1024));
     format!(
         "  table {kind}: cells {}; {inertia} kB for m and ½m′, {all} kB in all; error at most {:.1e} of the largest value of each\n",
@@ -132,13 +126,14 @@ fn explain_table_error(
             ),
             "require less accuracy; next to change points and limit positions the model itself loses digits",
         ),
-        TableError::NotPeriodic { what } => (
-            format!(
-                "no table: {} is not periodic over a revolution",
-                coefficient_name(what, labels)
-            ),
-            "a load that depends on the number of revolutions needs an interval: give --from and --to",
-        ),
+        TableError::NotPeriodic { what } => {
+            let what = coefficient_name(what, labels);
+            let help = "a load that depends on the number of revolutions needs an interval: give --from and --to";
+            (
+                format!("no table: {what} is not periodic over a revolution"),
+                help,
+            )
+        }
         TableError::NotSmooth { .. } => (
             error.to_string(),
             "require less accuracy, or a smaller part of the range with --from and --to, away from limit positions",
@@ -176,11 +171,8 @@ fn coefficient_name(entry: TableQuantity, labels: &Labels) -> String {
         TableQuantity::B { reaction } => format!("b of {}", name(reactions, reaction)),
         TableQuantity::W { load } => format!("w of {}", name(loads, load)),
         TableQuantity::C { load, reaction } => {
-            format!(
-                "c of {} and {}",
-                name(reactions, reaction),
-                name(loads, load)
-            )
+            let (reaction, load) = (name(reactions, reaction), name(loads, load));
+            format!("c of {reaction} and {load}")
         }
         _ => entry.to_string(),
     }
