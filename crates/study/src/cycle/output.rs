@@ -94,10 +94,8 @@ pub(crate) fn flywheel_text(
         return format!("  no flywheel is needed for a coefficient of fluctuation of {target}\n");
     }
     let (coordinate, _) = prepared.first_free_coordinate();
-    let (name, inertia) = (
-        prepared.coordinate_name(coordinate),
-        digits(flywheel.inertia, 9),
-    );
+    let name = prepared.coordinate_name(coordinate);
+    let inertia = digits(flywheel.inertia, 9);
     let [mean, slowest, fastest] = speeds(&flywheel.cycle);
     format!(
         "  for a coefficient of fluctuation of {target}: flywheel of {inertia} kg m² on {name}\n  with it: mean speed \

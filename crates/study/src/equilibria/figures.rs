@@ -27,15 +27,13 @@ pub(crate) fn equilibria(results: &EquilibriaResults<'_>, curves: &StaticCurves)
             series.push(filled.color(Paint::Palette(1)));
         }
         let mut chart = chart(title, coordinate_axis(&name, angle), y, series);
-        let label = String::new();
-        chart
-            .marks
-            .extend(others.into_iter().map(|(_, at)| Mark::Point {
-                at,
-                label: label.clone(),
-            }));
+        for (_, at) in others {
+            let label = String::new();
+            chart.marks.push(Mark::Point { at, label });
+        }
         if k == 0 {
-            chart.marks.push(Mark::Horizontal { at: 0.0, label });
+            let (at, label) = (0.0, String::new());
+            chart.marks.push(Mark::Horizontal { at, label });
         }
         Panel::from(chart)
     };

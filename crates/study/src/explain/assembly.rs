@@ -54,10 +54,10 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
                     "start a little farther from it",
                 )
             } else {
-                let missing = gap
-                    .is_finite()
-                    .then(|| format!(": {} m are missing", number(*gap)));
-                let missing = missing.unwrap_or_default();
+                let missing = match gap.is_finite() {
+                    true => format!(": {} m are missing", number(*gap)),
+                    false => String::new(),
+                };
                 (
                     format!("{names} cannot be assembled at the start{missing}"),
                     "check the lengths and points of these bodies, and the actuator's coordinate in [assembly]; \

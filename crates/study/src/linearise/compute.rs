@@ -26,9 +26,8 @@ fn nearest_equilibrium(prepared: &SceneMachine<'_>) -> Result<Equilibrium, Study
     let (found, _) = find_equilibria(prepared)?;
     let start = prepared.initial_state()[0];
     let distance = |e: &Equilibrium| (e.y[0] - start).abs();
-    let nearest = found
-        .into_iter()
-        .min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let found = found.into_iter();
+    let nearest = found.min_by(|a, b| distance(a).total_cmp(&distance(b)));
     let what = "the static force has no zero in the range";
     nearest.ok_or_else(|| prepared.explain(&DynamicsError::NoEquilibrium { what }))
 }

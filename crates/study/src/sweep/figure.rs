@@ -34,9 +34,8 @@ pub(crate) fn figure(
     let listed: Vec<usize> = (0..design.axes.len()).filter(is_listed).collect();
     let quantities = prepared.requested.quantities.iter().enumerate();
     let of_each = |chart: &dyn Fn(usize, &SweepQuantity) -> Option<Chart>| {
-        quantities
-            .filter_map(|(k, quantity)| chart(k, quantity))
-            .collect()
+        let charts = quantities.filter_map(|(k, quantity)| chart(k, quantity));
+        charts.collect()
     };
     let (charts, caption): (Vec<Chart>, _) = match (listed.as_slice(), design.is_random()) {
         ([], false) => return Err("a single point has no curve"),
@@ -249,12 +248,8 @@ fn band(
         line("97.5 %", &|s| s.quantiles[1]).stroke(Stroke::Dashed),
         line("2.5 %", &|s| s.quantiles[0]).stroke(Stroke::Dashed),
     ];
-    chart(
-        &quantity.name,
-        quantity.unit,
-        axis_of(&axes[abscissa]),
-        series,
-    )
+    let x = axis_of(&axes[abscissa]);
+    chart(&quantity.name, quantity.unit, x, series)
 }
 
 /// The histogram of a result.

@@ -182,11 +182,8 @@ fn create(
     for (key, value) in study {
         transaction.execute("INSERT INTO study VALUES (?, ?)", (key, value))?;
     }
-    let columns = headings.concat();
-    let columns = columns
-        .iter()
-        .map(|name| format!("{} REAL, ", quoted(name)));
-    let columns: String = columns.collect();
+    let column = |name: &String| format!("{} REAL, ", quoted(name));
+    let columns: String = headings.concat().iter().map(column).collect();
     transaction.execute_batch(&format!(
         "CREATE TABLE points (\"index\" INTEGER PRIMARY KEY, {columns}\"message\" TEXT);"
     ))?;

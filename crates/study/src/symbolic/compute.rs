@@ -46,10 +46,8 @@ fn full_reduced_model(scene: &Scene) -> Result<ExactModel, StudyError> {
 
 fn find_reaction(scene: &Scene, name: &str) -> Result<Reaction, StudyError> {
     let all = scene.mechanism.reactions();
-    let names: Vec<String> = all
-        .iter()
-        .map(|&r| scene.mechanism.reaction_name(r))
-        .collect();
+    let names = all.iter().map(|&r| scene.mechanism.reaction_name(r));
+    let names: Vec<String> = names.collect();
     let found = names.iter().position(|other| other == name);
     found.map(|k| all[k]).ok_or_else(|| {
         let message = format!("there is no reaction `{name}`");

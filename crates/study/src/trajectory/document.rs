@@ -71,6 +71,7 @@ impl<'a> Document<'a> {
     /// The extrema as a text table.
     fn extrema_table(&self) -> Block {
         let at = &self.at;
+        let header = ["quantity", "unit", "min", at, "max", at];
         let row = |of: &ColumnExtrema| {
             let cells = [of.min, of.max].map(|(v, row)| [v, self.abscissa_values[row]].map(number));
             let mut row = vec![of.name.clone(), of.unit.to_owned()];
@@ -78,9 +79,7 @@ impl<'a> Document<'a> {
             row
         };
         Block::Table {
-            header: ["quantity", "unit", "min", at, "max", at]
-                .map(str::to_owned)
-                .into(),
+            header: header.map(str::to_owned).into(),
             rows: self.extrema.iter().map(row).collect(),
         }
     }
@@ -232,9 +231,8 @@ impl<'a> Document<'a> {
         ));
         let row = |&k: &usize| {
             let column = &self.results.columns[k];
-            [&column.name, column.unit, &column.meaning]
-                .map(str::to_owned)
-                .into()
+            let cells = [&column.name, column.unit, &column.meaning];
+            cells.map(str::to_owned).into()
         };
         blocks.push(Block::Table {
             header: ["column", "unit", "meaning"].map(str::to_owned).into(),

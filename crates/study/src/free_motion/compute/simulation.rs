@@ -71,9 +71,8 @@ pub fn compute_free_motion(
     if let Some(error) = motion.failure.as_ref().filter(|_| motion.end_time() == 0.0) {
         return Err(problem.explain(error));
     }
-    let trajectory = problem
-        .trajectory(&integrated)
-        .map_err(|e| problem.explain(&e))?;
+    let trajectory = problem.trajectory(&integrated);
+    let trajectory = trajectory.map_err(|e| problem.explain(&e))?;
     let (model, notes) = (&problem.output_model, String::new());
     let mut computed = compute_along(&loaded_scene, model, trajectory, notes, progress)?;
     let shortfall = problem.shortfall(scene, &integrated);

@@ -4,10 +4,10 @@ use crate::free_motion::compute::{ComputedMotion, FreeMotionProblem, SegmentedMo
 use crate::models::{drive_states, source_name};
 use crate::number_format::coordinate_unit;
 use crate::trajectory::compute::{
-    BALANCE, Column, FreeTrajectory, KINETIC, POTENTIAL, Quantity, Trajectory, TrajectorySample,
+    self, BALANCE, FreeTrajectory, KINETIC, POTENTIAL, Quantity, Trajectory, TrajectorySample,
 };
 use dwell_dynamics::{DynamicsError, EventOccurrence};
-use dwell_findings::{self as findings, Table};
+use dwell_findings::{Column, Table};
 use dwell_geometry::body_states::CoordinateFunction;
 
 impl FreeMotionProblem<'_> {
@@ -81,7 +81,7 @@ impl FreeMotionProblem<'_> {
     }
 
     /// The columns of [`TrajectorySample::extra_values`].
-    fn extra_columns(&self) -> Vec<Column> {
+    fn extra_columns(&self) -> Vec<compute::Column> {
         let kinetic = "kinetic energy of all bodies and rotors";
         let potential = "potential energy of gravity, springs and constant forces";
         let balance =
@@ -97,7 +97,7 @@ impl FreeMotionProblem<'_> {
         }));
         all.push((BALANCE.to_owned(), "J", balance));
         all.extend(drive_states(self.loaded_scene));
-        let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| Column {
+        let column = |(k, (name, unit, meaning)): (usize, (String, _, &str))| compute::Column {
             name,
             former: None,
             unit,
@@ -109,17 +109,13 @@ impl FreeMotionProblem<'_> {
 
     /// The time of each event, and the actuator coordinates and speeds then.
     pub(crate) fn event_table(&self, motion: &SegmentedMotion) -> Table {
-        let mut columns = vec![
-            findings::Column::new("t", "s"),
-            findings::Column::new("event", ""),
-        ];
+        let mut columns = vec![Column::new("t", "s"), Column::new("event", "")];
         let mechanism = &self.loaded_scene.mechanism;
         for actuator in &mechanism.actuators {
             let name = &actuator.name;
             let unit = coordinate_unit(actuator.coordinate().is_angle());
-            columns.push(findings::Column::new(name, unit));
-            let (name, unit) = (format!("{name}.velocity"), format!("{unit}/s"));
-            columns.push(findings::Column::new(name, unit));
+            columns.push(Column::new(name, unit));
+            columns.push(Column::new(format!("{name}.velocity"), format!("{unit}/s")));
         }
         let row = |(chart, o): (usize, &EventOccurrence)| {
             let machine = self.machine(motion, chart);

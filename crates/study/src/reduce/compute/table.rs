@@ -155,11 +155,8 @@ fn explain_table_error(
             "require less accuracy, such as --table-accuracy 1e-9",
         ),
     };
-    let place = (
-        SceneLocation::Actuator(ActuatorId(0)),
-        "over this coordinate",
-    );
-    scene_error(scene, message, help, [place])
+    let place = SceneLocation::Actuator(ActuatorId(0));
+    scene_error(scene, message, help, [(place, "over this coordinate")])
 }
 
 /// The name of a coefficient, with the names of the scene.

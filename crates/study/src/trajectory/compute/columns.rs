@@ -238,12 +238,8 @@ impl Columns<'_> {
             for (k, &reaction) in determinate {
                 let meaning = reaction_meaning(joint.kind, reaction.component, one, two);
                 let name = mechanism.reaction_name(reaction);
-                self.add(
-                    name,
-                    reaction.component.unit(),
-                    Quantity::Reaction(k),
-                    meaning,
-                );
+                let unit = reaction.component.unit();
+                self.add(name, unit, Quantity::Reaction(k), meaning);
             }
             self.separating_force(id);
             if others.iter().any(|(_, r)| r.component != Component::Moment) {

@@ -113,11 +113,11 @@ impl<'a> EarlyStop<'a> {
                 let message = format!(
                     "the function of coupling `{name}` is discontinuous {when}, at x = {x}"
                 );
-                let place = (
+                let (place, jumps) = (
                     SceneLocation::CouplingLaw(joint),
                     format!("jumps at x = {x}"),
                 );
-                scene_error(scene, message, CONTINUITY_HELP, [place])
+                scene_error(scene, message, CONTINUITY_HELP, [(place, jumps)])
             }
         }
     }

@@ -63,11 +63,10 @@ impl TrajectoryResults {
     /// Some columns as a table.
     fn table(&self, selected: &[usize]) -> Table {
         let columns = selected.iter().map(|&k| &self.columns[k]);
+        let columns = columns.map(|c| findings::Column::new(&c.name, c.unit));
         let row = |row: &Vec<f64>| selected.iter().map(|&k| row[k]).collect();
         Table {
-            columns: columns
-                .map(|c| findings::Column::new(&c.name, c.unit))
-                .collect(),
+            columns: columns.collect(),
             rows: self.rows.iter().map(row).collect(),
         }
     }

@@ -50,11 +50,8 @@ impl SectionedLink {
         }
         for (station, extremes) in &mut self.envelope {
             // On both sides of a concentrated load.
-            let [before, after] = [
-                forces.section_before(*station),
-                forces.section_after(*station),
-            ];
-            for section in [before, after] {
+            let at = *station;
+            for section in [forces.section_before(at), forces.section_after(at)] {
                 let values = [section.axial, section.shear, section.bending];
                 for ([min, max], value) in extremes.iter_mut().zip(values) {
                     *min = min.min(value);

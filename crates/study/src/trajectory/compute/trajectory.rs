@@ -106,13 +106,8 @@ impl<'a> Trajectory<'a> {
         let duration = digits(prescribed.duration, 6);
         let description = format!("the prescribed motion of {duration} s");
         let kind = TrajectoryKind::Prescribed(prescribed);
-        Ok(Self::at_positions(
-            kind,
-            plan,
-            analysis,
-            points,
-            description,
-        ))
+        let trajectory = Self::at_positions(kind, plan, analysis, points, description);
+        Ok(trajectory)
     }
 
     /// The sweep of a scene; or else over the range of its only actuator.

@@ -91,12 +91,8 @@ impl FigureContext<'_> {
             Analysis::Kinetostatics | Analysis::FreeMotion => "Shaking force and moment",
             _ => "Force and moment on the frame",
         };
-        Some(self.figure(
-            "shaking-force",
-            title,
-            text,
-            vec![vec![force, moment].into()],
-        ))
+        let panels = vec![vec![force, moment].into()];
+        Some(self.figure("shaking-force", title, text, panels))
     }
 
     pub(crate) fn power(&self) -> Option<Figure> {

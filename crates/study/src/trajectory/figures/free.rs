@@ -15,9 +15,8 @@ impl FigureContext<'_> {
         for (i, actuator) in self.scene.mechanism.actuators.iter().enumerate().take(3) {
             let name = symbol(&actuator.name);
             for (order, label) in [(0, name.clone()), (1, format!("d{name}/dt"))] {
-                let column = self
-                    .results
-                    .column_index(Quantity::ActuatorCoordinate(i, order));
+                let quantity = Quantity::ActuatorCoordinate(i, order);
+                let column = self.results.column_index(quantity);
                 let curve = column.map(|k| [(label.clone(), k)]);
                 panels.extend(curve.map(|curve| self.chart("", &label, &curve).into()));
             }
