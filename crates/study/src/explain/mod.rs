@@ -1,7 +1,6 @@
 //! Errors with their locations in the scene file. Below all analyses: nothing here depends on any of them.
 
 mod assembly;
-mod assembly_modes;
 mod coupling;
 mod labels;
 mod motion;
@@ -10,7 +9,6 @@ mod study_error;
 
 pub(crate) use assembly::not_one_actuator;
 pub use assembly::{explain_machine, explain_model};
-pub(crate) use assembly_modes::explain_ambiguous;
 pub(crate) use coupling::{couplings, non_finite_coupling, non_finite_coupling_error};
 pub use labels::scene_error;
 pub(crate) use labels::{

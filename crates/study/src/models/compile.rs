@@ -17,7 +17,12 @@ pub fn compile_model(scene: &Scene, reactions: &[Reaction]) -> Result<Model, Stu
 
 /// A reduced model of a scene for some reactions.
 pub fn reduced_model(scene: &Scene, reactions: &[Reaction]) -> Result<ExactModel, StudyError> {
-    ExactModel::new(compile_model(scene, reactions)?).ok_or_else(|| not_one_actuator(scene))
+    exact_model(scene, compile_model(scene, reactions)?)
+}
+
+/// The reduced model of a compiled one.
+pub(crate) fn exact_model(scene: &Scene, model: Model) -> Result<ExactModel, StudyError> {
+    ExactModel::new(model).ok_or_else(|| not_one_actuator(scene))
 }
 
 /// The requested reactions that are statically indeterminate: no analysis returns them.

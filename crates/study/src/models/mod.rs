@@ -10,8 +10,8 @@ pub use compile::{
     build_machine, compile_model, indeterminate_reactions, loaded_model, reduced_model,
 };
 pub(crate) use compile::{
-    determinate_model, loaded_determinate_model, requested_reaction_bodies, requested_reactions,
-    with_drive_loads, with_loads,
+    determinate_model, exact_model, loaded_determinate_model, requested_reaction_bodies,
+    requested_reactions, with_drive_loads, with_loads,
 };
 pub(crate) use drives::{drive_states, source_name};
 pub use prepared_scene::PreparedScene;

@@ -6,7 +6,7 @@ mod provenance;
 
 pub(crate) use captions::{
     add_note, chart, coordinate_axis, figure, indeterminate_note, inner_range, range_caption,
-    reaction_figure_count, reduced_provenance, separating_note,
+    reaction_figure_count, separating_note,
 };
 pub use captions::{caption, coordinate_label, scene_caption, symbol};
 pub use mechanism_drawing::MechanismDrawing;

@@ -7,9 +7,10 @@
 //! F is the magnitude that the scene gives; for a damper, friction or a separating force, the force or moment itself.
 
 use crate::models::PreparedScene;
+use crate::number_format::count;
 use crate::output::{
     add_note, chart, coordinate_label, figure, inner_range, range_caption, reaction_figure_count,
-    reduced_provenance, symbol,
+    symbol,
 };
 use crate::reduce::compute::{ReducedCurves, UnitLoadCurves};
 use dwell_kinetostatics::Coefficients;
@@ -47,7 +48,8 @@ impl RangeFigures<'_> {
         panels: Vec<Panel>,
     ) -> Figure {
         let text = range_caption(self.prepared, text);
-        let provenance = reduced_provenance(self.q.len());
+        let positions = count(self.q.len(), "position");
+        let provenance = format!("reduced model by unit runs, at {positions}");
         let scene = self.prepared.scene;
         figure(scene, name, title, &text, panels, provenance)
     }

@@ -14,7 +14,6 @@ use std::path::Path;
 const MAX_LISTED: usize = 3;
 
 /// The origin of the rows, and the number of missing ones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Counts {
     pub(crate) existing: usize,
     pub(crate) imported: usize,

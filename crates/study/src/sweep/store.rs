@@ -29,7 +29,6 @@ pub(crate) const SCENE_TEXT: &str = "scene_text";
 pub(crate) type StudyIdentity = Vec<(&'static str, String)>;
 
 /// An open file.
-#[derive(Debug)]
 pub(crate) struct Store {
     path: PathBuf,
     connection: Connection,
@@ -224,7 +223,6 @@ fn shortened(value: &str) -> String {
 }
 
 /// An error of the store, to which the caller adds the path.
-#[derive(Debug)]
 enum StoreFault {
     Reason(String),
     Differs(String),

@@ -282,7 +282,6 @@ impl<'a> Document<'a> {
 }
 
 /// The minimum and maximum of a column, and where they occur.
-#[derive(Debug, Clone, PartialEq)]
 struct ColumnExtrema {
     name: String,
     unit: &'static str,

@@ -1,11 +1,11 @@
 //! `dwell reduce --table-accuracy`: the whole reduced model as an interpolation table, usable without the mechanism.
 
-use crate::explain::{self, StudyError, explain_motion, not_one_actuator, scene_error};
-use crate::models::{PreparedScene, loaded_determinate_model};
+use crate::explain::{self, StudyError, explain_motion, scene_error};
+use crate::models::{PreparedScene, exact_model, loaded_determinate_model};
 use crate::number_format::number;
 use dwell_geometry::{ActuatorId, Plan, Range};
 use dwell_kinetostatics::table::Labels;
-use dwell_kinetostatics::{ExactModel, TableDomain, TableError, TableQuantity, TabulatedModel};
+use dwell_kinetostatics::{TableDomain, TableError, TableQuantity, TabulatedModel};
 use dwell_scene::{Scene, SceneLocation};
 use std::f64::consts::TAU;
 
@@ -35,8 +35,7 @@ pub fn tabulate(
     request: &TableRequest,
 ) -> Result<Tabulation, StudyError> {
     let scene = prepared.scene;
-    let exact =
-        ExactModel::new(loaded_determinate_model(scene)?).ok_or_else(|| not_one_actuator(scene))?;
+    let exact = exact_model(scene, loaded_determinate_model(scene)?)?;
     let plan = exact.model().plan();
     // Without a period the curves cover one revolution, and so does the table.
     let si = |written: f64| scene.to_si(written, plan.is_angle(0));

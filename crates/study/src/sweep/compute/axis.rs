@@ -10,7 +10,7 @@ const FORMS: &str = "write PATH=FROM:TO:COUNT, PATH=A,B,C, PATH~normal(MEAN,SD),
                      PATH±TOLERANCE or PATH±PERCENT%";
 
 /// A number of the scene and how it varies, in the scene's own unit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub(crate) struct Axis {
     pub(crate) path: String,
     pub(crate) unit: String,
@@ -18,7 +18,7 @@ pub(crate) struct Axis {
 }
 
 /// How a number varies.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug)]
 pub(crate) enum VariationKind {
     /// Equally spaced values, both ends included.
     Grid { from: f64, to: f64, count: u64 },

@@ -306,12 +306,8 @@ impl Columns<'_> {
                 )),
             };
             if let Some((unit, meaning)) = description {
-                let quantity = if unit == "N" {
-                    "load_force"
-                } else {
-                    "load_moment"
-                };
-                let name = format!("{}.{quantity}", load.name);
+                let kind = if unit == "N" { "force" } else { "moment" };
+                let name = format!("{}.load_{kind}", load.name);
                 self.add(name, unit, Quantity::LoadForce(k), meaning);
             }
             let meaning = "power of the load on all bodies";

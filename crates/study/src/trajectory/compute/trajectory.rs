@@ -47,7 +47,6 @@ impl TrajectorySample {
 }
 
 /// A trajectory of the actuator coordinates, as a function of the completed fraction (0 to 1).
-#[derive(Debug, Clone)]
 pub struct Trajectory<'a> {
     kind: TrajectoryKind<'a>,
     /// The analysis that follows it.
@@ -64,7 +63,6 @@ pub struct Trajectory<'a> {
     pub period: Option<f64>,
 }
 
-#[derive(Debug, Clone)]
 enum TrajectoryKind<'a> {
     Prescribed(&'a PrescribedMotion),
     Free(FreeTrajectory),
@@ -73,7 +71,6 @@ enum TrajectoryKind<'a> {
 }
 
 /// A free motion, sampled.
-#[derive(Debug, Clone)]
 pub(crate) struct FreeTrajectory {
     /// Two samples or more.
     pub(crate) samples: Vec<TrajectorySample>,
