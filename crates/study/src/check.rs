@@ -68,10 +68,6 @@ fn list<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     list_or(names, "")
 }
 
-fn body_names(mechanism: &Mechanism, bodies: &[BodyId]) -> String {
-    list(bodies.iter().map(|&b| mechanism.body_name(b)))
-}
-
 /// The bodies that a group places.
 fn group_bodies(mechanism: &Mechanism, plan: &Plan, g: usize) -> String {
     let bodies = plan.group_bodies(g);
@@ -149,7 +145,10 @@ fn describe_limit(mechanism: &Mechanism, plan: &Plan, limit: RangeLimit) -> Stri
     };
     let bodies = match plan.group_methods().is_empty() {
         true => String::new(),
-        false => " of ".to_owned() + &body_names(mechanism, &plan.group_bodies(limit.group)),
+        false => {
+            let bodies = plan.group_bodies(limit.group);
+            " of ".to_owned() + &list(bodies.iter().map(|&b| mechanism.body_name(b)))
+        }
     };
     let unit = coordinate_unit(plan.is_angle(0));
     format!("    {:.12} {unit}: {what}{bodies}\n", limit.q)

@@ -98,12 +98,10 @@ fn coefficient_figure(
     unit: &str,
     index: usize,
 ) -> Figure {
-    let range = RangeFigures {
-        prepared,
-        q: &curves.q,
-    };
+    let q = &curves.q;
+    let range = RangeFigures { prepared, q };
     let reactions = prepared.reaction_units();
-    let q = symbol(prepared.coordinate_name());
+    let name = symbol(prepared.coordinate_name());
     let lines = |of: fn(&Coefficients, usize) -> f64| {
         let line = |&k: &usize| {
             let name = if group.len() > 1 { &reactions[k].0 } else { "" };
@@ -111,9 +109,9 @@ fn coefficient_figure(
         };
         group.iter().map(line).collect()
     };
-    let title = format!("a: coefficient of the acceleration of {q}");
+    let title = format!("a: coefficient of the acceleration of {name}");
     let a = range.panel(&title, "a", unit, lines(|c, k| c.a[k]));
-    let title = format!("b: coefficient of the squared speed of {q}");
+    let title = format!("b: coefficient of the squared speed of {name}");
     let b = range.panel(&title, "b", unit, lines(|c, k| c.b[k]));
     let title = match group {
         [k] => format!("Reduced parameters of the reaction {}", reactions[*k].0),

@@ -112,7 +112,8 @@ impl<'a> PreparedSweep<'a> {
             let of = study.iter_mut().filter(|(key, _)| *key == SHARD);
             of.for_each(|(_, value)| shard.clone_into(value));
         }
-        Store::open(path, &study, [&self.inputs, &self.results])
+        let headings: [&[String]; 2] = [&self.inputs, &self.results];
+        Store::open(path, &study, headings).map_err(|e| e.with_path(path))
     }
 }
 

@@ -45,17 +45,9 @@ impl Store {
     /// Opens the file of a study, or creates it. `headings` are those of the inputs and of the results.
     ///
     /// # Errors
-    /// [`SweepError::DifferentStudy`] if it holds another study; [`SweepError::Store`] if it is not a sweep store, cannot
+    /// [`StoreFault::Differs`] if it holds another study; [`StoreFault::Reason`] if it is not a sweep store, cannot
     /// be read or written, or another process has it open.
     pub(crate) fn open(
-        path: &Path,
-        study: &StudyIdentity,
-        headings: [&[String]; 2],
-    ) -> Result<Self, SweepError> {
-        Self::try_open(path, study, headings).map_err(|e| e.with_path(path))
-    }
-
-    fn try_open(
         path: &Path,
         study: &StudyIdentity,
         headings: [&[String]; 2],
@@ -223,13 +215,13 @@ fn shortened(value: &str) -> String {
 }
 
 /// An error of the store, to which the caller adds the path.
-enum StoreFault {
+pub(crate) enum StoreFault {
     Reason(String),
     Differs(String),
 }
 
 impl StoreFault {
-    fn with_path(self, path: &Path) -> SweepError {
+    pub(crate) fn with_path(self, path: &Path) -> SweepError {
         let path = path.to_owned();
         match self {
             Self::Reason(reason) => SweepError::Store { path, reason },

@@ -5,7 +5,7 @@ use crate::former_names;
 use crate::models::{compile_model, exact_model, initial_reduced_state, with_loads};
 use crate::number_format::{coordinate_unit, force_unit};
 use crate::ranges::extent;
-use crate::trajectory::compute::{Analysis, is_prefix_of, peak_forces, swept_range};
+use crate::trajectory::compute::{Analysis, default_limits, is_prefix_of, peak_forces};
 use dwell_dynamics::{CoordinateMode, DynamicsError, Machine, Orbit, ReducedState};
 use dwell_kinetostatics::{Model, ReducedModel};
 use dwell_scene::Scene;
@@ -257,7 +257,7 @@ fn orbit(scene: &Scene, start: ReducedState, model: &Model) -> Result<Orbit, Stu
 fn inertia_extrema(scene: &Scene, model: &Model) -> Result<Vec<f64>, StudyError> {
     let exact = exact_model(scene, model.without_reactions())?;
     let mut workspace = exact.workspace();
-    let [from, to] = swept_range(scene, model.plan());
+    let ([from, to], ..) = default_limits(scene, model.plan());
     let (mut m, mut half_dm) = (Vec::new(), Vec::new());
     for k in 0..=INTERVALS {
         let fraction = k as f64 / INTERVALS as f64;

@@ -35,5 +35,6 @@ pub(crate) use selection::{
 };
 pub use trajectory::Trajectory;
 pub(crate) use trajectory::{
-    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample, swept_range,
+    BALANCE, FreeTrajectory, KINETIC, POSITIONS_PER_STEP, POTENTIAL, TrajectorySample,
+    default_limits,
 };

@@ -83,7 +83,7 @@ pub(crate) struct FreeTrajectory {
 }
 
 /// The limits of a sweep: from where to where, whether these are next to a limit position, and what it sweeps.
-type SweepLimits = ([f64; 2], [bool; 2], &'static str);
+pub(crate) type SweepLimits = ([f64; 2], [bool; 2], &'static str);
 
 impl<'a> Trajectory<'a> {
     /// The trajectory that an analysis of a scene follows, at `points` positions if given.
@@ -333,17 +333,12 @@ impl<'a> Trajectory<'a> {
     }
 }
 
-/// The limits of the default sweep over the range of the only actuator, rad or m.
-pub(crate) fn swept_range(scene: &Scene, plan: &Plan) -> [f64; 2] {
-    default_limits(scene, plan).0
-}
-
 fn one_revolution(start: f64) -> SweepLimits {
     ([start, start + TAU], [false; 2], "one revolution")
 }
 
 /// The default sweep over the range of the only actuator.
-fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
+pub(crate) fn default_limits(scene: &Scene, plan: &Plan) -> SweepLimits {
     let start = plan.assembly_coordinates()[0];
     let half_stroke = DEFAULT_STROKE * scene.mechanism.size();
     match plan.range() {

@@ -22,7 +22,8 @@ impl FigureContext<'_> {
         };
         let panels: Vec<Panel> = kinds.into_iter().filter_map(chart).collect();
         let text = "Required actuator forces: the force or moment of the first body on the second.";
-        self.figure_of_some("actuator-forces", "Actuator forces", text, panels)
+        (!panels.is_empty())
+            .then(|| self.figure("actuator-forces", "Actuator forces", text, panels))
     }
 
     /// Joint forces by their magnitudes, or their only component; then the moments. With a note if not all are

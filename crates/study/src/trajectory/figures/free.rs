@@ -22,7 +22,7 @@ impl FigureContext<'_> {
             }
         }
         let title = "Coordinates and their speeds";
-        self.figure_of_some("coordinates", title, "Over time.", panels)
+        (!panels.is_empty()).then(|| self.figure("coordinates", title, "Over time.", panels))
     }
 
     /// Kinetic and potential energy, work of nonconservative loads, and the error of the balance.
@@ -69,7 +69,7 @@ impl FigureContext<'_> {
             Some(chart("", coordinate_axis(&name, angle), y, vec![line]).into())
         };
         let panels: Vec<Panel> = actuators.take(4).filter_map(panel).collect();
-        let text = "Speed over coordinate.";
-        self.figure_of_some("phase-portrait", "Phase portrait", text, panels)
+        let (title, text) = ("Phase portrait", "Speed over coordinate.");
+        (!panels.is_empty()).then(|| self.figure("phase-portrait", title, text, panels))
     }
 }

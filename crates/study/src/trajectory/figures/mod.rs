@@ -174,17 +174,6 @@ impl<'a> FigureContext<'a> {
         figure(self.scene, name, title, &text, panels, &self.method_text)
     }
 
-    /// The same if there is a panel.
-    fn figure_of_some(
-        &self,
-        name: &str,
-        title: &str,
-        text: &str,
-        panels: Vec<Panel>,
-    ) -> Option<Figure> {
-        (!panels.is_empty()).then(|| self.figure(name, title, text, panels))
-    }
-
     /// A curve over the trajectory; angles in degrees.
     fn curve(&self, name: &str, k: usize) -> Series {
         let degrees = self.results.columns[k].unit == "rad";
