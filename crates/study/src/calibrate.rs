@@ -82,12 +82,9 @@ pub fn find_value(scene: &Scene, path: &str, period: f64) -> Result<CalibrationR
     let residual = |value: f64| -> Result<f64, StudyError> { Ok(period_with(value)? - period) };
     let value = root::find(residual, a, b)?.ok_or_else(|| {
         let [period, a, b] = [period, a, b].map(number);
-        refuse(
-            format!(
-                "the period is discontinuous at {period} s, between {a} and {b} {unit} of `{path}`"
-            ),
-            "the mechanism changes its assembly mode there",
-        )
+        let between = format!("between {a} and {b} {unit} of `{path}`");
+        let message = format!("the period is discontinuous at {period} s, {between}");
+        refuse(message, "the mechanism changes its assembly mode there")
     })?;
     Ok(result(value))
 }

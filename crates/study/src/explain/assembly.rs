@@ -105,29 +105,29 @@ fn explain_assembly(scene: &Scene, error: &AssemblyError) -> StudyError {
             "redundant constraints must agree to the last digits: correct a length or a point, or remove a joint",
             joint_labels(joints, "among the redundant constraints"),
         ),
-        AssemblyError::SingularAssembly { bodies, joints } => scene_error(
-            scene,
-            format!(
-                "the start is a limit position: the actuator does not determine the motion of {}",
-                body_names(mechanism, bodies)
-            ),
-            "start a little away from it, or drive another joint",
-            with_start(joints, "singular here"),
-        ),
+        AssemblyError::SingularAssembly { bodies, joints } => {
+            let what =
+                "the start is a limit position: the actuator does not determine the motion of";
+            let message = format!("{what} {}", body_names(mechanism, bodies));
+            let help = "start a little away from it, or drive another joint";
+            scene_error(scene, message, help, with_start(joints, "singular here"))
+        }
     }
 }
 
 fn explain_structure(scene: &Scene, error: &StructureError) -> StudyError {
     match error {
-        StructureError::NotConnected { bodies } => scene_error(
-            scene,
-            format!(
-                "no chain of joints connects {} with the ground",
-                body_names(&scene.mechanism, bodies)
-            ),
-            "add the missing joint, or remove the body",
-            body_labels(bodies, "not reached by any chain of joints"),
-        ),
+        StructureError::NotConnected { bodies } => {
+            let names = body_names(&scene.mechanism, bodies);
+            let message = format!("no chain of joints connects {names} with the ground");
+            let labels = body_labels(bodies, "not reached by any chain of joints");
+            scene_error(
+                scene,
+                message,
+                "add the missing joint, or remove the body",
+                labels,
+            )
+        }
         StructureError::UnderActuated {
             degrees_of_freedom,
             actuators,

@@ -74,15 +74,17 @@ fn explain_symbolic(scene: &Scene, error: &SymbolicError) -> StudyError {
              of any mechanism with one degree of freedom",
             joint_labels(joints, "closes the group"),
         ),
-        SymbolicError::Reaction(reaction) => scene_error(
-            scene,
-            format!(
-                "`{}` is statically indeterminate",
-                scene.mechanism.reaction_name(*reaction)
-            ),
-            "redundant constraints share the load: name another reaction",
-            joint_labels(&[reaction.joint], "redundant"),
-        ),
+        SymbolicError::Reaction(reaction) => {
+            let name = scene.mechanism.reaction_name(*reaction);
+            let message = format!("`{name}` is statically indeterminate");
+            let help = "redundant constraints share the load: name another reaction";
+            scene_error(
+                scene,
+                message,
+                help,
+                joint_labels(&[reaction.joint], "redundant"),
+            )
+        }
         SymbolicError::Position(error) => scene_error(scene, error.to_string(), "", Labels::new()),
     }
 }

@@ -137,15 +137,11 @@ impl FreeMotionProblem<'_> {
             return Some(self.explain(error));
         }
         let [requested, error] = integrated.accuracy?;
-        (error > requested).then(|| {
-            scene_error(
-                scene,
-                format!(
-                    "an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}"
-                ),
-                "the results are written with the error above; require that accuracy, or a shorter motion",
-                [(SceneLocation::Duration, "the error grows with the duration")],
-            )
-        })
+        let message = format!(
+            "an accuracy of {requested:e} is not reached: the estimated error is {error:.1e}"
+        );
+        let help = "the results are written with the error above; require that accuracy, or a shorter motion";
+        let place = (SceneLocation::Duration, "the error grows with the duration");
+        (error > requested).then(|| scene_error(scene, message, help, [place]))
     }
 }

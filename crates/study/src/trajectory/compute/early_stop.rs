@@ -300,16 +300,12 @@ fn off_table_error(scene: &Scene, load: usize, value: f64, when: &str) -> StudyE
         ),
         false => "extend the table, or write an expression".to_owned(),
     };
-    scene_error(
-        scene,
-        format!(
-            "the table of load `{}` covers {name} {table_range}, but {name} is {} {when}",
-            load_name(scene, load),
-            value_text(value)
-        ),
-        help,
-        [(SceneLocation::Magnitude(load), table_range)],
-    )
+    let (load_name, value) = (load_name(scene, load), value_text(value));
+    let message = format!(
+        "the table of load `{load_name}` covers {name} {table_range}, but {name} is {value} {when}"
+    );
+    let place = (SceneLocation::Magnitude(load), table_range);
+    scene_error(scene, message, help, [place])
 }
 
 /// The first group with a body whose angular velocity diverges at unit speed of the actuators.

@@ -43,18 +43,12 @@ fn indeterminate_error(scene: &Scene, model: &Model, k: usize, name: &str) -> Op
     let is_of_joint = |j: JointId| Some(&*mechanism.joints[j.0].name) == joint;
     let mut reactions = model.reactions().iter().enumerate();
     let is_indeterminate = |r| !model.plan().is_determinate(r);
-    reactions
-        .any(|(r, reaction)| is_of_joint(reaction.joint) && is_indeterminate(r))
-        .then(|| {
-            scene_error(
-                scene,
-                format!(
-                    "`{name}` is statically indeterminate: redundant constraints share the load"
-                ),
-                "`dwell check` lists such reactions; remove one of the redundant joints",
-                [(SceneLocation::Variable(k), "indeterminate")],
-            )
-        })
+    let is_meant = reactions.any(|(r, of)| is_of_joint(of.joint) && is_indeterminate(r));
+    let message =
+        format!("`{name}` is statically indeterminate: redundant constraints share the load");
+    let help = "`dwell check` lists such reactions; remove one of the redundant joints";
+    let place = (SceneLocation::Variable(k), "indeterminate");
+    is_meant.then(|| scene_error(scene, message, help, [place]))
 }
 
 /// Names that may have been meant: columns and their prefixes; otherwise those with the same first word,
