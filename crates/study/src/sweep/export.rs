@@ -14,6 +14,7 @@ use std::path::Path;
 const MAX_LISTED: usize = 3;
 
 /// The origin of the rows, and the number of missing ones.
+#[derive(Clone, Copy)]
 pub(crate) struct Counts {
     pub(crate) existing: usize,
     pub(crate) imported: usize,
