@@ -69,6 +69,7 @@ pub(crate) struct PointResult {
 
 /// A finished point.
 pub(crate) struct Row {
+    #[cfg_attr(not(feature = "output"), expect(dead_code, reason = "for the store"))]
     pub(crate) index: u64,
     pub(crate) inputs: Vec<f64>,
     pub(crate) result: PointResult,
